@@ -1,0 +1,1 @@
+namespace turnpoint::physics { const char* version() { return "0"; } }
