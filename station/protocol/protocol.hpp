@@ -1,0 +1,236 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "station/procedure/spec.hpp"
+#include "station/rig/rig.hpp"
+#include "station/text/problem.hpp"
+
+namespace turnpoint::protocol {
+
+using text::Place;
+
+/// A text in each of the protocol's languages.
+using Localised = std::map<std::string, std::string>;
+
+/// Values of the factors in one trial: numbers for numeric factors, names for text factors.
+using FactorValue = std::variant<double, std::string>;
+using Factors = std::map<std::string, FactorValue>;
+
+/// A linear combination of numeric factors: `150 - 0.5 * spread_mm`, `-30`, `abs(change)` (absolute set).
+struct Linear {
+  double constant = 0;
+  std::vector<std::pair<std::string, double>> terms;  ///< factor name, coefficient
+  bool absolute = false;
+  std::string source;
+  Place place;
+  bool is_constant() const { return terms.empty(); }
+};
+
+/// The value for these factors; throws std::invalid_argument naming a factor that has no number.
+double evaluate(const Linear& expression, const Factors& factors);
+
+enum class Relation { less, less_equal, equal, greater_equal, greater };
+
+/// `offset_mm < 0`: two linear sides and a relation.
+struct Comparison {
+  Linear left, right;
+  Relation relation = Relation::less;
+};
+bool holds(const Comparison& comparison, const Factors& factors);
+
+struct Factor {
+  std::string name;
+  std::optional<std::pair<double, double>> range;
+  std::vector<FactorValue> levels;
+  Place place;
+};
+
+/// An edge definition: one of turning, peak, p70, p50, p25, p10, or friction = m.
+struct Edge {
+  std::string name;                ///< "friction" for a friction edge
+  std::optional<double> friction;  ///< relative friction in (0, 1)
+};
+
+/// One explicit tone of a scene: placed by boundary or by frequency.
+struct SceneTone {
+  std::optional<Linear> boundary_mm, frequency_Hz;
+  Edge edge;
+  Linear displacement_um;
+  double phase_deg = 0;
+};
+
+struct Zone {
+  std::optional<double> from_mm;
+  std::optional<Linear> friction;
+  std::optional<int> tones;
+};
+
+/// What a scene must be right to; the planner uses the cheapest model inside all that are stated.
+struct Tolerance {
+  std::optional<double> boundary_mm, level_dB, friction;
+};
+
+/// A scene after `base` has been resolved: what one interval presents on the surface, in factors.
+struct Scene {
+  std::string name, base;
+  std::optional<Linear> boundary_mm;
+  Edge edge;
+  std::optional<Linear> displacement_um, friction;  ///< at the last maximum; at most one is set
+  std::vector<SceneTone> tones;
+  std::optional<Zone> zone;
+  std::optional<Linear> friction_contrast_dB;  ///< zone friction lower than the base's by 20 log10(dmu / mu)
+  double rove_dB = 0;                          ///< uniform +-, on displacement
+  double ramp_ms = 50;
+  Tolerance tolerance;
+  Place place;
+};
+
+/// A fixed value, or uniform between two.
+struct Distribution {
+  double low = 0, high = 0;
+};
+
+enum class TaskKind { single_interval, two_interval, same_different, oddity, adjustment };
+enum class Device { touch, buttons, either };
+enum class Odd { target, standard, either };
+
+struct Choice {
+  std::string id;
+  Localised label;
+};
+
+struct Task {
+  TaskKind kind = TaskKind::single_interval;
+  std::vector<std::vector<std::string>> intervals;  ///< scene names; an interval is a sequence of scenes
+  std::string standard, target;                     ///< oddity and same-different
+  Odd odd = Odd::either;
+  std::optional<double> duration_s, gap_s;
+  std::optional<Distribution> foreperiod_s;  ///< from the interval's start to its second scene
+  std::optional<double> transition_ms;
+  Device device = Device::touch;
+  Localised question;
+  std::vector<Choice> choices;
+  std::string correct_scene;                                       ///< 2ifc: the interval that held this scene
+  std::vector<std::pair<std::string, Comparison>> correct_answer;  ///< choice id -> when it is right
+  /// Adjustment only: the factor that the slider moves, its range and step.
+  std::string adjusts;
+  std::optional<double> step;
+};
+
+enum class ResponseZero { go_cue, change, interval_off, first_contact, lift_off };
+
+struct Timing {
+  ResponseZero response_zero = ResponseZero::go_cue;
+  std::optional<double> explore_s;   ///< single interval: the tones last at most this long
+  std::optional<double> deadline_s;  ///< from response_zero; absent where instructions state it
+  Distribution iti_s;
+  double anticipation_s = 0;
+};
+
+enum class Feedback { none, trial, block };
+enum class Interleave { none, random, alternate };
+
+struct Catch {
+  double rate = 0;
+  std::string factor;
+  std::vector<double> levels;
+};
+
+struct Pass {
+  double accuracy = 0;
+  int retries = 0;
+};
+
+struct Break {
+  int trials = 0;
+  double min_s = 0;
+};
+
+/// A block as it will run: `sequence` tables are unrolled for a participant by block_order().
+struct Block {
+  std::string name;
+  std::vector<std::string> procedures;
+  std::string level;           ///< practice with fixed levels: the factor they set
+  std::vector<double> levels;  ///< shown in turn, shuffled
+  std::optional<int> trials;
+  Feedback feedback = Feedback::none;
+  bool practice = false;
+  std::optional<Pass> pass;
+  Interleave interleave = Interleave::none;
+  std::optional<Catch> catch_trials;
+  std::optional<Break> break_after;
+  Factors fixed;  ///< factors that the sequence sets for the whole block: instruction = "speed"
+  Place place;
+};
+
+struct Sequence {
+  std::string name;
+  std::string over;  ///< the factor
+  int cycles = 1;
+  bool mirror = false;
+  Block block;
+};
+
+struct Instruction {
+  Localised text, late_message;
+  std::optional<double> deadline_s;
+  std::optional<std::pair<double, double>> target_accuracy;
+};
+
+struct Analysis {
+  std::string by;
+  std::optional<Linear> difficulty;
+  std::vector<std::string> show;
+  double exclude_below_s = 0;
+  std::optional<double> exclude_mad;
+};
+
+enum class ResumePolicy { ask, resume, restart, block };
+
+struct Resume {
+  ResumePolicy incomplete = ResumePolicy::ask;
+  double max_age_h = 24;
+  int warmup = 0;
+  std::string restart_unit;  ///< "" or "block"
+};
+
+/// A protocol file, whole and checked; every reference inside it resolves.
+struct Protocol {
+  std::string path, source, sha256;
+  std::string id, version;
+  std::string title;
+  std::vector<std::string> languages;
+  std::optional<std::uint64_t> seed;  ///< none: "per-session"
+  std::vector<Factor> factors;        ///< in file order
+  std::map<std::string, Scene> scenes;
+  Task task;
+  Timing timing;
+  std::vector<procedure::Spec> procedures;
+  std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences, in file order
+  std::map<std::string, Instruction> instructions;
+  Analysis analysis;
+  Resume resume;
+  std::vector<std::string> defaults_used;
+};
+
+/// Reads and checks a protocol file (format "friction-protocol/1"): syntax, keys, types, ranges, references.
+/// Throws text::BadInput with every problem at once, std::system_error where the file cannot be read.
+Protocol load(const std::string& path);
+
+/// The same from text already in memory (a resumed session); `path` only names it in messages.
+Protocol parse(const std::string& source, const std::string& path);
+
+/// The blocks in the order that the participant with this sequence index (from 0) runs them: sequences are
+/// unrolled by their Williams square, cycles and mirror.
+std::vector<Block> block_order(const Protocol& protocol, int sequence_index);
+
+/// What stands between this protocol and this rig: unreachable boundaries, missing devices, limits. Empty: none.
+std::vector<text::Problem> check_against(const Protocol& protocol, const rig::Rig& rig);
+
+}  // namespace turnpoint::protocol

@@ -1,0 +1,103 @@
+#pragma once
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "station/text/problem.hpp"
+
+namespace turnpoint::rig {
+
+/// The taper of the surface as the file states it; exactly one form is set. Half-widths, SI units.
+struct Taper {
+  double half_width_m = 0;                           ///< at the driven wide end; from the table for a profile
+  std::optional<double> slope;                       ///< linear: W(x) = half_width_m - slope x
+  std::optional<double> decay_length_m;              ///< exponential: W(x) = half_width_m exp(-x / decay_length_m)
+  std::vector<std::pair<double, double>> profile_m;  ///< tabulated (x, W), monotone interpolation
+};
+
+enum class Edges { supported, clamped };
+enum class Bending { automatic, on, off };
+enum class WideEnd { left, right };
+
+/// The vibrating surface: material, tension (as a stress), geometry and loss.
+struct Surface {
+  std::string material;  ///< "" where the file gives the constants itself
+  double density_kg_m3 = 0;
+  std::optional<double> modulus_Pa;
+  std::optional<double> poisson;
+  std::optional<double> yield_Pa;
+  double tension_Pa = 0;  ///< stress; 0 is a plate
+  double thickness_m = 0;
+  double length_m = 0;
+  double quality_factor = std::numeric_limits<double>::infinity();  ///< infinity is lossless
+  Edges edges = Edges::supported;
+  Bending bending = Bending::automatic;
+  WideEnd wide_end = WideEnd::left;
+  Taper taper;
+  /// Standard uncertainties of what was measured, from the optional keys `*_sd`; 0 where not given.
+  double tension_sd_Pa = 0, thickness_sd_m = 0, half_width_sd_m = 0, slope_sd = 0, density_sd_kg_m3 = 0,
+         modulus_sd_Pa = 0;
+};
+
+/// One drive element with its band, output channel and displacement of the drive edge at full scale.
+struct Transducer {
+  std::string name;
+  int channel = 0;
+  double low_Hz = 0, high_Hz = 0;
+  std::optional<double> m_per_full_scale;  ///< constant response; else `response`
+  struct ResponsePoint {
+    double frequency_Hz, m_per_full_scale, phase_rad;
+  };
+  std::vector<ResponsePoint> response;  ///< from response_csv, rising in frequency
+};
+
+/// Where the drive goes: `null:`, `wav:FILE` or `alsa:NAME`.
+struct Output {
+  std::string uri;
+  int rate_Hz = 0;
+  int bits = 24;
+  int period_frames = 384;
+  int periods = 4;
+  std::vector<std::string> allow_plugin;
+};
+
+/// Amplitude to relative friction: the illustrative load-sharing curve or a measured table.
+struct Friction {
+  bool stated = false;   ///< the file has a [friction] table
+  bool measured = false; ///< a table was given; otherwise load sharing, refused in live mode
+  double pressure_Pa = 5000;
+  double floor = 0.1;
+  double fingertip_m = 0.010;
+  std::vector<std::pair<double, double>> table;  ///< (displacement_m, relative_friction)
+};
+
+/// What must never be exceeded.
+struct Limits {
+  double displacement_m = 0;
+  double continuous_s = 30;
+  double duty = 0.8;
+  double session_minutes = 60;
+};
+
+/// A station's hardware as its rig file states it; valid once loaded.
+struct Rig {
+  std::string path, source, sha256;
+  std::string name;
+  bool reproduction = false;
+  Surface surface;
+  std::vector<Transducer> transducers;
+  Output output;
+  std::string amplifier_uri;
+  std::optional<std::string> buttons_uri, contact_uri, touch_uri;
+  Friction friction;
+  Limits limits;
+  std::vector<std::string> defaults_used;  ///< `key = value` for each default that stood in
+};
+
+/// Reads and checks a rig file (format "friction-rig/1"). Throws text::BadInput with every problem at once,
+/// std::system_error where the file cannot be read.
+Rig load(const std::string& path);
+
+}  // namespace turnpoint::rig

@@ -1,0 +1,41 @@
+#include <limits>
+
+#include "station/text/number.hpp"
+#include "station/text/problem.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::text;
+
+TEST_CASE("SHA-256 gives the published digests at every padding length", "[text]") {
+  CHECK(sha256("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  CHECK(sha256("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  CHECK(sha256("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq") ==
+        "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  CHECK(sha256(std::string(1000000, 'a')) ==
+        "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST_CASE("a number is written for people without noise", "[text]") {
+  CHECK(number(0.1 + 0.2) == "0.3");
+  CHECK(number(198.65394, 6) == "198.654");
+  CHECK(number(22400) == "22400");
+  CHECK(number(-0.0) == "0");
+  CHECK(number(std::numeric_limits<double>::infinity()) == "none");
+}
+
+TEST_CASE("a number written for a file reads back as the same double", "[text]") {
+  for (const double value : {0.1, 1.0 / 3.0, 6621.3, 1e-300})
+    CHECK(std::stod(exact(value)) == value);
+  CHECK(exact(std::numeric_limits<double>::quiet_NaN()) == "n/a");
+}
+
+TEST_CASE("a problem names file, line, column, what and what is allowed", "[text]") {
+  CHECK(format({{"a.toml", 3, 7}, "unknown key \"x\"", "nearest: \"y\""}) ==
+        "a.toml:3:7: unknown key \"x\"; nearest: \"y\"");
+  CHECK(format({{"a.toml", 0, 0}, "no such file", ""}) == "a.toml: no such file");
+}
+
+TEST_CASE("the nearest word is offered only where it may be a slip", "[text]") {
+  CHECK(nearest("boundry_mm", {"boundary_mm", "edge"}) == "boundary_mm");
+  CHECK(nearest("zzz", {"boundary_mm", "edge"}).empty());
+}
