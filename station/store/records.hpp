@@ -1,0 +1,104 @@
+#pragma once
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace turnpoint::store {
+
+enum class RunMode { live, pilot, simulated };
+enum class SessionStatus { running, completed, interrupted, stopped, abandoned };
+enum class TrialOutcome { answered, timeout, anticipation, aborted, fault };
+enum class TrialType { experimental, catch_trial, practice, warmup };
+
+const char* name(RunMode mode);
+const char* name(SessionStatus status);
+const char* name(TrialOutcome outcome);
+const char* name(TrialType type);  ///< "experimental", "catch", "practice", "warmup"
+
+/// A factor's value in a trial, for its column.
+using FactorValue = std::variant<double, std::string>;
+
+/// All that must be known to run or explain a session later: its provenance.
+struct SessionStart {
+  std::string participant;  ///< code
+  RunMode run_mode = RunMode::live;
+  std::string protocol_id, protocol_version, protocol_path, protocol_text, protocol_sha256, protocol_canonical;
+  std::vector<std::string> factor_columns;  ///< protocol order
+  std::string level_unit;
+  std::string rig_name, rig_path, rig_text, rig_sha256;
+  std::optional<std::string> calibration_id;  ///< sha256 of the calibration file, absent on a simulated rig
+  std::uint64_t seed = 0;
+  std::string language, observer;  ///< observer: "" or the text after `--observer`
+  std::string software_version, columns_version, kernel, station_id, realtime_rights;
+  std::string started_local;  ///< ISO 8601 with zone
+  std::string consent_version;
+};
+
+/// A run of one process on a session: the origin of its monotonic clock. A resume opens another.
+struct SegmentStart {
+  std::string boot_id, reason;  ///< "start", "resume", "fault"
+  std::int64_t monotonic_ns = 0, boottime_ns = 0, realtime_ns = 0;
+};
+
+struct BlockStart {
+  int block_index = 0;  ///< from 0, in the order run
+  int attempt = 0;      ///< rises with each restart of the same block
+  std::string name, instruction;
+  bool practice = false;
+};
+
+/// One tone of one interval, as it was driven.
+struct ToneRow {
+  int interval_index = 0;  ///< from 0, in the order presented
+  int scene_index = 0;     ///< within the interval's sequence
+  int tone_index = 0;
+  std::string scene;
+  std::optional<double> boundary_mm;
+  double frequency_Hz = 0;
+  double amplitude_um = 0;  ///< of the drive edge
+  std::optional<double> displacement_um, friction;
+  double rove_dB = 0;
+  std::string model;
+  double error_bound_mm = 0, uncertainty_mm = 0;
+  std::string reason;
+  std::int64_t onset_frame = 0, length_frames = 0;
+};
+
+/// One trial as it ended; committed whole, before the next begins.
+struct TrialRow {
+  int trial_index = 0;    ///< from 0 within the session, counting every presented trial
+  int trial_in_block = 0; ///< the key of its random draws
+  TrialType type = TrialType::experimental;
+  std::string procedure;
+  std::optional<double> level;
+  std::map<std::string, FactorValue> factors;
+  std::optional<double> boundary_mm, frequency_Hz, amplitude;
+  std::optional<std::string> correct_response, response;
+  std::optional<bool> correct;
+  TrialOutcome outcome = TrialOutcome::answered;
+  std::int64_t onset_ns = 0;  ///< CLOCK_MONOTONIC (or virtual) at response_zero
+  double onset_s = 0;         ///< the same from the start of the segment
+  double duration_s = 0;
+  std::optional<double> response_time_s, decision_time_s, movement_time_s;
+  std::string response_zero, response_time_quality;  ///< quality: kernel | toolkit | simulated
+  double response_offset_s = 0;
+  std::optional<double> deadline_s;
+  int xruns = 0, extra_touches = 0;
+  std::optional<double> threshold_est, threshold_sd;
+  std::optional<double> clock_slope_ns_per_frame, clock_residual_ns;  ///< frame <-> time regression
+  std::uint64_t state_hash = 0;  ///< procedures of the block after this trial
+  std::vector<ToneRow> tones;
+};
+
+/// Anything worth a time stamp: touches, edges, xruns, presented, faults.
+struct EventRow {
+  std::int64_t time_ns = 0;
+  std::string kind;
+  std::string value;
+  std::optional<int> trial_index;
+};
+
+}  // namespace turnpoint::store
