@@ -1,0 +1,49 @@
+#pragma once
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+
+namespace turnpoint::session {
+
+enum class InputKind {
+  answer,       ///< value = index of the answer chosen
+  next,         ///< Continue or Done on a page
+  slider,       ///< number = the slider's value
+  touch_down,   ///< any touch on the panel, answer or not: for the log
+  contact,      ///< value 1: finger on the surface, 0: lifted
+  stop,         ///< participant or operator wants to stop; what was done is kept
+  pause,        ///< operator
+  fault,        ///< text says what; from drive or panel
+};
+
+/// How good the time stamp is: the kernel's own, a toolkit's, or made by a simulated observer.
+enum class TimeQuality { kernel, toolkit, simulated };
+
+struct Input {
+  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC (virtual in a simulated session)
+  InputKind kind = InputKind::next;
+  int value = 0;
+  double number = 0;
+  std::string text;
+  TimeQuality quality = TimeQuality::toolkit;
+};
+
+/// The one queue into the session: any thread pushes, the session thread takes. Unbounded but tiny.
+class Inputs {
+ public:
+  void push(Input input);
+  /// The oldest input by time stamp, or none once `deadline_ns` (CLOCK_MONOTONIC) has passed.
+  std::optional<Input> wait_until(std::int64_t deadline_ns);
+  /// Throws away what has gathered, and returns it for the log.
+  std::deque<Input> drain();
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable arrived_;
+  std::deque<Input> queue_;
+};
+
+}  // namespace turnpoint::session
