@@ -1,0 +1,69 @@
+#pragma once
+// Boundary <-> frequency, for every definition of the boundary.
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "physics/edge.hpp"
+#include "physics/friction.hpp"
+#include "physics/model.hpp"
+#include "physics/surface.hpp"
+#include "physics/warning.hpp"
+
+namespace turnpoint::physics {
+
+// What a friction edge needs to know beyond the surface.
+struct FrictionContext {
+  FrictionMap friction;
+  double displacement_m = 1e-6;  // peak amplitude at the last maximum
+  double fingertip_m = 10e-3;
+};
+
+struct MapOptions {
+  Edge edge = Edge::turning();
+  std::optional<Model> model;               // none: cheapest whose bound is inside `tolerance_m`
+  std::optional<double> tolerance_m;        // none: the most exact position there is (`edge` where closed)
+  std::optional<FrictionContext> friction;  // required for a friction edge
+};
+
+// One answer; the optionals are none when there is no such boundary, and `reason` says why (otherwise why
+// this model). `error_bound_m`: what loss, the drive edge's higher modes and the model's equation may move;
+// `uncertainty_m`: one standard deviation from the surface's `sd`.
+struct MapAnswer {
+  std::optional<double> boundary_m;
+  std::optional<double> frequency_Hz;
+  Edge edge;
+  Model model = Model::edge;
+  double error_bound_m = 0;
+  double uncertainty_m = 0;
+  double m_per_Hz = 0;
+  std::string reason;
+  std::vector<Warning> warnings;
+};
+
+// The map of one surface and one edge. Building it may take milliseconds (a table is made and validated);
+// the two look-ups take well under a microsecond, allocate nothing and may be called from any thread.
+class BoundaryMap {
+ public:
+  BoundaryMap(const Surface& surface, const MapOptions& options);
+  ~BoundaryMap();
+  BoundaryMap(BoundaryMap&&) noexcept;
+  BoundaryMap& operator=(BoundaryMap&&) noexcept;
+
+  // Position for a frequency, frequency for a position; none outside what the surface can present.
+  std::optional<double> boundary_m(double frequency_Hz) const noexcept;
+  std::optional<double> frequency_Hz(double boundary_m) const noexcept;
+
+  // The same with bounds, reason and warnings.
+  MapAnswer at_frequency(double frequency_Hz) const;
+  MapAnswer at_boundary(double boundary_m) const;
+
+  Model model() const noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<const State> state_;
+};
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,30 @@
+#pragma once
+// What is meant by "the boundary" of a smooth zone.
+#include <string>
+#include <string_view>
+
+namespace turnpoint::physics {
+
+// A boundary's definition.
+//   turning   where the first transverse mode's local cut-off equals the tone's frequency (the seed's eq. 17)
+//   peak      last maximum of centre-line |v|
+//   percent   outermost point at exactly `level` of that maximum, 0 < level < 1
+//   friction  outermost point where friction averaged over the fingertip crosses `level`, 0 < level < 1
+struct Edge {
+  enum class Kind { turning, peak, percent, friction };
+  Kind kind = Kind::turning;
+  double level = 0;
+
+  static Edge turning() { return {Kind::turning, 0}; }
+  static Edge peak() { return {Kind::peak, 0}; }
+  static Edge percent(double level) { return {Kind::percent, level}; }
+  static Edge friction(double level) { return {Kind::friction, level}; }
+  bool operator==(const Edge&) const = default;
+};
+
+// "turning", "peak", "p70" (two digits, 01 ... 99), "friction=0.7". Throws std::invalid_argument naming what
+// is allowed; `format` is its inverse.
+Edge parse_edge(std::string_view text);
+std::string format(const Edge& edge);
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,117 @@
+#pragma once
+// The tapered surface: material, taper, tension, loss and supports. SI units, plain data.
+//
+//        y ^   clamped or simply supported sides, v = 0 at |y| = W(x)
+//          |\___________
+//  drive   |            \________       W(x): half-width, falling with x
+//  x = 0   |                      |  x = length_m: clamped end
+//          |             ________/
+//          |/-----------
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace turnpoint::physics {
+
+// How the two sloping sides are held: simply supported (v = 0, no moment) or clamped (v = 0, no slope). A
+// membrane without bending stiffness knows no difference.
+enum class Edges { supported, clamped };
+
+// Whether bending stiffness enters: `automatic` models it where it moves a cut-off by more than about half a
+// percent anywhere in the usable 90 % of the surface (see bending_modelled), and always without tension.
+enum class Bending { automatic, on, off };
+
+// W(x) = half_width_m - slope x. The sides meet at the apex, x = half_width_m / slope.
+struct LinearTaper {
+  double half_width_m;
+  double slope;
+};
+
+// W(x) = half_width_m exp(-x / decay_length_m).
+struct ExponentialTaper {
+  double half_width_m;
+  double decay_length_m;
+};
+
+struct TaperPoint {
+  double x_m;
+  double half_width_m;
+};
+
+// Measured half-widths, joined by monotone cubics (Fritsch & Carlson 1980; one continuous derivative). The
+// first point lies at x = 0, the last at or beyond the surface's length; half-widths fall strictly.
+struct TabulatedTaper {
+  std::vector<TaperPoint> points;
+};
+
+using TaperForm = std::variant<LinearTaper, ExponentialTaper, TabulatedTaper>;
+
+// Standard deviations of the surface's parameters (one sigma, zero: taken as exact); they become the
+// uncertainty of a boundary, which is kept apart from the error of a model.
+struct ParameterSd {
+  double density_kg_m3 = 0;
+  double tension_Pa = 0;
+  double thickness_m = 0;
+  double modulus_Pa = 0;
+  double half_width_m = 0;
+  double slope = 0;           // of a linear taper
+  double decay_length_m = 0;  // of an exponential one
+};
+
+// The shape of the driven edge's displacement across y at x = 0 (unit at the centre line).
+enum class DriveShape {
+  cosine,  // cos(pi y / 2W): the first transverse mode, the seed's assumption
+  piston   // 1: a stiff bar; it excites the higher transverse modes
+};
+
+struct Surface {
+  double density_kg_m3 = 0;
+  double tension_Pa = 0;  // a stress; 0: a plate
+  double thickness_m = 0;
+  double length_m = 0;        // drive edge to clamped end
+  double quality_factor = 0;  // infinity: lossless
+  TaperForm taper = LinearTaper{0, 0};
+  Edges edges = Edges::supported;
+  Bending bending = Bending::automatic;
+  DriveShape drive = DriveShape::cosine;
+  std::optional<double> modulus_Pa;  // Young's modulus; required when bending is modelled
+  double poisson = 0.33;
+  std::optional<double> yield_strength_Pa;
+  ParameterSd sd;
+};
+
+struct Material {
+  std::string_view name;
+  double density_kg_m3;
+  double modulus_Pa;
+  double poisson;
+  double yield_strength_Pa;  // of a strong commercial temper (handbook value, 10 % or so)
+};
+
+// Looks up a named material; none when unknown. `material_names` lists what there is.
+std::optional<Material> find_material(std::string_view name);
+std::vector<std::string_view> material_names();
+
+// Throws std::invalid_argument naming the first quantity outside its physical range and what is allowed.
+void validate(const Surface& surface);
+
+// Half-width (m) and its first derivative at x in [0, length_m]. For many points build a Taper (taper.hpp).
+double half_width_m(const Surface& surface, double x_m);
+
+// D = E h^3 / 12 (1 - nu^2) in N m, none without a modulus; N = T h in N/m; c = sqrt(T / rho) in m/s.
+std::optional<double> bending_stiffness_N_m(const Surface& surface);
+double line_tension_N_per_m(const Surface& surface);
+double wave_speed_m_s(const Surface& surface);
+
+// Whether bending enters the equations for this surface, by its `bending` setting. A plate without a modulus,
+// or with bending off, is refused by `validate`.
+bool bending_modelled(const Surface& surface);
+
+// The seed's brass membrane (30 mm half-width, slope 0.1, 5.12 GPa; lossless) and the aluminium plate of the
+// simulated rig (clamped, 14 mm, slope 0.03, 2 mm thick, Q = 60): reference surfaces for tests and examples.
+Surface seed_brass();
+Surface aluminium_plate();
+
+}  // namespace turnpoint::physics

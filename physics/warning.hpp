@@ -1,0 +1,27 @@
+#pragma once
+// What a plan, a map or a field should say once to its reader.
+#include <span>
+#include <string>
+#include <vector>
+
+#include "physics/surface.hpp"
+#include "physics/tone.hpp"
+
+namespace turnpoint::physics {
+
+// A stable code for programs ("yield", "bending-off", "finger-load", "audible", "resonance-gain",
+// "outside-surface", "no-smooth-zone", "narrow-strip", "ill-conditioned", "beat") and a sentence for people.
+struct Warning {
+  std::string code;
+  std::string text;
+};
+
+// Tension above the material's yield strength; bending that matters while it is off.
+std::vector<Warning> surface_warnings(const Surface& surface);
+
+// What one tone does on this surface: below 22.4 kHz, turning point outside the surface, strip narrower than
+// a fingertip (14 mm) at the turning point, last-lobe gain above 10, a finger heavier than the strip. Codes
+// are not repeated per tone.
+std::vector<Warning> tone_warnings(const Surface& surface, std::span<const Tone> tones);
+
+}  // namespace turnpoint::physics
