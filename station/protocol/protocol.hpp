@@ -116,7 +116,7 @@ struct Task {
   Device device = Device::touch;
   Localised question;
   std::vector<Choice> choices;
-  std::string correct_scene;                                       ///< 2ifc: the interval that held this scene
+  std::string correct_scene;  ///< 2ifc: the interval that held this scene
   std::vector<std::pair<std::string, Comparison>> correct_answer;  ///< choice id -> when it is right
   /// Adjustment only: the factor that the slider moves, its range and step.
   std::string adjusts;
@@ -230,7 +230,8 @@ Protocol parse(const std::string& source, const std::string& path);
 /// unrolled by their Williams square, cycles and mirror.
 std::vector<Block> block_order(const Protocol& protocol, int sequence_index);
 
-/// What stands between this protocol and this rig: unreachable boundaries, missing devices, limits. Empty: none.
+/// What stands between this protocol and this rig: unreachable boundaries, missing devices, limits. Empty:
+/// none.
 std::vector<text::Problem> check_against(const Protocol& protocol, const rig::Rig& rig);
 
 }  // namespace turnpoint::protocol

@@ -11,9 +11,9 @@ namespace turnpoint::rig {
 
 /// The taper of the surface as the file states it; exactly one form is set. Half-widths, SI units.
 struct Taper {
-  double half_width_m = 0;                           ///< at the driven wide end; from the table for a profile
-  std::optional<double> slope;                       ///< linear: W(x) = half_width_m - slope x
-  std::optional<double> decay_length_m;              ///< exponential: W(x) = half_width_m exp(-x / decay_length_m)
+  double half_width_m = 0;               ///< at the driven wide end; from the table for a profile
+  std::optional<double> slope;           ///< linear: W(x) = half_width_m - slope x
+  std::optional<double> decay_length_m;  ///< exponential: W(x) = half_width_m exp(-x / decay_length_m)
   std::vector<std::pair<double, double>> profile_m;  ///< tabulated (x, W), monotone interpolation
 };
 
@@ -65,8 +65,8 @@ struct Output {
 
 /// Amplitude to relative friction: the illustrative load-sharing curve or a measured table.
 struct Friction {
-  bool stated = false;   ///< the file has a [friction] table
-  bool measured = false; ///< a table was given; otherwise load sharing, refused in live mode
+  bool stated = false;    ///< the file has a [friction] table
+  bool measured = false;  ///< a table was given; otherwise load sharing, refused in live mode
   double pressure_Pa = 5000;
   double floor = 0.1;
   double fingertip_m = 0.010;

@@ -9,14 +9,14 @@
 namespace turnpoint::session {
 
 enum class InputKind {
-  answer,       ///< value = index of the answer chosen
-  next,         ///< Continue or Done on a page
-  slider,       ///< number = the slider's value
-  touch_down,   ///< any touch on the panel, answer or not: for the log
-  contact,      ///< value 1: finger on the surface, 0: lifted
-  stop,         ///< participant or operator wants to stop; what was done is kept
-  pause,        ///< operator
-  fault,        ///< text says what; from drive or panel
+  answer,      ///< value = index of the answer chosen
+  next,        ///< Continue or Done on a page
+  slider,      ///< number = the slider's value
+  touch_down,  ///< any touch on the panel, answer or not: for the log
+  contact,     ///< value 1: finger on the surface, 0: lifted
+  stop,        ///< participant or operator wants to stop; what was done is kept
+  pause,       ///< operator
+  fault,       ///< text says what; from drive or panel
 };
 
 /// How good the time stamp is: the kernel's own, a toolkit's, or made by a simulated observer.

@@ -36,19 +36,19 @@ struct Page {
   std::string text;   ///< the question, the instruction, the message; in the session's language
   std::vector<AnswerButton> answers;
   bool answers_open = false;
-  std::optional<bool> correct;          ///< feedback only
-  std::string instruction;              ///< "", "speed", "accuracy", ...: styles the block, never by colour alone
-  std::optional<double> mark_mm;        ///< the mark to point at, from the wide end
-  double length_mm = 0;                 ///< of the surface, for its drawing
+  std::optional<bool> correct;    ///< feedback only
+  std::string instruction;        ///< "", "speed", "accuracy", ...: styles the block, never by colour alone
+  std::optional<double> mark_mm;  ///< the mark to point at, from the wide end
+  double length_mm = 0;           ///< of the surface, for its drawing
   double wide_half_width_mm = 0, narrow_half_width_mm = 0;
   bool wide_end_left = true;
-  int interval = 0, intervals = 0;      ///< counted from 1
+  int interval = 0, intervals = 0;        ///< counted from 1
   int trials_done = 0, trials_total = 0;  ///< of the session; total may be an estimate
-  double remaining_s = 0;               ///< of a break
+  double remaining_s = 0;                 ///< of a break
   double slider = 0, slider_min = 0, slider_max = 1, slider_step = 0;  ///< adjust
   std::string language;
-  std::string run_mode;                 ///< live | pilot | simulated: shown on every page unless live
-  std::vector<SummaryLine> summary;     ///< end page, for the operator
+  std::string run_mode;              ///< live | pilot | simulated: shown on every page unless live
+  std::vector<SummaryLine> summary;  ///< end page, for the operator
 };
 
 /// Draws pages. show() is called on the session thread and must not wait for the participant.

@@ -25,7 +25,8 @@ using FactorValue = std::variant<double, std::string>;
 struct SessionStart {
   std::string participant;  ///< code
   RunMode run_mode = RunMode::live;
-  std::string protocol_id, protocol_version, protocol_path, protocol_text, protocol_sha256, protocol_canonical;
+  std::string protocol_id, protocol_version, protocol_path, protocol_text, protocol_sha256,
+      protocol_canonical;
   std::vector<std::string> factor_columns;  ///< protocol order
   std::string level_unit;
   std::string rig_name, rig_path, rig_text, rig_sha256;
@@ -69,8 +70,8 @@ struct ToneRow {
 
 /// One trial as it ended; committed whole, before the next begins.
 struct TrialRow {
-  int trial_index = 0;    ///< from 0 within the session, counting every presented trial
-  int trial_in_block = 0; ///< the key of its random draws
+  int trial_index = 0;     ///< from 0 within the session, counting every presented trial
+  int trial_in_block = 0;  ///< the key of its random draws
   TrialType type = TrialType::experimental;
   std::string procedure;
   std::optional<double> level;

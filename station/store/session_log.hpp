@@ -32,7 +32,8 @@ class SessionLog {
  public:
   /// Opens or creates the database (migrating an older schema) and begins a session. A participant code
   /// that is new gets the next sequence index of the protocol.
-  static SessionLog begin(const std::string& database, const SessionStart& start, const SegmentStart& segment);
+  static SessionLog begin(const std::string& database, const SessionStart& start,
+                          const SegmentStart& segment);
 
   /// Opens a new segment of an interrupted session.
   static SessionLog resume(const std::string& database, const std::string& session_id,

@@ -24,8 +24,7 @@ TEST_CASE("a number is written for people without noise", "[text]") {
 }
 
 TEST_CASE("a number written for a file reads back as the same double", "[text]") {
-  for (const double value : {0.1, 1.0 / 3.0, 6621.3, 1e-300})
-    CHECK(std::stod(exact(value)) == value);
+  for (const double value : {0.1, 1.0 / 3.0, 6621.3, 1e-300}) CHECK(std::stod(exact(value)) == value);
   CHECK(exact(std::numeric_limits<double>::quiet_NaN()) == "n/a");
 }
 

@@ -1,0 +1,144 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace turnpoint::trial {
+
+/// From which moment a response time counts; the moments are those of the protocol file.
+enum class ResponseZero { go_cue, change, interval_off, first_contact, lift_off };
+
+enum class Phase {
+  idle,      ///< not started
+  cue,       ///< get ready; the surface is silent
+  onset,     ///< an interval has been asked for and its first frame is not yet reached
+  stimulus,  ///< an interval is on the surface
+  gap,       ///< between two intervals
+  response,  ///< silence, answers open
+  feedback,  ///< right or wrong
+  late,      ///< the message after a timeout or an anticipation
+  interval,  ///< between trials
+  done,
+};
+
+enum class Outcome { answered, timeout, anticipation, aborted, fault };
+
+/// One interval: how long it lasts, and when its second and later scenes begin, from its onset.
+struct IntervalPlan {
+  std::int64_t duration_ns = 0;
+  std::vector<std::int64_t> scene_starts_ns;  ///< ascending; the first scene's 0 is not listed
+};
+
+/// A trial as it is to run; all times in ns. Durations must not be negative.
+struct Plan {
+  std::int64_t cue_ns = 0;
+  std::vector<IntervalPlan> intervals;
+  std::int64_t gap_ns = 0;
+  bool answer_ends_stimulus =
+      false;  ///< explored until answered; otherwise answers open after the last interval
+  ResponseZero response_zero = ResponseZero::go_cue;
+  std::int64_t deadline_ns = 0;      ///< from response_zero
+  std::int64_t anticipation_ns = 0;  ///< an answer sooner than this after response_zero anticipates
+  std::int64_t feedback_ns = 0;      ///< 0: no feedback phase
+  std::int64_t late_ns = 0;          ///< 0: no message
+  std::int64_t iti_ns = 0;
+  /// How long a time stamp may take to arrive: deadlines are decided this much later, by the stamps.
+  std::int64_t watermark_ns = 20'000'000;
+  int answers = 2;             ///< how many there are to choose from
+  std::optional<int> correct;  ///< index of the right answer; none: nothing is right or wrong
+};
+
+enum class EventKind {
+  tick,     ///< time has passed
+  onset,    ///< value: interval; time_ns: when its first frame reaches the surface (may lie ahead)
+  answer,   ///< value: index of the answer
+  touch,    ///< a touch that chose nothing
+  contact,  ///< value 1: finger on the surface, 0: lifted
+  xrun,     ///< the drive lost frames
+  fault,    ///< drive, amplifier or panel cannot go on
+  abort,    ///< participant or operator stopped
+};
+
+struct Event {
+  std::int64_t time_ns = 0;
+  EventKind kind = EventKind::tick;
+  int value = 0;
+};
+
+enum class ActionKind {
+  enter,    ///< value: the Phase entered; show its page
+  present,  ///< value: the interval to schedule, no earlier than time_ns; reply with an onset event
+  silence,  ///< ramp the stimulus down now
+};
+
+struct Action {
+  ActionKind kind = ActionKind::enter;
+  int value = 0;
+  std::int64_t time_ns = 0;
+};
+
+/// What came of the trial. A response and a response time are there only when it was answered.
+struct Result {
+  Outcome outcome = Outcome::aborted;
+  std::optional<int> response;
+  std::optional<bool> correct;
+  std::optional<std::int64_t> zero_ns;  ///< when response_zero happened
+  std::optional<std::int64_t> response_time_ns, decision_time_ns, movement_time_ns;
+  std::vector<std::int64_t> onsets_ns;
+  std::int64_t started_ns = 0, ended_ns = 0;
+  int extra_touches = 0;  ///< stale, early, late and repeated touches: logged, never scored
+  int xruns = 0;
+};
+
+/// The trial as a pure state machine: time-stamped events in, actions out. Events must come in the order of
+/// their time stamps, but an answer stamped before a deadline is honoured until watermark_ns after it.
+/// Neither a clock nor a thread is inside; the same events give the same actions.
+class Machine {
+ public:
+  /// Throws std::invalid_argument for a plan without intervals, with a negative time, no answers, or a
+  /// response_zero that cannot happen (change without a second scene).
+  explicit Machine(Plan plan);
+
+  std::vector<Action> start(std::int64_t now_ns);
+  std::vector<Action> handle(const Event& event);
+
+  /// When the next tick is due; none when only an event can go on, or when done.
+  std::optional<std::int64_t> wake_ns() const;
+
+  Phase phase() const { return phase_; }
+  bool done() const { return phase_ == Phase::done; }
+  bool answers_open() const;
+  int interval() const { return interval_; }
+  const Result& result() const { return result_; }
+
+ private:
+  void enter(Phase phase, std::int64_t until_ns);
+  void present(int interval, std::int64_t earliest_ns);
+  void advance(std::int64_t now_ns);
+  bool step(std::int64_t now_ns);
+  void answer(const Event& event);
+  void contact(const Event& event);
+  void begin_interval(std::int64_t onset_ns);
+  void end_stimulus(std::int64_t at_ns);
+  void set_zero(std::int64_t at_ns);
+  void conclude(Outcome outcome, std::int64_t at_ns);
+  void settle(std::int64_t at_ns);
+  std::int64_t deadline_at() const;
+
+  Plan plan_;
+  Phase phase_ = Phase::idle;
+  std::int64_t until_ns_ = 0;
+  std::int64_t now_ns_ = 0;
+  int interval_ = 0;
+  bool sounding_ = false;
+  bool touching_ = false;
+  std::optional<std::int64_t> lift_off_ns_, no_contact_deadline_ns_;
+  Result result_;
+  std::vector<Action> actions_;
+};
+
+const char* name(Phase phase);
+const char* name(Outcome outcome);
+
+}  // namespace turnpoint::trial
