@@ -1,0 +1,73 @@
+#include "station/protocol/resolve.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace turnpoint::protocol {
+
+namespace {
+
+physics::Edge edge_of(const Edge& edge) {
+  if (edge.friction) return physics::Edge::friction(*edge.friction);
+  return physics::parse_edge(edge.name.empty() ? "turning" : edge.name);
+}
+
+scene::ToneTarget tone_of(const SceneTone& tone, const Factors& factors) {
+  scene::ToneTarget target;
+  if (tone.boundary_mm) target.boundary_m = 1e-3 * evaluate(*tone.boundary_mm, factors);
+  if (tone.frequency_Hz) target.frequency_Hz = evaluate(*tone.frequency_Hz, factors);
+  target.edge = edge_of(tone.edge);
+  target.displacement_m = 1e-6 * evaluate(tone.displacement_um, factors);
+  target.phase_rad = tone.phase_deg * std::numbers::pi / 180;
+  return target;
+}
+
+/// The friction of the scene's base, for which the tones are designed; of the scene itself without a base.
+double design_friction(const Protocol& protocol, const Scene& scene, const Factors& factors) {
+  const Scene* design = &scene;
+  if (!scene.base.empty()) design = &protocol.scenes.at(scene.base);
+  if (!design->zone || !design->zone->friction) design = &scene;
+  return evaluate(*design->zone->friction, factors);
+}
+
+}  // namespace
+
+double friction_at_contrast(double reference, double contrast_dB) {
+  return reference * (1 - std::pow(10.0, contrast_dB / 20));
+}
+
+scene::Scene resolve(const Protocol& protocol, const std::string& name, const Factors& factors,
+                     double rove_dB) {
+  const auto found = protocol.scenes.find(name);
+  if (found == protocol.scenes.end()) throw std::out_of_range("no scene named \"" + name + "\"");
+  const Scene& from = found->second;
+  scene::Scene scene;
+  scene.name = name;
+  if (from.boundary_mm) scene.boundary_m = 1e-3 * evaluate(*from.boundary_mm, factors);
+  scene.edge = edge_of(from.edge);
+  if (from.displacement_um) scene.displacement_m = 1e-6 * evaluate(*from.displacement_um, factors);
+  if (from.friction) scene.friction = evaluate(*from.friction, factors);
+  for (const auto& tone : from.tones) scene.tones.push_back(tone_of(tone, factors));
+  if (from.zone) {
+    scene::ZoneTarget zone;
+    zone.from_m = 1e-3 * from.zone->from_mm.value_or(0);
+    zone.friction = evaluate(*from.zone->friction, factors);
+    zone.tones = from.zone->tones.value_or(1);
+    zone.design_friction = design_friction(protocol, from, factors);
+    scene.zone = zone;
+  }
+  if (from.friction_contrast_dB) {
+    const double contrast_dB = evaluate(*from.friction_contrast_dB, factors);
+    if (scene.zone) scene.zone->friction = friction_at_contrast(*scene.zone->design_friction, contrast_dB);
+    if (scene.friction) scene.friction = friction_at_contrast(*scene.friction, contrast_dB);
+  }
+  scene.rove_dB = rove_dB;
+  scene.ramp_s = 1e-3 * from.ramp_ms;
+  if (from.tolerance.boundary_mm) scene.tolerance.boundary_m = 1e-3 * *from.tolerance.boundary_mm;
+  scene.tolerance.level_dB = from.tolerance.level_dB;
+  scene.tolerance.friction = from.tolerance.friction;
+  return scene;
+}
+
+}  // namespace turnpoint::protocol

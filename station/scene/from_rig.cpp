@@ -1,0 +1,66 @@
+#include "station/scene/planner.hpp"
+
+namespace turnpoint::scene {
+
+namespace {
+
+physics::TaperForm taper_of(const rig::Taper& taper) {
+  if (taper.slope) return physics::LinearTaper{taper.half_width_m, *taper.slope};
+  if (taper.decay_length_m) return physics::ExponentialTaper{taper.half_width_m, *taper.decay_length_m};
+  physics::TabulatedTaper table;
+  for (const auto& [x, w] : taper.profile_m) table.points.push_back({x, w});
+  return table;
+}
+
+physics::Bending bending_of(rig::Bending bending) {
+  switch (bending) {
+    case rig::Bending::on:
+      return physics::Bending::on;
+    case rig::Bending::off:
+      return physics::Bending::off;
+    case rig::Bending::automatic:
+      break;
+  }
+  return physics::Bending::automatic;
+}
+
+}  // namespace
+
+physics::Surface surface_of(const rig::Rig& rig) {
+  const auto& s = rig.surface;
+  physics::Surface surface;
+  surface.density_kg_m3 = s.density_kg_m3;
+  surface.tension_Pa = s.tension_Pa;
+  surface.thickness_m = s.thickness_m;
+  surface.length_m = s.length_m;
+  surface.quality_factor = s.quality_factor;
+  surface.taper = taper_of(s.taper);
+  surface.edges = s.edges == rig::Edges::clamped ? physics::Edges::clamped : physics::Edges::supported;
+  surface.bending = bending_of(s.bending);
+  surface.modulus_Pa = s.modulus_Pa;
+  if (s.poisson) surface.poisson = *s.poisson;
+  surface.yield_strength_Pa = s.yield_Pa;
+  surface.sd.density_kg_m3 = s.density_sd_kg_m3;
+  surface.sd.tension_Pa = s.tension_sd_Pa;
+  surface.sd.thickness_m = s.thickness_sd_m;
+  surface.sd.modulus_Pa = s.modulus_sd_Pa;
+  surface.sd.half_width_m = s.half_width_sd_m;
+  surface.sd.slope = s.slope_sd;
+  physics::validate(surface);
+  return surface;
+}
+
+physics::FrictionMap friction_of(const rig::Rig& rig) {
+  if (!rig.friction.measured) {
+    physics::LoadSharing model;
+    model.pressure_Pa = rig.friction.pressure_Pa;
+    model.floor = rig.friction.floor;
+    return physics::FrictionMap(model);
+  }
+  std::vector<physics::FrictionPoint> points;
+  for (const auto& [displacement_m, relative] : rig.friction.table)
+    points.push_back({displacement_m, relative, 0});
+  return physics::FrictionMap(points);
+}
+
+}  // namespace turnpoint::scene

@@ -1,0 +1,150 @@
+#include "station/scene/measures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "physics/field.hpp"
+#include "physics/warning.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::scene {
+
+namespace {
+
+constexpr int kPoints = 601;
+constexpr double kAudible_Hz = 22400;
+constexpr double kWideEnd_m = 0.030;
+
+/// Mean and rms deviation of friction, fingertip averaged, over the zone of the scene.
+struct ZoneFriction {
+  double mean = 1, rms = 0;
+};
+
+ZoneFriction zone_friction(const std::vector<double>& x_m, const std::vector<double>& amplitude_m,
+                           double scale, const physics::FrictionMap& friction, double fingertip_m,
+                           const Scene& scene) {
+  std::vector<double> values;
+  values.reserve(x_m.size());
+  for (const double a : amplitude_m) values.push_back(friction.relative_friction(scale * a));
+  const auto felt = physics::fingertip_average(x_m, values, fingertip_m);
+  double sum = 0, squares = 0, n = 0;
+  for (std::size_t i = 0; i < x_m.size(); ++i) {
+    if (x_m[i] < scene.zone->from_m || x_m[i] > *scene.boundary_m) continue;
+    sum += felt[i], squares += felt[i] * felt[i], n += 1;
+  }
+  if (n == 0) throw Unreachable("the zone is empty: it must begin before the boundary");
+  const double mean = sum / n;
+  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean))};
+}
+
+/// Where the profile last falls through `share` of its last maximum, by linear interpolation; the end if
+/// never.
+double last_crossing(const std::vector<double>& x_m, const std::vector<double>& a, std::size_t peak,
+                     double share) {
+  const double level = share * a[peak];
+  for (std::size_t i = a.size() - 1; i > peak; --i)
+    if (a[i - 1] >= level && a[i] < level)
+      return x_m[i] - (x_m[i] - x_m[i - 1]) * (level - a[i]) / (a[i - 1] - a[i]);
+  return x_m.back();
+}
+
+std::size_t last_maximum(const std::vector<double>& a) {
+  const double significant = 0.02 * *std::max_element(a.begin(), a.end());
+  for (std::size_t i = a.size() - 2; i > 0; --i)
+    if (a[i] >= a[i - 1] && a[i] > a[i + 1] && a[i] > significant) return i;
+  return 0;
+}
+
+Cues cues_of(const physics::Surface& surface, const std::vector<physics::Tone>& tones,
+             const physics::Field& field, const std::vector<double>& x_m, const DrivePlan& plan) {
+  Cues cues;
+  double squares = 0;
+  const physics::Tone* strongest = &tones.front();
+  for (const auto& tone : tones) {
+    if (tone.amplitude_m > strongest->amplitude_m) strongest = &tone;
+    if (tone.frequency_Hz >= kAudible_Hz) continue;
+    cues.pitch_Hz = cues.pitch_Hz == 0 ? tone.frequency_Hz : std::min(cues.pitch_Hz, tone.frequency_Hz);
+    squares += tone.amplitude_m * tone.amplitude_m;
+  }
+  if (squares > 0) cues.loudness_dB = 10 * std::log10(squares / 1e-12);
+  double n = 0;
+  for (std::size_t i = 0; i < x_m.size() && x_m[i] <= kWideEnd_m; ++i, ++n)
+    cues.wide_end_amplitude_m += field.amplitude[i];
+  cues.wide_end_amplitude_m /= std::max(n, 1.0);
+  const auto& profile = field.tones.front().v;
+  // Half a wavelength is the distance of the first two sign changes of the strongest tone's displacement.
+  std::vector<double> nodes;
+  for (std::size_t i = 1; i < profile.size() && nodes.size() < 2; ++i)
+    if ((profile[i - 1].real() < 0) != (profile[i].real() < 0)) nodes.push_back(x_m[i]);
+  if (nodes.size() == 2) cues.stripe_pitch_m = nodes[1] - nodes[0];
+  const auto peak = last_maximum(field.amplitude);
+  cues.displacement_m = field.amplitude[peak];
+  cues.edge_width_m =
+      last_crossing(x_m, field.amplitude, peak, 0.1) - last_crossing(x_m, field.amplitude, peak, 0.9);
+  const double boundary = std::clamp(plan.boundary_m.value_or(x_m[peak]), 0.0, surface.length_m);
+  cues.strip_width_m = 2 * physics::half_width_m(surface, boundary);
+  cues.friction = plan.lowest_friction;
+  return cues;
+}
+
+}  // namespace
+
+void measure(const physics::Surface& surface, const physics::FrictionMap& friction, const rig::Rig& rig,
+             const std::vector<physics::Tone>& tones, DrivePlan& plan) {
+  const auto x_m = physics::linspace_points(surface, kPoints);
+  const auto field = physics::evaluate(surface, tones, x_m, physics::Model::mode, physics::Normalise::none);
+  for (std::size_t i = 0; i < x_m.size(); ++i) {
+    double sum = 0;
+    for (const auto& tone : field.tones) sum += std::abs(tone.v[i]);
+    plan.peak_displacement_m = std::max(plan.peak_displacement_m, sum);
+  }
+  std::vector<double> values;
+  for (const double a : field.amplitude) values.push_back(friction.relative_friction(a));
+  const auto felt = physics::fingertip_average(x_m, values, rig.friction.fingertip_m);
+  plan.lowest_friction = *std::min_element(felt.begin(), felt.end());
+  if (plan.scene.zone) {
+    const auto zone = zone_friction(x_m, field.amplitude, 1, friction, rig.friction.fingertip_m, plan.scene);
+    plan.zone_friction = zone.mean;
+    plan.residual = zone.rms;
+  }
+  plan.cues = cues_of(surface, tones, field, x_m, plan);
+}
+
+double scale_to_friction(const physics::Surface& surface, const physics::FrictionMap& friction,
+                         const rig::Rig& rig, const std::vector<physics::Tone>& tones, const Scene& scene) {
+  const auto x_m = physics::linspace_points(surface, kPoints);
+  const auto field = physics::evaluate(surface, tones, x_m, physics::Model::mode, physics::Normalise::none);
+  const auto mean_at = [&](double scale) {
+    return zone_friction(x_m, field.amplitude, scale, friction, rig.friction.fingertip_m, scene).mean;
+  };
+  double low = 0, high = 1;
+  while (mean_at(high) > scene.zone->friction) {
+    if (high > 64)
+      throw Unreachable(
+          fmt::format("no amplitude gives the zone a mean friction of {}; the lowest is about {}",
+                      text::number(scene.zone->friction, 4), text::number(mean_at(high), 4)));
+    low = high, high *= 2;
+  }
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    (mean_at(middle) > scene.zone->friction ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+double amplitude_tolerance(const physics::FrictionMap& friction, double tolerance) {
+  double steepest = 0;
+  const double highest = friction.highest_displacement_m();
+  for (int i = 1; i <= 200; ++i) {
+    const double a = highest * i / 200;
+    const double step = 0.01;
+    const double slope = (friction.relative_friction(a * (1 - step)) - friction.relative_friction(a)) / step;
+    steepest = std::max(steepest, slope);
+  }
+  return steepest > 0 ? tolerance / steepest : 1.0;
+}
+
+}  // namespace turnpoint::scene

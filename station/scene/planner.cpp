@@ -1,0 +1,246 @@
+#include "station/scene/planner.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+#include "physics/field.hpp"
+#include "physics/planner.hpp"
+#include "physics/zone.hpp"
+#include "station/scene/measures.hpp"
+#include "station/scene/transducer.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::scene {
+
+using physics::Model;
+using physics::Tone;
+using text::number;
+
+namespace {
+
+constexpr double kInaudible_Hz = 22400;
+constexpr double kHighestShareOfRate = 0.45;
+
+double mm(double m) { return m * 1e3; }
+
+}  // namespace
+
+struct Planner::State {
+  rig::Rig rig;
+  physics::Surface surface;
+  physics::FrictionMap friction;
+  std::map<std::string, physics::BoundaryMap> maps;
+  std::map<std::string, physics::ZoneDesign> designs;
+
+  explicit State(const rig::Rig& r) : rig(r), surface(surface_of(r)), friction(friction_of(r)) {}
+
+  const physics::BoundaryMap& map_for(const physics::Edge& edge, std::optional<Model> model,
+                                      double displacement_m);
+  double frequency_for(double boundary_m, const physics::Edge& edge, std::optional<Model> model,
+                       double displacement_m);
+  double target_displacement(const Scene& scene) const;
+  std::vector<Tone> single(const Scene& scene, std::optional<Model> model);
+  std::vector<Tone> explicit_tones(const Scene& scene, std::optional<Model> model);
+  std::vector<Tone> zone(const Scene& scene, DrivePlan& plan);
+  std::vector<Tone> tones_for(const Scene& scene, std::optional<Model> model, DrivePlan& plan);
+  physics::PlanChoice choose(const Scene& scene, const std::vector<Tone>& tones) const;
+  void drive(DrivePlan& plan, const std::vector<Tone>& tones) const;
+  void refuse_beyond_limits(const DrivePlan& plan) const;
+};
+
+const physics::BoundaryMap& Planner::State::map_for(const physics::Edge& edge, std::optional<Model> model,
+                                                    double displacement_m) {
+  const bool by_friction = edge.kind == physics::Edge::Kind::friction;
+  const auto key = fmt::format("{}|{}|{}", physics::format(edge), model ? physics::name(*model) : "",
+                               by_friction ? displacement_m : 0.0);
+  auto found = maps.find(key);
+  if (found == maps.end()) {
+    physics::MapOptions options;
+    options.edge = edge;
+    options.model = model;
+    if (by_friction)
+      options.friction = physics::FrictionContext{friction, displacement_m, rig.friction.fingertip_m};
+    found = maps.emplace(key, physics::BoundaryMap(surface, options)).first;
+  }
+  return found->second;
+}
+
+double Planner::State::frequency_for(double boundary_m, const physics::Edge& edge, std::optional<Model> model,
+                                     double displacement_m) {
+  const auto& map = map_for(edge, model, displacement_m);
+  if (const auto frequency = map.frequency_Hz(boundary_m)) return *frequency;
+  const auto answer = map.at_boundary(boundary_m);
+  throw Unreachable(fmt::format("no frequency puts the {} edge at {} mm: {}", physics::format(edge),
+                                number(mm(boundary_m)), answer.reason));
+}
+
+double Planner::State::target_displacement(const Scene& scene) const {
+  if (scene.displacement_m) return *scene.displacement_m;
+  const double wanted = scene.friction.value_or(1.0);
+  if (const auto displacement = friction.displacement_m(wanted)) return *displacement;
+  throw Unreachable(fmt::format("relative friction {} is below the lowest that this surface gives, {}",
+                                number(wanted), number(friction.lowest_friction())));
+}
+
+std::vector<Tone> Planner::State::single(const Scene& scene, std::optional<Model> model) {
+  const double displacement = target_displacement(scene) * std::pow(10.0, scene.rove_dB / 20);
+  const double frequency = frequency_for(*scene.boundary_m, scene.edge, model, displacement);
+  return {{frequency, physics::drive_amplitude_m(surface, frequency, displacement), 0}};
+}
+
+std::vector<Tone> Planner::State::explicit_tones(const Scene& scene, std::optional<Model> model) {
+  std::vector<Tone> tones;
+  for (const auto& target : scene.tones) {
+    const double displacement = target.displacement_m * std::pow(10.0, scene.rove_dB / 20);
+    const double frequency = target.frequency_Hz
+                                 ? *target.frequency_Hz
+                                 : frequency_for(*target.boundary_m, target.edge, model, displacement);
+    tones.push_back(
+        {frequency, physics::drive_amplitude_m(surface, frequency, displacement), target.phase_rad});
+  }
+  return tones;
+}
+
+std::vector<Tone> Planner::State::zone(const Scene& scene, DrivePlan& plan) {
+  const auto& wanted = *scene.zone;
+  const double designed_for = wanted.design_friction.value_or(wanted.friction);
+  const auto key = fmt::format("{} {} {} {} {}", *scene.boundary_m, physics::format(scene.edge),
+                               wanted.from_m, designed_for, wanted.tones);
+  auto found = designs.find(key);
+  if (found == designs.end()) {
+    physics::ZoneRequest request;
+    request.from_m = wanted.from_m;
+    request.boundary_m = *scene.boundary_m;
+    request.edge = scene.edge;
+    request.friction = designed_for;
+    request.tones = wanted.tones;
+    request.fingertip_m = rig.friction.fingertip_m;
+    request.band.low_Hz = lowest_frequency(rig, kInaudible_Hz);
+    request.band.high_Hz = highest_frequency(rig, kHighestShareOfRate * rig.output.rate_Hz);
+    found = designs.emplace(key, physics::design_zone(surface, friction, request)).first;
+  }
+  auto tones = found->second.tones;
+  plan.boundary_m = found->second.boundary_m;
+  double scale = 1;
+  if (wanted.friction != designed_for) scale = scale_to_friction(surface, friction, rig, tones, scene);
+  scale *= std::pow(10.0, scene.rove_dB / 20);
+  for (auto& tone : tones) tone.amplitude_m *= scale;
+  return tones;
+}
+
+std::vector<Tone> Planner::State::tones_for(const Scene& scene, std::optional<Model> model, DrivePlan& plan) {
+  try {
+    if (scene.zone) return zone(scene, plan);
+    if (!scene.tones.empty()) return explicit_tones(scene, model);
+    return single(scene, model);
+  } catch (const Unreachable&) {
+    throw;
+  } catch (const std::domain_error& error) {
+    throw Unreachable(error.what());
+  }
+}
+
+physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector<Tone>& tones) const {
+  physics::PlanRequest request;
+  request.tones = tones;
+  request.edge = scene.edge;
+  request.normalise = physics::Normalise::none;
+  request.tolerance.boundary_m = scene.tolerance.boundary_m;
+  request.tolerance.level_dB = scene.tolerance.level_dB;
+  if (scene.tolerance.friction)
+    request.tolerance.amplitude = amplitude_tolerance(friction, *scene.tolerance.friction);
+  if (scene.zone || scene.tones.size() > 1) request.points = 301;
+  return physics::choose_model(surface, request);
+}
+
+void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones) const {
+  for (const auto& tone : tones) {
+    const auto info = physics::tone_info(surface, tone.frequency_Hz);
+    DrivenTone driven;
+    driven.frequency_Hz = tone.frequency_Hz;
+    driven.amplitude_m = tone.amplitude_m;
+    driven.phase_rad = tone.phase_rad;
+    driven.turning_point_m = info.turning_point_m;
+    driven.last_peak_m = info.last_peak_m;
+    driven.nearest_resonance_Hz = info.nearest_resonance_Hz;
+    driven.gain = info.gain;
+    driven.displacement_m = info.gain * tone.amplitude_m;
+    assign_transducer(rig, driven);
+    if (driven.frequency_Hz >= kHighestShareOfRate * rig.output.rate_Hz)
+      throw Unreachable(fmt::format("{} Hz is too high for a converter at {} Hz; tones stay below {} Hz",
+                                    number(driven.frequency_Hz), rig.output.rate_Hz,
+                                    number(kHighestShareOfRate * rig.output.rate_Hz)));
+    plan.tones.push_back(driven);
+  }
+  std::stable_sort(plan.tones.begin(), plan.tones.end(),
+                   [](const auto& a, const auto& b) { return a.frequency_Hz > b.frequency_Hz; });
+  std::map<int, double> channels;
+  for (const auto& tone : plan.tones) channels[tone.channel] += tone.full_scale;
+  for (const auto& [channel, sum] : channels) plan.peak_full_scale = std::max(plan.peak_full_scale, sum);
+}
+
+void Planner::State::refuse_beyond_limits(const DrivePlan& plan) const {
+  if (plan.peak_displacement_m > rig.limits.displacement_m)
+    throw Unreachable(fmt::format("the surface would move {} um at its highest; the rig's limit is {} um",
+                                  number(plan.peak_displacement_m * 1e6, 4),
+                                  number(rig.limits.displacement_m * 1e6, 4)));
+  if (plan.peak_full_scale > 1)
+    throw Unreachable(fmt::format("the drive would need {} of full scale; at most 1 can be had",
+                                  number(plan.peak_full_scale, 4)));
+}
+
+Planner::Planner(const rig::Rig& rig) : state_(std::make_unique<State>(rig)) {}
+Planner::~Planner() = default;
+Planner::Planner(Planner&&) noexcept = default;
+const physics::Surface& Planner::surface() const { return state_->surface; }
+const physics::FrictionMap& Planner::friction() const { return state_->friction; }
+
+DrivePlan Planner::plan(const Scene& scene) {
+  DrivePlan plan;
+  plan.scene = scene;
+  // The most exact positions first: they tell which model is enough, and that model then places the tones.
+  auto tones = state_->tones_for(scene, std::nullopt, plan);
+  const auto choice = state_->choose(scene, tones);
+  if (!scene.zone && choice.model != Model::modes) tones = state_->tones_for(scene, choice.model, plan);
+  plan.model = choice.model;
+  plan.inside_tolerance = choice.inside;
+  plan.error_bound_m = choice.bound.boundary_bound_m;
+  plan.level_bound_dB = choice.bound.level_bound_dB;
+  plan.amplitude_bound = choice.bound.amplitude_bound;
+  plan.reason = choice.reason;
+  if (scene.boundary_m && !plan.boundary_m) plan.boundary_m = scene.boundary_m;
+  if (!tones.empty() && scene.edge.kind != physics::Edge::Kind::friction)
+    plan.uncertainty_m =
+        state_->map_for(scene.edge, std::nullopt, 0).at_frequency(tones.front().frequency_Hz).uncertainty_m;
+  physics::assign_phases(tones);
+  plan.crest_factor = physics::crest_factor(tones);
+  plan.audible_products = physics::audible_products(tones);
+  plan.warnings = physics::surface_warnings(state_->surface);
+  const auto more = physics::tone_warnings(state_->surface, tones);
+  plan.warnings.insert(plan.warnings.end(), more.begin(), more.end());
+  state_->drive(plan, tones);
+  measure(state_->surface, state_->friction, state_->rig, tones, plan);
+  state_->refuse_beyond_limits(plan);
+  return plan;
+}
+
+Planner::Profile Planner::profile(const DrivePlan& plan, int points) {
+  std::vector<Tone> tones;
+  for (const auto& tone : plan.tones) tones.push_back({tone.frequency_Hz, tone.amplitude_m, tone.phase_rad});
+  Profile profile;
+  profile.x_m = physics::linspace_points(state_->surface, points);
+  profile.displacement_m =
+      physics::evaluate(state_->surface, tones, profile.x_m, Model::mode, physics::Normalise::none).amplitude;
+  for (const double a : profile.displacement_m)
+    profile.friction.push_back(state_->friction.relative_friction(a));
+  profile.friction =
+      physics::fingertip_average(profile.x_m, profile.friction, state_->rig.friction.fingertip_m);
+  return profile;
+}
+
+}  // namespace turnpoint::scene
