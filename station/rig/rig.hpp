@@ -100,4 +100,10 @@ struct Rig {
 /// std::system_error where the file cannot be read.
 Rig load(const std::string& path);
 
+/// The same from text already in memory (a resumed session); files that it names are looked up beside `path`.
+Rig parse(const std::string& source, const std::string& path);
+
+/// The materials that fill density, modulus, Poisson ratio and yield strength.
+std::vector<std::string> materials();
+
 }  // namespace turnpoint::rig

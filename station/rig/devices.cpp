@@ -1,0 +1,79 @@
+#include <algorithm>
+#include <set>
+
+#include "station/rig/devices.hpp"
+
+namespace turnpoint::rig {
+
+using text::TableReader;
+
+std::string read_uri(TableReader& reader, const std::vector<std::string>& schemes,
+                     const std::string& allowed) {
+  const auto uri = reader.string("uri", allowed);
+  if (uri.empty()) return uri;
+  for (const auto& scheme : schemes) {
+    const bool bare = scheme.back() == ':';
+    const auto prefix = bare ? scheme : scheme.substr(0, scheme.size() - 1);
+    if (bare ? uri == prefix : uri.rfind(prefix, 0) == 0 && uri.size() > prefix.size()) return uri;
+  }
+  reader.problem("uri", "\"uri\" is \"" + uri + "\"", "allowed: " + allowed);
+  return uri;
+}
+
+namespace {
+
+// gpio:name=LINE,name=LINE with exactly the names in `needed` plus any of `optional`.
+void check_gpio(TableReader& reader, const std::string& uri, const std::vector<std::string>& needed,
+                const std::vector<std::string>& optional) {
+  if (uri.rfind("gpio:", 0) != 0) return;
+  std::set<std::string> seen;
+  std::string rest = uri.substr(5);
+  auto all = needed;
+  all.insert(all.end(), optional.begin(), optional.end());
+  while (!rest.empty()) {
+    const auto comma = rest.find(',');
+    const auto part = rest.substr(0, comma);
+    rest = comma == std::string::npos ? "" : rest.substr(comma + 1);
+    const auto equals = part.find('=');
+    const auto name = part.substr(0, equals);
+    const bool known = std::find(all.begin(), all.end(), name) != all.end();
+    if (!known || equals == std::string::npos || equals + 1 == part.size() || !seen.insert(name).second)
+      return reader.problem("uri", "\"" + part + "\" in \"" + uri + "\" is not a line",
+                            "each of " + text::quoted_list(all) + " once, as name=LINE");
+  }
+  for (const auto& name : needed)
+    if (!seen.count(name))
+      return reader.problem("uri", "\"" + uri + "\" has no line \"" + name + "\"",
+                            "needed: " + text::quoted_list(needed));
+}
+
+std::optional<std::string> read_device(TableReader& file, const std::string& key,
+                                       const std::vector<std::string>& schemes, const std::string& allowed,
+                                       const std::vector<std::string>& lines,
+                                       const std::vector<std::string>& optional_lines = {}) {
+  const auto* table = file.maybe_table(key);
+  if (!table) return std::nullopt;
+  TableReader reader(*table, key, file.findings());
+  const auto uri = read_uri(reader, schemes, allowed);
+  check_gpio(reader, uri, lines, optional_lines);
+  reader.finish();
+  return uri;
+}
+
+}  // namespace
+
+void read_devices(TableReader& file, Rig& rig) {
+  if (!file.has("amplifier")) file.require("amplifier", "a table [amplifier] with uri");
+  rig.amplifier_uri = read_device(file, "amplifier", {"sim:", "gpio:*"},
+                                  "\"sim:\" or \"gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE\"",
+                                  {"enable", "fault"}, {"stop", "heartbeat"})
+                          .value_or("");
+  rig.buttons_uri = read_device(file, "buttons", {"sim:", "gpio:*"},
+                                "\"sim:\" or \"gpio:left=LINE,right=LINE\"", {"left", "right"}, {"third"});
+  rig.contact_uri = read_device(file, "contact", {"sim:", "gpio:*", "evdev:*"},
+                                "\"sim:\", \"gpio:line=LINE\" or \"evdev:DEVICE\"", {"line"});
+  rig.touch_uri =
+      read_device(file, "touch", {"sim:", "qt:", "evdev:*"}, "\"sim:\", \"qt:\" or \"evdev:DEVICE\"", {});
+}
+
+}  // namespace turnpoint::rig

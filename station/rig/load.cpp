@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "station/rig/csv.hpp"
+#include "station/rig/devices.hpp"
+#include "station/rig/rig.hpp"
+#include "station/rig/surface.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::rig {
+
+namespace {
+
+using text::Findings;
+using text::Range;
+using text::TableReader;
+using Ends = text::Range::Ends;
+constexpr double pi = 3.14159265358979323846;
+
+std::string beside(const std::string& path, const std::string& file) {
+  const std::filesystem::path named(file);
+  return named.is_absolute() ? file : (std::filesystem::path(path).parent_path() / named).string();
+}
+
+void read_response(TableReader& reader, const std::string& rig_path, Transducer& transducer) {
+  const auto file = reader.maybe_string("response_csv");
+  const auto um = reader.maybe_number("um_per_full_scale", {0, 1000, Ends::open_low, "um"});
+  if (reader.has("response_csv") == reader.has("um_per_full_scale"))
+    reader.findings().add(reader.place(), reader.title() + " needs one response",
+                          "exactly one of \"um_per_full_scale\" or \"response_csv\"");
+  if (um) transducer.m_per_full_scale = 1e-6 * *um;
+  if (!file) return;
+  const auto csv = beside(rig_path, *file);
+  const auto place = reader.place("response_csv");
+  const auto rows =
+      read_table(csv, {"frequency_Hz", "um_per_full_scale", "phase_deg"}, place, reader.findings());
+  for (const auto& row : rows) {
+    const auto& points = transducer.response;
+    if (row[0] <= (points.empty() ? 0 : points.back().frequency_Hz) || row[1] <= 0)
+      return reader.findings().add(place,
+                                   csv + " has a row " + text::number(row[0]) + " Hz that is not in order",
+                                   "frequencies rising, above 0; um_per_full_scale above 0");
+    transducer.response.push_back({row[0], 1e-6 * row[1], row[2] * pi / 180});
+  }
+}
+
+Transducer read_transducer(const text::Value& table, const std::string& rig_path, Findings& findings) {
+  TableReader reader(table, "transducer", findings);
+  Transducer transducer;
+  transducer.name = reader.string("name", "a name for messages");
+  transducer.channel = reader.integer("channel", 0, 63);
+  reader.require("band_kHz", "the usable band: [low, high] in kHz");
+  if (const auto band = reader.maybe_interval("band_kHz", {0, 1000, Ends::open_low, "kHz"})) {
+    transducer.low_Hz = 1e3 * band->first;
+    transducer.high_Hz = 1e3 * band->second;
+  }
+  read_response(reader, rig_path, transducer);
+  const auto& response = transducer.response;
+  if (response.size() >= 2 && transducer.high_Hz > 0 &&
+      (transducer.low_Hz < response.front().frequency_Hz ||
+       transducer.high_Hz > response.back().frequency_Hz))
+    reader.problem("band_kHz", "the band goes beyond the measured response",
+                   "from " + text::number(1e-3 * response.front().frequency_Hz) + " to " +
+                       text::number(1e-3 * response.back().frequency_Hz) + " kHz");
+  reader.finish();
+  return transducer;
+}
+
+void read_transducers(TableReader& file, Rig& rig) {
+  const auto tables = file.tables("transducer");
+  if (tables.empty() && !file.has("transducer"))
+    file.findings().add({rig.path, 0, 0}, "the file needs a [[transducer]]",
+                        "one table for each drive element");
+  std::set<std::string> names;
+  std::set<int> channels;
+  for (const auto* table : tables) {
+    rig.transducers.push_back(read_transducer(*table, rig.path, file.findings()));
+    const auto& transducer = rig.transducers.back();
+    if (!transducer.name.empty() && !names.insert(transducer.name).second)
+      file.findings().add(table->place, "a second transducer named \"" + transducer.name + "\"",
+                          "names must differ");
+    if (table->find("channel") && !channels.insert(transducer.channel).second)
+      file.findings().add(table->find("channel")->value.place,
+                          "channel " + std::to_string(transducer.channel) + " drives two transducers",
+                          "one channel each");
+  }
+}
+
+void read_output(TableReader& file, Rig& rig) {
+  const auto* table = file.table("output", "a table [output] with uri and rate_Hz");
+  if (!table) return;
+  TableReader reader(*table, "output", file.findings());
+  auto& output = rig.output;
+  output.uri = read_uri(reader, {"null:", "wav:*", "alsa:*"}, "\"null:\", \"wav:FILE\" or \"alsa:DEVICE\"");
+  output.rate_Hz = reader.integer("rate_Hz", 8000, 1536000);
+  output.bits = reader.integer("bits", 16, 32, 24);
+  output.period_frames = reader.integer("period_frames", 16, 65536, 384);
+  output.periods = reader.integer("periods", 2, 64, 4);
+  if (!reader.has("allow_plugin")) reader.defaulted("allow_plugin", "[]");
+  output.allow_plugin = reader.maybe_strings("allow_plugin");
+  reader.finish();
+}
+
+void check_bands(TableReader& file, const Rig& rig) {
+  if (rig.output.rate_Hz <= 0) return;
+  // Above 0.45 of the rate a converter's filter, not the rig, decides the level.
+  const double limit_Hz = 0.45 * rig.output.rate_Hz;
+  for (const auto* table : file.tables("transducer")) {
+    const auto* band = table->find("band_kHz");
+    if (!band || band->value.items.size() != 2 || band->value.items[1].number * 1e3 <= limit_Hz) continue;
+    file.findings().add(band->value.place,
+                        "the band ends at " + text::number(band->value.items[1].number) + " kHz",
+                        "at most 0.45 of rate_Hz: " + text::number(1e-3 * limit_Hz) + " kHz");
+  }
+}
+
+void read_friction_table(TableReader& reader, const std::string& file, Rig& rig) {
+  const auto csv = beside(rig.path, file);
+  const auto place = reader.place("table_csv");
+  auto& table = rig.friction.table;
+  for (const auto& row :
+       read_table(csv, {"displacement_um", "relative_friction"}, place, reader.findings())) {
+    const double displacement_m = 1e-6 * row[0];
+    const bool rises = table.empty() ? row[0] >= 0 : displacement_m > table.back().first;
+    if (!rises || row[1] <= 0 || row[1] > 1 || (!table.empty() && row[1] > table.back().second))
+      return reader.findings().add(place,
+                                   csv + " has a row " + text::number(row[0]) + " um that is not in order",
+                                   "displacements rising from 0; friction above 0, at most 1, never growing");
+    table.emplace_back(displacement_m, row[1]);
+  }
+  rig.friction.measured = true;
+}
+
+void read_friction(TableReader& file, Rig& rig) {
+  static const text::Value empty;
+  const auto* table = file.maybe_table("friction");
+  rig.friction.stated = table != nullptr;
+  TableReader reader(table ? *table : empty, "friction", file.findings());
+  auto& friction = rig.friction;
+  const Range pressure{0.01, 1000, Ends::closed, "kPa"}, floor{0, 1, Ends::open_high};
+  const Range fingertip{0.1, 100, Ends::closed, "mm"};
+  const auto csv = reader.maybe_string("table_csv");
+  if (reader.has("table_csv")) {
+    for (const auto* key : {"model", "pressure_kPa", "floor"})
+      if (reader.take(key))
+        reader.problem(key, std::string("\"") + key + "\" beside \"table_csv\"",
+                       "the measured table says it all");
+    if (csv) read_friction_table(reader, *csv, rig);
+  } else {
+    reader.word("model", {"load-sharing"}, "load-sharing");
+    friction.pressure_Pa = 1e3 * reader.number("pressure_kPa", pressure, 5);
+    friction.floor = reader.number("floor", floor, 0.1);
+  }
+  friction.fingertip_m = 1e-3 * reader.number("fingertip_mm", fingertip, 10);
+  reader.finish();
+}
+
+void read_limits(TableReader& file, Rig& rig) {
+  const auto* table = file.table("limits", "a table [limits] with displacement_um");
+  if (!table) return;
+  TableReader reader(*table, "limits", file.findings());
+  rig.limits.displacement_m = 1e-6 * reader.number("displacement_um", {0, 1000, Ends::open_low, "um"});
+  rig.limits.continuous_s = reader.number("continuous_s", {0, 3600, Ends::open_low, "s"}, 30);
+  rig.limits.duty = reader.number("duty", {0, 1, Ends::open_low}, 0.8);
+  rig.limits.session_minutes = reader.number("session_minutes", {0, 1440, Ends::open_low, "minutes"}, 60);
+  reader.finish();
+}
+
+}  // namespace
+
+Rig parse(const std::string& source, const std::string& path) {
+  const auto document = text::parse_toml(source, path);
+  Findings findings;
+  Rig rig;
+  rig.path = path, rig.source = source, rig.sha256 = text::sha256(source);
+  TableReader file(document, "", findings);
+  file.word("format", {"friction-rig/1"});
+  rig.name = file.string("name", "a name that people recognise");
+  rig.reproduction = file.boolean("reproduction", "false");
+  if (const auto* surface = file.table("surface", "a table [surface]"))
+    rig.surface = read_surface(*surface, findings);
+  read_transducers(file, rig);
+  read_output(file, rig);
+  check_bands(file, rig);
+  read_devices(file, rig);
+  read_friction(file, rig);
+  read_limits(file, rig);
+  file.finish();
+  findings.throw_if_any();
+  rig.defaults_used = findings.defaults_used;
+  return rig;
+}
+
+Rig load(const std::string& path) { return parse(text::read_file(path), path); }
+
+}  // namespace turnpoint::rig

@@ -1,0 +1,164 @@
+#include "station/rig/surface.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace turnpoint::rig {
+
+namespace {
+
+using text::Range;
+using Ends = text::Range::Ends;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Handbook values for common tempers; a rig that matters states its own. The yield strength only serves
+// the warning about a tension that the material cannot carry.
+struct Material {
+  const char* name;
+  double density_kg_m3, modulus_GPa, poisson, yield_MPa;
+};
+constexpr std::array known_materials{
+    Material{"aluminium", 2700, 69, 0.33, 275}, Material{"brass", 8500, 105, 0.34, 450},
+    Material{"copper", 8960, 120, 0.34, 210},   Material{"glass", 2500, 70, 0.22, 45},
+    Material{"pmma", 1180, 3.1, 0.37, 70},      Material{"silicone rubber", 1100, 0.002, 0.49, 5},
+    Material{"steel", 7850, 205, 0.29, 350},    Material{"titanium", 4430, 114, 0.34, 880},
+};
+
+const Material* find_material(const std::string& name) {
+  for (const auto& material : known_materials)
+    if (name == material.name) return &material;
+  return nullptr;
+}
+
+void read_material(text::TableReader& reader, Surface& surface) {
+  const auto word = reader.maybe_word("material", materials());
+  surface.material = word.value_or("");
+  const auto* filled = find_material(surface.material);
+  const auto from_material = [&](const char* key, const Range& range, double fallback) {
+    return filled ? reader.number(key, range, fallback) : reader.number(key, range);
+  };
+  surface.density_kg_m3 =
+      from_material("density_kg_m3", {1, 30000, Ends::closed, "kg/m3"}, filled ? filled->density_kg_m3 : 0);
+  surface.tension_Pa = reader.number("tension_Pa", {0, 1e12, Ends::closed, "Pa"});
+  const std::vector<std::string> words{"auto", "on", "off"};
+  const auto bending = reader.word("bending", words, "auto");
+  surface.bending = bending == "on" ? Bending::on : bending == "off" ? Bending::off : Bending::automatic;
+  if (surface.tension_Pa == 0 && surface.bending == Bending::off)
+    reader.problem("bending", "\"bending\" is off without tension: nothing would hold the surface",
+                   "a \"tension_Pa\" above 0, or bending \"auto\" or \"on\"");
+  const bool needs_bending = surface.tension_Pa == 0 || surface.bending == Bending::on;
+  const Range modulus{1e-6, 2000, Ends::closed, "GPa"}, poisson{-1, 0.5, Ends::open_low};
+  if (filled || needs_bending || reader.has("modulus_GPa")) {
+    surface.modulus_Pa = 1e9 * from_material("modulus_GPa", modulus, filled ? filled->modulus_GPa : 0);
+    surface.poisson = from_material("poisson", poisson, filled ? filled->poisson : 0);
+  } else {
+    reader.take("modulus_GPa");
+    surface.poisson = reader.maybe_number("poisson", poisson);
+  }
+  if (filled) surface.yield_Pa = 1e6 * filled->yield_MPa;
+  if (const auto yield = reader.maybe_number("yield_MPa", {0, 1e5, Ends::open_low, "MPa"}))
+    surface.yield_Pa = 1e6 * *yield;
+}
+
+double read_quality_factor(text::TableReader& reader) {
+  const auto* value = reader.take("quality_factor");
+  if (value && value->kind == text::Value::Kind::number && value->number == infinity) return infinity;
+  return reader.number("quality_factor", {1, 1e9, Ends::closed, "(or inf: lossless)"});
+}
+
+void read_profile(const text::Value& list, text::TableReader& reader, Taper& taper) {
+  const char* allowed =
+      "a list of [x, half-width] pairs in mm, x rising from 0, half-widths above 0 and not growing";
+  const auto bad = [&](const text::Place& place, const std::string& what) {
+    reader.findings().add(place, what, allowed);
+  };
+  if (list.kind != text::Value::Kind::array) return bad(list.place, "\"profile_mm\" is " + describe(list));
+  for (const auto& item : list.items) {
+    const bool pair = item.kind == text::Value::Kind::array && item.items.size() == 2;
+    if (!pair) return bad(item.place, "a point of \"profile_mm\" is not a pair");
+    for (const auto& x : item.items)
+      if ((x.kind != text::Value::Kind::number && x.kind != text::Value::Kind::integer) ||
+          !std::isfinite(x.number))
+        return bad(x.place, "a point of \"profile_mm\" holds " + describe(x));
+    const double x_m = 1e-3 * item.items[0].number, w_m = 1e-3 * item.items[1].number;
+    const auto& points = taper.profile_m;
+    if (points.empty() ? x_m != 0 : x_m <= points.back().first)
+      return bad(item.place, "x does not rise from 0");
+    if (w_m <= 0 || (!points.empty() && w_m > points.back().second))
+      return bad(item.place, "a half-width of \"profile_mm\" is not above 0 or grows");
+    taper.profile_m.emplace_back(x_m, w_m);
+  }
+  if (taper.profile_m.size() < 2) return bad(list.place, "\"profile_mm\" has fewer than two points");
+  taper.half_width_m = taper.profile_m.front().second;
+}
+
+void check_length(const Surface& surface, text::TableReader& reader) {
+  const auto& taper = surface.taper;
+  if (taper.slope && taper.half_width_m - *taper.slope * surface.length_m < -1e-9)
+    reader.problem("slope",
+                   "the half-width reaches 0 at " + std::to_string(1e3 * taper.half_width_m / *taper.slope) +
+                       " mm, before the surface's end",
+                   "\"length_mm\" at most half_width_mm / slope");
+  if (!taper.profile_m.empty() && taper.profile_m.back().first < surface.length_m - 1e-9)
+    reader.problem("profile_mm", "the profile ends before the surface does",
+                   "a last point at \"length_mm\" or beyond");
+}
+
+void read_taper(const text::Value& table, Surface& surface, text::Findings& findings) {
+  text::TableReader reader(table, "surface.taper", findings);
+  auto& taper = surface.taper;
+  const auto slope = reader.maybe_number("slope", {0, 1, Ends::open_low});
+  const auto decay_mm = reader.maybe_number("decay_length_mm", {1, 1e6, Ends::closed, "mm"});
+  const auto* profile = reader.take("profile_mm");
+  const int forms = reader.has("slope") + reader.has("decay_length_mm") + reader.has("profile_mm");
+  if (forms != 1)
+    findings.add(reader.place(), "[surface.taper] has " + std::to_string(forms) + " forms",
+                 "exactly one of \"slope\", \"decay_length_mm\" or \"profile_mm\" is needed");
+  const Range half_width{0.5, 1000, Ends::closed, "mm"};
+  if (profile && reader.has("half_width_mm"))
+    reader.problem("half_width_mm", "\"half_width_mm\" beside \"profile_mm\"", "the profile says it already");
+  if (!profile) taper.half_width_m = 1e-3 * reader.number("half_width_mm", half_width);
+  reader.take("half_width_mm");
+  taper.slope = slope;
+  if (decay_mm) taper.decay_length_m = 1e-3 * *decay_mm;
+  if (profile) read_profile(*profile, reader, taper);
+  surface.half_width_sd_m =
+      1e-3 * reader.maybe_number("half_width_sd_mm", {0, 100, Ends::closed, "mm"}).value_or(0);
+  surface.slope_sd = reader.maybe_number("slope_sd", {0, 1}).value_or(0);
+  check_length(surface, reader);
+  reader.finish();
+}
+
+}  // namespace
+
+std::vector<std::string> materials() {
+  std::vector<std::string> names;
+  for (const auto& material : known_materials) names.emplace_back(material.name);
+  return names;
+}
+
+Surface read_surface(const text::Value& table, text::Findings& findings) {
+  text::TableReader reader(table, "surface", findings);
+  Surface surface;
+  read_material(reader, surface);
+  surface.thickness_m = 1e-3 * reader.number("thickness_mm", {1e-3, 100, Ends::closed, "mm"});
+  surface.length_m = 1e-3 * reader.number("length_mm", {1, 1e5, Ends::closed, "mm"});
+  surface.quality_factor = read_quality_factor(reader);
+  surface.edges = reader.word("edges", {"supported", "clamped"}, "supported") == "clamped" ? Edges::clamped
+                                                                                           : Edges::supported;
+  surface.wide_end =
+      reader.word("wide_end", {"left", "right"}, "left") == "left" ? WideEnd::left : WideEnd::right;
+  surface.tension_sd_Pa = reader.maybe_number("tension_sd_Pa", {0, 1e12, Ends::closed, "Pa"}).value_or(0);
+  surface.thickness_sd_m =
+      1e-3 * reader.maybe_number("thickness_sd_mm", {0, 100, Ends::closed, "mm"}).value_or(0);
+  surface.density_sd_kg_m3 =
+      reader.maybe_number("density_sd_kg_m3", {0, 30000, Ends::closed, "kg/m3"}).value_or(0);
+  surface.modulus_sd_Pa =
+      1e9 * reader.maybe_number("modulus_sd_GPa", {0, 2000, Ends::closed, "GPa"}).value_or(0);
+  if (const auto* taper = reader.table("taper", "a table [surface.taper]"))
+    read_taper(*taper, surface, findings);
+  reader.finish();
+  return surface;
+}
+
+}  // namespace turnpoint::rig

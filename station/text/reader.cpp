@@ -1,0 +1,316 @@
+#include "station/text/reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "station/text/number.hpp"
+
+namespace turnpoint::text {
+
+std::string describe(const Range& range) {
+  using Ends = Range::Ends;
+  const bool low_open = range.ends == Ends::open_low || range.ends == Ends::open;
+  const bool high_open = range.ends == Ends::open_high || range.ends == Ends::open;
+  const std::string unit = *range.unit ? std::string(" ") + range.unit : "";
+  const std::string low = number(range.low), high = number(range.high);
+  if (!std::isfinite(range.low) && !std::isfinite(range.high)) return "a finite number" + unit;
+  if (!std::isfinite(range.high)) return (low_open ? "above " : "at least ") + low + unit;
+  if (!std::isfinite(range.low)) return (high_open ? "below " : "at most ") + high + unit;
+  if (range.ends == Ends::closed) return "from " + low + " to " + high + unit;
+  return (low_open ? "above " : "at least ") + low + (high_open ? " and below " : " and at most ") + high +
+         unit;
+}
+
+void Findings::add(const Place& place, std::string what, std::string allowed) {
+  problems.push_back({place, std::move(what), std::move(allowed)});
+}
+
+void Findings::throw_if_any() {
+  if (problems.empty()) return;
+  std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
+    return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
+  });
+  throw BadInput(std::move(problems));
+}
+
+std::string quoted_list(const std::vector<std::string>& words) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) list += i + 1 == words.size() ? " or " : ", ";
+    list += "\"" + words[i] + "\"";
+  }
+  return list;
+}
+
+TableReader::TableReader(const Value& table, std::string name, Findings& findings)
+    : table_(&table), name_(std::move(name)), findings_(&findings) {}
+
+std::string TableReader::title() const { return name_.empty() ? "the file" : "[" + name_ + "]"; }
+
+std::string TableReader::path(const std::string& key) const {
+  return name_.empty() ? key : name_ + "." + key;
+}
+
+Place TableReader::place(const std::string& key) const {
+  const auto* entry = table_->find(key);
+  return entry ? entry->value.place : table_->place;
+}
+
+void TableReader::problem(const std::string& key, const std::string& what, const std::string& allowed) {
+  findings_->add(place(key), what, allowed);
+}
+
+void TableReader::defaulted(const std::string& key, const std::string& value) {
+  findings_->defaults_used.push_back(path(key) + " = " + value);
+}
+
+const Value* TableReader::take(const std::string& key) {
+  if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.push_back(key);
+  const auto* entry = table_->find(key);
+  return entry ? &entry->value : nullptr;
+}
+
+const Value* TableReader::require(const std::string& key, const std::string& what) {
+  const auto* value = take(key);
+  if (!value) findings_->add(table_->place, title() + " needs the key \"" + key + "\"", what);
+  return value;
+}
+
+bool TableReader::check_number(const Value& value, const std::string& key, const Range& range) {
+  if (value.kind != Value::Kind::integer && value.kind != Value::Kind::number) {
+    findings_->add(value.place, "\"" + key + "\" is " + describe(value),
+                   "a number " + describe(range) + " is needed");
+    return false;
+  }
+  using Ends = Range::Ends;
+  const bool low_open = range.ends == Ends::open_low || range.ends == Ends::open;
+  const bool high_open = range.ends == Ends::open_high || range.ends == Ends::open;
+  const double x = value.number;
+  const bool inside =
+      (low_open ? x > range.low : x >= range.low) && (high_open ? x < range.high : x <= range.high);
+  if (std::isfinite(x) && inside) return true;
+  const std::string shown = std::isnan(x)   ? "nan"
+                            : std::isinf(x) ? (x < 0 ? "-inf" : "inf")
+                                            : text::number(x);
+  findings_->add(value.place, "\"" + key + "\" is " + shown, "allowed: " + describe(range));
+  return false;
+}
+
+std::optional<double> TableReader::number_from(const Value* value, const std::string& key,
+                                               const Range& range) {
+  if (!value || !check_number(*value, key, range)) return std::nullopt;
+  return value->number;
+}
+
+namespace {
+// Stands in for a value that was reported as wrong; reading goes on with it, but never a session.
+double harmless(const Range& range) {
+  if (std::isfinite(range.low) && std::isfinite(range.high)) return 0.5 * (range.low + range.high);
+  if (std::isfinite(range.low)) return range.low + 1;
+  return std::isfinite(range.high) ? range.high - 1 : 0;
+}
+}  // namespace
+
+std::optional<double> TableReader::maybe_number(const std::string& key, const Range& range) {
+  return number_from(take(key), key, range);
+}
+
+double TableReader::number(const std::string& key, const Range& range) {
+  const auto* value = require(key, "a number " + describe(range));
+  return number_from(value, key, range).value_or(harmless(range));
+}
+
+double TableReader::number(const std::string& key, const Range& range, double fallback) {
+  const auto* value = take(key);
+  if (!value) defaulted(key, text::number(fallback));
+  return number_from(value, key, range).value_or(fallback);
+}
+
+std::optional<int> TableReader::maybe_integer(const std::string& key, int low, int high) {
+  const auto* value = take(key);
+  if (!value) return std::nullopt;
+  const Range range{static_cast<double>(low), static_cast<double>(high)};
+  if (value->kind != Value::Kind::integer) {
+    findings_->add(value->place,
+                   "\"" + key + "\" is " +
+                       (value->kind == Value::Kind::number ? text::number(value->number) : describe(*value)),
+                   "a whole number " + describe(range) + " is needed");
+    return std::nullopt;
+  }
+  if (!check_number(*value, key, range)) return std::nullopt;
+  return static_cast<int>(value->integer);
+}
+
+int TableReader::integer(const std::string& key, int low, int high) {
+  if (!has(key)) require(key, "a whole number " + describe(Range{double(low), double(high)}));
+  return maybe_integer(key, low, high).value_or(low);
+}
+
+int TableReader::integer(const std::string& key, int low, int high, int fallback) {
+  if (!has(key)) defaulted(key, std::to_string(fallback));
+  return maybe_integer(key, low, high).value_or(fallback);
+}
+
+bool TableReader::boolean(const std::string& key, const char* fallback) {
+  const auto* value = take(key);
+  if (!value) {
+    defaulted(key, fallback);
+    return std::string(fallback) == "true";
+  }
+  if (value->kind == Value::Kind::boolean) return value->boolean;
+  findings_->add(value->place, "\"" + key + "\" is " + describe(*value),
+                 "allowed: true or false, without quotes");
+  return false;
+}
+
+std::optional<std::string> TableReader::maybe_string(const std::string& key) {
+  const auto* value = take(key);
+  if (!value) return std::nullopt;
+  if (value->kind == Value::Kind::string && !value->string.empty()) return value->string;
+  findings_->add(value->place,
+                 "\"" + key + "\" is " + (value->kind == Value::Kind::string ? "empty" : describe(*value)),
+                 "a text in quotes is needed");
+  return std::nullopt;
+}
+
+std::string TableReader::string(const std::string& key, const std::string& what) {
+  if (!has(key)) require(key, what);
+  return maybe_string(key).value_or("");
+}
+
+std::optional<std::string> TableReader::maybe_word(const std::string& key,
+                                                   const std::vector<std::string>& words) {
+  const auto* value = take(key);
+  if (!value) return std::nullopt;
+  if (value->kind == Value::Kind::string &&
+      std::find(words.begin(), words.end(), value->string) != words.end())
+    return value->string;
+  std::string allowed = "allowed: " + quoted_list(words);
+  if (value->kind == Value::Kind::string) {
+    const auto near = nearest(value->string, words);
+    if (!near.empty()) allowed = "did you mean \"" + near + "\"? " + allowed;
+  }
+  findings_->add(value->place, "\"" + key + "\" is " + describe(*value), allowed);
+  return std::nullopt;
+}
+
+std::string TableReader::word(const std::string& key, const std::vector<std::string>& words) {
+  if (!has(key)) require(key, "allowed: " + quoted_list(words));
+  return maybe_word(key, words).value_or(words.front());
+}
+
+std::string TableReader::word(const std::string& key, const std::vector<std::string>& words,
+                              const std::string& fallback) {
+  if (!has(key)) defaulted(key, "\"" + fallback + "\"");
+  return maybe_word(key, words).value_or(fallback);
+}
+
+std::vector<double> TableReader::maybe_numbers(const std::string& key, const Range& range,
+                                               std::size_t at_least) {
+  const auto* value = take(key);
+  if (!value) return {};
+  if (value->kind != Value::Kind::array) {
+    findings_->add(value->place, "\"" + key + "\" is " + describe(*value),
+                   "a list of numbers is needed: [1.0, 2.0]");
+    return {};
+  }
+  std::vector<double> list;
+  for (const auto& item : value->items)
+    if (check_number(item, key, range)) list.push_back(item.number);
+  if (value->items.size() < at_least)
+    findings_->add(value->place, "\"" + key + "\" has " + std::to_string(value->items.size()) + " values",
+                   "at least " + std::to_string(at_least) + " are needed");
+  return list;
+}
+
+std::vector<double> TableReader::numbers(const std::string& key, const Range& range, std::size_t at_least) {
+  if (!has(key)) require(key, "a list of numbers " + describe(range));
+  return maybe_numbers(key, range, at_least);
+}
+
+std::optional<std::pair<double, double>> TableReader::maybe_interval(const std::string& key,
+                                                                     const Range& range) {
+  const auto* value = take(key);
+  if (!value) return std::nullopt;
+  const auto before = findings_->problems.size();
+  const auto list = maybe_numbers(key, range);
+  if (findings_->problems.size() > before) return std::nullopt;
+  if (list.size() == 2 && list[0] < list[1]) return std::pair{list[0], list[1]};
+  findings_->add(value->place, "\"" + key + "\" is not a range",
+                 "two numbers are needed, the smaller first: [low, high]");
+  return std::nullopt;
+}
+
+std::vector<std::string> TableReader::maybe_strings(const std::string& key) {
+  const auto* value = take(key);
+  if (!value) return {};
+  if (value->kind != Value::Kind::array) {
+    findings_->add(value->place, "\"" + key + "\" is " + describe(*value),
+                   "a list of texts is needed: [\"a\", \"b\"]");
+    return {};
+  }
+  std::vector<std::string> list;
+  for (const auto& item : value->items) {
+    if (item.kind == Value::Kind::string)
+      list.push_back(item.string);
+    else
+      findings_->add(item.place, "\"" + key + "\" holds " + describe(item), "a text in quotes is needed");
+  }
+  return list;
+}
+
+std::vector<std::string> TableReader::strings(const std::string& key, const std::string& what) {
+  const auto* value = require(key, what);
+  auto list = maybe_strings(key);
+  if (value && value->kind == Value::Kind::array && value->items.empty())
+    findings_->add(value->place, "\"" + key + "\" is an empty list", what);
+  return list;
+}
+
+const Value* TableReader::maybe_table(const std::string& key) {
+  const auto* value = take(key);
+  if (!value || value->kind == Value::Kind::table) return value;
+  findings_->add(value->place, "\"" + key + "\" is " + describe(*value),
+                 value->kind == Value::Kind::array ? "one table is needed: single brackets [" + key + "]"
+                                                   : "a table is needed: { ... } or [" + key + "]");
+  return nullptr;
+}
+
+const Value* TableReader::table(const std::string& key, const std::string& what) {
+  if (!has(key)) require(key, what);
+  return maybe_table(key);
+}
+
+std::vector<const Value*> TableReader::tables(const std::string& key) {
+  const auto* value = take(key);
+  if (!value) return {};
+  if (value->kind != Value::Kind::array) {
+    findings_->add(value->place, "\"" + key + "\" is " + describe(*value),
+                   "a list of tables is needed: double brackets [[" + key + "]]");
+    return {};
+  }
+  std::vector<const Value*> list;
+  for (const auto& item : value->items) {
+    if (item.kind == Value::Kind::table)
+      list.push_back(&item);
+    else
+      findings_->add(item.place, "\"" + key + "\" holds " + describe(item), "a table { ... } is needed");
+  }
+  return list;
+}
+
+void TableReader::finish() {
+  for (const auto& entry : table_->entries) {
+    if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
+    const auto near = nearest(entry.key, known_);
+    auto known = known_;
+    std::sort(known.begin(), known.end());
+    std::string keys;
+    for (const auto& key : known) keys += (keys.empty() ? "" : ", ") + key;
+    findings_->add(entry.place, "unknown key \"" + entry.key + "\" in " + title(),
+                   (near.empty() ? "" : "did you mean \"" + near + "\"? ") + "known: " + keys);
+  }
+}
+
+}  // namespace turnpoint::text

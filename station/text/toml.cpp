@@ -1,0 +1,119 @@
+#include "station/text/toml.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+#include <tuple>
+
+// The only file that sees toml++: the rest of the station works on plain Values and compiles faster.
+#include <toml++/toml.h>
+
+namespace turnpoint::text {
+
+namespace {
+
+Place place_of(const toml::source_region& region, const std::string& path) {
+  return {path, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+}
+
+Value convert(const toml::node& node, const std::string& path);
+
+Value convert_table(const toml::table& table, const std::string& path) {
+  Value value;
+  for (const auto& [key, child] : table)
+    value.entries.push_back({std::string(key.str()), place_of(key.source(), path), convert(child, path)});
+  // toml++ sorts keys by name; people read the file from top to bottom.
+  std::stable_sort(value.entries.begin(), value.entries.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
+  });
+  return value;
+}
+
+Value convert(const toml::node& node, const std::string& path) {
+  Value value;
+  switch (node.type()) {
+    case toml::node_type::table:
+      value = convert_table(*node.as_table(), path);
+      break;
+    case toml::node_type::array:
+      value.kind = Value::Kind::array;
+      for (const auto& item : *node.as_array()) value.items.push_back(convert(item, path));
+      break;
+    case toml::node_type::boolean:
+      value.kind = Value::Kind::boolean;
+      value.boolean = node.as_boolean()->get();
+      break;
+    case toml::node_type::integer:
+      value.kind = Value::Kind::integer;
+      value.integer = node.as_integer()->get();
+      value.number = static_cast<double>(value.integer);
+      break;
+    case toml::node_type::floating_point:
+      value.kind = Value::Kind::number;
+      value.number = node.as_floating_point()->get();
+      break;
+    case toml::node_type::string:
+      value.kind = Value::Kind::string;
+      value.string = node.as_string()->get();
+      break;
+    default:
+      value.kind = Value::Kind::date;
+      break;
+  }
+  value.place = place_of(node.source(), path);
+  return value;
+}
+
+}  // namespace
+
+const Entry* Value::find(const std::string& key) const {
+  const auto found =
+      std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.key == key; });
+  return found == entries.end() ? nullptr : &*found;
+}
+
+Value parse_toml(const std::string& source, const std::string& path) {
+  try {
+    auto document = convert_table(toml::parse(source, path), path);
+    document.place = {path, 0, 0};
+    return document;
+  } catch (const toml::parse_error& error) {
+    throw BadInput(
+        {{place_of(error.source(), path), "not valid TOML: " + std::string(error.description()), ""}});
+  }
+}
+
+std::string describe(const Value& value) {
+  switch (value.kind) {
+    case Value::Kind::boolean:
+      return value.boolean ? "true" : "false";
+    case Value::Kind::integer:
+    case Value::Kind::number:
+      return "a number";
+    case Value::Kind::string:
+      return "the text \"" + value.string + "\"";
+    case Value::Kind::date:
+      return "a date or time";
+    case Value::Kind::array:
+      return "a list";
+    case Value::Kind::table:
+      break;
+  }
+  return "a table";
+}
+
+std::string read_file(const std::string& path) {
+  errno = 0;
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream bytes;
+  // A folder can be opened like a file, and then reads as an empty one.
+  if (std::filesystem::is_directory(path)) throw std::system_error(EISDIR, std::generic_category(), path);
+  if (in) bytes << in.rdbuf();
+  if (!in) throw std::system_error(errno ? errno : EIO, std::generic_category(), path);
+  return bytes.str();
+}
+
+}  // namespace turnpoint::text

@@ -1,0 +1,44 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "station/text/problem.hpp"
+
+namespace turnpoint::text {
+
+struct Entry;
+
+/// One value of a TOML document with its place. Tables keep the order of the file, which toml++ does not.
+struct Value {
+  enum class Kind { boolean, integer, number, string, date, array, table };
+  Kind kind = Kind::table;
+  Place place;
+  bool boolean = false;
+  std::int64_t integer = 0;
+  double number = 0;           ///< also set for an integer
+  std::string string;          ///< UTF-8
+  std::vector<Value> items;    ///< of an array
+  std::vector<Entry> entries;  ///< of a table, in file order
+
+  /// The entry of a table, or nullptr.
+  const Entry* find(const std::string& key) const;
+};
+
+/// A key of a table: where the key stands, and its value.
+struct Entry {
+  std::string key;
+  Place place;
+  Value value;
+};
+
+/// The document in `source`; `path` names it in places. Throws BadInput with the place of a syntax error.
+Value parse_toml(const std::string& source, const std::string& path);
+
+/// `a number`, `text`, `a table`, ...: what a value is, for messages.
+std::string describe(const Value& value);
+
+/// The bytes of a file. Throws std::system_error naming it.
+std::string read_file(const std::string& path);
+
+}  // namespace turnpoint::text

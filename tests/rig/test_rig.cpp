@@ -1,0 +1,162 @@
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "station/rig/rig.hpp"
+#include "station/text/toml.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+const std::string simulated = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
+
+std::string source() { return text::read_file(simulated); }
+
+std::string replaced(std::string where, const std::string& from, const std::string& to) {
+  const auto at = where.find(from);
+  REQUIRE(at != std::string::npos);
+  return where.replace(at, from.size(), to);
+}
+
+// The problems of a rig file in which `from` was replaced, one a line.
+std::string problems(const std::string& from, const std::string& to) {
+  try {
+    rig::parse(replaced(source(), from, to), "r.toml");
+    return "";
+  } catch (const text::BadInput& error) {
+    return error.what();
+  }
+}
+
+bool contains(const std::string& all, const std::string& part) { return all.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("the simulated rig loads in SI units", "[rig]") {
+  const auto rig = rig::load(simulated);
+  CHECK(rig.name == "Aluminium tapered plate, simulated");
+  CHECK(rig.surface.thickness_m == Approx(2e-3));
+  CHECK(rig.surface.modulus_Pa.value() == Approx(69e9));
+  CHECK(rig.surface.yield_Pa.value() > 1e8);
+  CHECK(rig.surface.edges == rig::Edges::clamped);
+  CHECK(rig.surface.taper.half_width_m == Approx(14e-3));
+  CHECK(rig.surface.taper.slope.value() == Approx(0.03));
+  REQUIRE(rig.transducers.size() == 1);
+  CHECK(rig.transducers[0].high_Hz == Approx(60e3));
+  CHECK(rig.transducers[0].m_per_full_scale.value() == Approx(4e-6));
+  CHECK(rig.output.uri == "null:");
+  CHECK(rig.buttons_uri.value() == "sim:");
+  CHECK_FALSE(rig.friction.measured);
+  CHECK(rig.friction.fingertip_m == Approx(0.01));
+  CHECK(rig.limits.displacement_m == Approx(8e-6));
+  CHECK(rig.sha256 == rig::parse(source(), "elsewhere").sha256);
+}
+
+TEST_CASE("every default that stood in for a key is named with its value", "[rig]") {
+  const auto used = rig::load(simulated).defaults_used;
+  const auto has = [&](const char* line) { return std::find(used.begin(), used.end(), line) != used.end(); };
+  CHECK(has("reproduction = false"));
+  CHECK(has("surface.bending = \"auto\""));
+  CHECK(has("output.bits = 24"));
+  CHECK(has("output.period_frames = 384"));
+  CHECK_FALSE(has("limits.duty = 0.8"));  // the file states it
+}
+
+TEST_CASE("all mistakes of a rig file come at once, each with its line", "[rig]") {
+  auto bad = replaced(source(), "thickness_mm = 2.0", "thicknes_mm = 2.0");
+  bad = replaced(bad, "slope = 0.03", "slope = -0.03");
+  bad = replaced(bad, "channel = 0", "channel = \"0\"");
+  try {
+    rig::parse(bad, "r.toml");
+    FAIL("the file has three mistakes");
+  } catch (const text::BadInput& error) {
+    const std::string all = error.what();
+    CHECK(error.problems().size() == 4);  // the misspelt key is unknown, and the right one is missing
+    CHECK(contains(all,
+                   "r.toml:12:1: unknown key \"thicknes_mm\" in [surface]; did you mean \"thickness_mm\"?"));
+    CHECK(contains(all, "[surface] needs the key \"thickness_mm\""));
+    CHECK(contains(all, "r.toml:19:9: \"slope\" is -0.03; allowed: above 0 and at most 1"));
+    CHECK(
+        contains(all, "r.toml:23:11: \"channel\" is the text \"0\"; a whole number from 0 to 63 is needed"));
+  }
+}
+
+TEST_CASE("what a rig file may not say is refused with what is allowed", "[rig]") {
+  CHECK(contains(problems("rate_Hz = 192000", "rate_Hz = 96000"), "at most 0.45 of rate_Hz: 43.2 kHz"));
+  CHECK(contains(problems("\"null:\"", "\"pulse:\""), "allowed: \"null:\", \"wav:FILE\" or \"alsa:DEVICE\""));
+  CHECK(contains(problems("length_mm = 300", "length_mm = 500"), "before the surface's end"));
+  CHECK(contains(problems("slope = 0.03", "slope = 0.03\ndecay_length_mm = 300"), "has 2 forms"));
+  CHECK(contains(problems("slope = 0.03", ""), "has 0 forms"));
+  CHECK(contains(problems("quality_factor = 60", "quality_factor = nan"), "\"quality_factor\" is nan"));
+  CHECK(contains(problems("\"aluminium\"", "\"aluminum\""), "did you mean \"aluminium\"?"));
+  CHECK(contains(problems("band_kHz = [14, 60]", "band_kHz = [60, 14]"), "the smaller first"));
+  CHECK(contains(problems("tension_Pa = 0 ", "tension_Pa = inf "), "\"tension_Pa\" is inf"));
+  CHECK(contains(problems("model = \"load-sharing\"", "table_csv = \"none.csv\""), "cannot read"));
+  CHECK(contains(problems("friction-rig/1", "friction-rig/2"), "allowed: \"friction-rig/1\""));
+  CHECK(contains(problems("[amplifier]\nuri = \"sim:\"", "[amplifier]\nuri = \"gpio:enable=A\""),
+                 "no line \"fault\""));
+  CHECK(contains(problems("[surface]", "[surface"), "not valid TOML"));
+  CHECK(problems("quality_factor = 60", "quality_factor = inf").empty());
+}
+
+TEST_CASE("a material fills the constants that the file does not state", "[rig]") {
+  const auto lines = "density_kg_m3 = 2700\nmodulus_GPa = 69\npoisson = 0.33\n";
+  const auto rig = rig::parse(replaced(source(), lines, ""), "r.toml");
+  CHECK(rig.surface.density_kg_m3 == 2700);
+  CHECK(rig.surface.modulus_Pa.value() == Approx(69e9));
+  const auto& used = rig.defaults_used;
+  CHECK(std::find(used.begin(), used.end(), "surface.density_kg_m3 = 2700") != used.end());
+  CHECK(contains(problems(std::string("material = \"aluminium\"\n") + lines, ""),
+                 "needs the key \"density_kg_m3\""));
+}
+
+TEST_CASE("a plate needs its modulus, a tensioned membrane may leave it out", "[rig]") {
+  const auto without = replaced(replaced(source(), "material = \"aluminium\"\n", ""),
+                                "modulus_GPa = 69\npoisson = 0.33\n", "");
+  CHECK_THROWS_AS(rig::parse(without, "r.toml"), text::BadInput);
+  const auto membrane = rig::parse(replaced(without, "tension_Pa = 0 ", "tension_Pa = 1e8 "), "r.toml");
+  CHECK_FALSE(membrane.surface.modulus_Pa.has_value());
+}
+
+TEST_CASE("tables beside the rig file are read, and their rows checked", "[rig]") {
+  const auto folder = std::filesystem::temp_directory_path() / "turnpoint_test_rig";
+  std::filesystem::create_directories(folder);
+  const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder / name) << text; };
+  const auto path = (folder / "rig.toml").string();
+  const auto parsed = [&] {
+    auto text = replaced(source(), "um_per_full_scale = 4.0", "response_csv = \"response.csv\"");
+    text = replaced(text,
+                    "model = \"load-sharing\"        # illustrative: a live session needs a measured table\n"
+                    "pressure_kPa = 5\nfloor = 0.1\n",
+                    "table_csv = \"friction.csv\"\n");
+    return rig::parse(text, path);
+  };
+  write("response.csv", "# swept\nfrequency_Hz,um_per_full_scale,phase_deg\n14000,4,0\n60000,2,-180\n");
+  write("friction.csv", "displacement_um,relative_friction\n0,1\n1,0.4\n3,0.2\n");
+  const auto rig = parsed();
+  REQUIRE(rig.transducers[0].response.size() == 2);
+  CHECK(rig.transducers[0].response[1].phase_rad == Approx(-std::acos(-1.0)));
+  CHECK(rig.friction.measured);
+  CHECK(rig.friction.table.at(1).second == Approx(0.4));
+  SECTION("a friction that grows with the displacement is refused") {
+    write("friction.csv", "displacement_um,relative_friction\n0,0.5\n1,0.6\n");
+    CHECK_THROWS_AS(parsed(), text::BadInput);
+  }
+  SECTION("a response that does not cover the band is refused") {
+    write("response.csv", "frequency_Hz,um_per_full_scale,phase_deg\n14000,4,0\n50000,2,0\n");
+    CHECK_THROWS_AS(parsed(), text::BadInput);
+  }
+  SECTION("a cell that is no number is refused") {
+    write("response.csv", "frequency_Hz,um_per_full_scale,phase_deg\n14000,4,0\n60000,two,0\n");
+    CHECK_THROWS_AS(parsed(), text::BadInput);
+  }
+  std::filesystem::remove_all(folder);
+}
+
+TEST_CASE("a rig file that is not there is a system error that names it", "[rig]") {
+  CHECK_THROWS_AS(rig::load("no/such/rig.toml"), std::system_error);
+  CHECK_THROWS_AS(rig::load("/tmp"), std::system_error);
+}
