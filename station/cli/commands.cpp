@@ -1,0 +1,54 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <system_error>
+
+#include "station/cli/command.hpp"
+#include "station/scene/planner.hpp"
+#include "station/text/problem.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+using Add = void (*)(CLI::App&, Context&);
+constexpr Add kCommands[] = {add_map, add_field, add_plan, add_synth, add_run};
+
+int report(std::ostream& err, const std::exception& error, int code) {
+  err << "turnpoint: " << error.what() << "\n";
+  return code;
+}
+
+}  // namespace
+
+void add_json(CLI::App& command, Context& context) {
+  command.add_flag("--json", context.json, "Print one JSON document on standard output");
+}
+
+int run(int argc, char** argv, std::ostream& out, std::ostream& err) {
+  Context context{out, err, false, 0, {argv, argv + argc + 1}};
+  CLI::App app("Turnpoint: a psychophysics station for ultrasonic tapered friction displays", "turnpoint");
+  app.require_subcommand(1);
+  app.set_version_flag("--version", TURNPOINT_VERSION);
+  for (const auto add : kCommands) add(app, context);
+  try {
+    app.parse(argc, argv);
+    return context.exit_code;
+  } catch (const CLI::ParseError& error) {
+    // CLI11 answers --help and --version by exceptions with code 0.
+    return app.exit(error, out, err) == 0 ? 0 : 2;
+  } catch (const text::BadInput& error) {
+    err << error.what() << "\n";
+    return 2;
+  } catch (const UsageError& error) {
+    return report(err, error, 2);
+  } catch (const scene::Unreachable& error) {
+    return report(err, error, 2);
+  } catch (const std::invalid_argument& error) {
+    return report(err, error, 2);
+  } catch (const std::exception& error) {
+    return report(err, error, 1);
+  }
+}
+
+}  // namespace turnpoint::cli

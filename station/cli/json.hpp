@@ -1,0 +1,34 @@
+#pragma once
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "physics/warning.hpp"
+
+namespace turnpoint::cli {
+
+/// Keys keep the order in which they were written.
+using Json = nlohmann::ordered_json;
+
+/// JSON knows neither NaN nor infinity: null.
+inline Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+/// The value times `factor` (a unit), or null.
+inline Json json_number(const std::optional<double>& value, double factor = 1) {
+  return value ? json_number(*value * factor) : Json(nullptr);
+}
+
+inline Json json_numbers(const std::vector<double>& values, double factor = 1) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(json_number(value * factor));
+  return list;
+}
+
+inline Json json_warnings(const std::vector<physics::Warning>& warnings) {
+  Json list = Json::array();
+  for (const auto& warning : warnings) list.push_back({{"code", warning.code}, {"text", warning.text}});
+  return list;
+}
+
+}  // namespace turnpoint::cli
