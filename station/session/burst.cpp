@@ -1,0 +1,47 @@
+#include "station/session/burst.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace turnpoint::session {
+
+namespace {
+
+drive::ToneSet tones_of(const scene::DrivePlan& plan) {
+  if (plan.tones.size() > static_cast<std::size_t>(drive::max_tones))
+    throw std::length_error("a scene has more tones than the drive plays at once");
+  drive::ToneSet set;
+  for (const auto& tone : plan.tones) {
+    auto& driven = set.tones[static_cast<std::size_t>(set.count++)];
+    driven.frequency_Hz = tone.frequency_Hz;
+    driven.amplitude = tone.full_scale;
+    // The drive counts from the sine, the surface from the cosine.
+    driven.phase_rad = tone.output_phase_rad + std::numbers::pi / 2;
+    driven.channel = tone.channel;
+  }
+  return set;
+}
+
+}  // namespace
+
+drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::vector<double>& starts_s,
+                      double transition_s, double length_s, int rate_Hz) {
+  if (scenes.size() - 1 > static_cast<std::size_t>(drive::max_changes))
+    throw std::length_error("an interval has more scenes than the drive can change between");
+  const auto frames = [rate_Hz](double s) { return static_cast<std::int64_t>(std::llround(s * rate_Hz)); };
+  drive::Burst burst;
+  burst.length_frames = frames(length_s);
+  burst.ramp.frames = std::min(frames(scenes.front().scene.ramp_s), burst.length_frames / 2);
+  burst.tones = tones_of(scenes.front());
+  for (std::size_t i = 1; i < scenes.size(); ++i) {
+    auto& change = burst.changes[static_cast<std::size_t>(burst.change_count++)];
+    change.at_frame = frames(starts_s[i - 1]);
+    change.frames = std::max<std::int64_t>(1, frames(transition_s));
+    change.to = tones_of(scenes[i]);
+  }
+  return burst;
+}
+
+}  // namespace turnpoint::session

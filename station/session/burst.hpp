@@ -1,0 +1,16 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "station/drive/burst.hpp"
+#include "station/scene/planner.hpp"
+
+namespace turnpoint::session {
+
+/// One interval as the drive plays it: its scenes' plans in turn, the second and later beginning at
+/// `starts_s` from the onset with a transition of `transition_s`, `length_s` in all including both ramps.
+/// Tone i of a scene glides to tone i of the next. Throws std::length_error where the drive has no room.
+drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::vector<double>& starts_s,
+                      double transition_s, double length_s, int rate_Hz);
+
+}  // namespace turnpoint::session
