@@ -12,8 +12,10 @@ using text::Problem;
 void check_participant(const std::string& code, std::vector<Problem>& problems) {
   static const std::regex allowed("[A-Za-z0-9][A-Za-z0-9_-]{0,31}");
   if (!std::regex_match(code, allowed))
-    problems.push_back({{}, "--participant \"" + code + "\" is not a code",
-                        "1 to 32 letters, digits, - and _ are allowed, the first a letter or digit; no names"});
+    problems.push_back(
+        {{},
+         "--participant \"" + code + "\" is not a code",
+         "1 to 32 letters, digits, - and _ are allowed, the first a letter or digit; no names"});
 }
 
 std::string choose_language(const std::string& wanted, const protocol::Protocol& protocol,
@@ -34,7 +36,8 @@ void check_live(const rig::Rig& rig, std::vector<Problem>& problems) {
                         "--mode live: the rig's friction is the illustrative curve",
                         "give [friction] a measured table_csv, or run with --mode pilot"});
   if (rig.reproduction)
-    problems.push_back({{rig.path, 0, 0}, "--mode live: this rig reproduces a historical one",
+    problems.push_back({{rig.path, 0, 0},
+                        "--mode live: this rig reproduces a historical one",
                         "live sessions need a rig with reproduction = false"});
 }
 
@@ -65,9 +68,9 @@ session::Setup prepare(const RunRequest& request) {
   setup.database = request.database;
   setup.observer = request.observer;
   setup.seed = request.seed;
-  setup.run_mode = !request.observer.empty()   ? store::RunMode::simulated
-                   : request.mode == "live" ? store::RunMode::live
-                                            : store::RunMode::pilot;
+  setup.run_mode = !request.observer.empty() ? store::RunMode::simulated
+                   : request.mode == "live"  ? store::RunMode::live
+                                             : store::RunMode::pilot;
   return setup;
 }
 

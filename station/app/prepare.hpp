@@ -17,8 +17,8 @@ struct RunRequest {
   bool headless = false, buttons_only = false;
 };
 
-/// Loads and checks everything that a sitting needs. Throws text::BadInput with all problems of both files, of
-/// the protocol on this rig, of participant code, language and mode.
+/// Loads and checks everything that a sitting needs. Throws text::BadInput with all problems of both files,
+/// of the protocol on this rig, of participant code, language and mode.
 session::Setup prepare(const RunRequest& request);
 
 }  // namespace turnpoint::app

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "station/app/places.hpp"
 #include "station/cli/json.hpp"
 #include "station/text/number.hpp"
 
@@ -56,12 +57,12 @@ Json to_json(const session::Summary& summary) {
 
 void print_summary(std::ostream& out, const session::Summary& s) {
   using text::number;
-  fmt::print(out, "Session {} ({}, {}): {}{}\n", s.session_id, s.protocol_id, s.run_mode, store::name(s.status),
-             s.reason.empty() ? "" : ": " + s.reason);
-  fmt::print(out, "  participant {}, seed {}, {} blocks, {} trials in {} min\n", s.participant, s.seed, s.blocks,
-             s.trials, number(s.duration_s / 60, 3));
-  fmt::print(out, "  {} answered, {} too late, {} too early, {} void\n", s.answered, s.timeouts, s.anticipations,
-             s.voided);
+  fmt::print(out, "Session {} ({}, {}): {}{}\n", s.session_id, s.protocol_id, s.run_mode,
+             store::name(s.status), s.reason.empty() ? "" : ": " + s.reason);
+  fmt::print(out, "  participant {}, seed {}, {} blocks, {} trials in {} min\n", s.participant, s.seed,
+             s.blocks, s.trials, number(s.duration_s / 60, 3));
+  fmt::print(out, "  {} answered, {} too late, {} too early, {} void\n", s.answered, s.timeouts,
+             s.anticipations, s.voided);
   if (s.accuracy) fmt::print(out, "  {} % of the scored answers right\n", number(100 * *s.accuracy, 3));
   for (const auto& e : s.estimates)
     fmt::print(out, "  {}: {} {} (SD {})\n", e.procedure, e.parameter, number(e.mean, 4), number(e.sd, 3));
@@ -79,18 +80,20 @@ void show_summary(Context& context, const session::Summary& summary) {
 std::shared_ptr<app::RunRequest> add_run_options(CLI::App& command) {
   auto request = std::make_shared<app::RunRequest>();
   command.add_option("protocol", request->protocol, "Protocol file")->required();
-  command.add_option("--rig", request->rig, "Rig file")->required();
+  command.add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
   command.add_option("--participant", request->participant, "Participant code (never a name)")->required();
   command.add_option("--db", request->database, "Database file; made if it does not exist")->required();
   command.add_option("--mode", request->mode, "live | pilot")
       ->capture_default_str()
       ->check(CLI::IsMember({"live", "pilot"}));
   command.add_option("--language", request->language, "One of the protocol's languages; otherwise its first");
-  command.add_option("--observer", request->observer, "sim[:threshold=...,slope=...]: a simulated observer answers");
+  command.add_option("--observer", request->observer,
+                     "sim[:threshold=...,slope=...]: a simulated observer answers");
   command.add_option("--seed", request->seed, "Seed of all random draws, 0 to 2^53")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53));
   command.add_flag("--headless", request->headless, "No screen");
-  command.add_flag("--buttons-only", request->buttons_only, "No screen: a person answers with the rig's buttons");
+  command.add_flag("--buttons-only", request->buttons_only,
+                   "No screen: a person answers with the rig's buttons");
   return request;
 }
 
@@ -99,13 +102,16 @@ void add_run(CLI::App& app, Context& context) {
   auto request = add_run_options(*command);
   add_json(*command, context);
   command->footer(
-      "Example: turnpoint run protocols/demo.toml --rig deploy/rigs/simulated.toml --participant P01 --db lab.sqlite");
+      "Example: turnpoint run protocols/demo.toml --rig deploy/rigs/simulated.toml --participant P01 --db "
+      "lab.sqlite");
   command->callback([request, &context] {
     const bool person = request->observer.empty();
     if (person && request->headless && !request->buttons_only)
       throw UsageError(
-          "run: nobody can answer without a screen; give --observer sim for a simulated observer, or --buttons-only");
+          "run: nobody can answer without a screen; give --observer sim for a simulated observer, or "
+          "--buttons-only");
     if (person && !request->buttons_only) return become_ui(context);
+    request->rig = app::rig_or_default(request->rig, context.err);
     const auto setup = app::prepare(*request);
     session::Inputs inputs;
     show_summary(context, session::run(setup, nullptr, inputs));

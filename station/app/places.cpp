@@ -1,0 +1,32 @@
+#include "station/app/places.hpp"
+
+#include <filesystem>
+#include <ostream>
+
+#include "station/text/problem.hpp"
+
+namespace turnpoint::app {
+
+namespace fs = std::filesystem;
+
+std::string shipped(const std::string& folder) {
+  const auto program = fs::read_symlink("/proc/self/exe").parent_path();
+  // Installed: PREFIX/bin beside PREFIX/share/turnpoint; in a checkout: build/<preset>/bin.
+  const auto installed = program.parent_path() / "share/turnpoint" / fs::path(folder).filename();
+  if (fs::is_directory(installed)) return installed.lexically_normal().string();
+  return (program.parent_path().parent_path().parent_path() / folder).lexically_normal().string();
+}
+
+std::string rig_or_default(const std::string& named, std::ostream& messages) {
+  if (!named.empty()) return named;
+  const fs::path candidates[] = {"/etc/turnpoint/rig.toml",
+                                 fs::path(shipped("deploy/rigs")) / "simulated.toml"};
+  for (const auto& candidate : candidates)
+    if (fs::exists(candidate)) {
+      messages << "rig: " << candidate.string() << " (no --rig was given)\n";
+      return candidate.string();
+    }
+  throw text::BadInput({{{}, "no rig: none was named and none is installed", "give --rig FILE"}});
+}
+
+}  // namespace turnpoint::app

@@ -1,0 +1,15 @@
+#pragma once
+#include <iosfwd>
+#include <string>
+
+namespace turnpoint::app {
+
+/// The rig file to use: the one named, else /etc/turnpoint/rig.toml, else the simulated rig that comes with
+/// the program. What was chosen for the user is said on `messages`. Throws text::BadInput where there is
+/// none.
+std::string rig_or_default(const std::string& named, std::ostream& messages);
+
+/// A folder that comes with the program ("protocols", "deploy/rigs"), in the source tree or as installed.
+std::string shipped(const std::string& folder);
+
+}  // namespace turnpoint::app

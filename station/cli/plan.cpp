@@ -1,0 +1,178 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <memory>
+
+#include "station/app/places.hpp"
+#include "station/cli/command.hpp"
+#include "station/cli/json.hpp"
+#include "station/protocol/protocol.hpp"
+#include "station/protocol/resolve.hpp"
+#include "station/rig/rig.hpp"
+#include "station/scene/planner.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+struct Options {
+  std::string protocol, rig, scene;
+  std::vector<std::string> set;
+};
+
+/// The factors' values: what `--set` says, else the first level, else the middle of the range. `assumed` gets
+/// a line for each value that nobody stated.
+protocol::Factors factors_for(const protocol::Protocol& protocol, const Options& options,
+                              std::vector<std::string>& assumed) {
+  protocol::Factors factors;
+  for (const auto& factor : protocol.factors) {
+    if (!factor.levels.empty())
+      factors[factor.name] = factor.levels.front();
+    else if (factor.range)
+      factors[factor.name] = 0.5 * (factor.range->first + factor.range->second);
+    assumed.push_back(factor.name);
+  }
+  for (const auto& text : options.set) {
+    const auto equals = text.find('=');
+    const auto name = text.substr(0, equals);
+    const auto found = factors.find(name);
+    if (equals == std::string::npos || found == factors.end()) {
+      std::string known;
+      for (const auto& [factor, value] : factors) known += (known.empty() ? "" : ", ") + factor;
+      throw UsageError(
+          fmt::format("--set {}: factor=value is allowed, with one of the factors {}", text, known));
+    }
+    const auto value = text.substr(equals + 1);
+    char* end = nullptr;
+    const double number = std::strtod(value.c_str(), &end);
+    if (std::holds_alternative<double>(found->second) &&
+        (value.empty() || *end != '\0' || !std::isfinite(number)))
+      throw UsageError(fmt::format("--set {}: {} is a number", text, name));
+    if (std::holds_alternative<double>(found->second))
+      found->second = number;
+    else
+      found->second = value;
+    std::erase(assumed, name);
+  }
+  return factors;
+}
+
+Json tones_json(const scene::DrivePlan& plan) {
+  Json tones = Json::array();
+  for (const auto& tone : plan.tones)
+    tones.push_back({{"frequency_Hz", tone.frequency_Hz},
+                     {"drive_um", json_number(tone.amplitude_m * 1e6)},
+                     {"phase_deg", json_number(tone.phase_rad * 180 / M_PI)},
+                     {"transducer", tone.transducer},
+                     {"channel", tone.channel},
+                     {"full_scale", json_number(tone.full_scale)},
+                     {"turning_point_mm", json_number(tone.turning_point_m, 1e3)},
+                     {"last_peak_mm", json_number(tone.last_peak_m, 1e3)},
+                     {"displacement_um", json_number(tone.displacement_m * 1e6)},
+                     {"gain", json_number(tone.gain)},
+                     {"nearest_resonance_Hz", json_number(tone.nearest_resonance_Hz)}});
+  return tones;
+}
+
+Json to_json(const scene::DrivePlan& plan, const protocol::Factors& factors) {
+  Json values;
+  for (const auto& [name, value] : factors)
+    std::visit([&values, &name = name](const auto& v) { values[name] = v; }, value);
+  Json products = Json::array();
+  for (const auto& product : plan.audible_products)
+    products.push_back({{"frequency_Hz", product.frequency_Hz}, {"order", product.order}});
+  const auto& cues = plan.cues;
+  return {{"scene", plan.scene.name},
+          {"factors", values},
+          {"model", physics::name(plan.model)},
+          {"reason", plan.reason},
+          {"inside_tolerance", plan.inside_tolerance},
+          {"boundary_mm", json_number(plan.boundary_m, 1e3)},
+          {"edge", physics::format(plan.scene.edge)},
+          {"error_bound_mm", json_number(plan.error_bound_m * 1e3)},
+          {"level_bound_dB", json_number(plan.level_bound_dB)},
+          {"amplitude_bound", json_number(plan.amplitude_bound)},
+          {"uncertainty_mm", json_number(plan.uncertainty_m * 1e3)},
+          {"tones", tones_json(plan)},
+          {"zone_friction", json_number(plan.zone_friction)},
+          {"residual", json_number(plan.residual)},
+          {"lowest_friction", json_number(plan.lowest_friction)},
+          {"peak_displacement_um", json_number(plan.peak_displacement_m * 1e6)},
+          {"peak_full_scale", json_number(plan.peak_full_scale)},
+          {"crest_factor", json_number(plan.crest_factor)},
+          {"audible_products", products},
+          {"cues",
+           {{"pitch_Hz", json_number(cues.pitch_Hz)},
+            {"loudness_dB", json_number(cues.loudness_dB)},
+            {"wide_end_amplitude_um", json_number(cues.wide_end_amplitude_m * 1e6)},
+            {"stripe_pitch_mm", json_number(cues.stripe_pitch_m * 1e3)},
+            {"edge_width_mm", json_number(cues.edge_width_m * 1e3)},
+            {"strip_width_mm", json_number(cues.strip_width_m * 1e3)},
+            {"displacement_um", json_number(cues.displacement_m * 1e6)}}},
+          {"warnings", json_warnings(plan.warnings)}};
+}
+
+void print(std::ostream& out, const scene::DrivePlan& plan) {
+  using text::number;
+  fmt::print(out, "Scene {}: boundary {} mm ({} edge)\n", plan.scene.name,
+             plan.boundary_m ? number(*plan.boundary_m * 1e3) : "none", physics::format(plan.scene.edge));
+  fmt::print(out, "  model {}: {}\n", physics::name(plan.model), plan.reason);
+  fmt::print(out, "  model error at most {} mm, parameter uncertainty {} mm{}\n",
+             number(plan.error_bound_m * 1e3, 3), number(plan.uncertainty_m * 1e3, 3),
+             plan.inside_tolerance ? "" : "; OUTSIDE the scene's tolerance");
+  for (const auto& tone : plan.tones)
+    fmt::print(out, "  {} Hz, drive {} um at {} deg on {} ({} of full scale), {} um at its last maximum{}\n",
+               number(tone.frequency_Hz, 8), number(tone.amplitude_m * 1e6, 4),
+               number(tone.phase_rad * 180 / M_PI, 4), tone.transducer, number(tone.full_scale, 3),
+               number(tone.displacement_m * 1e6, 4),
+               tone.last_peak_m ? " (" + number(*tone.last_peak_m * 1e3) + " mm)" : "");
+  if (plan.zone_friction)
+    fmt::print(out, "  zone: mean friction {}, rms {} about it\n", number(*plan.zone_friction, 3),
+               number(plan.residual.value_or(0), 3));
+  fmt::print(out, "  surface moves {} um at most, crest factor {}, lowest friction {}\n",
+             number(plan.peak_displacement_m * 1e6, 4), number(plan.crest_factor, 3),
+             number(plan.lowest_friction, 3));
+  for (const auto& product : plan.audible_products)
+    fmt::print(out, "  audible product: {} Hz, order {}\n", number(product.frequency_Hz), product.order);
+  for (const auto& warning : plan.warnings) fmt::print(out, "  warning: {}\n", warning.text);
+}
+
+void plan(const Options& options, Context& context) {
+  const auto protocol = protocol::load(options.protocol);
+  const auto rig = rig::load(app::rig_or_default(options.rig, context.err));
+  if (!protocol.scenes.count(options.scene)) {
+    std::string known;
+    for (const auto& [name, scene] : protocol.scenes) known += (known.empty() ? "" : ", ") + name;
+    throw UsageError(fmt::format("--scene {}: the protocol has {}", options.scene, known));
+  }
+  std::vector<std::string> assumed;
+  const auto factors = factors_for(protocol, options, assumed);
+  for (const auto& name : assumed)
+    std::visit([&](const auto& value) { fmt::print(context.err, "{} = {} (not --set)\n", name, value); },
+               factors.at(name));
+  scene::Planner planner(rig);
+  const auto result = planner.plan(protocol::resolve(protocol, options.scene, factors, 0));
+  if (context.json)
+    context.out << to_json(result, factors).dump(2) << "\n";
+  else
+    print(context.out, result);
+}
+
+}  // namespace
+
+void add_plan(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command =
+      app.add_subcommand("plan", "What a scene of a protocol becomes: tones, model, reason, cues");
+  command->add_option("protocol", options->protocol, "Protocol file")->required();
+  command->add_option("--scene", options->scene, "Name of the scene")->required();
+  command->add_option("--set", options->set,
+                      "factor=value; otherwise its first level or the middle of its range");
+  command->add_option("--rig", options->rig, "Rig file");
+  add_json(*command, context);
+  command->footer("Example: turnpoint plan protocols/demo.toml --scene edge --set offset_mm=9");
+  command->callback([options, &context] { plan(*options, context); });
+}
+
+}  // namespace turnpoint::cli
