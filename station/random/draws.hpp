@@ -1,0 +1,67 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace turnpoint::random {
+
+/// What a draw is for. Numbers are part of the data's meaning: never renumber, only add.
+enum class Stream : std::uint32_t {
+  level_order = 1,
+  factor_level = 2,
+  roving = 3,
+  foreperiod = 4,
+  intertrial = 5,
+  catch_trial = 6,
+  interval_order = 7,
+  interleave = 8,
+  practice = 9,
+  warmup = 10,
+  observer = 11,
+  bootstrap = 12,
+  adjustment_start = 13,
+};
+
+/// The place of a draw: the same key gives the same numbers, whatever was drawn elsewhere, so that a repeated
+/// or void trial shifts nothing.
+struct Key {
+  std::uint64_t seed = 0;
+  Stream stream = Stream::level_order;
+  int block = 0, attempt = 0;
+  int trial = 0;
+};
+
+/// Ten rounds of Philox 4x32 (Salmon et al., SC 2011): counter and key to 128 random bits.
+std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
+
+/// The numbers at one key, in turn. Only integer arithmetic and exact scaling: the same bits on every
+/// machine, with and without fused multiply-add.
+class Draws {
+ public:
+  explicit Draws(const Key& key) : key_(key) {}
+
+  std::uint64_t bits();
+  /// In [0, 1), a multiple of 2^-53.
+  double uniform();
+  double uniform(double low, double high) { return low + (high - low) * uniform(); }
+  /// In 0 ... n - 1, each equally likely (rejection, no modulo bias). n > 0.
+  std::uint64_t below(std::uint64_t n);
+  /// Standard normal: Marsaglia's polar method on the logarithm of elementary.hpp.
+  double normal();
+
+  /// Fisher-Yates.
+  template <typename T>
+  void shuffle(std::vector<T>& items) {
+    for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[below(i)]);
+  }
+
+ private:
+  Key key_;
+  std::uint32_t index_ = 0;
+  std::uint64_t spare_ = 0;
+  bool has_spare_ = false;
+};
+
+}  // namespace turnpoint::random

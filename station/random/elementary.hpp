@@ -1,0 +1,14 @@
+#pragma once
+
+namespace turnpoint::random {
+
+// Logarithm and exponential from + - * / alone, so that what is decided by them is decided alike on every
+// machine: libm's differ between versions and with fused multiply-add. Relative error below 4e-16.
+
+/// Natural logarithm of a positive, finite number; throws std::domain_error otherwise.
+double log(double x);
+
+/// e to the x; 0 below -745, throws std::domain_error above 709 or for NaN.
+double exp(double x);
+
+}  // namespace turnpoint::random

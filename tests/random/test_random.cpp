@@ -1,0 +1,72 @@
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "station/random/draws.hpp"
+#include "station/random/elementary.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::random;
+
+TEST_CASE("Philox gives the published answers", "[random]") {
+  using Words = std::array<std::uint32_t, 4>;
+  CHECK(philox({0, 0, 0, 0}, {0, 0}) == Words{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8});
+  CHECK(philox({0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff}, {0xffffffff, 0xffffffff}) ==
+        Words{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd});
+}
+
+TEST_CASE("draws depend on their key alone, and every part of the key matters", "[random]") {
+  const Key key{42, Stream::roving, 1, 0, 7};
+  CHECK(Draws(key).bits() == Draws(key).bits());
+  std::set<std::uint64_t> first;
+  for (const auto& other :
+       {key, Key{43, Stream::roving, 1, 0, 7}, Key{42, Stream::observer, 1, 0, 7},
+        Key{42, Stream::roving, 2, 0, 7}, Key{42, Stream::roving, 1, 1, 7}, Key{42, Stream::roving, 1, 0, 8}})
+    first.insert(Draws(other).bits());
+  CHECK(first.size() == 6);
+}
+
+TEST_CASE("uniform, below and normal have the moments of their distributions", "[random]") {
+  Draws draws({1, Stream::bootstrap, 0, 0, 0});
+  double sum = 0, squares = 0, normal_sum = 0, normal_squares = 0;
+  std::map<std::uint64_t, int> counts;
+  const int n = 200'000;
+  for (int i = 0; i < n; ++i) {
+    const double u = draws.uniform(), z = draws.normal();
+    sum += u, squares += u * u, normal_sum += z, normal_squares += z * z;
+    ++counts[draws.below(7)];
+  }
+  // Five standard errors of each.
+  CHECK(sum / n == Approx(0.5).margin(5 * 0.2887 / std::sqrt(n)));
+  CHECK(squares / n == Approx(1.0 / 3).margin(5 * 0.298 / std::sqrt(n)));
+  CHECK(normal_sum / n == Approx(0).margin(5 / std::sqrt(n)));
+  CHECK(normal_squares / n == Approx(1).margin(5 * std::sqrt(2.0 / n)));
+  CHECK(counts.size() == 7);
+  for (const auto& [value, count] : counts) CHECK(count == Approx(n / 7.0).margin(5 * std::sqrt(n / 7.0)));
+}
+
+TEST_CASE("a shuffle gives every permutation equally often", "[random]") {
+  std::map<std::vector<int>, int> counts;
+  for (int trial = 0; trial < 24'000; ++trial) {
+    std::vector<int> items{0, 1, 2, 3};
+    Draws({5, Stream::level_order, 0, 0, trial}).shuffle(items);
+    ++counts[items];
+  }
+  CHECK(counts.size() == 24);
+  for (const auto& [items, count] : counts) CHECK(count == Approx(1000).margin(160));
+}
+
+TEST_CASE("log and exp agree with libm to the last bits and refuse what they cannot answer", "[random]") {
+  Draws draws({9, Stream::bootstrap, 0, 0, 0});
+  for (int i = 0; i < 20'000; ++i) {
+    const double x = draws.uniform(-700, 700);
+    CHECK(turnpoint::random::exp(x) == Approx(std::exp(x)).epsilon(1e-15));
+    const double y = std::exp(x);
+    CHECK(std::fabs(turnpoint::random::log(y) - std::log(y)) <=
+          4e-16 * std::max(1.0, std::fabs(std::log(y))));
+  }
+  CHECK(turnpoint::random::log(1) == 0);
+  CHECK(turnpoint::random::exp(-1000) == 0);
+  CHECK_THROWS_AS(turnpoint::random::log(0), std::domain_error);
+  CHECK_THROWS_AS(turnpoint::random::exp(710), std::domain_error);
+}
