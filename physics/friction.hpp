@@ -5,6 +5,8 @@
 #include <variant>
 #include <vector>
 
+#include "physics/monotone_cubic.hpp"
+
 namespace turnpoint::physics {
 
 // Mean film force of a squeeze film between parallel plates at infinite squeeze number, in units of p0 A, for
@@ -29,13 +31,14 @@ struct FrictionPoint {
   double sd = 0;  // standard deviation of relative_friction
 };
 
-// A monotone map from peak displacement to friction relative to the surface at rest. Load sharing is
-// tabulated when built (its floor blends in smoothly, so that the map stays strictly monotone); measured
-// tables are joined by monotone cubics and hold their last value beyond the last point. Value type; const
-// functions are thread-safe.
+// A monotone map from peak displacement to friction relative to the surface at rest. Load sharing is solved
+// to rounding; its floor f enters as mu^4 = f^4 + (1 - f^4) mu_sharing^4, which is strictly monotone and
+// leaves friction above three floors as it is. Measured tables are joined by monotone cubics and hold their
+// last value beyond the last point. Value type; const functions are thread-safe.
 class FrictionMap {
  public:
-  explicit FrictionMap(const LoadSharing& model = {});
+  FrictionMap() = default;  // load sharing with its defaults
+  explicit FrictionMap(const LoadSharing& model);
   explicit FrictionMap(std::vector<FrictionPoint> table);  // throws std::invalid_argument
 
   // Relative friction in (0, 1] for a peak displacement >= 0.
@@ -47,11 +50,15 @@ class FrictionMap {
   // Lowest friction of the map and where it is reached.
   double lowest_friction() const;
   double highest_displacement_m() const;
-  bool illustrative() const { return illustrative_; }
+  // Whether it is the illustrative curve rather than measured data.
+  bool illustrative() const { return std::holds_alternative<LoadSharing>(model_); }
 
  private:
-  std::vector<double> a_, mu_, slope_, sd_;
-  bool illustrative_ = true;
+  struct Table {
+    MonotoneCubic friction;
+    MonotoneCubic sd;
+  };
+  std::variant<LoadSharing, Table> model_;
 };
 
 // Mean of `values` (sampled at ascending `x_m`, joined linearly) over a fingertip of width `fingertip_m`

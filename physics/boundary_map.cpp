@@ -1,0 +1,165 @@
+#include "physics/boundary_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "physics/dispersion.hpp"
+#include "physics/edge_feature.hpp"
+#include "physics/edge_table.hpp"
+#include "physics/field.hpp"
+#include "physics/map_bounds.hpp"
+
+namespace turnpoint::physics {
+
+// A feature's half-width over the cut-off half-width of its frequency: one number on a linear taper that runs
+// to its apex (every lossless feature of it scales with the distance from the apex), a slowly varying table
+// elsewhere.
+struct BoundaryMap::State {
+  Surface surface;
+  MapOptions options;
+  Model model;
+  Taper taper;
+  Dispersion dispersion;
+  EdgeTable table;
+
+  std::optional<double> position(double f) const noexcept;
+  std::optional<double> frequency(double x) const noexcept;
+};
+
+std::optional<double> BoundaryMap::State::position(double f) const noexcept {
+  if (!(f >= table.low_Hz && f <= table.high_Hz)) return std::nullopt;
+  const auto ratio = table.ratio(f);
+  if (!ratio) return std::nullopt;
+  const double w = *ratio * dispersion.cut_off_half_width_m(f);
+  const auto x = taper.position_continued_m(w);
+  if (!x) return std::nullopt;
+  const double slack = 1e-12 * surface.length_m;
+  if (*x < -slack || *x > surface.length_m + slack) return std::nullopt;
+  return std::clamp(*x, 0.0, surface.length_m);
+}
+
+std::optional<double> BoundaryMap::State::frequency(double x) const noexcept {
+  if (!(x >= 0 && x <= surface.length_m)) return std::nullopt;
+  const double w = taper.half_width_m(x);
+  if (!(w > 0)) return std::nullopt;
+  // Solves cut_off(w / ratio(f)) = f by secants from the turning point's frequency.
+  const auto next = [&](double f) {
+    return dispersion.cut_off_frequency_Hz(
+        w / table.ratio(std::clamp(f, table.low_Hz, table.high_Hz)).value_or(1));
+  };
+  double f0 = std::clamp(dispersion.cut_off_frequency_Hz(w), table.low_Hz, table.high_Hz);
+  double f1 = next(f0);
+  double g0 = f1 - f0;
+  for (int i = 0; i < 40; ++i) {
+    const double g1 = next(f1) - f1;
+    if (std::abs(g1) <= 1e-15 * f1 || g1 == g0) {
+      f1 += g1;
+      break;
+    }
+    const double f2 = f1 - g1 * (f1 - f0) / (g1 - g0);
+    f0 = f1;
+    g0 = g1;
+    f1 = f2 > 0 ? f2 : 0.5 * f1;
+  }
+  const double slack = 1e-11;
+  if (!(f1 >= table.low_Hz * (1 - slack) && f1 <= table.high_Hz * (1 + slack))) return std::nullopt;
+  f1 = std::clamp(f1, table.low_Hz, table.high_Hz);
+  return table.ratio(f1) ? std::optional(f1) : std::nullopt;
+}
+
+namespace {
+
+void check(const Surface& surface, const MapOptions& options) {
+  validate(surface);
+  const Edge& edge = options.edge;
+  const bool graded = edge.kind == Edge::Kind::percent || edge.kind == Edge::Kind::friction;
+  if (graded && !(edge.level > 0 && edge.level < 1)) {
+    throw std::invalid_argument("edge level is " + std::to_string(edge.level) +
+                                "; allowed: above 0, below 1");
+  }
+  if (edge.kind == Edge::Kind::friction && !options.friction) {
+    throw std::invalid_argument("a friction edge needs a friction map and a displacement");
+  }
+  if (options.tolerance_m && !(*options.tolerance_m > 0)) {
+    throw std::invalid_argument("tolerance is " + std::to_string(*options.tolerance_m) +
+                                " m; allowed: above 0");
+  }
+  if (const auto* taper = std::get_if<LinearTaper>(&surface.taper); taper != nullptr && taper->slope == 0) {
+    throw std::domain_error("a strip of constant width has no boundary that follows the frequency");
+  }
+}
+
+}  // namespace
+
+BoundaryMap::BoundaryMap(const Surface& surface, const MapOptions& options) {
+  check(surface, options);
+  const Model model = options.model.value_or(Model::edge);
+  state_ = std::make_unique<const State>(State{surface, options, model, Taper(surface), Dispersion(surface),
+                                               make_edge_table(surface, options, model)});
+}
+
+BoundaryMap::~BoundaryMap() = default;
+BoundaryMap::BoundaryMap(BoundaryMap&&) noexcept = default;
+BoundaryMap& BoundaryMap::operator=(BoundaryMap&&) noexcept = default;
+
+std::optional<double> BoundaryMap::boundary_m(double f) const noexcept { return state_->position(f); }
+std::optional<double> BoundaryMap::frequency_Hz(double x) const noexcept { return state_->frequency(x); }
+Model BoundaryMap::model() const noexcept { return state_->model; }
+
+MapAnswer BoundaryMap::at_frequency(double f) const {
+  const State& s = *state_;
+  MapAnswer answer;
+  answer.edge = s.options.edge;
+  answer.model = s.model;
+  answer.frequency_Hz = f;
+  answer.boundary_m = s.position(f);
+  const Tone tone{f, 1, 0};
+  answer.warnings = surface_warnings(s.surface);
+  for (Warning& warning : tone_warnings(s.surface, {&tone, 1})) answer.warnings.push_back(std::move(warning));
+  if (!answer.boundary_m) {
+    answer.reason = why_no_boundary(s.surface, s.options, f);
+    return answer;
+  }
+  const double step = 1e-6 * f;
+  const auto above = s.position(f + step), below = s.position(f - step);
+  const double span = (above ? step : 0) + (below ? step : 0);
+  answer.m_per_Hz = (above.value_or(*answer.boundary_m) - below.value_or(*answer.boundary_m)) / span;
+  const MapBounds bounds = map_bounds(s.surface, s.options, f, *answer.boundary_m);
+  answer.error_bound_m = bounds.error_m() + s.table.error_m;
+  answer.uncertainty_m = bounds.uncertainty_m;
+  answer.reason = s.table.closed ? "closed form" : "table of the one-mode equation";
+  answer.reason += bounds.reason;
+  if (s.options.tolerance_m && answer.error_bound_m > *s.options.tolerance_m) {
+    std::ostringstream text;
+    text << "; bound of " << answer.error_bound_m * 1e3 << " mm exceeds the tolerance of "
+         << *s.options.tolerance_m * 1e3 << " mm";
+    answer.reason += text.str();
+  }
+  return answer;
+}
+
+MapAnswer BoundaryMap::at_boundary(double x) const {
+  const auto f = state_->frequency(x);
+  if (f) {
+    MapAnswer answer = at_frequency(*f);
+    answer.boundary_m = x;
+    return answer;
+  }
+  MapAnswer answer;
+  answer.edge = state_->options.edge;
+  answer.model = state_->model;
+  std::ostringstream text;
+  const double length = state_->surface.length_m;
+  const auto first = state_->position(state_->table.low_Hz);
+  const auto last =
+      std::isfinite(state_->table.high_Hz) ? state_->position(state_->table.high_Hz) : std::nullopt;
+  text << "no frequency puts this edge at " << x * 1e3 << " mm; it can lie from " << first.value_or(0) * 1e3
+       << " to " << last.value_or(length) * 1e3 << " mm";
+  answer.reason = text.str();
+  return answer;
+}
+
+}  // namespace turnpoint::physics

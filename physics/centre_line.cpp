@@ -1,0 +1,87 @@
+#include "physics/centre_line.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "physics/airy_profile.hpp"
+#include "physics/dispersion.hpp"
+#include "physics/field.hpp"
+
+namespace turnpoint::physics {
+namespace {
+
+using std::numbers::pi;
+
+// `seed` and `mode`: the marched equation.
+class MarchedLine final : public CentreLine {
+ public:
+  MarchedLine(const Taper& taper, const MarchEquation& equation) : march_(taper, equation) {}
+  Scaled value(double x) const override { return march_.value(x); }
+  Scaled slope(double x) const override { return march_.slope(x); }
+  void evaluate(std::span<const double> x, std::complex<double> phase, double ln_reference,
+                std::span<std::complex<double>> v, std::span<double> ln_amplitude) const override {
+    march_.evaluate(x, phase, ln_reference, v, ln_amplitude);
+  }
+  std::optional<double> last_peak_m() const override { return march_.last_peak_m(); }
+  std::optional<double> level_m(double level) const override { return march_.level_m(level); }
+
+ private:
+  TaylorMarch march_;
+};
+
+}  // namespace
+
+void CentreLine::evaluate(std::span<const double> x, std::complex<double> phase, double ln_reference,
+                          std::span<std::complex<double>> v, std::span<double> ln_amplitude) const {
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Scaled one = value(x[i]);
+    const double ln = one.ln_magnitude();
+    ln_amplitude[i] = ln == ln_zero ? ln_zero : ln - ln_reference;
+    v[i] = one.mantissa / phase * std::exp(std::min(700.0, one.ln_scale - ln_reference));
+  }
+}
+
+MarchEquation march_equation(const Surface& surface, double frequency_Hz, Model model, Losses losses) {
+  const double k = wavenumber_per_m(surface, frequency_Hz);
+  const std::complex<double> lossy(1, losses == Losses::kept ? -0.5 / surface.quality_factor : 0);
+  MarchEquation equation;
+  equation.a = k * k * lossy * lossy;
+  equation.b = pi * pi / 4;
+  if (Dispersion(surface).clamped_bending()) {
+    const double root = k * cut_off_half_width_m(surface, frequency_Hz);
+    equation.b = root * root;
+  }
+  if (model == Model::mode) {
+    equation.c = pi * pi / 6 - 0.25;
+    equation.w_power = 0.5;
+  }
+  return equation;
+}
+
+std::unique_ptr<CentreLine> make_marched_line(const Surface& surface, const MarchEquation& equation) {
+  return std::make_unique<MarchedLine>(Taper(surface), equation);
+}
+
+std::optional<double> turning_point_m(const Surface& surface, double frequency_Hz) {
+  return Taper(surface).position_m(cut_off_half_width_m(surface, frequency_Hz));
+}
+
+std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double frequency_Hz, Model model,
+                                             Losses losses) {
+  switch (model) {
+    case Model::edge:
+      throw std::invalid_argument("model edge gives positions only; it has no profile");
+    case Model::airy:
+      return make_airy_line(surface, frequency_Hz);
+    case Model::seed:
+    case Model::mode:
+      return make_marched_line(surface, march_equation(surface, frequency_Hz, model, losses));
+    case Model::uniform:
+    case Model::modes:
+      break;
+  }
+  throw std::domain_error("model " + std::string(name(model)) + " is not available for this surface");
+}
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,103 @@
+#include "physics/dispersion.hpp"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
+
+namespace turnpoint::physics {
+namespace {
+
+using std::numbers::pi;
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+// k W at the clamped cut-off without tension: tan b + tanh b = 0.
+constexpr double plate_root = 2.3650203724313520;
+
+// k W at the clamped cut-off, given tau = W^2 N/D: the root b of b sin b + g tanh(g) cos b = 0 in (pi/2, pi),
+// g^2 = b^2 + tau (the equation times cos b, which removes its pole); positive below the root.
+double clamped_root(double tau) noexcept {
+  double low = pi / 2, high = pi;
+  double b = 2.4;
+  for (int i = 0; i < 200; ++i) {
+    const double g = std::sqrt(b * b + tau);
+    const double t = std::tanh(g);
+    const double sine = std::sin(b), cosine = std::cos(b);
+    const double value = b * sine + g * t * cosine;
+    (value > 0 ? low : high) = b;
+    const double slope = sine + b * cosine + b / g * (t + g * (1 - t * t)) * cosine - g * t * sine;
+    double next = b - value / slope;
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::abs(next - b) <= 2 * epsilon * b) return next;
+    b = next;
+  }
+  return b;
+}
+
+double positive(const char* quantity, double value) {
+  if (value > 0 && std::isfinite(value)) return value;
+  std::ostringstream text;
+  text << quantity << " is " << value << "; allowed: above 0";
+  throw std::invalid_argument(text.str());
+}
+
+}  // namespace
+
+Dispersion::Dispersion(const Surface& s)
+    : tension_N_per_m(line_tension_N_per_m(s)),
+      mass_kg_per_m2(s.density_kg_m3 * s.thickness_m),
+      speed_m_s(wave_speed_m_s(s)),
+      bending(bending_modelled(s)),
+      clamped(s.edges == Edges::clamped) {
+  if (bending) stiffness_N_m = bending_stiffness_N_m(s).value();
+}
+
+double Dispersion::wavenumber_per_m(double f) const noexcept {
+  const double omega = 2 * pi * f;
+  if (!bending) return omega / speed_m_s;
+  const double inertia = mass_kg_per_m2 * omega * omega;
+  const double n = tension_N_per_m;
+  return std::sqrt(2 * inertia / (n + std::sqrt(n * n + 4 * stiffness_N_m * inertia)));
+}
+
+double Dispersion::frequency_Hz(double k) const noexcept {
+  if (!bending) return k * speed_m_s / (2 * pi);
+  return k * std::sqrt((stiffness_N_m * k * k + tension_N_per_m) / mass_kg_per_m2) / (2 * pi);
+}
+
+double Dispersion::cut_off_frequency_Hz(double w) const noexcept {
+  if (!clamped_bending()) return frequency_Hz(pi / (2 * w));
+  if (tension_N_per_m == 0) return frequency_Hz(plate_root / w);
+  return frequency_Hz(clamped_root(w * w * tension_N_per_m / stiffness_N_m) / w);
+}
+
+double Dispersion::cut_off_half_width_m(double f) const noexcept {
+  const double k = wavenumber_per_m(f);
+  if (!clamped_bending()) return pi / (2 * k);
+  if (tension_N_per_m == 0) return plate_root / k;
+  // k is known here, so that tan(k W) = -(k2/k) tanh(k2 W) is a fast fixed-point iteration for k W.
+  const double ratio = std::sqrt(1 + tension_N_per_m / (stiffness_N_m * k * k));
+  double b = 2.4;
+  for (int i = 0; i < 60; ++i) {
+    const double next = pi - std::atan(ratio * std::tanh(ratio * b));
+    if (std::abs(next - b) <= 2 * epsilon * b) return next / k;
+    b = next;
+  }
+  return b / k;
+}
+
+double wavenumber_per_m(const Surface& s, double f) {
+  return Dispersion(s).wavenumber_per_m(positive("frequency_Hz", f));
+}
+double frequency_for_wavenumber_Hz(const Surface& s, double k) {
+  return Dispersion(s).frequency_Hz(positive("wavenumber_per_m", k));
+}
+double cut_off_frequency_Hz(const Surface& s, double w) {
+  return Dispersion(s).cut_off_frequency_Hz(positive("half_width_m", w));
+}
+double cut_off_half_width_m(const Surface& s, double f) {
+  return Dispersion(s).cut_off_half_width_m(positive("frequency_Hz", f));
+}
+
+}  // namespace turnpoint::physics

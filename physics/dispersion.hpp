@@ -1,0 +1,37 @@
+#pragma once
+// Wavenumbers and local cut-offs: how tension, bending and the held sides enter.
+#include "physics/surface.hpp"
+
+namespace turnpoint::physics {
+
+// The dispersion of one surface, ready for repeated use: plain numbers, no allocation, no exceptions for
+// arguments above zero. The free functions below are the same with checks.
+struct Dispersion {
+  explicit Dispersion(const Surface& surface);
+
+  // Free plane wave: D k^4 + N k^2 = rho h omega^2, or omega/c where bending is not modelled. Lossless; loss
+  // enters as k (1 - i/2Q).
+  double wavenumber_per_m(double frequency_Hz) const noexcept;
+  double frequency_Hz(double wavenumber_per_m) const noexcept;
+  // Local cut-off of the first transverse mode of a strip of half-width W. Membrane, or simply supported
+  // sides: k W = pi/2 (the seed's eq. 17). Clamped sides with bending: k tan(k W) + k2 tanh(k2 W) = 0, k2^2 =
+  // k^2 + N/D, the root in pi/2 < k W < pi (2.36502 without tension).
+  double cut_off_frequency_Hz(double half_width_m) const noexcept;
+  double cut_off_half_width_m(double frequency_Hz) const noexcept;
+  bool clamped_bending() const noexcept { return bending && clamped; }
+
+  double stiffness_N_m = 0;    // D; 0 where bending is not modelled
+  double tension_N_per_m = 0;  // N
+  double mass_kg_per_m2 = 0;   // rho h
+  double speed_m_s = 0;        // c, of the membrane
+  bool bending = false;
+  bool clamped = false;
+};
+
+// Throw std::invalid_argument for arguments that are not finite and above zero.
+double wavenumber_per_m(const Surface& surface, double frequency_Hz);
+double frequency_for_wavenumber_Hz(const Surface& surface, double wavenumber_per_m);
+double cut_off_frequency_Hz(const Surface& surface, double half_width_m);
+double cut_off_half_width_m(const Surface& surface, double frequency_Hz);
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,101 @@
+#include "physics/edge_feature.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "physics/dispersion.hpp"
+#include "physics/field.hpp"
+
+namespace turnpoint::physics {
+namespace {
+
+using std::numbers::pi;
+
+// Five-point Gauss-Legendre rule on [-1, 1].
+constexpr std::array nodes{-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
+                           0.9061798459386640};
+constexpr std::array weights{0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+                             0.2369268850561891};
+
+}  // namespace
+
+std::unique_ptr<CentreLine> make_feature_line(const Surface& surface, double frequency_Hz, Model model,
+                                              Wave wave, Losses losses) {
+  const auto* taper = std::get_if<LinearTaper>(&surface.taper);
+  const bool wedge =
+      wave == Wave::exact && taper != nullptr && taper->slope > 0 && !Dispersion(surface).clamped_bending();
+  if (!wedge)
+    return make_centre_line(surface, frequency_Hz, wave == Wave::exact ? Model::mode : model, losses);
+  // J_nu(k s) solves the marched equation with B/d^2 + C + 1/4 = nu^2 and v = g W^-1/2.
+  MarchEquation equation = march_equation(surface, frequency_Hz, Model::mode, losses);
+  const double nu = pi / (2 * std::atan(taper->slope));
+  const double m = pi / (2 * taper->slope);
+  equation.c = nu * nu - m * m - 0.25;
+  return make_marched_line(surface, equation);
+}
+
+std::optional<double> friction_edge_m(double length_m, const CentreLine& line, const FrictionContext& context,
+                                      double level) {
+  const auto peak = line.last_peak_m();
+  if (!peak) return std::nullopt;
+  const double ln_unit = line.value(*peak).ln_magnitude() - std::log(context.displacement_m);
+  const auto friction_at = [&](double x) {
+    const double ln = line.value(x).ln_magnitude() - ln_unit;
+    return ln < -700 ? 1.0 : context.friction.relative_friction(std::exp(ln));
+  };
+  const auto mean = [&](double x) {
+    const double low = std::max(0.0, x - context.fingertip_m / 2);
+    const double high = std::min(length_m, x + context.fingertip_m / 2);
+    constexpr int panels = 4;
+    double sum = 0;
+    for (int p = 0; p < panels; ++p) {
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        const double t = (p + 0.5 * (1 + nodes[i])) / panels;
+        sum += 0.5 * weights[i] / panels * friction_at(low + t * (high - low));
+      }
+    }
+    return sum;
+  };
+  // Friction falls from 1 on the way from the tip to the last maximum: the first crossing is the outermost.
+  const double step = std::min(context.fingertip_m / 8, length_m / 100) + 1e-9 * length_m;
+  // Beyond 1e-4 of the maximum plus a fingertip no friction map leaves 1 noticeably.
+  const double quiet = line.level_m(1e-4).value_or(length_m) + context.fingertip_m;
+  double outer = std::min(length_m, quiet), f_outer = mean(outer) - level;
+  if (f_outer <= 0) return std::nullopt;
+  while (outer > 0) {
+    double inner = std::max(0.0, outer - step);
+    double f_inner = mean(inner) - level;
+    if (f_inner > 0) {
+      outer = inner;
+      f_outer = f_inner;
+      continue;
+    }
+    for (int i = 0; i < 60 && outer - inner > 1e-14 * length_m; ++i) {
+      double x = i % 3 == 2 ? 0.5 * (inner + outer) : inner + (outer - inner) * f_inner / (f_inner - f_outer);
+      if (!(x > inner && x < outer)) x = 0.5 * (inner + outer);
+      const double f = mean(x) - level;
+      (f <= 0 ? inner : outer) = x;
+      (f <= 0 ? f_inner : f_outer) = f;
+    }
+    return 0.5 * (inner + outer);
+  }
+  return std::nullopt;
+}
+
+std::optional<double> edge_position_m(const Surface& surface, double frequency_Hz, const CentreLine& line,
+                                      const MapOptions& options) {
+  switch (options.edge.kind) {
+    case Edge::Kind::turning:
+      return turning_point_m(surface, frequency_Hz);
+    case Edge::Kind::peak:
+      return line.last_peak_m();
+    case Edge::Kind::percent:
+      return line.level_m(options.edge.level);
+    case Edge::Kind::friction:
+      break;
+  }
+  return friction_edge_m(surface.length_m, line, options.friction.value(), options.edge.level);
+}
+
+}  // namespace turnpoint::physics

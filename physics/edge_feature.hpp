@@ -1,0 +1,29 @@
+#pragma once
+// Where one edge lies for one frequency, found on a solved profile.
+#include <optional>
+
+#include "physics/boundary_map.hpp"
+#include "physics/centre_line.hpp"
+
+namespace turnpoint::physics {
+
+// Which first transverse mode a boundary map follows.
+enum class Wave {
+  exact,  // two-dimensional mode of a linear taper (a wedge, J_nu(k r), nu = pi / 2 atan d); elsewhere `mode`
+  as_modelled  // the model's own equation
+};
+
+// The lossless (or lossy) centre line that positions are read from.
+std::unique_ptr<CentreLine> make_feature_line(const Surface& surface, double frequency_Hz, Model model,
+                                              Wave wave, Losses losses);
+
+// The edge's position on a solved centre line; none when it does not exist on the surface.
+std::optional<double> edge_position_m(const Surface& surface, double frequency_Hz, const CentreLine& line,
+                                      const MapOptions& options);
+
+// Outermost point at which friction, averaged over the fingertip, crosses `level`, for a centre line scaled
+// to context.displacement_m at its last maximum.
+std::optional<double> friction_edge_m(double length_m, const CentreLine& line, const FrictionContext& context,
+                                      double level);
+
+}  // namespace turnpoint::physics

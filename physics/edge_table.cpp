@@ -1,0 +1,191 @@
+#include "physics/edge_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "physics/dispersion.hpp"
+#include "physics/edge_feature.hpp"
+
+namespace turnpoint::physics {
+namespace {
+
+using Piece = EdgeTable::Piece;
+constexpr int degree = EdgeTable::degree;
+constexpr double table_tolerance_m = 1e-11;
+constexpr int deepest = 9;  // halvings of the frequency range
+
+double clenshaw(const Piece& piece, double ln_f) noexcept {
+  const double t = (2 * ln_f - piece.low - piece.high) / (piece.high - piece.low);
+  double b1 = 0, b2 = 0;
+  for (std::size_t k = degree; k > 0; --k) {
+    const double b0 = 2 * t * b1 - b2 + piece.coefficient[k];
+    b2 = b1;
+    b1 = b0;
+  }
+  return t * b1 - b2 + piece.coefficient[0];
+}
+
+class Builder {
+ public:
+  Builder(const Surface& surface, const MapOptions& options, Model model)
+      : surface_(surface), options_(options), model_(model), taper_(surface), dispersion_(surface) {}
+
+  std::optional<double> position(double f) const {
+    try {
+      const auto wave = model_ == Model::edge || model_ == Model::modes ? Wave::exact : Wave::as_modelled;
+      const auto line = make_feature_line(surface_, f, model_, wave, Losses::left_out);
+      return edge_position_m(surface_, f, *line, options_);
+    } catch (const std::domain_error&) {  // the model has no answer here
+      return std::nullopt;
+    }
+  }
+  std::optional<double> ratio(double f) const {
+    const auto x = position(f);
+    if (!x) return std::nullopt;
+    return taper_.half_width_m(*x) / dispersion_.cut_off_half_width_m(f);
+  }
+
+  // Frequencies whose turning points are spread over the surface.
+  std::vector<double> survey() const {
+    std::vector<double> f;
+    constexpr int count = 48;
+    for (int i = 0; i <= count; ++i) {
+      const double w = taper_.half_width_m(surface_.length_m * i / count);
+      if (w > 1e-6 * taper_.half_width_m(0)) f.push_back(dispersion_.cut_off_frequency_Hz(w));
+    }
+    return f;
+  }
+
+  // The end of existence between a frequency with the edge and one without.
+  double limit(double with, double without) const {
+    for (int i = 0; i < 60 && std::abs(with - without) > 1e-14 * with; ++i) {
+      const double middle = 0.5 * (with + without);
+      (ratio(middle) ? with : without) = middle;
+    }
+    return with;
+  }
+
+  void fill(EdgeTable& table, double low, double high, int depth) const {
+    Piece piece{low, high, {}};
+    std::array<double, degree + 1> value{};
+    const bool complete = sample(piece, value);
+    double worst = std::numeric_limits<double>::infinity();
+    if (complete) worst = miss(piece);
+    if (worst > table_tolerance_m && depth < deepest) {
+      const double middle = 0.5 * (low + high);
+      fill(table, low, middle, depth + 1);
+      fill(table, middle, high, depth + 1);
+      return;
+    }
+    if (!complete) return;
+    table.pieces.push_back(piece);
+    table.error_m = std::max(table.error_m, worst);
+  }
+
+ private:
+  bool sample(Piece& piece, std::array<double, degree + 1>& value) const {
+    constexpr double n = degree + 1;
+    for (std::size_t j = 0; j <= degree; ++j) {
+      const double t = std::cos(std::numbers::pi * (static_cast<double>(j) + 0.5) / n);
+      const auto r = ratio(std::exp(0.5 * (piece.low + piece.high + t * (piece.high - piece.low))));
+      if (!r) return false;
+      value[j] = *r;
+    }
+    for (std::size_t k = 0; k <= degree; ++k) {
+      double sum = 0;
+      for (std::size_t j = 0; j <= degree; ++j) {
+        sum += value[j] *
+               std::cos(std::numbers::pi * static_cast<double>(k) * (static_cast<double>(j) + 0.5) / n);
+      }
+      piece.coefficient[k] = sum * (k == 0 ? 1 : 2) / n;
+    }
+    return true;
+  }
+
+  // Largest error (m) of a piece at points between its nodes.
+  double miss(const Piece& piece) const {
+    double worst = 0;
+    for (const double t : {-0.98, -0.55, 0.06, 0.6, 0.985}) {
+      const double ln_f = 0.5 * (piece.low + piece.high + t * (piece.high - piece.low));
+      const double f = std::exp(ln_f);
+      const auto x = position(f);
+      const auto w = taper_.position_continued_m(clenshaw(piece, ln_f) * dispersion_.cut_off_half_width_m(f));
+      if (!x || !w) return std::numeric_limits<double>::infinity();
+      worst = std::max(worst, std::abs(*x - *w));
+    }
+    return worst;
+  }
+
+  const Surface& surface_;
+  const MapOptions& options_;
+  Model model_;
+  Taper taper_;
+  Dispersion dispersion_;
+};
+
+// Every lossless feature of a linear taper that runs to its apex lies at a fixed k s.
+bool scale_free(const Surface& surface, const MapOptions& options) {
+  if (options.edge.kind == Edge::Kind::turning) return true;
+  if (options.edge.kind == Edge::Kind::friction) return false;
+  const auto apex = Taper(surface).apex_m();
+  const Dispersion dispersion(surface);
+  const bool scales = !dispersion.clamped_bending() || dispersion.tension_N_per_m == 0;
+  return apex && *apex <= surface.length_m * (1 + 1e-9) && scales;
+}
+
+}  // namespace
+
+std::optional<double> EdgeTable::ratio(double f) const noexcept {
+  if (closed) return constant;
+  const double ln_f = std::log(f);
+  auto piece =
+      std::partition_point(pieces.begin(), pieces.end(), [ln_f](const Piece& p) { return p.high < ln_f; });
+  // Rounding of the logarithm at either end of the range.
+  if (piece == pieces.end()) piece = pieces.end() - 1;
+  const double slack = 1e-12 * std::abs(ln_f);
+  if (ln_f < piece->low - slack || ln_f > piece->high + slack) return std::nullopt;
+  return clenshaw(*piece, ln_f);
+}
+
+EdgeTable make_edge_table(const Surface& surface, const MapOptions& options, Model model) {
+  const Builder builder(surface, options, model);
+  const Taper taper(surface);
+  const Dispersion dispersion(surface);
+  EdgeTable table;
+  const double end = taper.half_width_m(surface.length_m);
+  const bool apex = end <= 1e-9 * taper.half_width_m(0);
+  if (scale_free(surface, options)) {
+    const auto constant = options.edge.kind == Edge::Kind::turning
+                              ? std::optional(1.0)
+                              : builder.ratio(dispersion.cut_off_frequency_Hz(taper.half_width_m(0) * 0.02));
+    if (!constant)
+      throw std::domain_error("edge " + format(options.edge) + " does not exist on this surface");
+    table.constant = *constant;
+    table.low_Hz = dispersion.cut_off_frequency_Hz(taper.half_width_m(0) / *constant);
+    table.high_Hz = apex ? std::numeric_limits<double>::infinity() : dispersion.cut_off_frequency_Hz(end);
+    return table;
+  }
+  table.closed = false;
+  const std::vector<double> survey = builder.survey();
+  int first = -1, last = -1;
+  for (int i = 0; i < static_cast<int>(survey.size()); ++i) {
+    if (!builder.ratio(survey[static_cast<std::size_t>(i)])) continue;
+    if (first < 0) first = i;
+    last = i;
+  }
+  if (first < 0) throw std::domain_error("edge " + format(options.edge) + " does not exist on this surface");
+  const auto at = [&](int i) { return survey[static_cast<std::size_t>(i)]; };
+  table.low_Hz = first == 0 ? at(0) : builder.limit(at(first), at(first - 1));
+  const bool ends = last + 1 < static_cast<int>(survey.size());
+  table.high_Hz = ends ? builder.limit(at(last), at(last + 1)) : at(last);
+  builder.fill(table, std::log(table.low_Hz), std::log(table.high_Hz), 0);
+  if (table.pieces.empty()) {
+    throw std::domain_error("edge " + format(options.edge) + " could not be tabulated on this surface");
+  }
+  return table;
+}
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,218 @@
+#include "physics/field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "physics/centre_line.hpp"
+#include "physics/dispersion.hpp"
+#include "physics/planner.hpp"
+
+namespace turnpoint::physics {
+namespace {
+
+struct Solved {
+  std::unique_ptr<CentreLine> line;
+  ToneInfo info;
+  Scaled at_drive;
+  Scaled at_peak;  // last maximum, or the drive edge without one
+};
+
+std::string why_no_peak(const Surface& surface, double frequency_Hz) {
+  std::ostringstream text;
+  const double cut_off = cut_off_frequency_Hz(surface, half_width_m(surface, 0));
+  if (frequency_Hz <= cut_off) {
+    text << "no smooth zone: " << frequency_Hz << " Hz is below the drive edge's cut-off of " << cut_off
+         << " Hz";
+  } else if (const auto x0 = turning_point_m(surface, frequency_Hz); !x0) {
+    text << "no last maximum: the turning point lies beyond the surface";
+  } else if (std::isfinite(surface.quality_factor)) {
+    text << "no last maximum on the surface: it would lie before the drive edge, or loss (Q = "
+         << surface.quality_factor << ") hides it";
+  } else {
+    text << "no last maximum on the surface: it would lie before the drive edge";
+  }
+  return text.str();
+}
+
+// How much the division by v(0) amplifies rounding: the local envelope of the standing wave over |v(0)|.
+double drive_conditioning(const CentreLine& line, const Scaled& v0, double k) {
+  const double envelope = std::hypot(std::abs(v0.mantissa), std::abs(line.slope(0).mantissa) / k);
+  return std::abs(v0.mantissa) > 0 ? envelope / std::abs(v0.mantissa) : 1e300;
+}
+
+Solved solve(const Surface& surface, double frequency_Hz, Model model) {
+  Solved s;
+  s.line = make_centre_line(surface, frequency_Hz, model);
+  s.info.frequency_Hz = frequency_Hz;
+  s.info.turning_point_m = turning_point_m(surface, frequency_Hz);
+  s.info.last_peak_m = s.line->last_peak_m();
+  if (!s.info.last_peak_m) s.info.no_peak_reason = why_no_peak(surface, frequency_Hz);
+  s.at_drive = s.line->value(0);
+  s.at_peak = s.info.last_peak_m ? s.line->value(*s.info.last_peak_m) : s.at_drive;
+  const double ln_gain = s.at_peak.ln_magnitude() - s.at_drive.ln_magnitude();
+  s.info.gain = std::exp(std::clamp(ln_gain, -700.0, 700.0));
+  s.info.conditioning = drive_conditioning(*s.line, s.at_drive, wavenumber_per_m(surface, frequency_Hz));
+  return s;
+}
+
+void require_points(const Surface& surface, std::span<const double> x) {
+  for (const double one : x) {
+    if (one >= 0 && one <= surface.length_m) continue;
+    std::ostringstream text;
+    text << "point at " << one * 1e3 << " mm; allowed: 0 to " << surface.length_m * 1e3 << " mm";
+    throw std::invalid_argument(text.str());
+  }
+}
+
+double strongest(std::span<const Tone> tones) {
+  double most = 0;
+  for (const Tone& tone : tones) {
+    if (!std::isfinite(tone.amplitude_m) || tone.amplitude_m < 0 || !std::isfinite(tone.phase_rad)) {
+      throw std::invalid_argument("tone amplitude_m must be 0 or more and phase_rad finite");
+    }
+    most = std::max(most, tone.amplitude_m);
+  }
+  if (!(most > 0)) throw std::invalid_argument("tones: at least one with an amplitude above 0 is needed");
+  return most;
+}
+
+// The complex number that v is divided by, as phase and logarithm.
+struct Reference {
+  std::complex<double> phase;
+  double ln;
+};
+
+Reference reference(const Solved& s, const Tone& tone, Normalise normalise, double most) {
+  const Scaled& unit = normalise == Normalise::peak ? s.at_peak : s.at_drive;
+  if (unit.mantissa == 0.0) {
+    throw std::domain_error(
+        "the tone is exactly a resonance, v(0) = 0: normalise by peak, or give a finite Q");
+  }
+  const double weight = normalise == Normalise::none ? tone.amplitude_m : tone.amplitude_m / most;
+  const auto phase = unit.mantissa / std::abs(unit.mantissa) * std::polar(1.0, -tone.phase_rad);
+  // A silent tone keeps its shape at the smallest normal size.
+  return {phase, unit.ln_magnitude() - (weight > 0 ? std::log(weight) : -700.0)};
+}
+
+void sum_tones(Field& field, std::size_t points) {
+  field.amplitude.resize(points);
+  field.ln_amplitude.resize(points);
+  if (field.tones.size() == 1) {
+    field.ln_amplitude = field.tones[0].ln_amplitude;
+    for (std::size_t i = 0; i < points; ++i) field.amplitude[i] = std::abs(field.tones[0].v[i]);
+    return;
+  }
+  for (std::size_t i = 0; i < points; ++i) {
+    double most = ln_zero;
+    for (const ToneField& tone : field.tones) most = std::max(most, tone.ln_amplitude[i]);
+    double sum = 0;
+    for (const ToneField& tone : field.tones) {
+      if (tone.ln_amplitude[i] > ln_zero) sum += std::exp(2 * (tone.ln_amplitude[i] - most));
+    }
+    field.ln_amplitude[i] = sum > 0 ? most + 0.5 * std::log(sum) : ln_zero;
+    field.amplitude[i] = sum > 0 ? std::exp(field.ln_amplitude[i]) : 0;
+  }
+}
+
+std::string validity_of(const Surface& surface, Model model) {
+  const std::string loss = std::isfinite(surface.quality_factor) ? "loss, " : "";
+  switch (model) {
+    case Model::edge:
+      return "positions only";
+    case Model::airy:
+      return "leaves out " + loss + "the flux correction and the width's change away from x0";
+    case Model::seed:
+      return "leaves out the flux correction sqrt(W0/W) and higher transverse modes";
+    case Model::uniform:
+      return "leaves out " + loss + "a clamped end near the turning point, higher transverse modes";
+    case Model::mode:
+      return "leaves out higher transverse modes of the drive edge";
+    case Model::modes:
+      break;
+  }
+  return "two-dimensional field";
+}
+
+}  // namespace
+
+std::string_view name(Normalise normalise) {
+  switch (normalise) {
+    case Normalise::drive:
+      return "drive";
+    case Normalise::peak:
+      return "peak";
+    case Normalise::none:
+      break;
+  }
+  return "none";
+}
+
+Normalise parse_normalise(std::string_view text) {
+  for (const Normalise one : {Normalise::drive, Normalise::peak, Normalise::none}) {
+    if (name(one) == text) return one;
+  }
+  throw std::invalid_argument("normalise \"" + std::string(text) +
+                              "\" is not known; allowed: drive, peak, none");
+}
+
+Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<const double> x, Model model,
+               Normalise normalise) {
+  validate(surface);
+  require_points(surface, x);
+  const double most = strongest(tones);
+  Field field;
+  field.model = model;
+  field.normalise = normalise;
+  double conditioning = 1;
+  for (const Tone& tone : tones) {
+    const Solved s = solve(surface, tone.frequency_Hz, model);
+    ToneField& one = field.tones.emplace_back();
+    one.info = s.info;
+    if (normalise == Normalise::peak) one.info.conditioning = 1;
+    conditioning = std::max(conditioning, one.info.conditioning);
+    one.info.nearest_resonance_Hz = nearest_resonance_Hz(surface, tone.frequency_Hz);
+    one.v.resize(x.size());
+    one.ln_amplitude.resize(x.size());
+    const Reference unit = reference(s, tone, normalise, most);
+    s.line->evaluate(x, unit.phase, unit.ln, one.v, one.ln_amplitude);
+  }
+  sum_tones(field, x.size());
+  const PlanRequest request{{tones.begin(), tones.end()}, static_cast<int>(x.size()), {}, normalise, {}};
+  field.error_bound = estimate(surface, request, model).amplitude_bound;
+  field.validity = validity_of(surface, model);
+  field.warnings = surface_warnings(surface);
+  for (Warning& warning : tone_warnings(surface, tones)) field.warnings.push_back(std::move(warning));
+  if (conditioning > 100) {
+    std::ostringstream text;
+    text << "a tone lies near a zero of v(0): the division by it amplifies errors " << conditioning
+         << " times";
+    field.warnings.push_back({"ill-conditioned", text.str()});
+  }
+  return field;
+}
+
+ToneInfo tone_info(const Surface& surface, double frequency_Hz, Model model) {
+  validate(surface);
+  ToneInfo info = solve(surface, frequency_Hz, model).info;
+  info.nearest_resonance_Hz = nearest_resonance_Hz(surface, frequency_Hz);
+  return info;
+}
+
+double drive_amplitude_m(const Surface& surface, double frequency_Hz, double displacement_m) {
+  validate(surface);
+  const ToneInfo info = solve(surface, frequency_Hz, Model::mode).info;
+  if (!info.last_peak_m) throw std::domain_error(info.no_peak_reason);
+  return displacement_m / info.gain;
+}
+
+std::vector<double> linspace_points(const Surface& surface, int n) {
+  if (n < 2) throw std::invalid_argument("points is " + std::to_string(n) + "; allowed: 2 or more");
+  std::vector<double> x(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) x[static_cast<std::size_t>(i)] = surface.length_m * i / (n - 1);
+  x.back() = surface.length_m;
+  return x;
+}
+
+}  // namespace turnpoint::physics

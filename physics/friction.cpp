@@ -1,0 +1,167 @@
+#include "physics/friction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+namespace turnpoint::physics {
+namespace {
+
+// Below this share of the skin contacts the floor is all that is left.
+constexpr double smallest_share = 0.02;
+
+// Excursion that gives an overpressure q: (1 + q)^2 = (1 + 3 e^2/2)/(1 - e^2), solved for e.
+double excursion(double overpressure) {
+  const double r = overpressure * (2 + overpressure);  // (1 + q)^2 - 1 without cancellation
+  return std::sqrt(r / (2.5 + r));
+}
+
+double with_floor(double share, double floor) {
+  const double f4 = std::pow(floor, 4);
+  return std::pow(f4 + (1 - f4) * std::pow(share, 4), 0.25);
+}
+
+std::optional<double> without_floor(double friction, double floor) {
+  const double f4 = std::pow(floor, 4);
+  const double share4 = (std::pow(friction, 4) - f4) / (1 - f4);
+  if (share4 < std::pow(smallest_share, 4)) return std::nullopt;
+  return std::min(1.0, std::pow(share4, 0.25));
+}
+
+// Displacement at which skin contacts carry `share` of the load: the gap follows from the share, the film's
+// pressure from the rest of the load, the excursion from the pressure. Closed form.
+double displacement_for_share(const LoadSharing& m, double share) {
+  if (share >= 1) return 0;
+  const double gap = m.rest_gap_m - m.decay_length_m * std::log(share);
+  return gap * excursion(m.pressure_Pa * (1 - share) / m.ambient_Pa);
+}
+
+// The share at a displacement: the closed form's inverse, by safeguarded secant steps in ln(share).
+double share_at(const LoadSharing& m, double displacement_m) {
+  if (displacement_m <= 0) return 1;
+  double low = std::log(smallest_share), high = 0;
+  if (displacement_m >= displacement_for_share(m, smallest_share)) return smallest_share;
+  double f_low = displacement_for_share(m, smallest_share) - displacement_m;
+  double f_high = -displacement_m;
+  for (int i = 0; i < 200 && high - low > 1e-16; ++i) {
+    // Near share = 1 the displacement rises like a square root, where halving beats secants.
+    double middle = i % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * f_low / (f_low - f_high);
+    if (!(middle > low && middle < high)) middle = 0.5 * (low + high);
+    if (middle == low || middle == high) break;
+    const double f = displacement_for_share(m, std::exp(middle)) - displacement_m;
+    if (f == 0) return std::exp(middle);
+    (f > 0 ? low : high) = middle;
+    (f > 0 ? f_low : f_high) = f;
+  }
+  return std::exp(0.5 * (low + high));
+}
+
+void require(bool holds, const char* quantity, double value, const char* allowed) {
+  if (holds) return;
+  std::ostringstream text;
+  text << quantity << " is " << value << "; allowed: " << allowed;
+  throw std::invalid_argument(text.str());
+}
+
+}  // namespace
+
+double squeeze_film_overpressure(double e) {
+  require(e >= 0 && e < 1, "squeeze film excursion", e, "0 to below 1");
+  // sqrt(r) - 1 with r - 1 = 2.5 e^2/(1 - e^2), free of cancellation at small e.
+  const double r = 2.5 * e * e / (1 - e * e);
+  return r / (1 + std::sqrt(1 + r));
+}
+
+FrictionMap::FrictionMap(const LoadSharing& m) : model_(m) {
+  require(m.pressure_Pa > 0 && std::isfinite(m.pressure_Pa), "pressure_Pa", m.pressure_Pa, "above 0");
+  require(m.floor >= 0 && m.floor < 1, "floor", m.floor, "0 to below 1");
+  require(m.decay_length_m > 0, "decay_length_m", m.decay_length_m, "above 0");
+  require(m.rest_gap_m > 0, "rest_gap_m", m.rest_gap_m, "above 0");
+  require(m.ambient_Pa > 0, "ambient_Pa", m.ambient_Pa, "above 0");
+}
+
+FrictionMap::FrictionMap(std::vector<FrictionPoint> table) {
+  std::vector<double> a, mu, sd;
+  for (const FrictionPoint& point : table) {
+    require(std::isfinite(point.displacement_m), "displacement_m", point.displacement_m, "finite, ascending");
+    require(point.relative_friction > 0, "relative_friction", point.relative_friction, "above 0");
+    require(point.sd >= 0, "sd of relative_friction", point.sd, "0 or more");
+    require(mu.empty() || point.relative_friction < mu.back(), "relative_friction", point.relative_friction,
+            "falling with displacement");
+    a.push_back(point.displacement_m);
+    mu.push_back(point.relative_friction);
+    sd.push_back(point.sd);
+  }
+  if (table.size() < 2) throw std::invalid_argument("a friction table needs two or more points");
+  require(a.front() == 0 && mu.front() == 1, "relative_friction at the first point", mu.front(),
+          "1 at displacement 0");
+  model_ = Table{MonotoneCubic(a, mu), MonotoneCubic(a, sd)};
+}
+
+double FrictionMap::relative_friction(double a) const {
+  require(a >= 0, "displacement_m", a, "0 or more");
+  if (const auto* m = std::get_if<LoadSharing>(&model_)) return with_floor(share_at(*m, a), m->floor);
+  return std::get<Table>(model_).friction(std::min(a, highest_displacement_m()));
+}
+
+std::optional<double> FrictionMap::displacement_m(double friction) const {
+  if (!(friction <= 1) || friction < lowest_friction()) return std::nullopt;
+  if (const auto* m = std::get_if<LoadSharing>(&model_)) {
+    const auto share = without_floor(friction, m->floor);
+    return displacement_for_share(*m, share.value_or(smallest_share));
+  }
+  return std::get<Table>(model_).friction.inverse(friction);
+}
+
+double FrictionMap::sd(double a) const {
+  const auto* table = std::get_if<Table>(&model_);
+  return table == nullptr ? 0 : table->sd(std::clamp(a, 0.0, highest_displacement_m()));
+}
+
+double FrictionMap::lowest_friction() const {
+  if (const auto* m = std::get_if<LoadSharing>(&model_)) return with_floor(smallest_share, m->floor);
+  return relative_friction(highest_displacement_m());
+}
+
+double FrictionMap::highest_displacement_m() const {
+  if (const auto* m = std::get_if<LoadSharing>(&model_)) return displacement_for_share(*m, smallest_share);
+  return std::get<Table>(model_).friction.pieces().back().x1;
+}
+
+namespace {
+
+// Integral of the piecewise linear function from x[0] to `position`, by its running integral.
+double integral_to(std::span<const double> x, std::span<const double> y, std::span<const double> running,
+                   double position) {
+  const auto after = std::upper_bound(x.begin(), x.end(), position);
+  const std::size_t i = std::min<std::size_t>(
+      x.size() - 2, after == x.begin() ? 0 : static_cast<std::size_t>(after - x.begin() - 1));
+  const double t = position - x[i];
+  const double slope = (y[i + 1] - y[i]) / (x[i + 1] - x[i]);
+  return running[i] + t * (y[i] + 0.5 * slope * t);
+}
+
+}  // namespace
+
+std::vector<double> fingertip_average(std::span<const double> x, std::span<const double> values,
+                                      double fingertip_m) {
+  if (x.size() != values.size() || x.size() < 2) {
+    throw std::invalid_argument("fingertip average: as many values as points, two or more");
+  }
+  require(fingertip_m >= 0, "fingertip_m", fingertip_m, "0 or more");
+  if (fingertip_m == 0) return {values.begin(), values.end()};
+  std::vector<double> running(x.size(), 0.0), mean(x.size());
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    require(x[i] > x[i - 1], "x_m", x[i], "ascending");
+    running[i] = running[i - 1] + 0.5 * (values[i] + values[i - 1]) * (x[i] - x[i - 1]);
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double low = std::max(x.front(), x[i] - fingertip_m / 2);
+    const double high = std::min(x.back(), x[i] + fingertip_m / 2);
+    mean[i] = (integral_to(x, values, running, high) - integral_to(x, values, running, low)) / (high - low);
+  }
+  return mean;
+}
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,124 @@
+#include "physics/map_bounds.hpp"
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "physics/dispersion.hpp"
+#include "physics/edge_feature.hpp"
+
+namespace turnpoint::physics {
+namespace {
+
+std::optional<double> position(const Surface& surface, const MapOptions& options, double f, Model model,
+                               Wave wave, Losses losses) {
+  try {
+    const auto line = make_feature_line(surface, f, model, wave, losses);
+    return edge_position_m(surface, f, *line, options);
+  } catch (const std::domain_error&) {
+    return std::nullopt;
+  }
+}
+
+// The surface with one parameter moved by +1 and -1 standard deviation, for every parameter that has one.
+std::vector<std::pair<Surface, Surface>> moved(const Surface& s) {
+  std::vector<std::pair<Surface, Surface>> pairs;
+  const auto add = [&](double sd, auto apply) {
+    if (!(sd > 0)) return;
+    Surface up = s, down = s;
+    apply(up, sd);
+    apply(down, -sd);
+    pairs.emplace_back(std::move(up), std::move(down));
+  };
+  add(s.sd.density_kg_m3, [](Surface& m, double by) { m.density_kg_m3 += by; });
+  add(s.sd.tension_Pa, [](Surface& m, double by) { m.tension_Pa += by; });
+  add(s.sd.thickness_m, [](Surface& m, double by) { m.thickness_m += by; });
+  add(s.sd.modulus_Pa, [](Surface& m, double by) {
+    if (m.modulus_Pa) *m.modulus_Pa += by;
+  });
+  add(s.sd.half_width_m, [](Surface& m, double by) {
+    if (auto* linear = std::get_if<LinearTaper>(&m.taper)) linear->half_width_m += by;
+    if (auto* exponential = std::get_if<ExponentialTaper>(&m.taper)) exponential->half_width_m += by;
+    if (auto* table = std::get_if<TabulatedTaper>(&m.taper)) {
+      for (TaperPoint& point : table->points) point.half_width_m += by;
+    }
+  });
+  add(s.sd.slope, [](Surface& m, double by) {
+    if (auto* linear = std::get_if<LinearTaper>(&m.taper)) linear->slope += by;
+  });
+  add(s.sd.decay_length_m, [](Surface& m, double by) {
+    if (auto* exponential = std::get_if<ExponentialTaper>(&m.taper)) exponential->decay_length_m += by;
+  });
+  return pairs;
+}
+
+// Positions on a perturbed linear taper may lie beyond the nominal length: follow the apex.
+Surface fitted(Surface s) {
+  if (const auto* linear = std::get_if<LinearTaper>(&s.taper); linear != nullptr && linear->slope > 0) {
+    s.length_m = std::min(s.length_m, linear->half_width_m / linear->slope);
+  }
+  return s;
+}
+
+double uncertainty(const Surface& surface, const MapOptions& options, double f) {
+  double variance = 0;
+  for (const auto& [up, down] : moved(surface)) {
+    const auto above = position(fitted(up), options, f, Model::edge, Wave::exact, Losses::left_out);
+    const auto below = position(fitted(down), options, f, Model::edge, Wave::exact, Losses::left_out);
+    const auto here = position(surface, options, f, Model::edge, Wave::exact, Losses::left_out);
+    if (above && below) {
+      variance += std::pow(0.5 * (*above - *below), 2);
+    } else if (here && (above || below)) {
+      variance += std::pow((above ? *above : *below) - *here, 2);
+    }
+  }
+  return std::sqrt(variance);
+}
+
+}  // namespace
+
+MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f, double x) {
+  MapBounds bounds;
+  bounds.uncertainty_m = uncertainty(surface, options, f);
+  if (options.edge.kind == Edge::Kind::turning) {
+    bounds.reason = ": local cut-off of the first transverse mode";
+    return bounds;
+  }
+  std::ostringstream reason;
+  const auto exact = position(surface, options, f, Model::edge, Wave::exact, Losses::left_out);
+  if (exact) bounds.equation_m = std::abs(*exact - x);
+  if (bounds.equation_m < 1e-10) bounds.equation_m = 0;
+  if (std::isfinite(surface.quality_factor)) {
+    const auto lossy = position(surface, options, f, Model::edge, Wave::exact, Losses::kept);
+    if (lossy && exact) {
+      bounds.loss_m = 1.1 * std::abs(*lossy - *exact);
+      reason << "; loss (Q = " << surface.quality_factor << ") moves it by " << (*lossy - *exact) * 1e3
+             << " mm";
+    } else {
+      bounds.loss_m = 0.25 * surface.length_m;
+      reason << "; loss (Q = " << surface.quality_factor << ") leaves no last maximum to measure it by";
+    }
+  }
+  bounds.reason = " of the lossless first transverse mode" + reason.str();
+  return bounds;
+}
+
+std::string why_no_boundary(const Surface& surface, const MapOptions& options, double f) {
+  std::ostringstream text;
+  const Dispersion dispersion(surface);
+  const double lowest = dispersion.cut_off_frequency_Hz(half_width_m(surface, 0));
+  if (!(f > lowest)) {
+    text << "no smooth zone: " << f << " Hz is not above the drive edge's cut-off of " << lowest << " Hz";
+  } else if (!turning_point_m(surface, f)) {
+    text << "turning point beyond the surface: the clamped end is the boundary";
+  } else if (options.edge.kind == Edge::Kind::friction) {
+    text << "friction averaged over the fingertip does not cross " << options.edge.level
+         << " on the surface at this displacement";
+  } else {
+    text << "the last maximum would lie before the drive edge";
+  }
+  return text.str();
+}
+
+}  // namespace turnpoint::physics

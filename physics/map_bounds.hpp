@@ -1,0 +1,24 @@
+#pragma once
+// What may move a boundary: the model's equation, loss, the drive edge's higher modes, the parameters.
+#include <string>
+
+#include "physics/boundary_map.hpp"
+
+namespace turnpoint::physics {
+
+struct MapBounds {
+  double equation_m = 0;     // model against the exact (or best) first transverse mode
+  double loss_m = 0;         // finite Q
+  double drive_modes_m = 0;  // higher transverse modes of the drive edge
+  double uncertainty_m = 0;  // one standard deviation from the surface's sd
+  std::string reason;
+  double error_m() const { return equation_m + loss_m + drive_modes_m; }
+};
+
+MapBounds map_bounds(const Surface& surface, const MapOptions& options, double frequency_Hz,
+                     double boundary_m);
+
+// Why an edge has no position at a frequency.
+std::string why_no_boundary(const Surface& surface, const MapOptions& options, double frequency_Hz);
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,36 @@
+#pragma once
+// The taper as a function, with what the solvers need of it.
+#include <optional>
+#include <vector>
+
+#include "physics/monotone_cubic.hpp"
+#include "physics/surface.hpp"
+
+namespace turnpoint::physics {
+
+// W(x) of a surface on [0, length_m]. Immutable; const functions are thread-safe.
+class Taper {
+ public:
+  explicit Taper(const Surface& surface);
+
+  double half_width_m(double x_m) const;
+  double slope(double x_m) const;  // dW/dx, negative
+  // Where the half-width is W; none when outside [0, length_m].
+  std::optional<double> position_m(double half_width_m) const;
+  // The same for a linear or exponential taper continued beyond the surface; none for a table's outside.
+  std::optional<double> position_continued_m(double half_width_m) const;
+  double length_m() const { return length_m_; }
+  // Where the sides meet, for a linear taper.
+  std::optional<double> apex_m() const;
+  // Largest x < x_m at which a derivative of W jumps; 0 when there is none.
+  double previous_knot_m(double x_m) const;
+  const TaperForm& form() const { return form_; }
+  const MonotoneCubic& table() const { return table_; }
+
+ private:
+  TaperForm form_;
+  MonotoneCubic table_;
+  double length_m_;
+};
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,108 @@
+#include "physics/taylor_kernel.hpp"
+
+#include <bit>
+#include <cstdint>
+
+// Function multiversioning where the compiler and C library offer it; the code is the same elsewhere.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
+#define TURNPOINT_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define TURNPOINT_CLONES
+#endif
+
+namespace turnpoint::physics {
+namespace {
+
+constexpr std::size_t lanes = 16;
+
+}  // namespace
+
+TURNPOINT_CLONES
+void horner_real(const TaylorStep& step, const double* x, std::size_t n, double* re) {
+  const double inverse = 1 / step.scale;
+  std::size_t i = 0;
+  for (; i + lanes <= n; i += lanes) {
+    double tau[lanes], sum[lanes];
+    for (std::size_t j = 0; j < lanes; ++j) {
+      tau[j] = (step.x_start - x[i + j]) * inverse;
+      sum[j] = step.re[taylor_order];
+    }
+    for (int k = taylor_order - 1; k >= 0; --k) {
+      for (std::size_t j = 0; j < lanes; ++j) sum[j] = sum[j] * tau[j] + step.re[k];
+    }
+    for (std::size_t j = 0; j < lanes; ++j) re[i + j] = sum[j];
+  }
+  for (; i < n; ++i) {
+    const double tau = (step.x_start - x[i]) * inverse;
+    double sum = step.re[taylor_order];
+    for (int k = taylor_order - 1; k >= 0; --k) sum = sum * tau + step.re[k];
+    re[i] = sum;
+  }
+}
+
+TURNPOINT_CLONES
+void horner_complex(const TaylorStep& step, const double* x, std::size_t n, double* re, double* im) {
+  const double inverse = 1 / step.scale;
+  std::size_t i = 0;
+  for (; i + lanes <= n; i += lanes) {
+    double tau[lanes], a[lanes], b[lanes];
+    for (std::size_t j = 0; j < lanes; ++j) {
+      tau[j] = (step.x_start - x[i + j]) * inverse;
+      a[j] = step.re[taylor_order];
+      b[j] = step.im[taylor_order];
+    }
+    for (int k = taylor_order - 1; k >= 0; --k) {
+      for (std::size_t j = 0; j < lanes; ++j) {
+        a[j] = a[j] * tau[j] + step.re[k];
+        b[j] = b[j] * tau[j] + step.im[k];
+      }
+    }
+    for (std::size_t j = 0; j < lanes; ++j) {
+      re[i + j] = a[j];
+      im[i + j] = b[j];
+    }
+  }
+  for (; i < n; ++i) {
+    const double tau = (step.x_start - x[i]) * inverse;
+    double a = step.re[taylor_order], b = step.im[taylor_order];
+    for (int k = taylor_order - 1; k >= 0; --k) {
+      a = a * tau + step.re[k];
+      b = b * tau + step.im[k];
+    }
+    re[i] = a;
+    im[i] = b;
+  }
+}
+
+TURNPOINT_CLONES
+void half_log_square(const double* re, const double* im, std::size_t n, double offset, double* out) {
+  // ln(m 2^e), m in [sqrt(1/2), sqrt 2): 2 atanh((m - 1)/(m + 1)) by its series, e exact through the exponent
+  // bits.
+  constexpr double ln2 = 0.693147180559945309417232121458;
+  constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcdULL;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double square = re[i] * re[i] + im[i] * im[i];
+    const std::uint64_t bits = std::bit_cast<std::uint64_t>(square) - sqrt_half;
+    // The exponent as a double without an integer conversion, which few instruction sets vectorise.
+    const std::uint64_t biased = (bits + 0x7ff0000000000000ULL) >> 52;  // e + 2047, a small positive number
+    const double e = std::bit_cast<double>(biased | 0x4330000000000000ULL) - (4503599627370496.0 + 2047.0);
+    const std::uint64_t mantissa_bits = (bits & 0x000fffffffffffffULL) + sqrt_half;
+    const double m = std::bit_cast<double>(mantissa_bits);
+    const double s = (m - 1) / (m + 1);
+    const double z = s * s;
+    double series = 1.0 / 21;
+    series = series * z + 1.0 / 19;
+    series = series * z + 1.0 / 17;
+    series = series * z + 1.0 / 15;
+    series = series * z + 1.0 / 13;
+    series = series * z + 1.0 / 11;
+    series = series * z + 1.0 / 9;
+    series = series * z + 1.0 / 7;
+    series = series * z + 1.0 / 5;
+    series = series * z + 1.0 / 3;
+    out[i] = s * (series * z + 1) + (0.5 * e * ln2 + offset);
+  }
+}
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,296 @@
+#include "physics/taylor_march.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "physics/field.hpp"
+#include "physics/taylor_kernel.hpp"
+#include "physics/taylor_series.hpp"
+
+namespace turnpoint::physics {
+namespace {
+
+using std::numbers::ln2;
+
+// Samples per step when looking for extrema and zeros: a step spans at most about 4 radians.
+constexpr int samples = 16;
+
+struct Local {
+  std::complex<double> g;
+  std::complex<double> dg;  // with respect to x
+};
+
+Local at(const TaylorStep& step, double x) {
+  const double tau = (step.x_start - x) / step.scale;
+  double re = step.re[taylor_order], im = step.im[taylor_order];
+  double dre = 0, dim = 0;
+  for (int k = taylor_order - 1; k >= 0; --k) {
+    dre = dre * tau + re;
+    dim = dim * tau + im;
+    re = re * tau + step.re[k];
+    im = im * tau + step.im[k];
+  }
+  return {{re, im}, {-dre / step.scale, -dim / step.scale}};
+}
+
+}  // namespace
+
+double Scaled::ln_magnitude() const {
+  const double magnitude = std::abs(mantissa);
+  return magnitude > 0 ? std::log(magnitude) + ln_scale : ln_zero;
+}
+
+struct TaylorMarch::State {
+  Taper taper;
+  MarchEquation equation;
+  std::optional<ApexSeries> apex;  // covers x > apex->inner_m()
+  std::vector<TaylorStep> steps;   // from the tip to x = 0
+
+  void march(TaylorState from);
+  const TaylorStep* step_at(double x) const;
+  Local local(double x, double& ln_scale) const;
+  double rise(const Local& g, double x) const;
+  std::optional<double> peak_in(const TaylorStep& step) const;
+};
+
+void TaylorMarch::State::march(TaylorState state) {
+  const SeriesMaker maker(taper, equation);
+  while (state.x > 0) {
+    TaylorStep& step = steps.emplace_back();
+    maker.fill(state, step);
+    const double inner = std::max(0.0, step.x_start - step.length);
+    const Local end = at(step, inner);
+    state.x = inner;
+    state.g = end.g;
+    state.dg = end.dg;
+    state.ln_scale = step.ln_scale;
+    state.normalise(step.scale);
+  }
+}
+
+const TaylorStep* TaylorMarch::State::step_at(double x) const {
+  if (apex && x > apex->inner_m()) return nullptr;
+  const auto after = std::partition_point(steps.begin(), steps.end(),
+                                          [x](const TaylorStep& s) { return s.x_start - s.length > x; });
+  if (steps.empty()) return nullptr;
+  return after == steps.end() ? &steps.back() : &*after;
+}
+
+Local TaylorMarch::State::local(double x, double& ln_scale) const {
+  const TaylorStep* step = step_at(x);
+  if (step != nullptr) {
+    ln_scale = step->ln_scale;
+    return at(*step, x);
+  }
+  const TaylorState state = apex->at(x);
+  ln_scale = state.ln_scale;
+  return {state.g, state.dg};
+}
+
+// d|v|^2/dx / 2 W^(2 power), whose sign tells whether |v| rises with x.
+double TaylorMarch::State::rise(const Local& g, double x) const {
+  const double bend =
+      equation.w_power == 0 ? 0 : equation.w_power * std::norm(g.g) * taper.slope(x) / taper.half_width_m(x);
+  return (std::conj(g.g) * g.dg).real() - bend;
+}
+
+// The outermost point of a step where |v| stops falling with x, seen from the tip: a maximum.
+std::optional<double> TaylorMarch::State::peak_in(const TaylorStep& step) const {
+  double outer = step.x_start;
+  double f_outer = rise(at(step, outer), outer);
+  for (int i = 1; i <= samples; ++i) {
+    double inner =
+        i == samples ? std::max(0.0, step.x_start - step.length) : step.x_start - step.length * i / samples;
+    double f_inner = rise(at(step, inner), inner);
+    if (!(f_inner > 0 && f_outer <= 0)) {
+      outer = inner;
+      f_outer = f_inner;
+      continue;
+    }
+    // Regula falsi with halving when it stalls.
+    for (int n = 0; n < 100; ++n) {
+      double x = n % 3 == 2 ? 0.5 * (inner + outer) : inner + (outer - inner) * f_inner / (f_inner - f_outer);
+      if (!(x > inner && x < outer)) x = 0.5 * (inner + outer);
+      if (x <= inner || x >= outer) break;
+      const double f = rise(at(step, x), x);
+      (f > 0 ? inner : outer) = x;
+      (f > 0 ? f_inner : f_outer) = f;
+      if (f == 0) return x;
+    }
+    return 0.5 * (inner + outer);
+  }
+  return std::nullopt;
+}
+
+TaylorMarch::TaylorMarch(const Taper& taper, const MarchEquation& equation) {
+  auto state = std::make_unique<State>(State{taper, equation, {}, {}});
+  state->steps.reserve(64);
+  const auto apex = taper.apex_m();
+  if (apex && *apex <= taper.length_m() * (1 + 1e-9)) {
+    state->apex.emplace(taper, equation);
+    if (state->apex->inner_m() > 0) state->march(state->apex->at(state->apex->inner_m()));
+  } else {
+    state->march({taper.length_m(), 0.0, -1.0, 0.0});
+  }
+  state_ = std::move(state);
+}
+
+TaylorMarch::~TaylorMarch() = default;
+TaylorMarch::TaylorMarch(TaylorMarch&&) noexcept = default;
+TaylorMarch& TaylorMarch::operator=(TaylorMarch&&) noexcept = default;
+
+int TaylorMarch::steps() const { return static_cast<int>(state_->steps.size()); }
+
+Scaled TaylorMarch::value(double x) const {
+  Scaled result;
+  const Local g = state_->local(x, result.ln_scale);
+  if (state_->equation.w_power == 0 || g.g == 0.0) {
+    result.mantissa = g.g;
+  } else {
+    result.mantissa = g.g * std::pow(state_->taper.half_width_m(x), -state_->equation.w_power);
+  }
+  return result;
+}
+
+Scaled TaylorMarch::slope(double x) const {
+  Scaled result;
+  const Local g = state_->local(x, result.ln_scale);
+  const double power = state_->equation.w_power;
+  const double w = state_->taper.half_width_m(x);
+  if (power == 0 || !(w > 0)) {
+    result.mantissa = g.dg;
+  } else {
+    result.mantissa = std::pow(w, -power) * (g.dg - power * state_->taper.slope(x) / w * g.g);
+  }
+  return result;
+}
+
+std::optional<double> TaylorMarch::last_peak_m() const {
+  for (const TaylorStep& step : state_->steps) {
+    if (const auto peak = state_->peak_in(step)) return peak;
+  }
+  return std::nullopt;
+}
+
+std::optional<double> TaylorMarch::level_m(double level) const {
+  const auto peak = last_peak_m();
+  if (!peak) return std::nullopt;
+  const double target = value(*peak).ln_magnitude() + std::log(level);
+  double inner = *peak;
+  double outer = state_->apex ? state_->apex->inner_m() : state_->taper.length_m();
+  if (state_->apex && value(outer).ln_magnitude() > target) {
+    inner = outer;
+    outer = state_->taper.length_m();
+  }
+  // From the tip, the first step whose inner end is above the target brackets it.
+  for (const TaylorStep& step : state_->steps) {
+    const double end = step.x_start - step.length;
+    if (end <= inner) break;
+    if (value(end).ln_magnitude() > target) {
+      inner = end;
+      break;
+    }
+    outer = end;
+  }
+  double x = 0.5 * (inner + outer);
+  for (int i = 0; i < 200; ++i) {
+    const Scaled v = value(x);
+    const double miss = v.ln_magnitude() - target;
+    (miss > 0 ? inner : outer) = x;
+    const double log_slope = v.mantissa == 0.0 ? 0 : (slope(x).mantissa / v.mantissa).real();
+    double next = log_slope == 0 ? x : x - miss / log_slope;
+    if (!(next > inner && next < outer)) next = 0.5 * (inner + outer);
+    if (std::abs(next - x) <= 1e-16 * state_->taper.length_m()) return next;
+    x = next;
+  }
+  return x;
+}
+
+int TaylorMarch::zeros() const {
+  int count = 0;
+  int sign = 0;
+  for (const TaylorStep& step : state_->steps) {
+    for (int i = 0; i <= samples; ++i) {
+      const double x =
+          i == samples ? std::max(0.0, step.x_start - step.length) : step.x_start - step.length * i / samples;
+      const double g = at(step, x).g.real();
+      const int now = (g > 0) - (g < 0);
+      if (now != 0 && sign != 0 && now != sign) ++count;
+      if (now != 0) sign = now;
+    }
+  }
+  return count;
+}
+
+namespace {
+
+// A run of points inside one step, at most as many as fit the scratch arrays.
+constexpr std::size_t batch = 256;
+
+struct Scratch {
+  std::array<double, batch> re, im, width;
+};
+
+}  // namespace
+
+void TaylorMarch::evaluate(std::span<const double> x, std::complex<double> phase_reference,
+                           double ln_reference, std::span<std::complex<double>> v,
+                           std::span<double> ln_amplitude) const {
+  const State& s = *state_;
+  const bool lossy = s.equation.a.imag() != 0;
+  Scratch scratch;
+  scratch.im.fill(0);
+  const std::complex<double> turn = 1.0 / phase_reference;
+  const auto* linear = std::get_if<LinearTaper>(&s.taper.form());
+  const TaylorStep* step = nullptr;
+  for (std::size_t i = 0; i < x.size();) {
+    const double x0 = x[i];
+    if (step == nullptr || !(x0 > step->x_start - step->length && x0 <= step->x_start)) step = s.step_at(x0);
+    if (step == nullptr || x0 >= s.taper.length_m()) {  // the apex series, or an exact zero at the end
+      const Scaled one = value(x0);
+      ln_amplitude[i] = one.mantissa == 0.0 ? ln_zero : one.ln_magnitude() - ln_reference;
+      v[i] = one.mantissa * turn * std::exp(one.ln_scale - ln_reference);
+      ++i;
+      continue;
+    }
+    const double inner = step->x_start - step->length;
+    std::size_t n = 1;
+    while (n < batch && i + n < x.size() && x[i + n] > inner && x[i + n] <= step->x_start &&
+           x[i + n] < s.taper.length_m()) {
+      ++n;
+    }
+    if (lossy) {
+      horner_complex(*step, &x[i], n, scratch.re.data(), scratch.im.data());
+    } else {
+      horner_real(*step, &x[i], n, scratch.re.data());
+    }
+    if (s.equation.w_power != 0) {
+      if (linear != nullptr) {
+        divide_by_root_width(*linear, &x[i], n, scratch.re.data(), scratch.im.data());
+      } else {
+        for (std::size_t j = 0; j < n; ++j) {
+          const double factor = std::pow(s.taper.half_width_m(x[i + j]), -s.equation.w_power);
+          scratch.re[j] *= factor;
+          scratch.im[j] *= factor;
+        }
+      }
+    }
+    const double ln_step = step->ln_scale - ln_reference;
+    half_log_square(scratch.re.data(), scratch.im.data(), n, ln_step, &ln_amplitude[i]);
+    const std::complex<double> factor = turn * std::exp(std::min(ln_step, 700.0));
+    for (std::size_t j = 0; j < n; ++j) {
+      const double re = scratch.re[j], im = scratch.im[j];
+      v[i + j] = {re * factor.real() - im * factor.imag(), re * factor.imag() + im * factor.real()};
+      if (re * re + im * im < 1e-290) {  // at, or within rounding of, a zero
+        const double magnitude = std::hypot(re, im);
+        ln_amplitude[i + j] = magnitude > 0 ? std::log(magnitude) + ln_step : ln_zero;
+      }
+    }
+    i += n;
+  }
+}
+
+}  // namespace turnpoint::physics

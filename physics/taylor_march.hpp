@@ -1,0 +1,67 @@
+#pragma once
+// Marches g'' + p(x) g = 0 from the tip of a surface to its drive edge by high-order Taylor steps, carrying
+// the size of g as a power of two, so that neither the evanescent zone nor strong loss leaves the range of a
+// double.
+//
+//   p(x) = A - (B + C W'(x)^2) / W(x)^2,  A complex with loss
+//
+// Marching from the tip outward is the stable direction: the solution that vanishes at the tip is the one
+// that grows. The tip is either the apex of a linear taper (regular singular point, started by Frobenius'
+// series) or a clamped end anywhere.
+#include <complex>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "physics/taper.hpp"
+
+namespace turnpoint::physics {
+
+struct MarchEquation {
+  std::complex<double> a;  // 1/m^2
+  double b = 0;            // of 1/W^2
+  double c = 0;            // of W'^2/W^2
+  double w_power = 0;      // displacement v = g W^-w_power
+};
+
+// g, or v, with its size split off: the value is `mantissa` exp(ln_scale).
+struct Scaled {
+  std::complex<double> mantissa;
+  double ln_scale = 0;
+  double ln_magnitude() const;  // ln|value|, ln_zero when it is exactly zero
+};
+
+// One solution of the equation, normalised arbitrarily. Immutable once built; const functions are
+// thread-safe.
+class TaylorMarch {
+ public:
+  TaylorMarch(const Taper& taper, const MarchEquation& equation);
+  ~TaylorMarch();
+  TaylorMarch(TaylorMarch&&) noexcept;
+  TaylorMarch& operator=(TaylorMarch&&) noexcept;
+
+  // v and dv/dx at one point of [0, length_m].
+  Scaled value(double x_m) const;
+  Scaled slope(double x_m) const;
+
+  // v times exp(-ln_reference) / phase_reference at many points, and ln|v| - ln_reference. `x_m` ascending is
+  // fastest; any order is right. v is 0 where it underflows; the logarithm is right there too.
+  void evaluate(std::span<const double> x_m, std::complex<double> phase_reference, double ln_reference,
+                std::span<std::complex<double>> v, std::span<double> ln_amplitude) const;
+
+  // Outermost maximum of |v| inside the surface; none when |v| rises all the way to the drive edge, or when
+  // the maximum would lie beyond it.
+  std::optional<double> last_peak_m() const;
+  // Outermost point at which |v| is `level` of its last maximum, 0 < level < 1; none without one.
+  std::optional<double> level_m(double level) const;
+  // Zeros of a real solution strictly between the drive edge and the tip.
+  int zeros() const;
+  // Number of Taylor steps taken: what the cost is proportional to.
+  int steps() const;
+
+ private:
+  struct State;
+  std::unique_ptr<const State> state_;
+};
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,222 @@
+#include "physics/taylor_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace turnpoint::physics {
+namespace {
+
+// Terms beyond the last kept one stay below this, relative to the first two.
+constexpr double ln_truncation = -39.8;  // 5e-18
+
+// 1/((n + 1)(n + 2))
+constexpr auto inverse_products = [] {
+  std::array<double, taylor_order + 1> table{};
+  for (int n = 0; n <= taylor_order; ++n) table[static_cast<std::size_t>(n)] = 1.0 / ((n + 1.0) * (n + 2.0));
+  return table;
+}();
+
+// Length over which the series is exact to rounding, judged by its last three terms (one or two of which may
+// vanish by symmetry).
+double exact_length(const TaylorStep& step) {
+  const double size = std::max(std::hypot(step.re[0], step.im[0]), std::hypot(step.re[1], step.im[1]));
+  double ratio = 1e300;
+  for (int n = taylor_order - 2; n <= taylor_order; ++n) {
+    const double term = std::max(std::abs(step.re[n]), std::abs(step.im[n]));
+    if (term > 0) ratio = std::min(ratio, std::exp((std::log(size / term) + ln_truncation) / n));
+  }
+  return step.scale * std::min(ratio, 4.0);
+}
+
+}  // namespace
+
+void TaylorState::normalise(double scale) {
+  const double size = std::max(std::abs(g), std::abs(dg) * scale);
+  const int exponent = std::ilogb(size);
+  const double factor = std::scalbn(1.0, -exponent);
+  g *= factor;
+  dg *= factor;
+  ln_scale += exponent * std::numbers::ln2;
+}
+
+SeriesMaker::SeriesMaker(const Taper& taper, const MarchEquation& equation)
+    : taper_(taper), equation_(equation) {}
+
+std::complex<double> SeriesMaker::potential(double x) const {
+  const double w = taper_.half_width_m(x);
+  const double slope = taper_.slope(x);
+  return equation_.a - (equation_.b + equation_.c * slope * slope) / (w * w);
+}
+
+// A first guess of the step: 3 radians (or e-folds) of the local wavenumber, and well inside the distance at
+// which the sides would meet.
+double SeriesMaker::trial_scale(double x) const {
+  const double meet = std::abs(taper_.half_width_m(x) / taper_.slope(x));
+  double scale = 0.35 * std::min(meet, 1e6 * taper_.length_m());
+  const double here = std::abs(potential(x));
+  const double try_in = std::max(0.0, x - std::min(scale, 3 / std::sqrt(here + 1e-300)));
+  const double k = std::sqrt(std::max(here, std::abs(potential(try_in))) + 1e-300);
+  return std::min({scale, 3 / k, 4 * taper_.length_m()});
+}
+
+// s^2 g'' + (A s^2 - mu'^2) g = 0 with s = s0 (1 + e tau): a five-term recurrence.
+void SeriesMaker::linear(double x, TaylorStep& step) const {
+  const double slope = std::get<LinearTaper>(taper_.form()).slope;
+  const double s0 = taper_.half_width_m(x) / slope;
+  const double e = step.scale / s0;
+  const std::complex<double> a = equation_.a * (step.scale * step.scale);
+  const double ar = a.real(), ai = a.imag();
+  const double strength = (equation_.b / (slope * slope) + equation_.c) * e * e;
+  double* re = step.re;
+  double* im = step.im;
+  for (int n = 0; n + 2 <= taylor_order; ++n) {
+    const double same = e * e * n * (n - 1.0) - strength + ar;
+    const double next = 2 * e * (n + 1.0) * n;
+    double sum_re = next * re[n + 1] + same * re[n] - ai * im[n];
+    double sum_im = next * im[n + 1] + same * im[n] + ai * re[n];
+    if (n >= 1) {
+      sum_re += 2 * e * (ar * re[n - 1] - ai * im[n - 1]);
+      sum_im += 2 * e * (ar * im[n - 1] + ai * re[n - 1]);
+    }
+    if (n >= 2) {
+      sum_re += e * e * (ar * re[n - 2] - ai * im[n - 2]);
+      sum_im += e * e * (ar * im[n - 2] + ai * re[n - 2]);
+    }
+    const double factor = -inverse_products[static_cast<std::size_t>(n)];
+    re[n + 2] = factor * sum_re;
+    im[n + 2] = factor * sum_im;
+  }
+}
+
+// Taylor coefficients of p - A in tau (real); returns how many matter.
+int SeriesMaker::potential_series(double x, double knot, double scale,
+                                  std::array<double, taylor_order>& q) const {
+  q.fill(0);
+  if (const auto* taper = std::get_if<ExponentialTaper>(&taper_.form())) {
+    const double l = taper->decay_length_m;
+    const double w = taper_.half_width_m(x);
+    double term = -equation_.b / (w * w);
+    const double size = std::abs(term);
+    int count = 1;
+    for (int j = 0; j < taylor_order; ++j) {
+      q[static_cast<std::size_t>(j)] = term;
+      if (std::abs(term) > 1e-18 * size) count = j + 1;
+      term *= -2 * scale / l / (j + 1);
+    }
+    q[0] -= equation_.c / (l * l);
+    return count;
+  }
+  // A cubic half-width W(tau): 1/W^2 by its own recurrence, times the quartic B + C W'^2.
+  std::array<double, 4> w{taper_.half_width_m(x), 0, 0, 0};
+  if (std::holds_alternative<TabulatedTaper>(taper_.form())) {
+    const Cubic& p = taper_.table().piece(0.5 * (knot + x));
+    const double t = x - p.x0;
+    w = {p.value(x), -scale * p.slope(x), scale * scale * (p.c2 + 3 * p.c3 * t),
+         -scale * scale * scale * p.c3};
+  }
+  std::array<double, 5> numerator{};
+  for (int i = 1; i < 4; ++i) {
+    for (int j = 1; j < 4; ++j) {
+      numerator[static_cast<std::size_t>(i + j - 2)] += equation_.c * i * j * w[static_cast<std::size_t>(i)] *
+                                                        w[static_cast<std::size_t>(j)] / (scale * scale);
+    }
+  }
+  numerator[0] += equation_.b;
+  std::array<double, taylor_order> r{};
+  r[0] = 1 / (w[0] * w[0]);
+  for (std::size_t n = 1; n < r.size(); ++n) {
+    double sum = 0;
+    for (std::size_t k = 1; k <= std::min<std::size_t>(3, n); ++k) {
+      sum += static_cast<double>(n + k) * w[k] * r[n - k];
+    }
+    r[n] = -sum / (static_cast<double>(n) * w[0]);
+  }
+  int count = 1;
+  double size = 0;
+  for (std::size_t n = 0; n < q.size(); ++n) {
+    for (std::size_t k = 0; k <= std::min<std::size_t>(4, n); ++k) q[n] -= numerator[k] * r[n - k];
+    size = std::max(size, std::abs(q[n]));
+    if (std::abs(q[n]) > 1e-19 * size) count = static_cast<int>(n) + 1;
+  }
+  return count;
+}
+
+void SeriesMaker::convolved(double x, double knot, TaylorStep& step) const {
+  std::array<double, taylor_order> q;
+  const int count = potential_series(x, knot, step.scale, q);
+  const double square = step.scale * step.scale;
+  const double ai = equation_.a.imag();
+  double* re = step.re;
+  double* im = step.im;
+  q[0] += equation_.a.real();
+  for (int n = 0; n + 2 <= taylor_order; ++n) {
+    double sum_re = -ai * im[n];
+    double sum_im = ai * re[n];
+    for (int j = 0; j <= std::min(n, count - 1); ++j) {
+      sum_re += q[static_cast<std::size_t>(j)] * re[n - j];
+      sum_im += q[static_cast<std::size_t>(j)] * im[n - j];
+    }
+    const double factor = -square * inverse_products[static_cast<std::size_t>(n)];
+    re[n + 2] = factor * sum_re;
+    im[n + 2] = factor * sum_im;
+  }
+}
+
+void SeriesMaker::fill(const TaylorState& from, TaylorStep& step) const {
+  const double knot = taper_.previous_knot_m(from.x);
+  step.x_start = from.x;
+  step.scale = trial_scale(from.x);
+  step.ln_scale = from.ln_scale;
+  // tau runs towards the drive edge, against x.
+  const std::complex<double> dg = -from.dg * step.scale;
+  step.re[0] = from.g.real();
+  step.im[0] = from.g.imag();
+  step.re[1] = dg.real();
+  step.im[1] = dg.imag();
+  const auto* taper = std::get_if<LinearTaper>(&taper_.form());
+  if (taper != nullptr && taper->slope > 0) {
+    linear(from.x, step);
+  } else {
+    convolved(from.x, knot, step);
+  }
+  step.length = exact_length(step);
+  // Ending exactly on the knot: an inner end a rounding above it would leave a sliver of a step.
+  if (step.length > (from.x - knot) * (1 - 1e-9)) step.length = from.x - knot;
+}
+
+ApexSeries::ApexSeries(const Taper& taper, const MarchEquation& equation)
+    : apex_m_(taper.apex_m().value()), a_(equation.a) {
+  const double slope = std::get<LinearTaper>(taper.form()).slope;
+  mu_ = std::sqrt(equation.b / (slope * slope) + equation.c + 0.25);
+  const double reach = std::min(2 * std::sqrt(mu_ + 1), mu_) / std::sqrt(std::abs(equation.a));
+  inner_m_ = std::max(0.0, apex_m_ - reach);
+}
+
+TaylorState ApexSeries::at(double x) const {
+  const double s = std::max(0.0, apex_m_ - x);
+  if (s == 0) return {x, 0.0, 0.0, 0.0};
+  const std::complex<double> z = -0.25 * a_ * s * s;
+  std::complex<double> term = 1, sum = 1, derivative = 0;
+  for (int j = 1; j < 60; ++j) {
+    term *= z / (j * (j + mu_));
+    sum += term;
+    derivative += 2.0 * j * term;
+    if (std::abs(term) * j < 1e-18 * std::abs(sum)) break;
+  }
+  const double power = mu_ + 0.5;
+  // Relative to the inner end, so that the logarithm stays as small as it can be.
+  const double s1 = apex_m_ - inner_m_;
+  return {x, sum, -(power * sum + derivative) / s, power * std::log(s / s1)};
+}
+
+void divide_by_root_width(const LinearTaper& taper, const double* x, std::size_t n, double* re, double* im) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double factor = 1 / std::sqrt(taper.half_width_m - taper.slope * x[i]);
+    re[i] *= factor;
+    im[i] *= factor;
+  }
+}
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,59 @@
+#pragma once
+// Local series of the marched equation: at a regular point and at the apex of a linear taper.
+#include <array>
+#include <complex>
+#include <vector>
+
+#include "physics/taper.hpp"
+#include "physics/taylor_kernel.hpp"
+#include "physics/taylor_march.hpp"
+
+namespace turnpoint::physics {
+
+// g and dg/dx at a point, times exp(ln_scale).
+struct TaylorState {
+  double x = 0;
+  std::complex<double> g;
+  std::complex<double> dg;
+  double ln_scale = 0;
+  // Takes a power of two out of (g, dg scale) into ln_scale.
+  void normalise(double scale);
+};
+
+// Makes the Taylor polynomial of the solution through a state, and the length over which it is exact to
+// rounding.
+class SeriesMaker {
+ public:
+  SeriesMaker(const Taper& taper, const MarchEquation& equation);
+  void fill(const TaylorState& from, TaylorStep& step) const;
+
+ private:
+  double trial_scale(double x) const;
+  std::complex<double> potential(double x) const;
+  void linear(double x, TaylorStep& step) const;
+  void convolved(double x, double knot, TaylorStep& step) const;
+  int potential_series(double x, double knot, double scale, std::array<double, taylor_order>& q) const;
+
+  const Taper& taper_;
+  MarchEquation equation_;
+};
+
+// Frobenius' series at the apex of a linear taper: g = s^(mu + 1/2) sum c_j (k s)^2j, s the distance from the
+// apex, mu^2 = B/d^2 + C + 1/4. Used for k s below 2 sqrt(mu + 1), where its terms fall from the first on.
+class ApexSeries {
+ public:
+  ApexSeries(const Taper& taper, const MarchEquation& equation);
+  double inner_m() const { return inner_m_; }
+  TaylorState at(double x) const;
+
+ private:
+  double apex_m_;
+  double mu_;
+  double inner_m_;
+  std::complex<double> a_;
+};
+
+// Multiplies by W^-1/2 of a linear taper.
+void divide_by_root_width(const LinearTaper& taper, const double* x, std::size_t n, double* re, double* im);
+
+}  // namespace turnpoint::physics

@@ -1,1 +1,0 @@
-namespace turnpoint::physics { const char* version() { return "0"; } }

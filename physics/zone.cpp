@@ -1,0 +1,120 @@
+#include "physics/zone.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+
+#include "physics/boundary_map.hpp"
+#include "physics/centre_line.hpp"
+#include "physics/crest.hpp"
+#include "physics/dispersion.hpp"
+#include "physics/field.hpp"
+#include "physics/zone_profile.hpp"
+
+namespace turnpoint::physics {
+namespace {
+
+[[noreturn]] void unreachable(const std::ostringstream& text) { throw std::domain_error(text.str()); }
+
+// Highest frequency for a first guess: the one whose own boundary lies where the zone shall end.
+double first_guess(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request) {
+  MapOptions options;
+  options.edge = request.edge.kind == Edge::Kind::friction ? Edge::percent(0.5) : request.edge;
+  options.friction = FrictionContext{friction, 1e-6, request.fingertip_m};
+  const auto f = BoundaryMap(surface, options).frequency_Hz(request.boundary_m);
+  if (!f) {
+    std::ostringstream text;
+    text << "zone boundary " << request.boundary_m * 1e3 << " mm cannot be presented as "
+         << format(request.edge) << " on this surface";
+    unreachable(text);
+  }
+  return *f;
+}
+
+void check(const Surface& surface, const FrictionMap& friction, const ZoneRequest& r) {
+  validate(surface);
+  std::ostringstream text;
+  if (!(r.from_m >= 0 && r.from_m < r.boundary_m && r.boundary_m <= surface.length_m)) {
+    text << "zone from " << r.from_m * 1e3 << " to " << r.boundary_m * 1e3 << " mm; allowed: inside 0 to "
+         << surface.length_m * 1e3 << " mm, ascending";
+    throw std::invalid_argument(text.str());
+  }
+  if (!(r.friction < 1) || r.friction <= friction.lowest_friction()) {
+    text << "zone friction " << r.friction << " is not reachable; allowed: above "
+         << friction.lowest_friction() << ", below 1";
+    unreachable(text);
+  }
+  if (r.tones < 1)
+    throw std::invalid_argument("zone tones is " + std::to_string(r.tones) + "; allowed: 1 or more");
+  if (!(r.band.low_Hz > 0 && r.band.low_Hz < r.band.high_Hz && r.band.spacing_Hz > 0)) {
+    throw std::invalid_argument("zone band: low_Hz below high_Hz and spacing_Hz above 0 are needed");
+  }
+  if (r.edge.kind == Edge::Kind::friction && !(r.edge.level > r.friction && r.edge.level < 1)) {
+    text << "zone edge at friction " << r.edge.level << "; allowed: above the zone's own " << r.friction
+         << ", below 1";
+    unreachable(text);
+  }
+}
+
+// Moves all tones together until the zone's own edge lies at the wanted boundary; secants on frequency.
+void place(ZoneProfile& profile, const ZoneRequest& r) {
+  double f = profile.highest_Hz();
+  double slope = 0;
+  double previous_f = 0, previous_x = 0;
+  for (int i = 0; i < 25; ++i) {
+    profile.scale_to_friction();
+    const auto x = profile.edge_m();
+    if (!x) {
+      std::ostringstream text;
+      text << "the zone's profile has no edge " << format(r.edge) << " near " << r.boundary_m * 1e3 << " mm";
+      unreachable(text);
+    }
+    if (std::abs(*x - r.boundary_m) < 2e-7) return;
+    slope = i == 0 || f == previous_f || *x == previous_x ? profile.edge_slope_m_per_Hz()
+                                                          : (*x - previous_x) / (f - previous_f);
+    if (!(slope > 0)) slope = profile.edge_slope_m_per_Hz();
+    previous_f = f;
+    previous_x = *x;
+    const double step = std::clamp((r.boundary_m - *x) / slope, -0.1 * f, 0.1 * f);
+    f += step;
+    profile.shift_to(f);
+  }
+}
+
+void require_band(const ZoneProfile& profile, const ZoneRequest& r) {
+  const double f = profile.highest_Hz();
+  if (f <= r.band.high_Hz && f >= r.band.low_Hz) return;
+  std::ostringstream text;
+  text << "zone boundary " << r.boundary_m * 1e3 << " mm needs " << f << " Hz; allowed: " << r.band.low_Hz
+       << " to " << r.band.high_Hz << " Hz";
+  unreachable(text);
+}
+
+}  // namespace
+
+ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request) {
+  check(surface, friction, request);
+  const double guess = first_guess(surface, friction, request);
+  ZoneProfile profile(surface, friction, request, guess);
+  place(profile, request);
+  require_band(profile, request);
+  ZoneDesign design;
+  design.tones = profile.tones();
+  assign_phases(design.tones);
+  design.crest_factor = crest_factor(design.tones);
+  profile.measure(design);
+  std::ostringstream reason;
+  reason << design.tones.size() << (design.tones.size() == 1 ? " tone" : " tones") << " from "
+         << design.tones.back().frequency_Hz / 1e3 << " to " << design.tones.front().frequency_Hz / 1e3
+         << " kHz; friction inside varies by " << design.residual << " rms";
+  if (static_cast<int>(design.tones.size()) < request.tones) {
+    reason << "; further tones would lie below " << request.band.low_Hz / 1e3 << " kHz or add nothing";
+  }
+  design.reason = reason.str();
+  design.warnings = surface_warnings(surface);
+  for (Warning& warning : tone_warnings(surface, design.tones)) design.warnings.push_back(std::move(warning));
+  return design;
+}
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,54 @@
+#pragma once
+// The working state of a zone design: tones, their shapes on a grid, and what a fingertip feels of them.
+#include <optional>
+#include <vector>
+
+#include "physics/zone.hpp"
+
+namespace turnpoint::physics {
+
+// Squared amplitude of one tone on a grid, its last maximum set to one, with what that takes at the drive
+// edge.
+struct ToneShape {
+  double frequency_Hz = 0;
+  double drive_gain = 1;  // |v(0)| at unit last maximum
+  std::vector<double> square;
+};
+
+class ZoneProfile {
+ public:
+  // Chooses offsets below `highest_Hz` for up to request.tones tones and their relative weights, by
+  // non-negative least squares towards uniform squared amplitude in the zone.
+  ZoneProfile(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request,
+              double highest_Hz);
+
+  double highest_Hz() const { return shapes_.front().frequency_Hz; }
+  // Moves all tones by one frequency difference and recomputes their shapes.
+  void shift_to(double highest_Hz);
+  // Sets the overall level so that mean friction over the zone is the wanted one; throws std::domain_error.
+  void scale_to_friction();
+  // The profile's own edge; none when it has none.
+  std::optional<double> edge_m() const;
+  double edge_slope_m_per_Hz() const;
+  std::vector<Tone> tones() const;
+  void measure(ZoneDesign& design) const;
+
+ private:
+  ToneShape shape(double frequency_Hz) const;
+  void choose_tones(double highest_Hz);
+  std::vector<double> fit(const std::vector<const ToneShape*>& shapes, double& residual) const;
+  std::vector<double> summed() const;
+  std::vector<double> felt(double scale) const;
+  double zone_mean(const std::vector<double>& values) const;
+  bool in_zone(std::size_t i) const { return x_[i] >= request_.from_m && x_[i] <= request_.boundary_m; }
+
+  const Surface& surface_;
+  const FrictionMap& friction_;
+  const ZoneRequest& request_;
+  std::vector<double> x_;
+  std::vector<ToneShape> shapes_;
+  std::vector<double> weights_;  // of squared amplitudes
+  double scale_ = 1e-12;         // m^2 per unit of the weighted sum
+};
+
+}  // namespace turnpoint::physics
