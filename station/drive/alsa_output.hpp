@@ -1,0 +1,12 @@
+#pragma once
+#include <memory>
+
+#include "station/drive/output.hpp"
+
+namespace turnpoint::drive {
+
+/// An ALSA device by its alsa-lib name (`hw:CARD=DAC,DEV=0`), opened so that no sample is altered on the way.
+/// Throws OutputRefused with what was asked and what the device offers.
+std::unique_ptr<Output> open_alsa(const OutputConfig& config, const std::string& name);
+
+}  // namespace turnpoint::drive

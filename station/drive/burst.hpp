@@ -1,0 +1,79 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+namespace turnpoint::drive {
+
+inline constexpr int max_tones = 32;
+inline constexpr int max_channels = 8;
+inline constexpr int max_changes = 4;
+
+/// One sinusoid `amplitude * sin(2 pi frequency t + phase)`, t counted from the first frame of its burst.
+/// Full scale is 1; the channel is an output channel from 0.
+struct Tone {
+  double frequency_Hz = 0;
+  double amplitude = 0;
+  double phase_rad = 0;
+  std::int32_t channel = 0;
+};
+
+/// Up to 32 tones that sound together.
+struct ToneSet {
+  std::array<Tone, max_tones> tones{};
+  std::int32_t count = 0;
+};
+
+/// Raised cosine (Hann) has a continuous slope; smoothstep is the 7th-order polynomial with three
+/// vanishing derivatives at both ends, whose spectrum falls off faster.
+enum class RampShape : std::int32_t { raised_cosine, smoothstep };
+
+/// How amplitude comes and goes. A ramp of 0 frames is an abrupt gate, which is felt: ask for it on purpose.
+struct Ramp {
+  RampShape shape = RampShape::raised_cosine;
+  std::int64_t frames = 9600;  ///< 50 ms at 192 kHz
+};
+
+/// A change under the finger: from `at_frame` (counted from the burst's first frame) tone i glides to tone i
+/// of `to` within `frames`: frequency linearly and without a jump of phase, amplitude along the ramp's shape.
+/// A tone that only one of the sets has fades in (as if it had run silently since the onset) or out.
+struct Change {
+  std::int64_t at_frame = 0;
+  std::int64_t frames = 9600;
+  ToneSet to;
+};
+
+/// A mark for recording equipment at the onset and at each change, on a channel that drives no transducer.
+enum class MarkerKind : std::int32_t { none, pulse, tone };
+struct Marker {
+  MarkerKind kind = MarkerKind::none;
+  std::int32_t channel = 1;
+  double amplitude = 0.5;
+  double frequency_Hz = 1000;  ///< of a gated tone
+  std::int64_t frames = 192;
+};
+
+/// Band-limited noise that masks what is audible; gated by the burst's ramp. rms 0 is none.
+struct MaskingNoise {
+  std::int32_t channel = 1;
+  double rms = 0;
+  double low_Hz = 100;
+  double high_Hz = 8000;
+  std::uint64_t seed = 1;
+};
+
+/// A stimulus as data, in absolute frames of the stream. The length includes both ramps.
+struct Burst {
+  std::int64_t start_frame = 0;
+  std::int64_t length_frames = 0;
+  Ramp ramp;
+  ToneSet tones;
+  std::array<Change, max_changes> changes{};  ///< in rising order, not overlapping
+  std::int32_t change_count = 0;
+  Marker marker;
+  MaskingNoise noise;
+};
+
+static_assert(std::is_trivially_copyable_v<Burst>);
+
+}  // namespace turnpoint::drive

@@ -1,0 +1,125 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/drive/burst.hpp"
+#include "station/drive/frame_clock.hpp"
+#include "station/drive/output.hpp"
+#include "station/drive/synth.hpp"
+
+namespace turnpoint::drive {
+
+enum class EventKind : std::int32_t {
+  burst_started,  ///< frame: first frame of the burst, as scheduled
+  burst_ended,    ///< frame: first silent frame
+  burst_missed,   ///< the command came when its first frame was already rendered: nothing sounds
+  underrun,       ///< frames: how many passed in silence; what sounded goes on, ramped in
+  device_lost,    ///< the device is gone: nothing sounds until it is back and the operator re-arms
+  device_back,    ///< reopened by name; frames count on
+};
+
+struct Event {
+  EventKind kind = EventKind::burst_started;
+  std::uint32_t burst = 0;
+  std::int64_t frame = 0;
+  std::int64_t frames = 0;
+  int error = 0;  ///< negative errno of the device, where there is one
+};
+
+struct Counters {
+  std::int64_t frames = 0;  ///< rendered
+  std::int64_t bursts = 0;  ///< begun
+  std::int64_t missed = 0;
+  std::int64_t underruns = 0;
+  std::int64_t lost_frames = 0;  ///< passed in silence by underruns
+  std::int64_t saturated = 0;    ///< samples out of range: a fault if not 0
+  std::int64_t device_losses = 0;
+  std::int64_t events_dropped = 0;  ///< nobody polled
+};
+
+/// What the operating system granted to the audio thread, for the record and the screen.
+struct Rights {
+  bool asked = false;     ///< a synchronous stream asks for nothing
+  int fifo_priority = 0;  ///< 0: not real time
+  bool memory_locked = false;
+  std::string note;  ///< why not, where something was denied
+};
+
+struct StreamConfig {
+  OutputConfig output;
+  Precision precision = Precision::exact;
+  SynthLimits limits;
+  int fifo_priority = 70;
+  double converter_delay_s = 0;  ///< group delay of the converter, added to predicted times
+};
+
+/// A stream that runs on silence and plays bursts at absolute frames. All functions are for one control
+/// thread; none of them blocks on the audio thread. Frames count from 0 at the opening, through underruns and
+/// reopenings.
+class Stream {
+ public:
+  virtual ~Stream() = default;
+
+  /// Checks and sends a burst; returns its number (from 1). Throws BurstRefused (limits, sum of overlapping
+  /// peaks, start frame already gone, too many waiting).
+  virtual std::uint32_t schedule(const Burst& burst) = 0;
+  /// Changes a burst that waits or sounds; `at_frame` counts from its start. Throws BurstRefused.
+  virtual void change(std::uint32_t burst, const Change& change) = 0;
+  /// Ramps one burst (0: all) down as soon as possible, or from an absolute frame. Throws std::runtime_error
+  /// when the audio thread takes no commands.
+  virtual void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame = {}) = 0;
+
+  /// The next event of the audio side, oldest first.
+  virtual std::optional<Event> poll() = 0;
+
+  /// The soonest frame that a burst scheduled now is sure to reach.
+  virtual std::int64_t earliest_frame() const = 0;
+  /// Frames <-> CLOCK_MONOTONIC (virtual time for a synchronous stream).
+  virtual ClockFit clock() = 0;
+  /// Predicted time at which a frame leaves the converter, group delay included; ns.
+  virtual std::int64_t time_of(std::int64_t frame) = 0;
+  virtual std::int64_t frame_at(std::int64_t time_ns) = 0;
+
+  virtual Counters counters() const = 0;
+  virtual Rights rights() const = 0;
+  virtual const StreamConfig& config() const = 0;
+};
+
+/// The virtual clock: no thread; the caller advances frames, as fast as the machine goes. Time starts at
+/// `origin_ns` and is frame / rate exactly.
+class SynchronousStream : public Stream {
+ public:
+  /// Renders and writes `frames` frames. Throws std::system_error where a file cannot be written.
+  virtual void advance(std::int64_t frames) = 0;
+  virtual std::int64_t frame() const = 0;     ///< the next one to be rendered
+  virtual std::int64_t now_ns() const = 0;    ///< time of that frame
+  virtual double largest_sample() const = 0;  ///< written so far, full scale
+  /// Completes the output (file headers). Throws std::system_error.
+  virtual void finish() = 0;
+};
+
+/// Throws as open_output, and std::invalid_argument for a format that cannot be synthesised.
+std::unique_ptr<SynchronousStream> open_synchronous(const StreamConfig& config, std::int64_t origin_ns = 0);
+
+/// Opens the output and starts the audio thread: paced by ALSA, or by CLOCK_MONOTONIC for `null:` and `wav:`.
+/// The destructor ramps down what sounds, and joins.
+std::unique_ptr<Stream> open_realtime(const StreamConfig& config);
+
+/// What a `play` did.
+struct PlayReport {
+  Counters counters;
+  Rights rights;
+  ClockFit clock;
+  double peak = 0;            ///< computed before playing, full scale
+  double largest_sample = 0;  ///< that was really written, full scale; 0 where the output is a device
+  std::int64_t onset_frame = 0;
+};
+
+/// Plays or renders one burst and the silence around it: in real time for `alsa:`, at once otherwise. The
+/// burst's start frame is moved to the soonest possible one. Throws as above.
+PlayReport play(const StreamConfig& config, Burst burst);
+
+}  // namespace turnpoint::drive

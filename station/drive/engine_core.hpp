@@ -1,0 +1,59 @@
+#pragma once
+#include <atomic>
+#include <deque>
+#include <vector>
+
+#include "station/drive/engine.hpp"
+#include "station/drive/ring.hpp"
+
+namespace turnpoint::drive {
+
+/// What every transport drives: commands go in and events come out through rings, blocks are rendered in
+/// between. `process` and `report` belong to the audio side, everything else to one control thread.
+class EngineCore {
+ public:
+  explicit EngineCore(const StreamConfig& config);
+
+  std::uint32_t schedule(const Burst& burst, std::int64_t earliest_frame);
+  void change(std::uint32_t burst, const Change& change);
+  void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame);
+  std::optional<Event> poll();
+  Counters counters() const noexcept;
+
+  /// Takes the waiting commands and renders the frames from `frame`.
+  void process(std::int64_t frame, std::span<std::int32_t> samples) noexcept;
+  /// An event of the transport; counts it too.
+  void report(const Event& event) noexcept;
+
+ private:
+  enum class CommandKind : std::int32_t { start, change, stop };
+  struct Command {
+    CommandKind kind = CommandKind::start;
+    std::uint32_t burst = 0;
+    std::int64_t frame = 0;
+    Ramp ramp;
+    PreparedChange change;
+    PreparedBurst start;
+  };
+  struct Atomics {
+    std::atomic<std::int64_t> frames{0}, bursts{0}, missed{0}, underruns{0}, lost_frames{0}, saturated{0},
+        device_losses{0}, events_dropped{0};
+  };
+
+  void send(const Command& command);
+  void gather();
+  void check_room(const PreparedBurst& burst) const;
+
+  StreamConfig config_;
+  std::uint32_t last_id_ = 0;
+  std::vector<PreparedBurst> open_;  ///< waiting or sounding, as far as the control side knows
+  std::deque<Event> gathered_;
+  std::unique_ptr<Command> outgoing_ = std::make_unique<Command>();
+  std::unique_ptr<Command> incoming_ = std::make_unique<Command>();
+  std::unique_ptr<Ring<Command, 16>> commands_ = std::make_unique<Ring<Command, 16>>();
+  std::unique_ptr<Ring<Event, 256>> events_ = std::make_unique<Ring<Event, 256>>();
+  Atomics atomics_;
+  Synth synth_;
+};
+
+}  // namespace turnpoint::drive

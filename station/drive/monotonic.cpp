@@ -1,0 +1,20 @@
+#include "station/drive/monotonic.hpp"
+
+#include <cerrno>
+#include <ctime>
+
+namespace turnpoint::drive {
+
+std::int64_t monotonic_ns() noexcept {
+  timespec now{};
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  return std::int64_t{1'000'000'000} * now.tv_sec + now.tv_nsec;
+}
+
+void sleep_until_ns(std::int64_t time_ns) noexcept {
+  const timespec until{time_ns / 1'000'000'000, time_ns % 1'000'000'000};
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+  }
+}
+
+}  // namespace turnpoint::drive

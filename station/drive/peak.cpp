@@ -1,0 +1,73 @@
+#include "station/drive/peak.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "station/drive/synth.hpp"
+
+namespace turnpoint::drive {
+namespace {
+
+// Impulse response of the noise filters until it has died away: sum of squares and of magnitudes.
+struct Response {
+  double energy = 0, magnitude = 0;
+};
+
+Response impulse_response(const PreparedNoise& noise) {
+  Response response;
+  double h[2] = {}, l[2] = {};
+  double recent = 1;
+  for (int n = 0; n < 4'000'000 && recent > 1e-18; ++n) {
+    const double x = n == 0 ? 1 : 0;
+    const double y = noise.high_pass[0] * x + h[0];
+    h[0] = noise.high_pass[1] * x - noise.high_pass[3] * y + h[1];
+    h[1] = noise.high_pass[2] * x - noise.high_pass[4] * y;
+    const double z = noise.low_pass[0] * y + l[0];
+    l[0] = noise.low_pass[1] * y - noise.low_pass[3] * z + l[1];
+    l[1] = noise.low_pass[2] * y - noise.low_pass[4] * z;
+    response.energy += z * z;
+    response.magnitude += std::abs(z);
+    recent = std::max(recent * 0.999, std::abs(z));
+  }
+  return response;
+}
+
+}  // namespace
+
+double noise_rms(const PreparedNoise& noise) { return std::sqrt(impulse_response(noise).energy / 3); }
+
+std::array<double, max_channels> peak_bound(const PreparedBurst& burst) {
+  std::array<double, max_channels> bound{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(burst.tone_count); ++i) {
+    double largest = burst.tones[i].amplitude;
+    for (std::size_t c = 0; c < static_cast<std::size_t>(burst.change_count); ++c)
+      largest = std::max(largest, burst.changes[c].to[i].amplitude);
+    bound[static_cast<std::size_t>(burst.tones[i].channel)] += largest;
+  }
+  if (burst.marker.kind != MarkerKind::none)
+    bound[static_cast<std::size_t>(burst.marker.channel)] += std::abs(burst.marker.amplitude);
+  if (burst.noise.gain > 0)
+    bound[static_cast<std::size_t>(burst.noise.channel)] +=
+        burst.noise.gain * impulse_response(burst.noise).magnitude;
+  return bound;
+}
+
+std::array<double, max_channels> rendered_peak(const PreparedBurst& burst, const Format& format) {
+  Synth synth(format, Precision::exact);
+  PreparedBurst moved = burst;
+  moved.start_frame = 0;
+  std::array<double, max_channels> peak{};
+  if (!synth.start(moved)) return peak;
+  const auto channels = static_cast<std::size_t>(format.channels);
+  std::vector<double> block(channels * Synth::max_block);
+  for (std::int64_t frame = 0; frame < burst.length_frames; frame += Synth::max_block) {
+    synth.render(frame, std::span<double>(block));
+    for (std::size_t k = 0; k < block.size(); ++k)
+      peak[k % channels] = std::max(peak[k % channels], std::abs(block[k]));
+  }
+  return peak;
+}
+
+}  // namespace turnpoint::drive

@@ -1,0 +1,52 @@
+#include <algorithm>
+
+#include "station/drive/engine.hpp"
+#include "station/drive/monotonic.hpp"
+
+namespace turnpoint::drive {
+namespace {
+
+PlayReport rendered(const StreamConfig& config, Burst burst) {
+  const auto stream = open_synchronous(config);
+  PlayReport report;
+  report.onset_frame = burst.start_frame = stream->earliest_frame();
+  stream->schedule(burst);
+  stream->advance(burst.length_frames);
+  stream->finish();
+  report.counters = stream->counters();
+  report.rights = stream->rights();
+  report.clock = stream->clock();
+  report.largest_sample = stream->largest_sample();
+  return report;
+}
+
+PlayReport played(const StreamConfig& config, Burst burst) {
+  const auto stream = open_realtime(config);
+  PlayReport report;
+  report.onset_frame = burst.start_frame = stream->earliest_frame();
+  const std::uint32_t id = stream->schedule(burst);
+  for (bool sounding = true; sounding;) {
+    sleep_until_ns(monotonic_ns() + 10'000'000);
+    while (const auto event = stream->poll()) {
+      const bool over = event->kind == EventKind::burst_ended || event->kind == EventKind::burst_missed;
+      if ((over && event->burst == id) || event->kind == EventKind::device_lost) sounding = false;
+    }
+  }
+  report.counters = stream->counters();
+  report.rights = stream->rights();
+  report.clock = stream->clock();
+  return report;
+}
+
+}  // namespace
+
+PlayReport play(const StreamConfig& config, Burst burst) {
+  burst.start_frame = 0;
+  const PreparedBurst prepared = prepare(burst, format_of(config.output), config.limits);
+  PlayReport report =
+      config.output.uri.starts_with("alsa:") ? played(config, burst) : rendered(config, burst);
+  report.peak = *std::max_element(prepared.peak.begin(), prepared.peak.end());
+  return report;
+}
+
+}  // namespace turnpoint::drive

@@ -1,0 +1,199 @@
+#include "station/drive/prepared_burst.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "station/drive/peak.hpp"
+#include "station/drive/sine.hpp"
+
+namespace turnpoint::drive {
+namespace {
+
+template <typename... Args>
+[[noreturn]] void refuse(fmt::format_string<Args...> text, Args&&... args) {
+  throw BurstRefused("burst refused: " + fmt::format(text, std::forward<Args>(args)...));
+}
+
+void check_channel(const char* what, int channel, const Format& format) {
+  if (channel < 0 || channel >= format.channels)
+    refuse("{} on channel {}; the output has channels 0 to {}", what, channel, format.channels - 1);
+}
+
+void check_frequency(const char* what, double frequency_Hz, const Format& format, const SynthLimits& limits) {
+  const double highest = limits.highest_relative_Hz * format.rate_Hz;
+  if (!(frequency_Hz > 0 && frequency_Hz < highest))
+    refuse("{} of {} Hz; allowed above 0 and below {} Hz ({} of the rate of {} Hz)", what, frequency_Hz,
+           highest, limits.highest_relative_Hz, format.rate_Hz);
+}
+
+PreparedTone prepare(const Tone& tone, const Format& format, const SynthLimits& limits) {
+  check_channel("tone", tone.channel, format);
+  check_frequency("tone", tone.frequency_Hz, format, limits);
+  if (!(tone.amplitude >= 0 && std::isfinite(tone.amplitude)))
+    refuse("tone of {} Hz with amplitude {}; allowed 0 and above", tone.frequency_Hz, tone.amplitude);
+  if (!std::isfinite(tone.phase_rad))
+    refuse("tone of {} Hz with a phase that is not finite", tone.frequency_Hz);
+  return {phase_of_angle(tone.phase_rad), phase_increment(tone.frequency_Hz, format.rate_Hz), tone.amplitude,
+          tone.channel};
+}
+
+int checked_count(const ToneSet& set) {
+  if (set.count < 0 || set.count > max_tones) refuse("{} tones; allowed 0 to {}", set.count, max_tones);
+  return set.count;
+}
+
+// Fills `change` for a burst whose tones just before it are `before` (its count entries).
+PreparedChange prepare(const Change& change, const std::array<PreparedTone, max_tones>& before,
+                       int before_count, const Format& format, const SynthLimits& limits) {
+  PreparedChange out;
+  if (change.at_frame < 0 || change.frames < 0)
+    refuse("change at frame {} within {} frames; neither may be negative", change.at_frame, change.frames);
+  out.at_frame = change.at_frame;
+  out.frames = std::max<std::int64_t>(1, change.frames);
+  out.count = std::max(before_count, checked_count(change.to));
+  for (int i = 0; i < out.count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (i >= change.to.count) {
+      out.to[k] = before[k];
+      out.to[k].amplitude = 0;
+      continue;
+    }
+    out.to[k] = prepare(change.to.tones[k], format, limits);
+    if (i < before_count && out.to[k].channel != before[k].channel)
+      refuse("change moves tone {} from channel {} to {}; a tone keeps its channel", i, before[k].channel,
+             out.to[k].channel);
+  }
+  return out;
+}
+
+void prepare_changes(const Burst& burst, const Format& format, const SynthLimits& limits,
+                     PreparedBurst& out) {
+  if (burst.change_count < 0 || burst.change_count > max_changes)
+    refuse("{} changes; allowed 0 to {}", burst.change_count, max_changes);
+  std::array<PreparedTone, max_tones> before = out.tones;
+  std::int64_t free_from = 0;
+  for (int c = 0; c < burst.change_count; ++c) {
+    const auto k = static_cast<std::size_t>(c);
+    const PreparedChange change = prepare(burst.changes[k], before, out.tone_count, format, limits);
+    if (change.at_frame < free_from || change.at_frame + change.frames > burst.length_frames)
+      refuse("change at frame {} within {} frames; allowed from frame {} to the burst's end at {}",
+             change.at_frame, change.frames, free_from, burst.length_frames);
+    for (int i = out.tone_count; i < change.count; ++i) {
+      const auto t = static_cast<std::size_t>(i);
+      out.tones[t] = change.to[t];
+      out.tones[t].amplitude = 0;
+    }
+    out.tone_count = std::max(out.tone_count, change.count);
+    out.changes[k] = change;
+    before = change.to;
+    free_from = change.at_frame + change.frames;
+  }
+  out.change_count = burst.change_count;
+}
+
+PreparedMarker prepare(const Marker& marker, const Burst& burst, const Format& format,
+                       const SynthLimits& limits) {
+  PreparedMarker out;
+  if (marker.kind == MarkerKind::none) return out;
+  check_channel("marker", marker.channel, format);
+  if (marker.kind == MarkerKind::tone) check_frequency("marker", marker.frequency_Hz, format, limits);
+  if (!(std::abs(marker.amplitude) <= 1) || marker.frames < 1 || marker.frames > burst.length_frames)
+    refuse("marker of amplitude {} and {} frames; allowed -1 to 1 and 1 to {} frames", marker.amplitude,
+           marker.frames, burst.length_frames);
+  out = {marker.kind, marker.channel, marker.amplitude, 0, marker.frames};
+  if (marker.kind == MarkerKind::tone) out.increment = phase_increment(marker.frequency_Hz, format.rate_Hz);
+  return out;
+}
+
+// Butterworth, second order, by the bilinear transform; all arithmetic is the station's own.
+void low_pass(double frequency_Hz, const Format& format, double (&out)[5]) {
+  const std::uint64_t half_angle = phase_increment(frequency_Hz, format.rate_Hz) / 2;
+  const double t = sine_of_phase(half_angle) / sine_of_phase(half_angle + quarter_cycle);
+  const double scale = 1 / (1 + 1.4142135623730951 * t + t * t);
+  const double b = t * t * scale;
+  const double section[5] = {b, 2 * b, b, 2 * (t * t - 1) * scale,
+                             (1 - 1.4142135623730951 * t + t * t) * scale};
+  std::copy_n(section, 5, out);
+}
+
+void high_pass(double frequency_Hz, const Format& format, double (&out)[5]) {
+  low_pass(frequency_Hz, format, out);
+  const double b = (1 - out[3] + out[4]) / 4;  // unit gain at half the rate
+  out[0] = b;
+  out[1] = -2 * b;
+  out[2] = b;
+}
+
+PreparedNoise prepare(const MaskingNoise& noise, const Format& format, const SynthLimits& limits) {
+  PreparedNoise out;
+  if (noise.rms == 0) return out;
+  check_channel("masking noise", noise.channel, format);
+  check_frequency("masking noise", noise.low_Hz, format, limits);
+  check_frequency("masking noise", noise.high_Hz, format, limits);
+  if (!(noise.rms > 0 && noise.rms < 1) || noise.low_Hz >= noise.high_Hz)
+    refuse("masking noise of {} rms from {} to {} Hz; allowed 0 to 1, and rising", noise.rms, noise.low_Hz,
+           noise.high_Hz);
+  out.channel = noise.channel;
+  out.seed = noise.seed * 0xd1342543de82ef95u;
+  high_pass(noise.low_Hz, format, out.high_pass);
+  low_pass(noise.high_Hz, format, out.low_pass);
+  out.gain = noise.rms / noise_rms(out);
+  return out;
+}
+
+void check_shape(const Burst& burst, const SynthLimits& limits) {
+  if (burst.start_frame < 0) refuse("start frame {}; allowed 0 and above", burst.start_frame);
+  if (burst.length_frames < 1 || burst.length_frames > limits.longest_frames)
+    refuse("length of {} frames; allowed 1 to {}", burst.length_frames, limits.longest_frames);
+  if (burst.ramp.frames < 0 || burst.ramp.frames > burst.length_frames / 2)
+    refuse("ramps of {} frames in a burst of {}; allowed 0 to half of it", burst.ramp.frames,
+           burst.length_frames);
+}
+
+}  // namespace
+
+PreparedBurst prepare(const Burst& burst, const Format& format, const SynthLimits& limits) {
+  check_shape(burst, limits);
+  PreparedBurst out;
+  out.start_frame = burst.start_frame;
+  out.length_frames = burst.length_frames;
+  out.ramp = burst.ramp;
+  out.tone_count = checked_count(burst.tones);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(out.tone_count); ++i)
+    out.tones[i] = prepare(burst.tones.tones[i], format, limits);
+  prepare_changes(burst, format, limits, out);
+  out.marker = prepare(burst.marker, burst, format, limits);
+  out.noise = prepare(burst.noise, format, limits);
+  out.peak = peak_bound(out);
+  const auto above = [&](double peak) { return peak > limits.peak; };
+  if (std::any_of(out.peak.begin(), out.peak.end(), above) &&
+      burst.length_frames <= limits.longest_rendered_frames)
+    out.peak = rendered_peak(out, format);
+  for (std::size_t c = 0; c < max_channels; ++c)
+    if (above(out.peak[c]))
+      refuse("peak of {:.6f} of full scale on channel {}; allowed {:.6f}", out.peak[c], c, limits.peak);
+  return out;
+}
+
+PreparedChange prepare_change(const Change& change, const PreparedBurst& burst, const Format& format,
+                              const SynthLimits& limits) {
+  PreparedChange out = prepare(change, burst.tones, burst.tone_count, format, limits);
+  out.live = true;
+  PreparedBurst with = burst;
+  with.changes[0] = out;
+  with.change_count = 1;
+  for (auto i = static_cast<std::size_t>(burst.tone_count); i < static_cast<std::size_t>(out.count); ++i) {
+    with.tones[i] = out.to[i];
+    with.tones[i].amplitude = 0;
+  }
+  with.tone_count = out.count;
+  const auto peak = peak_bound(with);
+  for (std::size_t c = 0; c < max_channels; ++c)
+    if (peak[c] > limits.peak)
+      refuse("change may reach {:.6f} of full scale on channel {}; allowed {:.6f}", peak[c], c, limits.peak);
+  return out;
+}
+
+}  // namespace turnpoint::drive

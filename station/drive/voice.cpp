@@ -1,0 +1,233 @@
+#include "station/drive/voice.hpp"
+
+#include <algorithm>
+
+#include "station/drive/noise.hpp"
+#include "station/drive/ramp.hpp"
+
+namespace turnpoint::drive {
+namespace {
+
+// Transposed direct form II.
+double section(const double (&c)[5], double (&state)[2], double x) noexcept {
+  const double y = c[0] * x + state[0];
+  state[0] = c[1] * x - c[3] * y + state[1];
+  state[1] = c[2] * x - c[4] * y;
+  return y;
+}
+
+}  // namespace
+
+void Voice::begin(const PreparedBurst& burst) noexcept {
+  burst_ = burst;
+  for (int i = 0; i < max_tones; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const PreparedTone& tone = burst_.tones[k];
+    partials_[k] = {tone.phase, tone.increment, 0, tone.amplitude, 0};
+  }
+  origin_ = 0;
+  glide_end_ = never;
+  next_change_ = 0;
+  live_waits_ = false;
+  stop_at_ = never;
+  resume_at_ = -never;
+  high_[0] = high_[1] = low_[0] = low_[1] = 0;
+}
+
+void Voice::change(const PreparedChange& change) noexcept {
+  live_ = change;
+  live_waits_ = true;
+}
+
+void Voice::stop(std::int64_t at, const Ramp& ramp) noexcept {
+  if (stop_at_ != never && stop_at_ + stop_ramp_.frames <= at + ramp.frames) return;  // ends sooner already
+  stop_at_ = at;
+  stop_ramp_ = ramp;
+}
+
+void Voice::resume(std::int64_t at) noexcept {
+  resume_at_ = at;
+  high_[0] = high_[1] = low_[0] = low_[1] = 0;
+}
+
+std::int64_t Voice::end() const noexcept {
+  if (stop_at_ == never) return burst_.length_frames;
+  return std::min(burst_.length_frames, std::max<std::int64_t>(0, stop_at_ + stop_ramp_.frames));
+}
+
+const PreparedChange* Voice::due_change(std::int64_t at) const noexcept {
+  if (next_change_ < burst_.change_count) {
+    const auto& change = burst_.changes[static_cast<std::size_t>(next_change_)];
+    if (change.at_frame <= at) return &change;
+  }
+  return live_waits_ && live_.at_frame <= at ? &live_ : nullptr;
+}
+
+void Voice::begin_glide(std::int64_t at, const PreparedChange& change) noexcept {
+  const auto since = static_cast<std::uint64_t>(at - origin_);
+  const double along = glide_end_ == never ? 0 : ramp_at(burst_.ramp.shape, at - origin_, glide_frames_);
+  const int count = std::max(burst_.tone_count, change.count);
+  glide_frames_ = std::max<std::int64_t>(1, change.frames);
+  for (int i = 0; i < count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    target_[k] = change.to[k];
+    if (i >= burst_.tone_count) {  // a tone that only the change has: as if it had run silently
+      burst_.tones[k] = change.to[k];
+      const std::uint64_t gone = target_[k].increment * static_cast<std::uint64_t>(origin_);
+      partials_[k] = {target_[k].phase + gone, target_[k].increment, 0, 0, 0};
+    }
+    Partial p = advanced(partials_[k], since);
+    const double amplitude = p.amplitude + p.amplitude_change * along;
+    const auto difference = static_cast<std::int64_t>(target_[k].increment - p.increment);
+    p.curvature = static_cast<std::uint64_t>(difference / glide_frames_);
+    p.amplitude = amplitude;
+    p.amplitude_change = target_[k].amplitude - amplitude;
+    partials_[k] = p;
+  }
+  burst_.tone_count = count;
+  origin_ = at;
+  glide_end_ = at + glide_frames_;
+}
+
+void Voice::end_glide(std::int64_t at) noexcept {
+  for (int i = 0; i < burst_.tone_count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    Partial p = advanced(partials_[k], static_cast<std::uint64_t>(at - origin_));
+    partials_[k] = {p.phase, target_[k].increment, 0, target_[k].amplitude, 0};
+  }
+  origin_ = at;
+  glide_end_ = never;
+}
+
+// Passes every boundary up to and including `at`, in order.
+void Voice::enter(std::int64_t at) noexcept {
+  for (;;) {
+    std::int64_t change_at = never;
+    if (const PreparedChange* change = due_change(at)) change_at = std::max(change->at_frame, origin_);
+    if (glide_end_ <= at && glide_end_ <= change_at) {
+      end_glide(glide_end_);
+    } else if (change_at != never) {
+      const PreparedChange change = *due_change(at);
+      if (next_change_ < burst_.change_count &&
+          burst_.changes[static_cast<std::size_t>(next_change_)].at_frame <= at)
+        ++next_change_;
+      else
+        live_waits_ = false;
+      // A live change that came late begins now: its past has been heard already.
+      begin_glide(change.live ? at : change_at, change);
+    } else {
+      return;
+    }
+  }
+}
+
+std::int64_t Voice::next_boundary(std::int64_t at) const noexcept {
+  std::int64_t next = std::min(glide_end_, end());
+  if (next_change_ < burst_.change_count)
+    next = std::min(next, burst_.changes[static_cast<std::size_t>(next_change_)].at_frame);
+  if (live_waits_) next = std::min(next, live_.at_frame);
+  return std::max(next, at + 1);
+}
+
+void Voice::tones(std::int64_t at, int offset, int count, Scratch& scratch, const Kernels& kernels,
+                  Width width) noexcept {
+  const bool gliding = glide_end_ != never;
+  double* shape = scratch.shape.data() + offset;
+  if (gliding)
+    for (int n = 0; n < count; ++n) shape[n] = ramp_at(burst_.ramp.shape, at + n - origin_, glide_frames_);
+  for (int i = 0; i < burst_.tone_count; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const Partial p = advanced(partials_[k], static_cast<std::uint64_t>(at - origin_));
+    if (p.amplitude == 0 && p.amplitude_change == 0) continue;
+    double* sum = scratch.dry[static_cast<std::size_t>(burst_.tones[k].channel)].data() + offset;
+    if (width == Width::wide) {
+      gliding ? kernels.gliding(sum, count, p, shape) : kernels.steady(sum, count, p);
+      continue;
+    }
+    float* narrow = scratch.narrow.data();
+    std::fill_n(narrow, count, 0.0F);
+    gliding ? kernels.gliding_float(narrow, count, p, shape) : kernels.steady_float(narrow, count, p);
+    for (int n = 0; n < count; ++n) sum[n] += static_cast<double>(narrow[n]);
+  }
+}
+
+// The product of all ramps that touch these frames; false where there is none and the gain is 1.
+bool Voice::gains(std::int64_t at, int count, Scratch& scratch) const noexcept {
+  const std::int64_t last = at + count, ramp = burst_.ramp.frames, fall = burst_.length_frames - ramp;
+  const bool rising = at<ramp, falling = last> fall, stopping = last > stop_at_,
+             resuming = resume_at_ != -never && at < resume_at_ + ramp;
+  if (!(rising || falling || stopping || resuming)) return false;
+  for (int n = 0; n < count; ++n) {
+    const std::int64_t f = at + n;
+    double gain = 1;
+    if (f < ramp) gain *= ramp_at(burst_.ramp.shape, f, ramp);
+    if (f >= fall) gain *= ramp_at(burst_.ramp.shape, burst_.length_frames - 1 - f, ramp);
+    if (f >= stop_at_)
+      gain *= ramp_at(stop_ramp_.shape, stop_at_ + stop_ramp_.frames - 1 - f, stop_ramp_.frames);
+    if (resuming && f < resume_at_ + ramp) gain *= ramp_at(burst_.ramp.shape, f - resume_at_, ramp);
+    scratch.gain[static_cast<std::size_t>(n)] = gain;
+  }
+  return true;
+}
+
+void Voice::markers(std::int64_t at, int first, int last, Mix& mix) const noexcept {
+  const PreparedMarker& marker = burst_.marker;
+  if (marker.kind == MarkerKind::none) return;
+  const auto channel = static_cast<std::size_t>(marker.channel);
+  for (int mark = -1; mark < burst_.change_count; ++mark) {
+    const std::int64_t begin = mark < 0 ? 0 : burst_.changes[static_cast<std::size_t>(mark)].at_frame;
+    const int from = static_cast<int>(std::clamp<std::int64_t>(begin - at, first, last));
+    const int to = static_cast<int>(std::clamp<std::int64_t>(begin + marker.frames - at, first, last));
+    for (int n = from; n < to; ++n) {
+      const auto since = static_cast<std::uint64_t>(at + n - begin);
+      const double wave = marker.kind == MarkerKind::pulse ? 1 : sine_of_phase(marker.increment * since);
+      mix.samples[channel][static_cast<std::size_t>(n)] += marker.amplitude * wave;
+    }
+  }
+}
+
+void Voice::noise(std::int64_t at, int first, int last, Mix& mix, const Scratch& scratch,
+                  bool gated) noexcept {
+  const PreparedNoise& noise = burst_.noise;
+  if (noise.gain == 0) return;
+  auto& row = mix.samples[static_cast<std::size_t>(noise.channel)];
+  for (int n = first; n < last; ++n) {
+    const double white = uniform(hashed(noise.seed ^ static_cast<std::uint64_t>(at + n)));
+    const double value = section(noise.low_pass, low_, section(noise.high_pass, high_, white));
+    const double gain = gated ? scratch.gain[static_cast<std::size_t>(n - first)] : 1;
+    row[static_cast<std::size_t>(n)] += noise.gain * gain * value;
+  }
+}
+
+void Voice::add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kernels, Width width) noexcept {
+  const int first = static_cast<int>(std::clamp<std::int64_t>(-at, 0, mix.frames));
+  const int last = static_cast<int>(std::clamp<std::int64_t>(end() - at, first, mix.frames));
+  if (first == last) return;
+  std::uint32_t channels = 0;
+  for (int i = 0; i < burst_.tone_count; ++i)
+    channels |= 1u << burst_.tones[static_cast<std::size_t>(i)].channel;
+  for (int i = 0; live_waits_ && i < live_.count; ++i)
+    channels |= 1u << live_.to[static_cast<std::size_t>(i)].channel;
+  for (std::size_t c = 0; c < max_channels; ++c)
+    if (channels >> c & 1) std::fill_n(scratch.dry[c].begin() + first, last - first, 0.0);
+  for (int n = first; n < last;) {
+    enter(at + n);
+    const int count = static_cast<int>(std::min<std::int64_t>(next_boundary(at + n) - (at + n), last - n));
+    tones(at + n, n, count, scratch, kernels, width);
+    n += count;
+  }
+  const bool gated = gains(at + first, last - first, scratch);
+  for (std::size_t c = 0; c < max_channels; ++c) {
+    if (!(channels >> c & 1)) continue;
+    for (int n = first; n < last; ++n) {
+      const auto k = static_cast<std::size_t>(n);
+      mix.samples[c][k] +=
+          gated ? scratch.dry[c][k] * scratch.gain[k - static_cast<std::size_t>(first)] : scratch.dry[c][k];
+      mix.dithered[c][k] = 1;
+    }
+  }
+  noise(at, first, last, mix, scratch, gated);
+  markers(at, first, last, mix);
+}
+
+}  // namespace turnpoint::drive

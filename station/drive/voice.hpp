@@ -1,0 +1,77 @@
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "station/drive/oscillator.hpp"
+#include "station/drive/prepared_burst.hpp"
+
+namespace turnpoint::drive {
+
+inline constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
+
+/// A block being mixed: one row a channel. `dithered` marks the frames of a channel that are not digital
+/// silence.
+struct Mix {
+  static constexpr int block = 512;
+  int frames = 0;
+  alignas(64) std::array<std::array<double, block>, max_channels> samples;
+  std::array<std::array<std::uint8_t, block>, max_channels> dithered;
+};
+
+/// Working memory that voices share, so that nothing large is on the stack of the audio thread.
+struct Scratch {
+  alignas(64) std::array<std::array<double, Mix::block>, max_channels> dry;
+  alignas(64) std::array<double, Mix::block> gain;
+  alignas(64) std::array<double, Mix::block> shape;
+  alignas(64) std::array<float, Mix::block> narrow;
+};
+
+/// One burst on its way through the stream: where it is, and what has been asked of it since. Frames are
+/// counted from the burst's start. No allocation; all functions noexcept.
+class Voice {
+ public:
+  /// float loops if `narrow`
+  enum class Width { wide, narrow };
+
+  void begin(const PreparedBurst& burst) noexcept;
+  /// Supersedes any live change that still waits.
+  void change(const PreparedChange& change) noexcept;
+  void stop(std::int64_t at, const Ramp& ramp) noexcept;
+  /// Frames were lost: from `at` the sound comes back ramped.
+  void resume(std::int64_t at) noexcept;
+
+  /// Adds frames [at, at + mix.frames) to the mix. `at` must not fall. May be negative (not begun).
+  void add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kernels, Width width) noexcept;
+
+  std::int64_t end() const noexcept;  ///< first silent frame
+  const PreparedBurst& burst() const noexcept { return burst_; }
+
+ private:
+  void enter(std::int64_t at) noexcept;
+  std::int64_t next_boundary(std::int64_t at) const noexcept;
+  const PreparedChange* due_change(std::int64_t at) const noexcept;
+  void begin_glide(std::int64_t at, const PreparedChange& change) noexcept;
+  void end_glide(std::int64_t at) noexcept;
+  void tones(std::int64_t at, int offset, int count, Scratch& scratch, const Kernels& kernels,
+             Width width) noexcept;
+  bool gains(std::int64_t at, int count, Scratch& scratch) const noexcept;
+  void markers(std::int64_t at, int first, int last, Mix& mix) const noexcept;
+  void noise(std::int64_t at, int first, int last, Mix& mix, const Scratch& scratch, bool gated) noexcept;
+
+  PreparedBurst burst_;
+  std::array<Partial, max_tones> partials_;
+  std::int64_t origin_ = 0;         ///< frame at which `partials_` count 0
+  std::int64_t glide_end_ = never;  ///< of the glide in progress
+  std::int64_t glide_frames_ = 1;
+  std::array<PreparedTone, max_tones> target_;
+  int next_change_ = 0;
+  bool live_waits_ = false;
+  PreparedChange live_;
+  std::int64_t stop_at_ = never;
+  Ramp stop_ramp_;
+  std::int64_t resume_at_ = -never;
+  double high_[2] = {}, low_[2] = {};  ///< filter states of the noise
+};
+
+}  // namespace turnpoint::drive

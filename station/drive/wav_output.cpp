@@ -1,0 +1,119 @@
+#include "station/drive/wav_output.hpp"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+
+namespace turnpoint::drive {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "RIFF files are little-endian");
+
+constexpr std::size_t header_bytes = 68;
+constexpr std::uint64_t most_bytes = 0xffffffffu - header_bytes;
+
+template <typename T>
+void put(std::array<char, header_bytes>& header, std::size_t at, T value) {
+  std::memcpy(header.data() + at, &value, sizeof value);
+}
+
+std::array<char, header_bytes> header_of(const OutputConfig& config, std::uint32_t data_bytes) {
+  std::array<char, header_bytes> h{};
+  // KSDATAFORMAT_SUBTYPE_PCM after its first two bytes.
+  constexpr unsigned char pcm_tail[14] = {0, 0, 0, 0, 0x10, 0, 0x80, 0, 0, 0xaa, 0, 0x38, 0x9b, 0x71};
+  const auto channels = static_cast<std::uint16_t>(config.channels);
+  const auto rate = static_cast<std::uint32_t>(config.rate_Hz);
+  std::memcpy(h.data(), "RIFF", 4);
+  put(h, 4, static_cast<std::uint32_t>(header_bytes - 8 + data_bytes));
+  std::memcpy(h.data() + 8, "WAVEfmt ", 8);
+  put(h, 16, std::uint32_t{40});
+  put(h, 20, std::uint16_t{0xfffe});
+  put(h, 22, channels);
+  put(h, 24, rate);
+  put(h, 28, rate * channels * 4u);
+  put(h, 32, static_cast<std::uint16_t>(channels * 4));
+  put(h, 34, std::uint16_t{32});
+  put(h, 36, std::uint16_t{22});
+  put(h, 38, static_cast<std::uint16_t>(config.bits));
+  put(h, 44, std::uint16_t{1});
+  std::memcpy(h.data() + 46, pcm_tail, sizeof pcm_tail);
+  std::memcpy(h.data() + 60, "data", 4);
+  put(h, 64, data_bytes);
+  return h;
+}
+
+// The whole of `bytes`, through interruptions; 0 or the errno.
+int write_all(int descriptor, const void* bytes, std::size_t size) noexcept {
+  const char* at = static_cast<const char*>(bytes);
+  while (size > 0) {
+    const ssize_t written = ::write(descriptor, at, size);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    at += written;
+    size -= static_cast<std::size_t>(written);
+  }
+  return 0;
+}
+
+class WavOutput final : public Output {
+ public:
+  WavOutput(OutputConfig config, const std::string& path) : config_(std::move(config)), path_(path) {
+    descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "wav:" + path);
+    const auto header = header_of(config_, 0);
+    if (const int error = write_all(descriptor_, header.data(), header.size())) {
+      ::close(descriptor_);
+      throw std::system_error(error, std::generic_category(), "wav:" + path);
+    }
+  }
+
+  ~WavOutput() override {
+    if (descriptor_ >= 0) complete();
+  }
+
+  const OutputConfig& config() const noexcept override { return config_; }
+  bool paced() const noexcept override { return false; }
+  std::optional<Position> position() noexcept override { return std::nullopt; }
+
+  WriteResult write(std::span<const std::int32_t> interleaved) noexcept override {
+    if (error_ == 0 && data_bytes_ + interleaved.size_bytes() > most_bytes) error_ = EFBIG;
+    if (error_ == 0) error_ = write_all(descriptor_, interleaved.data(), interleaved.size_bytes());
+    if (error_ != 0) return {WriteStatus::lost, -error_, 0};
+    data_bytes_ += interleaved.size_bytes();
+    return {};
+  }
+
+  void finish() override {
+    if (descriptor_ < 0) return;
+    if (const int error = complete()) throw std::system_error(error, std::generic_category(), "wav:" + path_);
+  }
+
+ private:
+  int complete() noexcept {
+    const auto header = header_of(config_, static_cast<std::uint32_t>(data_bytes_));
+    if (::lseek(descriptor_, 0, SEEK_SET) != 0 && error_ == 0) error_ = errno;
+    const int late = write_all(descriptor_, header.data(), header.size());
+    const int closed = ::close(descriptor_) != 0 ? errno : 0;
+    descriptor_ = -1;
+    return error_ != 0 ? error_ : late != 0 ? late : closed;
+  }
+
+  OutputConfig config_;
+  std::string path_;
+  int descriptor_ = -1;
+  int error_ = 0;
+  std::uint64_t data_bytes_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Output> open_wav(const OutputConfig& config, const std::string& path) {
+  return std::make_unique<WavOutput>(config, path);
+}
+
+}  // namespace turnpoint::drive

@@ -1,0 +1,69 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace turnpoint::panel {
+
+/// A press of a response button, at the first edge of its bouncing.
+struct Press {
+  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC, kernel's stamp of the first edge
+  int button = 0;            ///< index in the order of the URI
+};
+
+/// A finger on the surface, or gone from it.
+struct Touch {
+  std::int64_t time_ns = 0;
+  bool on = false;
+  std::optional<double>
+      position;  ///< along the surface, 0 at one end of the sensor and 1 at the other, where it can tell
+};
+
+/// Something that went wrong with the panel: a chip lost, edges lost.
+struct PanelFault {
+  std::int64_t time_ns = 0;
+  std::string what;
+};
+
+/// Called on the panel's own thread; must return soon.
+struct PanelHandlers {
+  std::function<void(const Press&)> press;
+  std::function<void(const Touch&)> touch;
+  std::function<void(const PanelFault&)> fault;
+};
+
+/// `sim:` or `gpio:left=BTN_L,right=BTN_R` (add `active=low` for buttons to ground, `refractory_ms=50` by
+/// default).
+struct ButtonsConfig {
+  std::string uri = "sim:";
+};
+
+/// `sim:`, `gpio:line=FINGER` or `evdev:NAME[,axis=x|y]` (a touch sensor on the surface; NAME is the
+/// device's).
+struct ContactConfig {
+  std::string uri = "sim:";
+};
+
+/// Response buttons and finger contact, watched by one thread of their own while this lives.
+class Panel {
+ public:
+  virtual ~Panel() = default;
+  /// Names in the order of the URI ("left", "right"); empty without buttons.
+  virtual const std::vector<std::string>& buttons() const = 0;
+  virtual bool has_contact() const = 0;
+  virtual bool tells_position() const = 0;
+
+  /// Simulated panels only: as if it had happened then. Throws std::logic_error on a real one.
+  virtual void simulate(const Press& press) = 0;
+  virtual void simulate(const Touch& touch) = 0;
+};
+
+/// What the rig has; either may be absent. Throws std::invalid_argument for a URI, LineError or
+/// std::system_error for a device that is not there.
+std::unique_ptr<Panel> open_panel(const std::optional<ButtonsConfig>& buttons,
+                                  const std::optional<ContactConfig>& contact, PanelHandlers handlers);
+
+}  // namespace turnpoint::panel

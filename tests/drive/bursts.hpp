@@ -1,0 +1,15 @@
+#pragma once
+#include "station/drive/burst.hpp"
+
+namespace turnpoint::drive {
+
+/// Half a second of one tone on channel 0 at 192 kHz, ramped over 50 ms.
+inline Burst one_tone(double frequency_Hz, double amplitude, double phase_rad = 0) {
+  Burst burst;
+  burst.length_frames = 96000;
+  burst.tones.count = 1;
+  burst.tones.tones[0] = {frequency_Hz, amplitude, phase_rad, 0};
+  return burst;
+}
+
+}  // namespace turnpoint::drive

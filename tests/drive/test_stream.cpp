@@ -1,0 +1,126 @@
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include "station/drive/engine.hpp"
+#include "tests/drive/bursts.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::drive;
+
+namespace {
+
+std::string scratch_file(const char* name) { return std::string(TURNPOINT_BINARY_DIR) + "/" + name; }
+
+std::vector<std::int32_t> samples_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  REQUIRE(bytes.size() >= 68);
+  std::vector<std::int32_t> samples((bytes.size() - 68) / 4);
+  std::memcpy(samples.data(), bytes.data() + 68, samples.size() * 4);
+  return samples;
+}
+
+}  // namespace
+
+TEST_CASE("10 000 onsets in a rendered stream are where they were asked for: jitter 0", "[drive][stream]") {
+  const std::string path = scratch_file("onsets.wav");
+  StreamConfig config;
+  config.output.uri = "wav:" + path;
+  config.output.channels = 1;
+  const auto stream = open_synchronous(config);
+  std::vector<std::int64_t> asked;
+  std::int64_t next = 500;
+  std::uint64_t random = 1;
+  for (int k = 0; k < 10000; ++k) {
+    Burst burst = one_tone(24000, 0.5, M_PI / 8);  // no sample of it is 0
+    burst.start_frame = next;
+    burst.length_frames = 64;
+    burst.ramp.frames = 0;
+    stream->schedule(burst);
+    asked.push_back(next);
+    random = random * 6364136223846793005u + 1442695040888963407u;
+    next += 100 + static_cast<std::int64_t>(random >> 56);
+    stream->advance(next - 90 - stream->frame());
+    while (stream->poll()) {
+    }
+  }
+  stream->advance(1000);
+  stream->finish();
+  const auto samples = samples_of(path);
+  std::vector<std::int64_t> found;
+  for (std::size_t k = 1; k < samples.size(); ++k) {
+    if (samples[k] != 0 && samples[k - 1] == 0) found.push_back(static_cast<std::int64_t>(k));
+  }
+  CHECK((found == asked));
+  CHECK(stream->counters().bursts == 10000);
+  std::remove(path.c_str());
+}
+
+TEST_CASE("virtual time is frame over rate, exactly, at any age", "[drive][stream]") {
+  const auto stream = open_synchronous({}, 1'000);
+  CHECK(stream->time_of(192000LL * 86400 * 30) == 1'000 + 1'000'000'000LL * 86400 * 30);
+  CHECK(stream->frame_at(stream->time_of(123456789012)) == 123456789012);
+}
+
+TEST_CASE("a burst too late, one too many, or too loud beside another is refused", "[drive][stream]") {
+  const auto stream = open_synchronous({});
+  stream->advance(1000);
+  Burst burst = one_tone(20000, 0.4);
+  burst.start_frame = 999;
+  CHECK_THROWS_WITH(stream->schedule(burst), "burst refused: frame 999 is gone; the soonest is 1000");
+  burst.start_frame = 2000;
+  stream->schedule(burst);
+  stream->schedule(burst);
+  CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);  // 3 * 0.4
+  burst.tones.tones[0].amplitude = 0.01;
+  stream->schedule(burst);
+  stream->schedule(burst);
+  CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);  // no voice left
+  stream->advance(200000);
+  burst.start_frame = stream->earliest_frame();
+  CHECK_NOTHROW(stream->schedule(burst));
+}
+
+TEST_CASE("a live change moves the tone under the finger and a stop ends the burst", "[drive][stream]") {
+  const auto stream = open_synchronous({});
+  Burst burst = one_tone(20000, 0.4);
+  burst.length_frames = 1920000;
+  const auto id = stream->schedule(burst);
+  stream->advance(50000);
+  Change change;
+  change.at_frame = 60000;
+  change.to = one_tone(25000, 0.2).tones;
+  stream->change(id, change);
+  change.to = one_tone(25000, 1.2).tones;
+  CHECK_THROWS_AS(stream->change(id, change), BurstRefused);
+  stream->advance(50000);
+  stream->stop(id, {RampShape::smoothstep, 9600});
+  stream->advance(9600);
+  const auto started = stream->poll();
+  const auto ended = stream->poll();
+  REQUIRE(ended.has_value());
+  CHECK(started->kind == EventKind::burst_started);
+  CHECK(ended->kind == EventKind::burst_ended);
+  CHECK(ended->frame == 109600);
+  CHECK_THROWS_AS(stream->change(id, change), BurstRefused);
+}
+
+TEST_CASE("play renders a file with the predicted peak", "[drive][stream]") {
+  const std::string path = scratch_file("play.wav");
+  StreamConfig config;
+  config.output.uri = "wav:" + path;
+  const PlayReport report = play(config, one_tone(20000, 0.5));
+  CHECK(report.counters.bursts == 1);
+  CHECK(report.counters.saturated == 0);
+  CHECK(report.peak == Approx(0.5));
+  CHECK(report.largest_sample == Approx(0.5).epsilon(1e-4));
+  CHECK(samples_of(path).size() == 2 * 96000);
+  std::remove(path.c_str());
+  config.output.uri = "wav:/nonexistent/a.wav";
+  CHECK_THROWS_AS(play(config, one_tone(20000, 0.5)), std::system_error);
+  config.output.uri = "mp3:x";
+  CHECK_THROWS_AS(play(config, one_tone(20000, 0.5)), std::invalid_argument);
+}
