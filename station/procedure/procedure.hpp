@@ -26,8 +26,8 @@ struct Estimate {
   double mode = 0, mean = 0, sd = 0;
 };
 
-/// What constant stimuli must know of the protocol: how many levels each balanced factor has, and which answer
-/// is right at a level (for runs of equal right answers; -1: none).
+/// What constant stimuli must know of the protocol: how many levels each balanced factor has, and which
+/// answer is right at a level (for runs of equal right answers; -1: none).
 struct Context {
   std::map<std::string, std::size_t> factor_levels;
   std::function<int(double level)> right_answer;
@@ -35,8 +35,8 @@ struct Context {
   bool unanswered_are_data = false;
 };
 
-/// Chooses the next level. Pure: no clock, no file; the same key and answers give the same levels. next() may be
-/// called any number of times between two records and says the same.
+/// Chooses the next level. Pure: no clock, no file; the same key and answers give the same levels. next() may
+/// be called any number of times between two records and says the same.
 class Procedure {
  public:
   virtual ~Procedure() = default;

@@ -14,8 +14,8 @@ enum class Shuffle { within_repeat, within_block, none };
 enum class StopRule { any, all };  ///< "or", "and"
 enum class Select { min_expected_entropy, min_n_entropy };
 
-/// Values of one axis of a grid, made explicit when the file is read: from-to-step, log_from-log_to-count, or a
-/// list. `tied` = "lapse": this parameter always equals that one.
+/// Values of one axis of a grid, made explicit when the file is read: from-to-step, log_from-log_to-count, or
+/// a list. `tied` = "lapse": this parameter always equals that one.
 struct Grid {
   std::vector<double> values;
   std::string tied;
@@ -76,8 +76,8 @@ struct Fault {
 
 /// Everything wrong with a spec, whatever file it came from; empty when it can run.
 std::vector<Fault> validate(const Spec& spec);
-/// Things that run but are probably not meant: a one-point grid of stimuli, steps that miss the target, a grid
-/// whose only lapse is 0.
+/// Things that run but are probably not meant: a one-point grid of stimuli, steps that miss the target, a
+/// grid whose only lapse is 0.
 std::vector<Fault> advise(const Spec& spec);
 
 }  // namespace turnpoint::procedure

@@ -1,0 +1,116 @@
+#include "station/procedure/constant_stimuli.hpp"
+
+#include <algorithm>
+
+#include "station/procedure/state_hash.hpp"
+
+namespace turnpoint::procedure {
+
+ConstantStimuli::ConstantStimuli(const Spec& spec, const Context& context, const random::Key& key)
+    : spec_(spec), context_(context), key_(key) {
+  random::Draws draws({key.seed, random::Stream::level_order, key.block, key.attempt, 0});
+  queue_ = items(draws);
+  order(queue_, draws);
+  total_ = static_cast<int>(queue_.size());
+}
+
+std::vector<ConstantStimuli::Item> ConstantStimuli::items(random::Draws& draws) const {
+  const auto repeats = static_cast<std::size_t>(spec_.repeats);
+  std::vector<Item> all(repeats * spec_.values.size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].value = i % spec_.values.size();
+  // Each value meets the levels of a balanced factor in a shuffled order of its own, over its repeats.
+  for (const auto& factor : spec_.balance) {
+    const auto levels = context_.factor_levels.at(factor);
+    for (std::size_t value = 0; value < spec_.values.size(); ++value) {
+      std::vector<std::size_t> shuffled(levels);
+      for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
+        if (repeat % levels == 0) {
+          for (std::size_t l = 0; l < levels; ++l) shuffled[l] = l;
+          draws.shuffle(shuffled);
+        }
+        all[repeat * spec_.values.size() + value].balance.push_back(shuffled[repeat % levels]);
+      }
+    }
+  }
+  return all;
+}
+
+void ConstantStimuli::order(std::vector<Item>& items, random::Draws& draws) const {
+  if (spec_.shuffle == Shuffle::none) return;
+  const auto n = spec_.shuffle == Shuffle::within_repeat ? spec_.values.size() : items.size();
+  for (std::size_t first = 0; first < items.size(); first += n) {
+    std::vector<Item> part(items.begin() + static_cast<std::ptrdiff_t>(first),
+                           items.begin() + static_cast<std::ptrdiff_t>(first + n));
+    draws.shuffle(part);
+    std::copy(part.begin(), part.end(), items.begin() + static_cast<std::ptrdiff_t>(first));
+  }
+  if (spec_.max_run && context_.right_answer) break_runs(items, draws);
+}
+
+bool ConstantStimuli::runs_too_long(const std::vector<Item>& items, std::size_t at) const {
+  const auto right = [&](std::size_t i) { return context_.right_answer(spec_.values[items[i].value]); };
+  const auto limit = static_cast<std::size_t>(*spec_.max_run);
+  if (at < limit || right(at) < 0) return false;
+  for (std::size_t back = 1; back <= limit; ++back)
+    if (right(at - back) != right(at)) return false;
+  return true;
+}
+
+void ConstantStimuli::break_runs(std::vector<Item>& items, random::Draws& draws) const {
+  const auto n = spec_.shuffle == Shuffle::within_repeat ? spec_.values.size() : items.size();
+  for (std::size_t at = 0; at < items.size(); ++at) {
+    if (!runs_too_long(items, at)) continue;
+    // A later item of the same repeat with another right answer takes this place.
+    const auto end = std::min(items.size(), (at / n + 1) * n);
+    std::vector<std::size_t> others;
+    for (std::size_t i = at + 1; i < end; ++i) {
+      std::swap(items[at], items[i]);
+      if (!runs_too_long(items, at)) others.push_back(i);
+      std::swap(items[at], items[i]);
+    }
+    if (!others.empty()) {
+      std::swap(items[at], items[others[draws.below(others.size())]]);
+      continue;
+    }
+    // None is left: an item of the other kind moves back from earlier in this repeat.
+    for (std::size_t i = at; i-- > at / n * n;) {
+      std::swap(items[at], items[i]);
+      bool good = true;
+      for (std::size_t j = i; j <= at && good; ++j) good = !runs_too_long(items, j);
+      if (good) break;
+      std::swap(items[at], items[i]);
+    }
+  }
+}
+
+std::optional<Proposal> ConstantStimuli::next() const {
+  if (position_ >= queue_.size()) return std::nullopt;
+  const auto& item = queue_[position_];
+  Proposal proposal{spec_.values[item.value], {}};
+  for (std::size_t i = 0; i < spec_.balance.size(); ++i)
+    proposal.balanced.emplace_back(spec_.balance[i], item.balance[i]);
+  return proposal;
+}
+
+void ConstantStimuli::record(Answer answer) {
+  const auto item = queue_[position_++];
+  if (answer != Answer::none || context_.unanswered_are_data) {
+    ++recorded_;
+    return;
+  }
+  // Somewhere among what is left, at least one trial away where possible; at the end when it was the last.
+  random::Draws draws({key_.seed, random::Stream::level_order, key_.block, key_.attempt, 1 + requeued_++});
+  const auto left = queue_.size() - position_;
+  const auto offset = left == 0 ? 0 : 1 + draws.below(left);
+  queue_.insert(queue_.begin() + static_cast<std::ptrdiff_t>(position_ + offset), item);
+}
+
+std::uint64_t ConstantStimuli::state_hash() const {
+  StateHash hash;
+  hash.add(position_);
+  hash.add(static_cast<std::uint64_t>(recorded_));
+  for (std::size_t i = position_; i < queue_.size(); ++i) hash.add(queue_[i].value);
+  return hash.value();
+}
+
+}  // namespace turnpoint::procedure

@@ -1,0 +1,40 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "station/procedure/procedure.hpp"
+
+namespace turnpoint::procedure {
+
+/// Every value `repeats` times, balanced factors crossed with the levels as evenly as the count allows,
+/// shuffled so that at most max_run right answers in a row are equal. What was not answered comes again
+/// later.
+class ConstantStimuli : public Procedure {
+ public:
+  ConstantStimuli(const Spec& spec, const Context& context, const random::Key& key);
+
+  std::optional<Proposal> next() const override;
+  void record(Answer answer) override;
+  int recorded() const override { return recorded_; }
+  int expected() const override { return total_; }
+  std::uint64_t state_hash() const override;
+
+ private:
+  struct Item {
+    std::size_t value = 0;
+    std::vector<std::size_t> balance;
+  };
+  std::vector<Item> items(random::Draws& draws) const;
+  void order(std::vector<Item>& items, random::Draws& draws) const;
+  bool runs_too_long(const std::vector<Item>& items, std::size_t from) const;
+  void break_runs(std::vector<Item>& items, random::Draws& draws) const;
+
+  Spec spec_;
+  Context context_;
+  random::Key key_;
+  std::vector<Item> queue_;
+  std::size_t position_ = 0;
+  int recorded_ = 0, requeued_ = 0, total_ = 0;
+};
+
+}  // namespace turnpoint::procedure

@@ -1,0 +1,26 @@
+#include "station/procedure/procedure.hpp"
+
+#include <stdexcept>
+
+#include "station/procedure/constant_stimuli.hpp"
+#include "station/procedure/staircase.hpp"
+
+namespace turnpoint::procedure {
+
+std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& context, const random::Key& key) {
+  if (const auto faults = validate(spec); !faults.empty())
+    throw std::invalid_argument("procedure " + spec.name + ": " + faults.front().key + ": " +
+                                faults.front().what + "; " + faults.front().allowed);
+  switch (spec.kind) {
+    case Kind::constant_stimuli:
+      return std::make_unique<ConstantStimuli>(spec, context, key);
+    case Kind::up_down:
+    case Kind::weighted_up_down:
+      return std::make_unique<Staircase>(spec, context);
+    default:
+      break;
+  }
+  throw std::invalid_argument("procedure " + spec.name + ": " + name(spec.kind) + " is not there yet");
+}
+
+}  // namespace turnpoint::procedure
