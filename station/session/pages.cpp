@@ -1,0 +1,153 @@
+#include "station/session/pages.hpp"
+
+#include "station/scene/planner.hpp"
+#include "station/session/words.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::session {
+
+namespace {
+
+using trial::Phase;
+
+/// The mark that the participant is asked about: the factor that names one, by its name.
+std::optional<double> mark_of(const TrialSpec& spec) {
+  const auto found = spec.factors.find("mark_mm");
+  if (found == spec.factors.end()) return std::nullopt;
+  const auto* value = std::get_if<double>(&found->second);
+  return value ? std::optional(*value) : std::nullopt;
+}
+
+std::string instruction_of(const protocol::Block& block) {
+  const auto found = block.fixed.find("instruction");
+  if (found == block.fixed.end()) return "";
+  const auto* name = std::get_if<std::string>(&found->second);
+  return name ? *name : "";
+}
+
+PageKind kind_of(Phase phase) {
+  switch (phase) {
+    case Phase::cue:
+    case Phase::onset:
+      return PageKind::cue;
+    case Phase::stimulus:
+      return PageKind::stimulus;
+    case Phase::gap:
+      return PageKind::pause;
+    case Phase::response:
+      return PageKind::response;
+    case Phase::feedback:
+    case Phase::late:
+      return PageKind::feedback;
+    default:
+      return PageKind::interval;
+  }
+}
+
+}  // namespace
+
+Pages::Pages(const Setup& setup) : setup_(setup) {}
+
+std::string Pages::text(const protocol::Localised& localised) const {
+  const auto found = localised.find(setup_.language);
+  if (found != localised.end()) return found->second;
+  return localised.empty() ? "" : localised.begin()->second;
+}
+
+Page Pages::blank(PageKind kind, const protocol::Block* block, const Director* director) const {
+  Page page;
+  page.kind = kind;
+  page.language = setup_.language;
+  page.run_mode = store::name(setup_.run_mode);
+  const auto& surface = setup_.rig.surface;
+  const auto shape = scene::surface_of(setup_.rig);
+  page.length_mm = 1e3 * surface.length_m;
+  page.wide_half_width_mm = 1e3 * physics::half_width_m(shape, 0);
+  page.narrow_half_width_mm = 1e3 * physics::half_width_m(shape, surface.length_m);
+  page.wide_end_left = surface.wide_end == rig::WideEnd::left;
+  if (block != nullptr) page.instruction = instruction_of(*block);
+  if (director != nullptr) {
+    page.trials_done = director->trials_done();
+    page.trials_total = director->trials_expected();
+  }
+  return page;
+}
+
+Page Pages::instructions(const protocol::Block& block, const Director& director) const {
+  auto page = blank(PageKind::instructions, &block, &director);
+  page.title = word(block.practice ? Word::practice : Word::get_ready, setup_.language);
+  const auto found = setup_.protocol.instructions.find(page.instruction);
+  if (found != setup_.protocol.instructions.end()) page.text = text(found->second.text);
+  const auto question = text(setup_.protocol.task.question);
+  page.text += (page.text.empty() ? "" : "\n\n") + question;
+  return page;
+}
+
+Page Pages::of_phase(Phase phase, int interval, const TrialSpec& spec, const protocol::Block& block,
+                     const trial::Result& result, const Director& director) const {
+  auto page = blank(kind_of(phase), &block, &director);
+  const bool explored = setup_.protocol.task.kind == protocol::TaskKind::single_interval;
+  page.mark_mm = mark_of(spec);
+  page.interval = interval + 1;
+  page.intervals = static_cast<int>(spec.intervals.size());
+  page.text = text(setup_.protocol.task.question);
+  page.answers_open = phase == Phase::response || (phase == Phase::stimulus && explored);
+  for (const auto& choice : setup_.protocol.task.choices)
+    page.answers.push_back({choice.id, text(choice.label)});
+  if (phase == Phase::feedback) {
+    page.correct = result.correct;
+    page.text = result.correct ? word(*result.correct ? Word::right : Word::wrong, setup_.language) : "";
+  }
+  if (phase == Phase::late) {
+    const bool early = result.outcome == trial::Outcome::anticipation;
+    page.text = word(early ? Word::too_early : Word::too_late, setup_.language);
+    const auto found = setup_.protocol.instructions.find(page.instruction);
+    if (!early && found != setup_.protocol.instructions.end() && !found->second.late_message.empty())
+      page.text = text(found->second.late_message);
+  }
+  return page;
+}
+
+Page Pages::rest(const protocol::Block& block, double min_s, const Director& director) const {
+  auto page = blank(PageKind::rest, &block, &director);
+  page.title = word(Word::rest, setup_.language);
+  page.text = word(Word::rest_text, setup_.language);
+  page.remaining_s = min_s;
+  return page;
+}
+
+Page Pages::practice_again(const protocol::Block& block, const Director& director) const {
+  auto page = instructions(block, director);
+  page.title = word(Word::practice_again, setup_.language);
+  return page;
+}
+
+Page Pages::fault(const std::string& what, const Director& director) const {
+  auto page = blank(PageKind::fault, nullptr, &director);
+  page.title = word(Word::fault, setup_.language);
+  page.text = what;
+  return page;
+}
+
+Page Pages::paused(const Director& director) const {
+  auto page = blank(PageKind::paused, nullptr, &director);
+  page.title = word(Word::paused, setup_.language);
+  return page;
+}
+
+Page Pages::end(const Summary& summary) const {
+  auto page = blank(PageKind::end, nullptr, nullptr);
+  page.title = word(Word::thanks, setup_.language);
+  page.trials_done = page.trials_total = summary.trials;
+  page.summary = {{"Trials", std::to_string(summary.trials)},
+                  {"Too late", std::to_string(summary.timeouts)},
+                  {"Too early", std::to_string(summary.anticipations)},
+                  {"Void", std::to_string(summary.voided)}};
+  if (summary.accuracy) page.summary.push_back({"Right", text::number(100 * *summary.accuracy, 3) + " %"});
+  for (const auto& e : summary.estimates)
+    page.summary.push_back(
+        {e.procedure + ", " + e.parameter, text::number(e.mean, 4) + " (SD " + text::number(e.sd, 3) + ")"});
+  return page;
+}
+
+}  // namespace turnpoint::session

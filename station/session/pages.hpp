@@ -1,0 +1,35 @@
+#pragma once
+#include <string>
+
+#include "station/protocol/protocol.hpp"
+#include "station/session/director.hpp"
+#include "station/session/page.hpp"
+#include "station/session/session.hpp"
+#include "station/trial/trial.hpp"
+
+namespace turnpoint::session {
+
+/// Makes the pages of one sitting: texts in its language, the surface's drawing, progress.
+class Pages {
+ public:
+  Pages(const Setup& setup);
+
+  /// A block's instructions: its instruction's text where it has one, else the task's question.
+  Page instructions(const protocol::Block& block, const Director& director) const;
+  /// The page of a phase of a trial.
+  Page of_phase(trial::Phase phase, int interval, const TrialSpec& spec, const protocol::Block& block,
+                const trial::Result& result, const Director& director) const;
+  Page rest(const protocol::Block& block, double min_s, const Director& director) const;
+  Page practice_again(const protocol::Block& block, const Director& director) const;
+  Page fault(const std::string& what, const Director& director) const;
+  Page paused(const Director& director) const;
+  Page end(const Summary& summary) const;
+
+ private:
+  Page blank(PageKind kind, const protocol::Block* block, const Director* director) const;
+  std::string text(const protocol::Localised& localised) const;
+
+  const Setup& setup_;
+};
+
+}  // namespace turnpoint::session

@@ -1,0 +1,260 @@
+#include "station/session/rows.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "station/text/number.hpp"
+
+namespace turnpoint::session {
+
+namespace {
+
+const char* name_of(protocol::ResponseZero zero) {
+  switch (zero) {
+    case protocol::ResponseZero::go_cue:
+      return "go_cue";
+    case protocol::ResponseZero::change:
+      return "change";
+    case protocol::ResponseZero::interval_off:
+      return "interval_off";
+    case protocol::ResponseZero::first_contact:
+      return "first_contact";
+    case protocol::ResponseZero::lift_off:
+      return "lift_off";
+  }
+  return "";
+}
+
+store::TrialOutcome outcome_of(trial::Outcome outcome) {
+  switch (outcome) {
+    case trial::Outcome::answered:
+      return store::TrialOutcome::answered;
+    case trial::Outcome::timeout:
+      return store::TrialOutcome::timeout;
+    case trial::Outcome::anticipation:
+      return store::TrialOutcome::anticipation;
+    case trial::Outcome::aborted:
+      return store::TrialOutcome::aborted;
+    case trial::Outcome::fault:
+      return store::TrialOutcome::fault;
+  }
+  return store::TrialOutcome::aborted;
+}
+
+std::optional<double> seconds(const std::optional<std::int64_t>& ns) {
+  return ns ? std::optional(static_cast<double>(*ns) * 1e-9) : std::nullopt;
+}
+
+std::string choice_id(const protocol::Protocol& protocol, int index) {
+  const auto& choices = protocol.task.choices;
+  return index >= 0 && index < static_cast<int>(choices.size()) ? choices[static_cast<std::size_t>(index)].id
+                                                                : "";
+}
+
+const char* kind_of(InputKind kind) {
+  switch (kind) {
+    case InputKind::answer:
+      return "answer";
+    case InputKind::next:
+      return "next";
+    case InputKind::slider:
+      return "slider";
+    case InputKind::touch_down:
+      return "touch";
+    case InputKind::contact:
+      return "contact";
+    case InputKind::stop:
+      return "stop";
+    case InputKind::pause:
+      return "pause";
+    case InputKind::xrun:
+      return "xrun";
+    case InputKind::fault:
+      return "fault";
+  }
+  return "";
+}
+
+}  // namespace
+
+store::BlockStart block_start(const protocol::Block& block, int block_index, int attempt) {
+  store::BlockStart start;
+  start.block_index = block_index;
+  start.attempt = attempt;
+  start.name = block.name;
+  start.practice = block.practice;
+  const auto found = block.fixed.find("instruction");
+  if (found != block.fixed.end())
+    if (const auto* text = std::get_if<std::string>(&found->second)) start.instruction = *text;
+  return start;
+}
+
+store::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protocol, int trial_index) {
+  store::TrialRow row;
+  row.trial_index = trial_index;
+  row.trial_in_block = spec.trial_in_block;
+  row.type = spec.type;
+  row.procedure = spec.procedure;
+  row.level = spec.level;
+  for (const auto& [name, value] : spec.factors)
+    std::visit([&row, &name = name](const auto& v) { row.factors[name] = v; }, value);
+  if (spec.correct) row.correct_response = choice_id(protocol, *spec.correct);
+  row.response_zero = name_of(protocol.timing.response_zero);
+  row.response_time_quality = "n/a";
+  row.deadline_s = spec.deadline_s;
+  return row;
+}
+
+void add_tones(store::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
+               std::int64_t onset_frame, const drive::Burst& burst) {
+  for (std::size_t s = 0; s < scenes.size(); ++s) {
+    const auto& plan = scenes[s];
+    const auto start = s == 0 ? 0 : burst.changes[s - 1].at_frame;
+    const auto end = s + 1 < scenes.size() ? burst.changes[s].at_frame : burst.length_frames;
+    for (std::size_t t = 0; t < plan.tones.size(); ++t) {
+      store::ToneRow tone;
+      tone.interval_index = interval;
+      tone.scene_index = static_cast<int>(s);
+      tone.tone_index = static_cast<int>(t);
+      tone.scene = plan.scene.name;
+      if (plan.boundary_m) tone.boundary_mm = 1e3 * *plan.boundary_m;
+      tone.frequency_Hz = plan.tones[t].frequency_Hz;
+      tone.amplitude_um = 1e6 * plan.tones[t].amplitude_m;
+      tone.displacement_um = 1e6 * plan.tones[t].displacement_m;
+      tone.friction = plan.zone_friction ? plan.zone_friction : std::optional(plan.lowest_friction);
+      tone.rove_dB = plan.scene.rove_dB;
+      tone.model = physics::name(plan.model);
+      tone.error_bound_mm = 1e3 * plan.error_bound_m;
+      tone.uncertainty_mm = 1e3 * plan.uncertainty_m;
+      tone.reason = plan.reason;
+      tone.onset_frame = onset_frame + start;
+      tone.length_frames = end - start;
+      row.tones.push_back(std::move(tone));
+    }
+  }
+  const auto& last = scenes.back();
+  row.boundary_mm = last.boundary_m ? std::optional(1e3 * *last.boundary_m) : std::nullopt;
+  if (!last.tones.empty()) {
+    row.frequency_Hz = last.tones.front().frequency_Hz;
+    row.amplitude = 1e6 * last.tones.front().displacement_m;
+  }
+}
+
+void fill_result(store::TrialRow& row, const trial::Result& result, const TrialSpec& spec,
+                 const protocol::Protocol& protocol, std::int64_t origin_ns) {
+  row.outcome = outcome_of(result.outcome);
+  if (result.response) row.response = choice_id(protocol, *result.response);
+  row.correct = result.correct;
+  row.onset_ns = result.zero_ns.value_or(result.started_ns);
+  row.onset_s = static_cast<double>(row.onset_ns - origin_ns) * 1e-9;
+  row.duration_s = static_cast<double>(result.ended_ns - result.started_ns) * 1e-9;
+  row.response_time_s = seconds(result.response_time_ns);
+  row.decision_time_s = seconds(result.decision_time_ns);
+  row.movement_time_s = seconds(result.movement_time_ns);
+  row.extra_touches = result.extra_touches;
+  row.xruns = result.xruns;
+  if (!spec.correct) row.correct.reset();
+  if (!result.response) row.response_time_quality = "n/a";
+}
+
+store::EventRow event_row(const Input& input, int trial_index) {
+  store::EventRow row;
+  row.time_ns = input.time_ns;
+  row.kind = kind_of(input.kind);
+  row.trial_index = trial_index;
+  row.value = !input.text.empty()               ? input.text
+              : input.kind == InputKind::slider ? text::exact(input.number)
+                                                : std::to_string(input.value);
+  return row;
+}
+
+const char* name(TimeQuality quality) {
+  switch (quality) {
+    case TimeQuality::kernel:
+      return "kernel";
+    case TimeQuality::toolkit:
+      return "toolkit";
+    case TimeQuality::simulated:
+      return "simulated";
+  }
+  return "";
+}
+
+std::optional<trial::Event> event_of(const Input& input) {
+  using trial::EventKind;
+  switch (input.kind) {
+    case InputKind::answer:
+      return trial::Event{input.time_ns, EventKind::answer, input.value};
+    case InputKind::touch_down:
+      return trial::Event{input.time_ns, EventKind::touch, 0};
+    case InputKind::contact:
+      return trial::Event{input.time_ns, EventKind::contact, input.value};
+    case InputKind::xrun:
+      return trial::Event{input.time_ns, EventKind::xrun, 0};
+    case InputKind::fault:
+      return trial::Event{input.time_ns, EventKind::fault, 0};
+    case InputKind::stop:
+    case InputKind::pause:
+      return trial::Event{input.time_ns, EventKind::abort, 0};
+    case InputKind::next:
+    case InputKind::slider:
+      break;
+  }
+  return std::nullopt;
+}
+
+observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& protocol,
+                               std::uint64_t seed) {
+  observer::Question question;
+  question.level = spec.level.value_or(0);
+  question.correct = spec.correct;
+  question.answers = static_cast<int>(protocol.task.choices.size());
+  question.key = {seed, random::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
+  const auto& levels = protocol.procedures;
+  for (const auto& procedure : levels) {
+    const auto& values = procedure.values.empty() ? procedure.stimuli.values : procedure.values;
+    double sum = 0;
+    for (const double value : values) sum += std::fabs(value);
+    if (!values.empty()) question.default_threshold = 0.5 * sum / static_cast<double>(values.size());
+    question.decibel = procedure.level.ends_with("_dB");
+    if (question.decibel) question.default_threshold = -2 * question.default_threshold;
+    if (!values.empty()) break;
+  }
+  // Two answers, told apart by the sign of the level: the observer may be biased.
+  if (protocol.task.kind == protocol::TaskKind::single_interval && protocol.task.correct_answer.size() == 2) {
+    question.signed_level = true;
+    const auto& [id, comparison] = protocol.task.correct_answer.front();
+    const bool first_is_negative = comparison.relation == protocol::Relation::less ||
+                                   comparison.relation == protocol::Relation::less_equal;
+    const int first = protocol.task.choices.front().id == id ? 0 : 1;
+    question.negative_answer = first_is_negative ? first : 1 - first;
+  }
+  return question;
+}
+
+void replay(Director& director, const store::TrialRow& trial, const protocol::Protocol& protocol) {
+  const auto mismatch = [&trial](const std::string& what) {
+    throw std::runtime_error(
+        fmt::format("resume: trial {} of the log cannot be replayed: {}; the database, the protocol or this "
+                    "program has changed",
+                    trial.trial_index, what));
+  };
+  if (director.block() != nullptr && !director.next()) director.finish_block();
+  const auto spec = director.next();
+  if (!spec) mismatch("the session would have been over");
+  if (spec->level != trial.level)
+    mismatch(fmt::format("level {} would have come, the log holds {}", spec->level.value_or(0),
+                         trial.level.value_or(0)));
+  TrialEnd end;
+  end.outcome = trial.outcome;
+  end.correct = trial.correct;
+  if (trial.response)
+    for (std::size_t i = 0; i < protocol.task.choices.size(); ++i)
+      if (protocol.task.choices[i].id == *trial.response) end.response = static_cast<int>(i);
+  director.record(end);
+  if (director.state_hash() != trial.state_hash) mismatch("its state hash differs");
+}
+
+}  // namespace turnpoint::session

@@ -1,0 +1,131 @@
+#include "station/session/session.hpp"
+
+#include <fmt/format.h>
+#include <sys/random.h>
+#include <sys/utsname.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <fstream>
+#include <system_error>
+
+#include "station/session/sitting.hpp"
+#include "station/session/stage.hpp"
+
+namespace turnpoint::session {
+
+namespace {
+
+std::int64_t clock_ns(clockid_t clock) {
+  timespec now{};
+  ::clock_gettime(clock, &now);
+  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
+}
+
+std::string boot_id() {
+  std::string id;
+  std::ifstream("/proc/sys/kernel/random/boot_id") >> id;
+  return id;
+}
+
+std::string local_time() {
+  const auto now = ::time(nullptr);
+  tm parts{};
+  ::localtime_r(&now, &parts);
+  char text[40];
+  const auto n = ::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S%z", &parts);
+  return {text, n};
+}
+
+std::string host_name() {
+  char name[256] = {};
+  ::gethostname(name, sizeof name - 1);
+  return name;
+}
+
+std::string kernel() {
+  utsname names{};
+  ::uname(&names);
+  return fmt::format("{} {} {}", names.sysname, names.release, names.machine);
+}
+
+/// The seed of a session that states none, within what JSON and spreadsheets keep exactly.
+std::uint64_t fresh_seed() {
+  std::uint64_t bits = 0;
+  if (::getrandom(&bits, sizeof bits, 0) != static_cast<ssize_t>(sizeof bits))
+    throw std::system_error(errno, std::generic_category(), "cannot draw a seed");
+  return bits >> 11;
+}
+
+std::string level_unit(const protocol::Protocol& protocol) {
+  if (protocol.procedures.empty()) return "";
+  const auto& level = protocol.procedures.front().level;
+  const auto underscore = level.rfind('_');
+  return underscore == std::string::npos ? "1" : level.substr(underscore + 1);
+}
+
+store::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::string& rights) {
+  store::SessionStart start;
+  start.participant = setup.participant;
+  start.run_mode = setup.run_mode;
+  start.protocol_id = setup.protocol.id;
+  start.protocol_version = setup.protocol.version;
+  start.protocol_path = setup.protocol.path;
+  start.protocol_text = setup.protocol.source;
+  start.protocol_sha256 = setup.protocol.sha256;
+  for (const auto& factor : setup.protocol.factors) start.factor_columns.push_back(factor.name);
+  start.level_unit = level_unit(setup.protocol);
+  start.rig_name = setup.rig.name;
+  start.rig_path = setup.rig.path;
+  start.rig_text = setup.rig.source;
+  start.rig_sha256 = setup.rig.sha256;
+  start.seed = seed;
+  start.language = setup.language;
+  start.observer = setup.observer;
+  start.software_version = TURNPOINT_VERSION;
+  start.columns_version = "1";
+  start.kernel = kernel();
+  start.station_id = host_name();
+  start.realtime_rights = rights;
+  start.started_local = local_time();
+  return start;
+}
+
+store::SegmentStart segment(const std::string& reason) {
+  return {boot_id(), reason, clock_ns(CLOCK_MONOTONIC), clock_ns(CLOCK_BOOTTIME), clock_ns(CLOCK_REALTIME)};
+}
+
+drive::StreamConfig stream_of(const rig::Rig& rig) {
+  drive::StreamConfig config;
+  config.output.uri = rig.output.uri;
+  config.output.rate_Hz = rig.output.rate_Hz;
+  config.output.bits = rig.output.bits;
+  config.output.period_frames = rig.output.period_frames;
+  config.output.periods = rig.output.periods;
+  config.output.allow_plugin = rig.output.allow_plugin;
+  for (const auto& transducer : rig.transducers)
+    config.output.channels = std::max(config.output.channels, transducer.channel + 1);
+  return config;
+}
+
+}  // namespace
+
+Summary run(const Setup& setup, Display* display, Inputs& inputs) {
+  const bool simulated = !setup.observer.empty();
+  const auto stream = stream_of(setup.rig);
+  auto stage = simulated ? virtual_stage(stream, observer::Observer(observer::parse(setup.observer)))
+                         : real_stage(stream, inputs);
+  const auto seed = setup.seed ? *setup.seed : setup.protocol.seed.value_or(fresh_seed());
+  const bool resuming = !setup.resume_session.empty();
+  auto log = resuming
+                 ? store::SessionLog::resume(setup.database, setup.resume_session, segment("resume"))
+                 : store::SessionLog::begin(setup.database, start_of(setup, seed, stage->realtime_rights()),
+                                            segment("start"));
+  const auto kept_seed = resuming ? log.session().start.seed : seed;
+  Sitting sitting(setup, kept_seed, std::move(log), std::move(stage), display);
+  return sitting.run();
+}
+
+}  // namespace turnpoint::session

@@ -1,0 +1,65 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/drive/burst.hpp"
+#include "station/drive/engine.hpp"
+#include "station/observer/observer.hpp"
+#include "station/session/inputs.hpp"
+
+namespace turnpoint::session {
+
+/// When a burst reaches the surface, in both of the session's units.
+struct Onset {
+  std::int64_t frame = 0;
+  std::int64_t time_ns = 0;
+};
+
+/// The straight line between frames and time that onsets were predicted by.
+struct ClockFit {
+  double slope_ns_per_frame = 0;
+  double residual_ns = 0;
+};
+
+/// Time, drive and inputs of one sitting. Two exist: real (CLOCK_MONOTONIC, a person) and virtual (a
+/// simulated observer, as fast as the machine goes); the session above is the same code on both. All on one
+/// thread.
+class Stage {
+ public:
+  virtual ~Stage() = default;
+
+  virtual std::int64_t now_ns() = 0;
+
+  /// The next input stamped no later than `deadline_ns`, or none once that time has come.
+  virtual std::optional<Input> wait_until(std::int64_t deadline_ns) = 0;
+
+  /// Throws away what has gathered, for a fresh start; returns it for the log.
+  virtual std::vector<Input> drain() = 0;
+
+  /// Schedules the burst at the first frame that is safely ahead, no earlier than `earliest_ns`.
+  virtual Onset present(drive::Burst burst, std::int64_t earliest_ns) = 0;
+
+  /// Ramps whatever sounds down, now.
+  virtual void silence() = 0;
+
+  /// Tells a simulated observer that this answer will be wanted, counted from `zero_ns`; nobody else listens.
+  virtual void question(const observer::Question& question, std::int64_t zero_ns) = 0;
+
+  virtual std::optional<ClockFit> clock_fit() = 0;
+  virtual std::string realtime_rights() const = 0;
+  /// Completes a rendered output file. Throws std::system_error.
+  virtual void finish() = 0;
+};
+
+/// Real time: CLOCK_MONOTONIC, the audio thread, inputs from a display and the panel. `inputs` must outlive
+/// it.
+std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Inputs& inputs);
+
+/// The virtual clock: the drive advances with it, and the observer answers. With nothing to wait for, the
+/// observer presses Continue.
+std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer);
+
+}  // namespace turnpoint::session

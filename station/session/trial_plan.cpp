@@ -1,0 +1,76 @@
+#include "station/session/trial_plan.hpp"
+
+#include <cmath>
+
+namespace turnpoint::session {
+
+namespace {
+
+std::int64_t ns(double s) { return std::llround(s * 1e9); }
+
+trial::ResponseZero zero_of(protocol::ResponseZero zero) {
+  switch (zero) {
+    case protocol::ResponseZero::go_cue:
+      return trial::ResponseZero::go_cue;
+    case protocol::ResponseZero::change:
+      return trial::ResponseZero::change;
+    case protocol::ResponseZero::interval_off:
+      return trial::ResponseZero::interval_off;
+    case protocol::ResponseZero::first_contact:
+      return trial::ResponseZero::first_contact;
+    case protocol::ResponseZero::lift_off:
+      return trial::ResponseZero::lift_off;
+  }
+  return trial::ResponseZero::go_cue;
+}
+
+bool explored(const protocol::Task& task) {
+  return task.kind == protocol::TaskKind::single_interval || task.kind == protocol::TaskKind::adjustment;
+}
+
+}  // namespace
+
+std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, const TrialSpec& spec) {
+  const auto& task = protocol.task;
+  std::vector<IntervalTimes> times;
+  for (const auto& scenes : spec.intervals) {
+    IntervalTimes interval;
+    // Explored until answered, at most explore_s; without one, until the deadline has passed.
+    const double whole = explored(task)
+                             ? protocol.timing.explore_s.value_or(spec.foreperiod_s + spec.deadline_s)
+                             : task.duration_s.value_or(0);
+    interval.length_s = whole;
+    const double step =
+        scenes.size() > 1 ? (task.foreperiod_s ? spec.foreperiod_s : whole / scenes.size()) : 0;
+    for (std::size_t i = 1; i < scenes.size(); ++i)
+      interval.starts_s.push_back(step * static_cast<double>(i));
+    times.push_back(std::move(interval));
+  }
+  return times;
+}
+
+trial::Plan trial_plan(const protocol::Protocol& protocol, const protocol::Block& block,
+                       const TrialSpec& spec) {
+  trial::Plan plan;
+  plan.cue_ns = ns(kCue_s);
+  for (const auto& interval : interval_times(protocol, spec)) {
+    trial::IntervalPlan timed{ns(interval.length_s), {}};
+    for (const double start : interval.starts_s) timed.scene_starts_ns.push_back(ns(start));
+    plan.intervals.push_back(std::move(timed));
+  }
+  plan.gap_ns = ns(protocol.task.gap_s.value_or(0));
+  plan.answer_ends_stimulus = explored(protocol.task);
+  plan.response_zero = zero_of(protocol.timing.response_zero);
+  plan.deadline_ns = ns(spec.deadline_s);
+  plan.anticipation_ns = ns(protocol.timing.anticipation_s);
+  plan.feedback_ns = block.feedback == protocol::Feedback::trial ? ns(kFeedback_s) : 0;
+  plan.late_ns = ns(kLate_s);
+  plan.iti_ns = ns(spec.iti_s);
+  plan.answers = protocol.task.kind == protocol::TaskKind::adjustment
+                     ? 1
+                     : static_cast<int>(protocol.task.choices.size());
+  plan.correct = spec.correct;
+  return plan;
+}
+
+}  // namespace turnpoint::session
