@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "physics/field.hpp"
@@ -12,8 +11,6 @@
 
 namespace turnpoint::physics {
 namespace {
-
-using std::numbers::ln2;
 
 // Samples per step when looking for extrema and zeros: a step spans at most about 4 radians.
 constexpr int samples = 16;
@@ -66,7 +63,6 @@ void TaylorMarch::State::march(TaylorState state) {
     state.x = inner;
     state.g = end.g;
     state.dg = end.dg;
-    state.ln_scale = step.ln_scale;
     state.normalise(step.scale);
   }
 }
@@ -86,7 +82,7 @@ Local TaylorMarch::State::local(double x, double& ln_scale) const {
     return at(*step, x);
   }
   const TaylorState state = apex->at(x);
-  ln_scale = state.ln_scale;
+  ln_scale = state.ln_scale();
   return {state.g, state.dg};
 }
 
@@ -133,7 +129,7 @@ TaylorMarch::TaylorMarch(const Taper& taper, const MarchEquation& equation) {
     state->apex.emplace(taper, equation);
     if (state->apex->inner_m() > 0) state->march(state->apex->at(state->apex->inner_m()));
   } else {
-    state->march({taper.length_m(), 0.0, -1.0, 0.0});
+    state->march({taper.length_m(), 0.0, -1.0, 0.0, 0});
   }
   state_ = std::move(state);
 }

@@ -34,12 +34,14 @@ double exact_length(const TaylorStep& step) {
 
 void TaylorState::normalise(double scale) {
   const double size = std::max(std::abs(g), std::abs(dg) * scale);
-  const int exponent = std::ilogb(size);
-  const double factor = std::scalbn(1.0, -exponent);
+  const int power = std::ilogb(size);
+  const double factor = std::scalbn(1.0, -power);
   g *= factor;
   dg *= factor;
-  ln_scale += exponent * std::numbers::ln2;
+  exponent += power;
 }
+
+double TaylorState::ln_scale() const { return ln_base + static_cast<double>(exponent) * std::numbers::ln2; }
 
 SeriesMaker::SeriesMaker(const Taper& taper, const MarchEquation& equation)
     : taper_(taper), equation_(equation) {}
@@ -168,7 +170,7 @@ void SeriesMaker::fill(const TaylorState& from, TaylorStep& step) const {
   const double knot = taper_.previous_knot_m(from.x);
   step.x_start = from.x;
   step.scale = trial_scale(from.x);
-  step.ln_scale = from.ln_scale;
+  step.ln_scale = from.ln_scale();
   // tau runs towards the drive edge, against x.
   const std::complex<double> dg = -from.dg * step.scale;
   step.re[0] = from.g.real();
@@ -187,16 +189,17 @@ void SeriesMaker::fill(const TaylorState& from, TaylorStep& step) const {
 }
 
 ApexSeries::ApexSeries(const Taper& taper, const MarchEquation& equation)
-    : apex_m_(taper.apex_m().value()), a_(equation.a) {
-  const double slope = std::get<LinearTaper>(taper.form()).slope;
-  mu_ = std::sqrt(equation.b / (slope * slope) + equation.c + 0.25);
+    : half_width_m_(std::get<LinearTaper>(taper.form()).half_width_m),
+      slope_(std::get<LinearTaper>(taper.form()).slope),
+      a_(equation.a) {
+  mu_ = std::sqrt(equation.b / (slope_ * slope_) + equation.c + 0.25);
   const double reach = std::min(2 * std::sqrt(mu_ + 1), mu_) / std::sqrt(std::abs(equation.a));
-  inner_m_ = std::max(0.0, apex_m_ - reach);
+  inner_m_ = std::max(0.0, half_width_m_ / slope_ - reach);
 }
 
 TaylorState ApexSeries::at(double x) const {
-  const double s = std::max(0.0, apex_m_ - x);
-  if (s == 0) return {x, 0.0, 0.0, 0.0};
+  const double s = std::max(0.0, std::fma(-slope_, x, half_width_m_) / slope_);
+  if (s == 0) return {x, 0.0, 0.0, 0.0, 0};
   const std::complex<double> z = -0.25 * a_ * s * s;
   std::complex<double> term = 1, sum = 1, derivative = 0;
   for (int j = 1; j < 60; ++j) {
@@ -207,8 +210,8 @@ TaylorState ApexSeries::at(double x) const {
   }
   const double power = mu_ + 0.5;
   // Relative to the inner end, so that the logarithm stays as small as it can be.
-  const double s1 = apex_m_ - inner_m_;
-  return {x, sum, -(power * sum + derivative) / s, power * std::log(s / s1)};
+  const double s1 = half_width_m_ / slope_ - inner_m_;
+  return {x, sum, -(power * sum + derivative) / s, power * std::log(s / s1), 0};
 }
 
 void divide_by_root_width(const LinearTaper& taper, const double* x, std::size_t n, double* re, double* im) {

@@ -10,13 +10,16 @@
 
 namespace turnpoint::physics {
 
-// g and dg/dx at a point, times exp(ln_scale).
+// g and dg/dx at a point, times 2^exponent exp(ln_base). The exponent is a count, so that thousands of steps
+// add no rounding to it.
 struct TaylorState {
   double x = 0;
   std::complex<double> g;
   std::complex<double> dg;
-  double ln_scale = 0;
-  // Takes a power of two out of (g, dg scale) into ln_scale.
+  double ln_base = 0;
+  long exponent = 0;
+  double ln_scale() const;
+  // Takes a power of two out of (g, dg scale) into the exponent.
   void normalise(double scale);
 };
 
@@ -47,7 +50,8 @@ class ApexSeries {
   TaylorState at(double x) const;
 
  private:
-  double apex_m_;
+  double half_width_m_;
+  double slope_;
   double mu_;
   double inner_m_;
   std::complex<double> a_;
