@@ -1,0 +1,119 @@
+import QtQuick
+import Turnpoint
+
+// Adjustment: a slider with steps, and Done. It shows no number and no boundary: only the finger may tell. Its
+// length on the screen stands in no relation to the surface drawn above it.
+Item {
+    id: root
+    required property Theme theme
+    required property Texts texts
+    required property SessionBridge bridge
+    property bool armed: true
+    property bool leftHanded: false
+    readonly property PageModel page: bridge.page
+    readonly property real span: page.sliderMax - page.sliderMin
+    readonly property real step: page.sliderStep > 0 ? page.sliderStep : span / 100
+    property real value: page.slider
+
+    function moveTo(wanted: real) {
+        const steps = Math.round((wanted - page.sliderMin) / step)
+        const next = Math.max(page.sliderMin, Math.min(page.sliderMax, page.sliderMin + steps * step))
+        if (next === value) return
+        value = next
+        bridge.moveSlider(next)
+    }
+
+    Connections {
+        target: root.page
+        function onChanged() { root.value = root.page.slider }
+    }
+
+    SurfaceDrawing {
+        id: surface
+        anchors { left: parent.left; right: parent.right; top: parent.top }
+        height: 0.38 * parent.height
+        lengthMm: root.page.lengthMm
+        wideHalfWidthMm: root.page.wideHalfWidthMm
+        narrowHalfWidthMm: root.page.narrowHalfWidthMm
+        wideEndLeft: root.page.wideEndLeft
+        hasMark: root.page.hasMark
+        markMm: root.page.markMm
+        ink: root.theme.ink
+        paper: root.theme.paper
+        accent: root.theme.action
+    }
+    Text {
+        anchors { left: parent.left; right: parent.right; top: surface.bottom; bottom: slider.top; bottomMargin: root.theme.unit }
+        text: root.page.text
+        color: root.theme.ink
+        font { pixelSize: 1.1 * root.theme.textBody; weight: Font.Medium }
+        fontSizeMode: Text.Fit
+        minimumPixelSize: root.theme.textSmall
+        wrapMode: Text.Wrap
+        horizontalAlignment: Text.AlignHCenter
+        verticalAlignment: Text.AlignVCenter
+    }
+    Item {
+        id: slider
+        objectName: "slider"
+        readonly property real knob: Math.max(root.theme.targetMin * 0.75, 9 * root.theme.unit)
+        anchors { left: parent.left; right: parent.right; bottom: controls.top; bottomMargin: 2 * root.theme.unit }
+        height: knob
+        Rectangle {
+            anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter }
+            height: 1.4 * root.theme.unit
+            radius: height / 2
+            color: root.theme.line
+        }
+        Rectangle {
+            width: slider.knob
+            height: slider.knob
+            radius: width / 2
+            x: root.span > 0 ? (root.value - root.page.sliderMin) / root.span * (slider.width - width) : 0
+            color: root.theme.action
+            border { color: root.theme.raised; width: root.theme.stroke }
+        }
+        MouseArea {
+            anchors.fill: parent
+            enabled: root.armed
+            function follow(x: real) {
+                root.moveTo(root.page.sliderMin + (x - slider.knob / 2) / (slider.width - slider.knob) * root.span)
+            }
+            onPressed: mouse => follow(mouse.x)
+            onPositionChanged: mouse => follow(mouse.x)
+        }
+    }
+    Row {
+        id: controls
+        anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
+        spacing: root.theme.targetGap
+        layoutDirection: root.leftHanded ? Qt.RightToLeft : Qt.LeftToRight
+        Row {
+            spacing: root.theme.targetGap
+            ActionButton {
+                objectName: "stepDown"
+                theme: root.theme
+                primary: false
+                armed: root.armed
+                glyph: "minus"
+                onActivated: root.moveTo(root.value - root.step)
+            }
+            ActionButton {
+                objectName: "stepUp"
+                theme: root.theme
+                primary: false
+                armed: root.armed
+                glyph: "plus"
+                onActivated: root.moveTo(root.value + root.step)
+            }
+        }
+        ActionButton {
+            objectName: "proceed"
+            width: Math.max(implicitWidth, 22 * root.theme.unit)
+            theme: root.theme
+            armed: root.armed
+            text: root.texts.done
+            onActivated: root.bridge.next()
+        }
+    }
+}

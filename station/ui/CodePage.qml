@@ -1,0 +1,185 @@
+import QtQuick
+import Turnpoint
+
+// Who takes part: a code typed on the station's own keypad. A code that has been here before is confirmed.
+Item {
+    id: root
+    required property Theme theme
+    required property Texts texts
+    property bool leftHanded: false
+    property bool known: false
+    signal edited(code: string)
+    signal accepted(code: string)
+
+    readonly property var rows: ["1234567890", "ABCDEFGHIJ", "KLMNOPQRST", "UVWXYZ-"]
+    readonly property real keyGap: Math.max(root.theme.pixelsPerMm, 0.8 * root.theme.unit)
+    readonly property real keyWidth: (keys.width - 9 * keyGap) / 10
+    readonly property real keyHeight: (keys.height - 3 * keyGap) / 4
+
+    function accept() {
+        if (!code.valid) return
+        if (root.known && !question.visible) {
+            question.visible = true
+            return
+        }
+        question.visible = false
+        root.accepted(code.text)
+    }
+
+    ParticipantCode {
+        id: code
+        onChanged: root.edited(text)
+    }
+
+    Text {
+        id: title
+        anchors { left: parent.left; right: parent.right; top: parent.top }
+        text: root.texts.codeTitle
+        color: root.theme.ink
+        font { pixelSize: 0.85 * root.theme.textTitle; weight: Font.Bold }
+        horizontalAlignment: Text.AlignHCenter
+    }
+    Text {
+        id: help
+        anchors { left: parent.left; right: parent.right; top: title.bottom; topMargin: 0.4 * root.theme.unit }
+        text: root.texts.codeHelp
+        color: root.theme.quiet
+        font.pixelSize: root.theme.textSmall
+        horizontalAlignment: Text.AlignHCenter
+        wrapMode: Text.Wrap
+    }
+    Row {
+        id: cells
+        anchors { horizontalCenter: parent.horizontalCenter; top: help.bottom; topMargin: 1.2 * root.theme.unit }
+        spacing: 0.8 * root.theme.unit
+        Repeater {
+            model: code.maximumLength
+            Rectangle {
+                id: cell
+                required property int index
+                width: 5.2 * root.theme.unit
+                height: 6.6 * root.theme.unit
+                radius: 0.6 * root.theme.unit
+                color: root.theme.raised
+                border {
+                    color: index === code.text.length ? root.theme.action : root.theme.line
+                    width: index === code.text.length ? root.theme.stroke : Math.max(1, 0.5 * root.theme.stroke)
+                }
+                Text {
+                    anchors.centerIn: parent
+                    text: code.text.charAt(cell.index)
+                    color: root.theme.ink
+                    font { pixelSize: root.theme.textTitle; weight: Font.DemiBold }
+                }
+            }
+        }
+    }
+
+    component Key: Rectangle {
+        id: key
+        property string label
+        property string glyph
+        property bool strong: false
+        signal tapped()
+        readonly property bool filled: strong !== touch.pressed
+        width: root.keyWidth
+        height: root.keyHeight
+        radius: 0.8 * root.theme.unit
+        color: filled ? root.theme.action : root.theme.raised
+        border { color: strong ? root.theme.action : root.theme.line; width: Math.max(1, 0.5 * root.theme.stroke) }
+        opacity: enabled ? 1 : 0.35
+        Text {
+            anchors.centerIn: parent
+            text: key.label
+            color: key.filled ? root.theme.actionText : root.theme.ink
+            font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
+        }
+        Glyph {
+            anchors.centerIn: parent
+            visible: key.glyph !== ""
+            height: 1.2 * root.theme.textBody
+            name: key.glyph
+            color: key.filled ? root.theme.actionText : root.theme.ink
+        }
+        MouseArea {
+            id: touch
+            anchors.fill: parent
+            onClicked: key.tapped()
+        }
+    }
+
+    Column {
+        id: keys
+        visible: !question.visible
+        anchors { left: parent.left; right: parent.right; top: cells.bottom; topMargin: 1.6 * root.theme.unit; bottom: parent.bottom }
+        spacing: root.keyGap
+        Repeater {
+            model: root.rows
+            Row {
+                id: line
+                required property string modelData
+                required property int index
+                spacing: root.keyGap
+                layoutDirection: Qt.LeftToRight
+                Repeater {
+                    model: line.modelData.split("")
+                    Key {
+                        required property string modelData
+                        objectName: "key" + modelData
+                        label: modelData
+                        onTapped: code.type(modelData)
+                    }
+                }
+                Key {
+                    visible: line.index === root.rows.length - 1
+                    objectName: visible ? "backspace" : ""
+                    glyph: "backspace"
+                    enabled: code.valid
+                    onTapped: code.erase()
+                }
+                Key {
+                    visible: line.index === root.rows.length - 1
+                    objectName: visible ? "accept" : ""
+                    width: 2 * root.keyWidth + root.keyGap
+                    label: root.texts.proceed
+                    strong: true
+                    enabled: code.valid
+                    onTapped: root.accept()
+                }
+            }
+        }
+    }
+    Item {
+        id: question
+        visible: false
+        anchors { left: parent.left; right: parent.right; top: cells.bottom; bottom: parent.bottom }
+        Text {
+            anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; verticalCenterOffset: -5 * root.theme.unit }
+            text: root.texts.codeKnown
+            color: root.theme.ink
+            font { pixelSize: 1.1 * root.theme.textBody; weight: Font.Medium }
+            horizontalAlignment: Text.AlignHCenter
+            wrapMode: Text.Wrap
+        }
+        Row {
+            anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
+            spacing: root.theme.targetGap
+            ActionButton {
+                objectName: "notMine"
+                theme: root.theme
+                primary: false
+                text: root.texts.codeNo
+                onActivated: {
+                    code.clear()
+                    question.visible = false
+                }
+            }
+            ActionButton {
+                objectName: "mine"
+                theme: root.theme
+                text: root.texts.codeYes
+                onActivated: root.accept()
+            }
+        }
+    }
+}

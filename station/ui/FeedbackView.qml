@@ -1,0 +1,40 @@
+import QtQuick
+import Turnpoint
+
+// Right, not right, or the message of a late answer: one sign, one word, no score.
+Column {
+    id: root
+    required property Theme theme
+    required property Texts texts
+    required property int verdict
+    required property string message
+
+    readonly property bool good: verdict === PageModel.Right
+    readonly property bool bad: verdict === PageModel.Wrong
+    readonly property color tint: good ? theme.right : bad ? theme.wrong : theme.ink
+
+    spacing: 2 * theme.unit
+
+    Rectangle {
+        anchors.horizontalCenter: parent.horizontalCenter
+        width: 15 * root.theme.unit
+        height: width
+        radius: root.bad ? 2.5 * root.theme.unit : width / 2
+        color: root.good || root.bad ? root.tint : "transparent"
+        border { color: root.tint; width: root.theme.stroke }
+        Glyph {
+            anchors.centerIn: parent
+            height: 0.6 * parent.height
+            name: root.good ? "tick" : root.bad ? "cross" : "clock"
+            color: root.good || root.bad ? root.theme.actionText : root.tint
+        }
+    }
+    Text {
+        width: parent.width
+        text: root.message !== "" ? root.message : root.good ? root.texts.right : root.texts.wrong
+        color: root.tint
+        font { pixelSize: root.theme.textTitle; weight: Font.DemiBold }
+        horizontalAlignment: Text.AlignHCenter
+        wrapMode: Text.Wrap
+    }
+}

@@ -1,0 +1,73 @@
+import QtQuick
+import Turnpoint
+
+// What to do in the block that follows: the instruction, its text, and the surface with the place to slide.
+Item {
+    id: root
+    required property Theme theme
+    required property Texts texts
+    required property SessionBridge bridge
+    property bool armed: true
+    readonly property PageModel page: bridge.page
+
+    InstructionBadge {
+        id: badge
+        anchors { horizontalCenter: parent.horizontalCenter; top: parent.top }
+        theme: root.theme
+        texts: root.texts
+        instruction: root.page.instruction
+        size: root.theme.textTitle
+    }
+    Text {
+        id: title
+        visible: text !== "" && !badge.visible
+        anchors { left: parent.left; right: parent.right; top: parent.top }
+        text: root.page.title
+        color: root.theme.ink
+        font { pixelSize: root.theme.textTitle; weight: Font.Bold }
+        wrapMode: Text.Wrap
+        horizontalAlignment: Text.AlignHCenter
+    }
+    Text {
+        anchors {
+            left: parent.left; right: parent.right
+            top: badge.visible ? badge.bottom : title.bottom; topMargin: root.theme.unit
+            bottom: surface.top; bottomMargin: root.theme.unit
+        }
+        text: root.page.text
+        color: root.theme.ink
+        font.pixelSize: 1.1 * root.theme.textBody
+        fontSizeMode: Text.Fit
+        minimumPixelSize: root.theme.textSmall
+        lineHeight: 1.25
+        wrapMode: Text.Wrap
+        horizontalAlignment: Text.AlignHCenter
+        verticalAlignment: Text.AlignVCenter
+    }
+    SurfaceDrawing {
+        id: surface
+        visible: root.page.lengthMm > 0
+        anchors { left: parent.left; right: parent.right; bottom: go.top; bottomMargin: 2 * root.theme.unit }
+        height: 0.36 * parent.height
+        lengthMm: root.page.lengthMm
+        wideHalfWidthMm: root.page.wideHalfWidthMm
+        narrowHalfWidthMm: root.page.narrowHalfWidthMm
+        wideEndLeft: root.page.wideEndLeft
+        hasMark: root.page.hasMark
+        markMm: root.page.markMm
+        showFinger: true
+        ink: root.theme.ink
+        paper: root.theme.paper
+        accent: root.theme.action
+    }
+    ActionButton {
+        id: go
+        objectName: "proceed"
+        anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
+        width: Math.max(implicitWidth, 26 * root.theme.unit)
+        theme: root.theme
+        armed: root.armed
+        text: root.texts.proceed
+        onActivated: root.bridge.next()
+    }
+}

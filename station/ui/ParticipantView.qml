@@ -1,0 +1,147 @@
+import QtQuick
+import Turnpoint
+
+// Everything that a participant sees during a session: the page, around it the run mode, the block's instruction,
+// a way to pause, and the progress.
+Rectangle {
+    id: root
+    required property SessionBridge bridge
+    required property real pixelsPerMm
+    property bool leftHanded: false
+    signal closed()
+
+    readonly property PageModel page: bridge.page
+    readonly property int kind: page.kind
+    readonly property bool inTrial: kind === PageModel.Cue || kind === PageModel.Stimulus || kind === PageModel.Pause
+                                    || kind === PageModel.Response || kind === PageModel.Feedback
+                                    || kind === PageModel.Interval
+    readonly property bool mayPause: inTrial || kind === PageModel.Adjust || kind === PageModel.Instructions
+                                     || kind === PageModel.Rest
+
+    color: theme.paper
+
+    Theme {
+        id: theme
+        width: root.width
+        height: root.height
+        pixelsPerMm: root.pixelsPerMm
+    }
+    Texts {
+        id: texts
+        language: root.page.language
+    }
+    // A tap that was meant for the page before arrives within this time of the change.
+    Timer {
+        id: arming
+        interval: 350
+        running: true
+    }
+    onKindChanged: arming.restart()
+
+    RunModeFrame {
+        id: frame
+        anchors.fill: parent
+        theme: theme
+        texts: texts
+        runMode: root.page.runMode
+    }
+
+    Item {
+        id: header
+        anchors {
+            left: parent.left; right: parent.right; top: parent.top
+            leftMargin: theme.margin; rightMargin: theme.margin; topMargin: frame.band + theme.unit
+        }
+        height: root.mayPause ? Math.max(pause.height, badge.height) : 0
+        InstructionBadge {
+            id: badge
+            anchors { verticalCenter: parent.verticalCenter; left: root.leftHanded ? undefined : parent.left; right: root.leftHanded ? parent.right : undefined }
+            visible: instruction !== "" && root.inTrial
+            theme: theme
+            texts: texts
+            instruction: root.page.instruction
+            size: 0.9 * theme.textBody
+        }
+        ActionButton {
+            id: pause
+            objectName: "pause"
+            visible: root.mayPause
+            anchors { verticalCenter: parent.verticalCenter; left: root.leftHanded ? parent.left : undefined; right: root.leftHanded ? undefined : parent.right }
+            implicitHeight: Math.max(9 * theme.pixelsPerMm, 5 * theme.unit)
+            theme: theme
+            primary: false
+            glyph: "bars"
+            text: texts.pause
+            onActivated: root.bridge.pause()
+        }
+    }
+
+    Item {
+        id: body
+        anchors {
+            left: parent.left; right: parent.right; top: header.bottom; bottom: progress.top
+            leftMargin: theme.margin; rightMargin: theme.margin
+            topMargin: theme.unit; bottomMargin: 1.2 * theme.unit
+        }
+        TrialPage {
+            objectName: "trialPage"
+            anchors.fill: parent
+            visible: root.inTrial
+            theme: theme
+            texts: texts
+            bridge: root.bridge
+        }
+        InstructionsPage {
+            anchors.fill: parent
+            visible: root.kind === PageModel.Instructions
+            theme: theme
+            texts: texts
+            bridge: root.bridge
+            armed: !arming.running
+        }
+        RestPage {
+            anchors.fill: parent
+            visible: root.kind === PageModel.Rest
+            theme: theme
+            texts: texts
+            bridge: root.bridge
+            armed: !arming.running
+        }
+        AdjustPage {
+            anchors.fill: parent
+            visible: root.kind === PageModel.Adjust
+            theme: theme
+            texts: texts
+            bridge: root.bridge
+            leftHanded: root.leftHanded
+            armed: !arming.running
+        }
+        NoticePage {
+            anchors.fill: parent
+            visible: root.kind === PageModel.Fault || root.kind === PageModel.Paused
+            theme: theme
+            texts: texts
+            bridge: root.bridge
+            armed: !arming.running
+        }
+        EndPage {
+            anchors.fill: parent
+            visible: root.kind === PageModel.End
+            theme: theme
+            texts: texts
+            bridge: root.bridge
+            onClosed: root.closed()
+        }
+    }
+
+    ProgressStrip {
+        id: progress
+        anchors {
+            left: parent.left; right: parent.right; bottom: parent.bottom
+            leftMargin: theme.margin; rightMargin: theme.margin; bottomMargin: frame.edge + theme.unit
+        }
+        theme: theme
+        done: root.page.trialsDone
+        total: root.page.trialsTotal
+    }
+}

@@ -1,0 +1,55 @@
+import QtQuick
+import Turnpoint
+
+// A break: how long it still lasts, then Continue whenever the participant likes.
+Item {
+    id: root
+    required property Theme theme
+    required property Texts texts
+    required property SessionBridge bridge
+    property bool armed: true
+    readonly property PageModel page: bridge.page
+    readonly property int secondsLeft: Math.ceil(page.remainingSeconds)
+
+    Column {
+        anchors { left: parent.left; right: parent.right; bottom: go.top; top: parent.top }
+        spacing: 1.5 * root.theme.unit
+        topPadding: Math.max(0, (height - 24 * root.theme.unit) / 2)
+        Text {
+            width: parent.width
+            text: root.page.title !== "" ? root.page.title : root.texts.breakTitle
+            color: root.theme.ink
+            font { pixelSize: root.theme.textTitle; weight: Font.Bold }
+            horizontalAlignment: Text.AlignHCenter
+            wrapMode: Text.Wrap
+        }
+        Text {
+            width: parent.width
+            text: root.page.text !== "" ? root.page.text : root.secondsLeft > 0 ? root.texts.breakRunning : root.texts.breakOver
+            color: root.theme.quiet
+            font.pixelSize: 1.1 * root.theme.textBody
+            horizontalAlignment: Text.AlignHCenter
+            wrapMode: Text.Wrap
+        }
+        Text {
+            objectName: "remaining"
+            width: parent.width
+            visible: root.secondsLeft > 0
+            text: root.secondsLeft + " " + root.texts.seconds
+            color: root.theme.ink
+            font { pixelSize: 1.6 * root.theme.textHuge; weight: Font.DemiBold }
+            horizontalAlignment: Text.AlignHCenter
+        }
+    }
+    ActionButton {
+        id: go
+        objectName: "proceed"
+        anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
+        width: Math.max(implicitWidth, 26 * root.theme.unit)
+        theme: root.theme
+        enabled: root.secondsLeft <= 0
+        armed: root.armed
+        text: root.texts.proceed
+        onActivated: root.bridge.next()
+    }
+}

@@ -1,0 +1,58 @@
+import QtQuick
+import Turnpoint
+
+// What the station itself says, in each language shipped; the protocol brings its own texts. A language that is
+// not here falls back to English.
+QtObject {
+    required property string language
+
+    function pick(en: string, de: string, ja: string) : string {
+        return language.startsWith("de") ? de : language.startsWith("ja") ? ja : en
+    }
+
+    readonly property string proceed: pick("Continue", "Weiter", "次へ")
+    readonly property string done: pick("Done", "Fertig", "決定")
+    readonly property string pause: pick("Pause", "Pause", "休止")
+    readonly property string getReady: pick("Get ready", "Gleich geht es los", "準備してください")
+    readonly property string slideHere: pick("Slide your finger to and fro here", "Hier mit dem Finger hin und her gleiten",
+                                             "ここで指を左右にすべらせてください")
+    readonly property string slideNow: pick("Slide now", "Jetzt gleiten", "すべらせてください")
+    readonly property string keepStill: pick("Wait", "Warten", "待ってください")
+    readonly property string right: pick("Right", "Richtig", "正解")
+    readonly property string wrong: pick("Not this time", "Diesmal nicht", "不正解")
+    readonly property string speed: pick("Fast", "Schnell", "速さ優先")
+    readonly property string accuracy: pick("Accurate", "Genau", "正確さ優先")
+    readonly property string breakTitle: pick("Time for a break", "Zeit für eine Pause", "休憩しましょう")
+    readonly property string breakRunning: pick("Rest your hand. You can go on in", "Ruhen Sie die Hand aus. Weiter geht es in",
+                                                "手を休めてください。再開まで")
+    readonly property string breakOver: pick("Go on whenever you are ready.", "Weiter, sobald Sie bereit sind.",
+                                             "準備ができたら続けてください。")
+    readonly property string seconds: pick("s", "s", "秒")
+    readonly property string paused: pick("Paused", "Angehalten", "一時停止中")
+    readonly property string pausedText: pick("Everything so far is saved.", "Alles bisher ist gespeichert.",
+                                              "ここまでの結果は保存されています。")
+    readonly property string endSession: pick("End the session", "Sitzung beenden", "終了する")
+    readonly property string reallyEnd: pick("End the session now?", "Sitzung jetzt beenden?", "本当に終了しますか?")
+    readonly property string keepGoing: pick("Go on", "Weitermachen", "続ける")
+    readonly property string faultTitle: pick("Please tell the experimenter", "Bitte der Versuchsleitung Bescheid geben",
+                                              "実験者に知らせてください")
+    readonly property string thanks: pick("Thank you!", "Vielen Dank!", "ありがとうございました")
+    readonly property string thanksText: pick("You have finished. All of your answers are saved.",
+                                              "Sie sind fertig. Alle Antworten sind gespeichert.",
+                                              "これで終わりです。回答はすべて保存されました。")
+    readonly property string forOperator: pick("For the experimenter", "Für die Versuchsleitung", "実験者用")
+    readonly property string close: pick("Close", "Schließen", "閉じる")
+    readonly property string codeTitle: pick("Your participant code", "Ihr Teilnahme-Code", "参加者コード")
+    readonly property string codeHelp: pick("Type the code that you were given. No names.", "Bitte den Code eingeben, den Sie erhalten haben. Keine Namen.",
+                                            "渡されたコードを入力してください。名前は入力しないでください。")
+    readonly property string codeKnown: pick("This code has been here before. Is it yours?", "Dieser Code war schon hier. Ist es Ihrer?",
+                                             "このコードは以前に使われています。あなたのコードですか?")
+    readonly property string codeYes: pick("Yes, mine", "Ja, meiner", "はい")
+    readonly property string codeNo: pick("No, change it", "Nein, ändern", "いいえ、直します")
+    readonly property string smaller: pick("Back", "Zurück", "戻す")
+    readonly property string larger: pick("Forth", "Vor", "進める")
+    readonly property string pilot: pick("PILOT RUN", "PROBELAUF", "予備実験")
+    readonly property string pilotText: pick("not study data", "keine Studiendaten", "本番データではありません")
+    readonly property string simulated: pick("SIMULATED", "SIMULIERT", "シミュレーション")
+    readonly property string simulatedText: pick("no person answers", "es antwortet kein Mensch", "人は回答していません")
+}

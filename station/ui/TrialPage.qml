@@ -1,0 +1,110 @@
+import QtQuick
+import Turnpoint
+
+// All that a trial shows, in one layout: the surface on top, the question in the middle, the answers below. Phases
+// only fill or empty these places; nothing is animated, so nothing moves while a stimulus runs.
+Item {
+    id: root
+    required property Theme theme
+    required property Texts texts
+    required property SessionBridge bridge
+    readonly property PageModel page: bridge.page
+
+    readonly property bool cue: page.kind === PageModel.Cue
+    readonly property bool stimulus: page.kind === PageModel.Stimulus
+    readonly property bool feedback: page.kind === PageModel.Feedback
+    readonly property bool asks: page.answersOpen && page.answers.length > 0
+    readonly property bool counted: page.intervals > 1
+
+    SurfaceDrawing {
+        id: surface
+        visible: root.cue || (root.stimulus && !root.counted) || root.page.kind === PageModel.Response
+                 && !root.counted
+        anchors { left: parent.left; right: parent.right; top: parent.top }
+        height: 0.43 * parent.height
+        lengthMm: root.page.lengthMm
+        wideHalfWidthMm: root.page.wideHalfWidthMm
+        narrowHalfWidthMm: root.page.narrowHalfWidthMm
+        wideEndLeft: root.page.wideEndLeft
+        hasMark: root.page.hasMark
+        markMm: root.page.markMm
+        showFinger: root.cue
+        ink: root.theme.ink
+        paper: root.theme.paper
+        accent: root.theme.action
+    }
+
+    // Intervals: as many places as there are intervals, the running one filled.
+    Row {
+        visible: root.counted && (root.stimulus || root.page.kind === PageModel.Pause || root.page.kind === PageModel.Response)
+        anchors { horizontalCenter: parent.horizontalCenter; top: parent.top; topMargin: 0.1 * parent.height }
+        spacing: root.theme.targetGap
+        Repeater {
+            model: root.page.intervals
+            Rectangle {
+                id: place
+                required property int index
+                readonly property bool running: root.stimulus && root.page.interval === index + 1
+                width: 13 * root.theme.unit
+                height: width
+                radius: width / 2
+                color: running ? root.theme.ink : "transparent"
+                border { color: running ? root.theme.ink : root.theme.line; width: root.theme.stroke }
+                Text {
+                    anchors.centerIn: parent
+                    text: place.index + 1
+                    color: place.running ? root.theme.actionText : root.theme.quiet
+                    font { pixelSize: root.theme.textHuge; weight: Font.DemiBold }
+                }
+            }
+        }
+    }
+
+    Text {
+        id: question
+        visible: !root.feedback && root.page.kind !== PageModel.Interval
+        anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: 1.5 * root.theme.unit; top: surface.bottom }
+        text: root.cue ? (root.page.text !== "" ? root.page.text : root.texts.slideHere)
+            : root.page.text !== "" ? root.page.text
+            : root.stimulus ? root.texts.slideNow
+            : root.page.kind === PageModel.Pause ? root.texts.keepStill : ""
+        color: root.theme.ink
+        font { pixelSize: 1.15 * root.theme.textBody; weight: Font.Medium }
+        fontSizeMode: Text.Fit
+        minimumPixelSize: root.theme.textSmall
+        wrapMode: Text.Wrap
+        horizontalAlignment: Text.AlignHCenter
+        verticalAlignment: Text.AlignVCenter
+    }
+
+    AnswerRow {
+        id: answers
+        visible: root.asks
+        anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
+        height: Math.max(root.theme.targetMin, 0.36 * parent.height)
+        theme: root.theme
+        answers: root.page.answers
+        pressed: field.pressed
+    }
+
+    FeedbackView {
+        visible: root.feedback
+        anchors { verticalCenter: parent.verticalCenter; left: parent.left; right: parent.right }
+        theme: root.theme
+        texts: root.texts
+        verdict: root.page.verdict
+        message: root.page.text
+    }
+
+    TouchField {
+        id: field
+        objectName: "touchField"
+        anchors.fill: parent
+        bridge: root.bridge
+        row: answers
+        count: root.page.answers.length
+        gap: answers.gap
+        pixelsPerMm: root.theme.pixelsPerMm
+        open: root.visible && root.asks
+    }
+}

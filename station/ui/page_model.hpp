@@ -1,0 +1,105 @@
+#pragma once
+#include <QObject>
+#include <QQmlEngine>
+#include <QString>
+#include <QStringList>
+#include <QVariantList>
+
+#include "station/session/page.hpp"
+
+namespace turnpoint::ui {
+
+/// The page that the session wants shown, as QML reads it. GUI thread only; every property changes together,
+/// with one `changed`, so a page is never drawn half old and half new. Lengths in mm, times in seconds.
+class PageModel : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_UNCREATABLE("pages come from the session")
+  Q_PROPERTY(Kind kind READ kind NOTIFY changed)
+  Q_PROPERTY(QString title READ title NOTIFY changed)
+  Q_PROPERTY(QString text READ text NOTIFY changed)
+  Q_PROPERTY(QStringList answers READ answers NOTIFY changed)
+  Q_PROPERTY(bool answersOpen READ answers_open NOTIFY changed)
+  Q_PROPERTY(Verdict verdict READ verdict NOTIFY changed)
+  Q_PROPERTY(QString instruction READ instruction NOTIFY changed)
+  Q_PROPERTY(bool hasMark READ has_mark NOTIFY changed)
+  Q_PROPERTY(double markMm READ mark_mm NOTIFY changed)
+  Q_PROPERTY(double lengthMm READ length_mm NOTIFY changed)
+  Q_PROPERTY(double wideHalfWidthMm READ wide_half_width_mm NOTIFY changed)
+  Q_PROPERTY(double narrowHalfWidthMm READ narrow_half_width_mm NOTIFY changed)
+  Q_PROPERTY(bool wideEndLeft READ wide_end_left NOTIFY changed)
+  Q_PROPERTY(int interval READ interval NOTIFY changed)
+  Q_PROPERTY(int intervals READ intervals NOTIFY changed)
+  Q_PROPERTY(int trialsDone READ trials_done NOTIFY changed)
+  Q_PROPERTY(int trialsTotal READ trials_total NOTIFY changed)
+  Q_PROPERTY(double remainingSeconds READ remaining_s NOTIFY changed)
+  Q_PROPERTY(double slider READ slider NOTIFY changed)
+  Q_PROPERTY(double sliderMin READ slider_min NOTIFY changed)
+  Q_PROPERTY(double sliderMax READ slider_max NOTIFY changed)
+  Q_PROPERTY(double sliderStep READ slider_step NOTIFY changed)
+  Q_PROPERTY(QString language READ language NOTIFY changed)
+  Q_PROPERTY(QString runMode READ run_mode NOTIFY changed)
+  Q_PROPERTY(QStringList summaryLabels READ summary_labels NOTIFY changed)
+  Q_PROPERTY(QStringList summaryValues READ summary_values NOTIFY changed)
+
+ public:
+  /// session::PageKind under the names that QML shows.
+  enum class Kind {
+    Instructions,
+    Cue,
+    Stimulus,
+    Pause,
+    Response,
+    Feedback,
+    Interval,
+    Rest,
+    Adjust,
+    Fault,
+    Paused,
+    End
+  };
+  Q_ENUM(Kind)
+  /// What a feedback page says; Message has only its text (a late answer).
+  enum class Verdict { Message, Right, Wrong };
+  Q_ENUM(Verdict)
+
+  using QObject::QObject;
+  /// Takes a whole page at once.
+  void set(session::Page page);
+  const session::Page& page() const { return page_; }
+
+  Kind kind() const;
+  QString title() const { return QString::fromStdString(page_.title); }
+  QString text() const { return QString::fromStdString(page_.text); }
+  QStringList answers() const;
+  bool answers_open() const { return page_.answers_open; }
+  Verdict verdict() const;
+  QString instruction() const { return QString::fromStdString(page_.instruction); }
+  bool has_mark() const { return page_.mark_mm.has_value(); }
+  double mark_mm() const { return page_.mark_mm.value_or(0); }
+  double length_mm() const { return page_.length_mm; }
+  double wide_half_width_mm() const { return page_.wide_half_width_mm; }
+  double narrow_half_width_mm() const { return page_.narrow_half_width_mm; }
+  bool wide_end_left() const { return page_.wide_end_left; }
+  int interval() const { return page_.interval; }
+  int intervals() const { return page_.intervals; }
+  int trials_done() const { return page_.trials_done; }
+  int trials_total() const { return page_.trials_total; }
+  double remaining_s() const { return page_.remaining_s; }
+  double slider() const { return page_.slider; }
+  double slider_min() const { return page_.slider_min; }
+  double slider_max() const { return page_.slider_max; }
+  double slider_step() const { return page_.slider_step; }
+  QString language() const { return QString::fromStdString(page_.language); }
+  QString run_mode() const { return QString::fromStdString(page_.run_mode); }
+  QStringList summary_labels() const;
+  QStringList summary_values() const;
+
+ signals:
+  void changed();
+
+ private:
+  session::Page page_;
+};
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,47 @@
+#pragma once
+#include <QColor>
+#include <QQuickPaintedItem>
+
+namespace turnpoint::ui {
+
+/// The surface seen from above, to scale: the tapered strip with its transducer at the wide end, a millimetre
+/// scale, the mark pointed at, and a fingertip that shows where to slide. Still: it draws once for each
+/// change of a property. Lengths in mm; positions count from the wide end.
+class SurfaceDrawing : public QQuickPaintedItem {
+  Q_OBJECT
+  QML_ELEMENT
+  Q_PROPERTY(double lengthMm MEMBER length_mm_ NOTIFY changed)
+  Q_PROPERTY(double wideHalfWidthMm MEMBER wide_half_width_mm_ NOTIFY changed)
+  Q_PROPERTY(double narrowHalfWidthMm MEMBER narrow_half_width_mm_ NOTIFY changed)
+  Q_PROPERTY(bool wideEndLeft MEMBER wide_end_left_ NOTIFY changed)
+  Q_PROPERTY(bool hasMark MEMBER has_mark_ NOTIFY changed)
+  Q_PROPERTY(double markMm MEMBER mark_mm_ NOTIFY changed)
+  Q_PROPERTY(bool showFinger MEMBER show_finger_ NOTIFY changed)
+  Q_PROPERTY(QColor ink MEMBER ink_ NOTIFY changed)
+  Q_PROPERTY(QColor paper MEMBER paper_ NOTIFY changed)
+  Q_PROPERTY(QColor accent MEMBER accent_ NOTIFY changed)
+
+ public:
+  explicit SurfaceDrawing(QQuickItem* parent = nullptr);
+  void paint(QPainter* painter) override;
+
+ signals:
+  void changed();
+
+ private:
+  struct Layout;
+  Layout layout() const;
+  void paint_strip(QPainter& painter, const Layout& at) const;
+  void paint_scale(QPainter& painter, const Layout& at) const;
+  void paint_mark(QPainter& painter, const Layout& at) const;
+  void paint_finger(QPainter& painter, const Layout& at) const;
+
+  double length_mm_ = 0, wide_half_width_mm_ = 0, narrow_half_width_mm_ = 0;
+  bool wide_end_left_ = true;
+  bool has_mark_ = false;
+  double mark_mm_ = 0;
+  bool show_finger_ = false;
+  QColor ink_ = Qt::black, paper_ = Qt::white, accent_ = Qt::black;
+};
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,183 @@
+#include "tests/ui/gallery.hpp"
+
+#include <functional>
+
+namespace turnpoint::ui {
+
+namespace {
+
+using session::Page;
+using session::PageKind;
+
+struct Words {
+  std::string language;
+  std::string pick(const char* en, const char* de, const char* ja) const {
+    return language == "de" ? de : language == "ja" ? ja : en;
+  }
+};
+
+Page base(const Words& words, PageKind kind) {
+  Page page;
+  page.kind = kind;
+  page.language = words.language;
+  page.run_mode = "live";
+  page.length_mm = 300;
+  page.wide_half_width_mm = 14;
+  page.narrow_half_width_mm = 5;
+  page.trials_done = 37;
+  page.trials_total = 88;
+  return page;
+}
+
+Page boundary(const Words& words, PageKind kind) {
+  Page page = base(words, kind);
+  page.mark_mm = 164;
+  page.text = words.pick("Did the smooth part end left or right of the mark?",
+                         "Endete der glatte Teil links oder rechts von der Markierung?",
+                         "なめらかな部分は印の左で終わりましたか、右で終わりましたか?");
+  page.answers = {{"left", words.pick("Left", "Links", "左")},
+                  {"right", words.pick("Right", "Rechts", "右")}};
+  page.answers_open = kind == PageKind::stimulus || kind == PageKind::response;
+  return page;
+}
+
+Page instructed(Page page, const Words& words, const std::string& instruction) {
+  page.instruction = instruction;
+  page.mark_mm.reset();
+  page.text = words.pick("Keep sliding. Did it become smoother or rougher?",
+                         "Weiter gleiten. Wurde es glatter oder rauer?",
+                         "すべらせ続けてください。なめらかになりましたか、ざらざらになりましたか?");
+  page.answers = {{"smoother", words.pick("Smoother", "Reibungsärmer geworden", "なめらか")},
+                  {"rougher", words.pick("Rougher", "Reibungsreicher geworden", "ざらざら")}};
+  return page;
+}
+
+Page oddity(const Words& words, PageKind kind, int interval) {
+  Page page = base(words, kind);
+  page.interval = interval;
+  page.intervals = 3;
+  if (kind == PageKind::response) {
+    page.text = words.pick("Which of the three felt different?", "Welcher der drei fühlte sich anders an?",
+                           "三つのうちどれが違いましたか?");
+    page.answers = {{"1", words.pick("1st", "Erster", "1番目")},
+                    {"2", words.pick("2nd", "Zweiter", "2番目")},
+                    {"3", words.pick("3rd", "Dritter", "3番目")}};
+    page.answers_open = true;
+  }
+  return page;
+}
+
+void add_trials(std::vector<Exhibit>& all, const Words& words) {
+  Page cue = boundary(words, PageKind::cue);
+  cue.text.clear();
+  cue.answers_open = false;
+  all.push_back({"cue", cue});
+  all.push_back({"explore", boundary(words, PageKind::stimulus)});
+  all.push_back({"response", boundary(words, PageKind::response)});
+  all.push_back({"explore-speed", instructed(boundary(words, PageKind::stimulus), words, "speed")});
+  all.push_back({"explore-accuracy", instructed(boundary(words, PageKind::stimulus), words, "accuracy")});
+  all.push_back({"interval-2-of-3", oddity(words, PageKind::stimulus, 2)});
+  all.push_back({"gap", oddity(words, PageKind::pause, 2)});
+  all.push_back({"response-3", oddity(words, PageKind::response, 3)});
+  all.push_back({"between-trials", base(words, PageKind::interval)});
+  Page feedback = base(words, PageKind::feedback);
+  feedback.correct = true;
+  all.push_back({"feedback-right", feedback});
+  feedback.correct = false;
+  all.push_back({"feedback-wrong", feedback});
+  feedback.correct.reset();
+  feedback.text = words.pick("Too slow", "Zu langsam", "遅すぎました");
+  all.push_back({"too-slow", feedback});
+}
+
+void add_notices(std::vector<Exhibit>& all, const Words& words) {
+  Page rest = base(words, PageKind::rest);
+  rest.remaining_s = 17.4;
+  all.push_back({"rest", rest});
+  rest.remaining_s = 0;
+  all.push_back({"rest-over", rest});
+  Page fault = base(words, PageKind::fault);
+  fault.title =
+      words.pick("The sound converter was unplugged", "Der Wandler wurde abgezogen", "変換器が外れました");
+  fault.text = words.pick(
+      "The amplifier is off; the surface is safe to touch. Plug the converter in again, then press Continue. "
+      "The "
+      "last trial will be presented again.",
+      "Der Verstärker ist aus, die Oberfläche darf berührt werden. Wandler wieder einstecken, dann auf "
+      "Weiter tippen. "
+      "Der letzte Durchgang wird wiederholt.",
+      "アンプは切れています。表面に触れても安全です。変換器をつなぎ直してから「次へ」を押してください。直前の"
+      "試行はもう一度行います。");
+  all.push_back({"fault", fault});
+  all.push_back({"paused", base(words, PageKind::paused)});
+  Page end = base(words, PageKind::end);
+  end.trials_done = end.trials_total = 88;
+  all.push_back({"end", end});
+  end.summary = {{"Trials", "88"},
+                 {"Answered", "86"},
+                 {"Too late", "2"},
+                 {"Too early", "0"},
+                 {"Catch trials right", "5 of 5"},
+                 {"PSE", "-1.2 mm (SD 0.6)"},
+                 {"Spread", "6.4 mm (SD 0.9)"},
+                 {"Median response time", "1.31 s"},
+                 {"Underruns", "0"},
+                 {"Duration", "14 min 20 s"}};
+  all.push_back({"end-operator", end});
+}
+
+void add_starts(std::vector<Exhibit>& all, const Words& words) {
+  Page page = base(words, PageKind::instructions);
+  page.trials_done = 0;
+  page.mark_mm = 160;
+  page.title = words.pick("Practice", "Übung", "練習");
+  page.text = words.pick(
+      "Slide one finger to and fro along the strip. Part of it feels smooth. Say on which side of the mark "
+      "the smooth "
+      "part ends.",
+      "Gleiten Sie mit einem Finger auf dem Streifen hin und her. Ein Teil fühlt sich glatt an. Sagen Sie, "
+      "auf welcher "
+      "Seite der Markierung der glatte Teil endet.",
+      "一本の指を帯の上で左右にすべらせてください。一部がなめらかに感じられます。なめらかな部分が印のどちら側"
+      "で終わるかを答えてください。");
+  all.push_back({"instructions", page});
+  page.mark_mm.reset();
+  page.instruction = "speed";
+  page.text = words.pick("Answer as FAST as you can. Some errors are fine.",
+                         "So SCHNELL wie möglich. Einige Fehler sind in Ordnung.",
+                         "できるだけ速く答えてください。多少の間違いは構いません。");
+  all.push_back({"instructions-speed", page});
+  page.instruction = "accuracy";
+  page.text =
+      words.pick("Be as ACCURATE as you can. Take your time.", "So GENAU wie möglich. Nehmen Sie sich Zeit.",
+                 "できるだけ正確に答えてください。時間をかけて構いません。");
+  all.push_back({"instructions-accuracy", page});
+  Page adjust = boundary(words, PageKind::adjust);
+  adjust.text = words.pick("Move the slider until the smooth part ends at the mark.",
+                           "Den Regler schieben, bis der glatte Teil an der Markierung endet.",
+                           "なめらかな部分が印で終わるように、つまみを動かしてください。");
+  adjust.answers.clear();
+  adjust.slider_min = 0;
+  adjust.slider_max = 100;
+  adjust.slider_step = 1;
+  adjust.slider = 31;
+  all.push_back({"adjust", adjust});
+}
+
+}  // namespace
+
+std::vector<Exhibit> gallery(const std::string& language) {
+  const Words words{language};
+  std::vector<Exhibit> all;
+  add_starts(all, words);
+  add_trials(all, words);
+  add_notices(all, words);
+  Page pilot = boundary(words, PageKind::stimulus);
+  pilot.run_mode = "pilot";
+  all.push_back({"explore-pilot", pilot});
+  pilot.run_mode = "simulated";
+  all.push_back({"explore-simulated", pilot});
+  return all;
+}
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,60 @@
+#include "tests/ui/scripted_session.hpp"
+
+#include <chrono>
+
+#include "tests/ui/gallery.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+std::int64_t steady_ns() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
+}  // namespace
+
+ScriptedSession::ScriptedSession(QObject* parent)
+    : QObject(parent), bridge_(steady_ns, [this](const session::Input& input) { take(input); }) {}
+
+void ScriptedSession::show(const QString& name, const QString& language) {
+  for (const auto& exhibit : gallery(language.toStdString())) {
+    if (exhibit.name == name.toStdString()) return bridge_.show(exhibit.page);
+  }
+  qFatal("no page %s in the gallery", qPrintable(name));
+}
+
+void ScriptedSession::forget() {
+  inputs_.clear();
+  touches_ = 0;
+  emit inputsChanged();
+}
+
+double ScriptedSession::answerAgeMs() const { return static_cast<double>(steady_ns() - answer_ns_) / 1e6; }
+
+void ScriptedSession::take(const session::Input& input) {
+  using session::InputKind;
+  switch (input.kind) {
+    case InputKind::answer:
+      answer_ns_ = input.time_ns;
+      inputs_ += QStringLiteral("answer %1").arg(input.value);
+      break;
+    case InputKind::next:
+      inputs_ += "next";
+      break;
+    case InputKind::slider:
+      inputs_ += QStringLiteral("slider %1").arg(input.number);
+      break;
+    case InputKind::touch_down:
+      ++touches_;
+      break;
+    case InputKind::stop:
+      inputs_ += "stop";
+      break;
+    case InputKind::pause:
+      inputs_ += "pause";
+      break;
+    case InputKind::contact:
+    case InputKind::fault:
+      qFatal("the screen cannot send this input");
+  }
+  emit inputsChanged();
+}
+
+}  // namespace turnpoint::ui

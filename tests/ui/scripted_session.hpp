@@ -1,0 +1,39 @@
+#pragma once
+#include <QObject>
+#include <QStringList>
+
+#include "station/ui/session_bridge.hpp"
+
+namespace turnpoint::ui {
+
+/// For tests of single pages: shows pages of the gallery and keeps what the page answered, as text
+/// ("answer 1", "next", "slider 31", "stop", "pause").
+class ScriptedSession : public QObject {
+  Q_OBJECT
+  Q_PROPERTY(turnpoint::ui::SessionBridge* bridge READ bridge CONSTANT)
+  Q_PROPERTY(QStringList inputs READ inputs NOTIFY inputsChanged)
+  Q_PROPERTY(int touches READ touches NOTIFY inputsChanged)
+
+ public:
+  explicit ScriptedSession(QObject* parent = nullptr);
+  SessionBridge* bridge() { return &bridge_; }
+  QStringList inputs() const { return inputs_; }
+  int touches() const { return touches_; }
+
+  Q_INVOKABLE void show(const QString& name, const QString& language);
+  Q_INVOKABLE void forget();
+  /// Milliseconds from the touch that began at the last answer's time stamp until now.
+  Q_INVOKABLE double answerAgeMs() const;
+
+ signals:
+  void inputsChanged();
+
+ private:
+  void take(const session::Input& input);
+  SessionBridge bridge_;
+  QStringList inputs_;
+  int touches_ = 0;
+  std::int64_t answer_ns_ = 0;
+};
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,222 @@
+import QtQuick
+import QtTest
+import Turnpoint
+
+Item {
+    id: stage
+    width: 800
+    height: 480
+
+    ParticipantView {
+        id: view
+        anchors.fill: parent
+        bridge: script.bridge
+        pixelsPerMm: 5.2
+    }
+
+    TestCase {
+        name: "Pages"
+        when: windowShown
+
+        readonly property real settleMs: 40
+
+        function initTestCase() { script.bridge.watch(stage.Window.window) }
+
+        function init() {
+            show("between-trials")
+            script.forget()
+        }
+
+        function show(page) {
+            const before = shown.count
+            script.show(page, "en")
+            tryCompare(shown, "count", before + 1)
+        }
+
+        function item(name) {
+            const found = findChild(view, name)
+            verify(found, name)
+            return found
+        }
+
+        function visibleItem(name) {
+            const all = []
+            collect(view, name, all)
+            compare(all.length, 1, "visible items called " + name)
+            return all[0]
+        }
+
+        function collect(parent, name, all) {
+            for (let i = 0; i < parent.children.length; ++i) {
+                const child = parent.children[i]
+                if (!child.visible) continue
+                if (child.objectName === name) all.push(child)
+                collect(child, name, all)
+            }
+        }
+
+        function tap(name) {
+            const button = visibleItem(name)
+            mouseClick(button, button.width / 2, button.height / 2)
+        }
+
+        function untilArmed() { wait(400) }
+
+        SignalSpy { id: shown; target: script.bridge; signalName: "shown" }
+
+        function test_an_answer_goes_out_once_with_the_time_of_the_touch() {
+            show("explore")
+            const button = item("answer1")
+            const touch = touchEvent(stage)
+            touch.press(1, button).commit()
+            touch.release(1, button).commit()
+            tryCompare(script, "inputs", ["answer 1"])
+            verify(script.answerAgeMs() >= settleMs)
+            mouseClick(item("answer0"))
+            wait(100)
+            compare(script.inputs, ["answer 1"])
+            compare(script.touches, 2)
+        }
+
+        function test_the_button_shows_a_press_at_once() {
+            show("explore")
+            const button = item("answer0")
+            compare(button.down, false)
+            mousePress(button)
+            compare(button.down, true)
+            mouseRelease(button)
+            compare(item("answer1").down, false)
+        }
+
+        function test_a_touch_from_before_the_answers_opened_does_not_count() {
+            show("cue")
+            const where = view.mapToItem(stage, 200, 400)
+            const touch = touchEvent(stage)
+            touch.press(1, stage, where.x, where.y).commit()
+            show("explore")
+            touch.move(1, stage, where.x + 2, where.y).commit()
+            touch.release(1, stage, where.x, where.y).commit()
+            wait(100)
+            compare(script.inputs, [])
+        }
+
+        function test_ten_fingers_are_no_answer() {
+            show("explore")
+            const touch = touchEvent(stage)
+            for (let finger = 0; finger < 10; ++finger) touch.press(finger, stage, 60 + 70 * finger, 380)
+            touch.commit()
+            for (let finger = 0; finger < 10; ++finger) touch.release(finger, stage, 60 + 70 * finger, 380)
+            touch.commit()
+            wait(100)
+            compare(script.inputs, [])
+            compare(script.touches, 10)
+            mouseClick(item("answer1"))
+            tryCompare(script, "inputs", ["answer 1"])
+        }
+
+        function test_the_gap_between_the_answers_belongs_to_neither() {
+            show("explore")
+            const left = item("answer0"), right = item("answer1")
+            const y = left.mapToItem(stage, 0, left.height / 2).y
+            mouseClick(stage, (left.mapToItem(stage, left.width, 0).x + right.mapToItem(stage, 0, 0).x) / 2, y)
+            wait(100)
+            compare(script.inputs, [])
+        }
+
+        function test_answers_are_large_apart_and_symmetric_data() {
+            return [{ tag: "two", page: "response" }, { tag: "three", page: "response-3" }]
+        }
+        function test_answers_are_large_apart_and_symmetric(row) {
+            show(row.page)
+            const count = script.bridge.page.answers.length
+            const first = item("answer0"), last = item("answer" + (count - 1)), second = item("answer1")
+            const mm = view.pixelsPerMm
+            verify(first.width >= 20 * mm && first.height >= 20 * mm)
+            verify(second.x - first.x - first.width >= 5 * mm)
+            compare(first.width, last.width)
+            fuzzyCompare(first.mapToItem(stage, 0, 0).x, stage.width - last.mapToItem(stage, last.width, 0).x, 0.5)
+            compare(first.color, last.color)
+        }
+
+        function test_continue_waits_for_taps_of_the_page_before() {
+            show("instructions")
+            tap("proceed")
+            compare(script.inputs, [])
+            untilArmed()
+            tap("proceed")
+            compare(script.inputs, ["next"])
+        }
+
+        function test_a_break_ends_when_its_time_is_over() {
+            show("rest")
+            untilArmed()
+            tap("proceed")
+            compare(script.inputs, [])
+            show("rest-over")
+            tap("proceed")
+            compare(script.inputs, ["next"])
+        }
+
+        function test_the_slider_moves_in_steps() {
+            show("adjust")
+            untilArmed()
+            tap("stepUp")
+            tap("stepUp")
+            tap("stepDown")
+            compare(script.inputs, ["slider 32", "slider 33", "slider 32"])
+            script.forget()
+            const slider = visibleItem("slider")
+            mouseClick(slider, slider.width - 1, slider.height / 2)
+            compare(script.inputs, ["slider 100"])
+            tap("proceed")
+            compare(script.inputs, ["slider 100", "next"])
+        }
+
+        function test_ending_asks_once_more() {
+            show("paused")
+            untilArmed()
+            tap("end")
+            compare(script.inputs, [])
+            tap("proceed")
+            compare(script.inputs, [])
+            tap("end")
+            tap("end")
+            compare(script.inputs, ["stop"])
+        }
+
+        function test_a_participant_can_pause_from_every_page_of_a_block_data() {
+            return ["cue", "explore", "response", "gap", "between-trials", "instructions", "rest", "adjust"].map(page => ({ tag: page }))
+        }
+        function test_a_participant_can_pause_from_every_page_of_a_block(row) {
+            show(row.tag)
+            tap("pause")
+            compare(script.inputs, ["pause"])
+        }
+
+        function test_every_page_says_that_a_run_is_no_live_one() {
+            show("explore-pilot")
+            verify(findText(view, "PILOT RUN"))
+            show("explore-simulated")
+            verify(findText(view, "SIMULATED"))
+            show("explore")
+            verify(!findText(view, "SIMULATED") && !findText(view, "PILOT RUN"))
+        }
+
+        function findText(parent, wanted) {
+            for (let i = 0; i < parent.children.length; ++i) {
+                const child = parent.children[i]
+                if (!child.visible) continue
+                if (child.text === wanted || findText(child, wanted)) return true
+            }
+            return false
+        }
+
+        function test_nothing_is_painted_anew_while_a_stimulus_runs() {
+            show("explore")
+            wait(50)
+            const before = grabImage(view)
+            wait(400)
+            verify(grabImage(view).equals(before))
+        }
+    }
+}
