@@ -47,7 +47,7 @@ void read_response(TableReader& reader, const std::string& rig_path, Transducer&
 }
 
 Transducer read_transducer(const text::Value& table, const std::string& rig_path, Findings& findings) {
-  TableReader reader(table, "transducer", findings);
+  TableReader reader(table, titled("transducer", table), findings);
   Transducer transducer;
   transducer.name = reader.string("name", "a name for messages");
   transducer.channel = reader.integer("channel", 0, 63);

@@ -22,6 +22,14 @@ std::string describe(const Range& range) {
          unit;
 }
 
+bool inside_range(double value, const Range& range) {
+  using Ends = Range::Ends;
+  const bool low_open = range.ends == Ends::open_low || range.ends == Ends::open;
+  const bool high_open = range.ends == Ends::open_high || range.ends == Ends::open;
+  return std::isfinite(value) && (low_open ? value > range.low : value >= range.low) &&
+         (high_open ? value < range.high : value <= range.high);
+}
+
 void Findings::add(const Place& place, std::string what, std::string allowed) {
   problems.push_back({place, std::move(what), std::move(allowed)});
 }
@@ -32,6 +40,11 @@ void Findings::throw_if_any() {
     return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
   });
   throw BadInput(std::move(problems));
+}
+
+std::string titled(const std::string& list, const Value& table) {
+  const auto* name = table.find("name");
+  return name && name->value.kind == Value::Kind::string ? list + "." + name->value.string : list;
 }
 
 std::string quoted_list(const std::vector<std::string>& words) {
@@ -83,13 +96,8 @@ bool TableReader::check_number(const Value& value, const std::string& key, const
                    "a number " + describe(range) + " is needed");
     return false;
   }
-  using Ends = Range::Ends;
-  const bool low_open = range.ends == Ends::open_low || range.ends == Ends::open;
-  const bool high_open = range.ends == Ends::open_high || range.ends == Ends::open;
   const double x = value.number;
-  const bool inside =
-      (low_open ? x > range.low : x >= range.low) && (high_open ? x < range.high : x <= range.high);
-  if (std::isfinite(x) && inside) return true;
+  if (inside_range(x, range)) return true;
   const std::string shown = std::isnan(x)   ? "nan"
                             : std::isinf(x) ? (x < 0 ? "-inf" : "inf")
                                             : text::number(x);

@@ -18,6 +18,8 @@ struct Range {
 
 /// `from 0 to 1 mm`, `above 0 um`, ...: a range for people.
 std::string describe(const Range& range);
+/// Finite and within the range.
+bool inside_range(double value, const Range& range);
 
 /// Collects problems and the defaults that stood in, so that a reader reports everything in one go.
 struct Findings {
@@ -27,6 +29,9 @@ struct Findings {
   /// Throws BadInput, problems in file order, if there is any.
   void throw_if_any();
 };
+
+/// `block.practice`: the title of a table in a list of tables, from its "name".
+std::string titled(const std::string& list, const Value& table);
 
 /// `"a", "b" or "c"`.
 std::string quoted_list(const std::vector<std::string>& words);

@@ -1,0 +1,152 @@
+#include <algorithm>
+#include <set>
+
+#include "station/protocol/expression.hpp"
+#include "station/protocol/reading.hpp"
+#include "station/protocol/sources.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+using text::Findings;
+
+void check_values(const Source& source, const std::set<std::string>& needed, const Reading& reading) {
+  for (const auto& name : needed) {
+    const auto* factor = find_factor(reading.protocol.factors, name);
+    const bool drawn = factor && !factor->levels.empty();
+    if (drawn || source.sets.count(name)) continue;
+    reading.findings.add(
+        source.block->place,
+        "in block \"" + source.block->name + "\", " + source.what + ", \"" + name + "\" has no value",
+        "a procedure or fixed levels that set it, or \"levels\" of the factor to draw from");
+  }
+}
+
+// A level at which two answers are right cannot be scored.
+void check_answers(const std::vector<Source>& sources, const Reading& reading) {
+  const auto& answers = reading.protocol.task.correct_answer;
+  for (const auto& source : sources) {
+    for (const double level : source.levels) {
+      auto factors = any_factors(reading.protocol);
+      factors[source.level] = level;
+      const auto right = [&](const auto& answer) { return holds(answer.second, factors); };
+      if (std::count_if(answers.begin(), answers.end(), right) < 2) continue;
+      return reading.findings.add(
+          answers.back().second.left.place,
+          "at " + source.level + " = " + text::number(level) + " both answers are right",
+          "comparisons that exclude each other");
+    }
+  }
+}
+
+// What has no right answer cannot drive a procedure by correctness, nor be passed.
+void check_scored(text::TableReader& file, const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  const auto& task = protocol.task;
+  const auto* table = file.take("task");
+  const bool stated = table && table->find("correct");
+  if (!table || task.kind != TaskKind::single_interval || stated) return;
+  for (const auto& spec : protocol.procedures) {
+    const bool adaptive =
+        spec.kind != procedure::Kind::constant_stimuli && spec.kind != procedure::Kind::adjustment;
+    if (adaptive && spec.tracks.empty())
+      reading.findings.add(
+          table->place, "the procedure \"" + spec.name + "\" follows correctness, and no answer is correct",
+          "\"correct\" in [task], or \"tracks\" in the procedure");
+  }
+  for (const auto& part : protocol.plan) {
+    const auto& block = block_of(part);
+    if (block.pass || block.feedback != Feedback::none)
+      reading.findings.add(block.place,
+                           "block \"" + block.name + "\" judges answers, and no answer is correct",
+                           "\"correct\" in [task]");
+  }
+}
+
+void check_adjustment(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  const bool adjusting = protocol.task.kind == TaskKind::adjustment;
+  for (const auto& part : protocol.plan) {
+    const auto& block = block_of(part);
+    for (const auto& name : block.procedures) {
+      const auto* spec = find_procedure(protocol, name);
+      if (!spec) continue;
+      if ((spec->kind == procedure::Kind::adjustment) != adjusting)
+        reading.findings.add(block.place, "the procedure \"" + name + "\" does not fit the kind of task",
+                             adjusting ? "kind = \"adjustment\"" : "any kind but \"adjustment\"");
+      else if (adjusting && spec->level != protocol.task.adjusts)
+        reading.findings.add(block.place, "the procedure \"" + name + "\" sets \"" + spec->level + "\"",
+                             "the factor that the slider moves: \"" + protocol.task.adjusts + "\"");
+    }
+  }
+}
+
+bool has_change(const Task& task) {
+  return std::any_of(task.intervals.begin(), task.intervals.end(),
+                     [](const auto& scenes) { return scenes.size() > 1; });
+}
+
+// Each block takes the deadline of its instruction, else that of [timing].
+std::optional<std::string> block_without_deadline(const Protocol& protocol) {
+  for (const auto& block : all_blocks(protocol)) {
+    const auto fixed = block.fixed.find("instruction");
+    const auto* name = fixed == block.fixed.end() ? nullptr : std::get_if<std::string>(&fixed->second);
+    const auto found = name ? protocol.instructions.find(*name) : protocol.instructions.end();
+    const bool unknown = name && found == protocol.instructions.end();  // reported where it is named
+    if (!unknown && (!name || !found->second.deadline_s)) return block.name;
+  }
+  return std::nullopt;
+}
+
+void check_timing(text::TableReader& file, const Reading& reading) {
+  const auto* table = file.take("timing");
+  if (!table || table->kind != text::Value::Kind::table) return;
+  const auto& protocol = reading.protocol;
+  const auto& timing = protocol.timing;
+  const auto place = [&](const char* key) {
+    const auto* entry = table->find(key);
+    return entry ? entry->value.place : table->place;
+  };
+  auto& findings = reading.findings;
+  const bool one_interval =
+      protocol.task.kind == TaskKind::single_interval || protocol.task.kind == TaskKind::adjustment;
+  if (one_interval && !table->find("explore_s") && !protocol.task.duration_s)
+    findings.add(table->place, "nothing ends the interval: [timing] has no \"explore_s\"",
+                 "the longest time that the tones last, in seconds (or \"duration_s\" in [task])");
+  if (!one_interval && table->find("explore_s"))
+    findings.add(place("explore_s"), "\"explore_s\" with several intervals",
+                 "\"duration_s\" in [task] says it");
+  if (timing.response_zero == ResponseZero::change && !has_change(protocol.task))
+    findings.add(place("response_zero"),
+                 "\"response_zero\" is \"change\" without a second scene in the interval",
+                 "an interval of two scenes: intervals = [[\"a\", \"b\"]]");
+  if (!table->find("deadline_s"))
+    if (const auto block = block_without_deadline(protocol))
+      findings.add(table->place, "block \"" + *block + "\" has no deadline: [timing] has no \"deadline_s\"",
+                   "\"deadline_s\" here, or in the block's [instructions.NAME]");
+  const auto check_anticipation = [&](double deadline_s) {
+    if (timing.anticipation_s >= deadline_s)
+      findings.add(place("anticipation_s"),
+                   "\"anticipation_s\" is not below the deadline of " + text::number(deadline_s) + " s",
+                   "below it");
+  };
+  if (timing.deadline_s) check_anticipation(*timing.deadline_s);
+  for (const auto& [name, instruction] : protocol.instructions)
+    if (instruction.deadline_s) check_anticipation(*instruction.deadline_s);
+}
+
+}  // namespace
+
+void check_whole(text::TableReader& file, Reading& reading) {
+  check_timing(file, reading);
+  check_scored(file, reading);
+  check_adjustment(reading);
+  const auto sources = sources_of(reading.protocol);
+  const auto needed = factors_used(reading.protocol);
+  for (const auto& source : sources) check_values(source, needed, reading);
+  check_answers(sources, reading);
+}
+
+}  // namespace turnpoint::protocol

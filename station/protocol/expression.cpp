@@ -1,0 +1,296 @@
+#include "station/protocol/expression.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+struct SyntaxError {
+  std::size_t at;
+  std::string what, allowed;
+};
+
+// Recursive descent over one side. Every node is linear, so a product needs one constant factor.
+class Parser {
+ public:
+  Parser(const std::string& source, std::size_t begin, std::size_t end, const std::vector<Factor>& factors)
+      : source_(source), at_(begin), end_(end), factors_(factors) {}
+
+  Linear whole() {
+    auto result = sum();
+    if (peek() != '\0') throw SyntaxError{at_, std::string("\"") + source_[at_] + "\" is out of place", form};
+    if (!std::isfinite(result.constant)) throw SyntaxError{0, "the result is not finite", form};
+    for (const auto& [name, coefficient] : result.terms)
+      if (!std::isfinite(coefficient)) throw SyntaxError{0, "the factor of " + name + " is not finite", form};
+    return result;
+  }
+
+ private:
+  static constexpr const char* form =
+      "linear arithmetic on factors: \"150 - 0.5 * spread_mm\", or abs(...) around the whole";
+
+  char peek() {
+    while (at_ < end_ && (source_[at_] == ' ' || source_[at_] == '\t')) ++at_;
+    return at_ < end_ ? source_[at_] : '\0';
+  }
+  bool accept(char c) { return peek() == c && ++at_ > 0; }
+
+  Linear sum() {
+    auto left = product();
+    for (;;) {
+      const auto at = (peek(), at_);
+      const double sign = accept('+') ? 1 : accept('-') ? -1 : 0;
+      if (sign == 0) return left;
+      add(left, product(), sign, at);
+    }
+  }
+
+  Linear product() {
+    auto left = signed_term();
+    for (;;) {
+      const auto at = (peek(), at_);
+      if (accept('*')) {
+        auto right = signed_term();
+        if (!right.is_constant()) std::swap(left, right);
+        if (!right.is_constant()) throw SyntaxError{at, "a product of two factors is not linear", form};
+        scale(left, right.constant, at);
+      } else if (accept('/')) {
+        const auto right = signed_term();
+        if (!right.is_constant()) throw SyntaxError{at, "division by a factor is not linear", form};
+        if (right.constant == 0) throw SyntaxError{at, "division by 0", form};
+        scale(left, 1 / right.constant, at);
+      } else {
+        return left;
+      }
+    }
+  }
+
+  Linear signed_term() {
+    const auto at = (peek(), at_);
+    if (accept('+')) return signed_term_deeper();
+    if (!accept('-')) return primary();
+    auto term = signed_term_deeper();
+    scale(term, -1, at);
+    return term;
+  }
+  Linear signed_term_deeper() {
+    if (++depth_ > 50) throw SyntaxError{at_, "too deeply nested", form};
+    auto term = signed_term();
+    --depth_;
+    return term;
+  }
+
+  Linear primary() {
+    const char c = peek();
+    if (c == '(') return parenthesised();
+    if ((c >= '0' && c <= '9') || c == '.') return number();
+    if (std::isalpha(static_cast<unsigned char>(c)) || c == '_') return name();
+    throw SyntaxError{
+        at_, c == '\0' ? "the expression ends too early" : std::string("\"") + c + "\" is out of place",
+        form};
+  }
+
+  Linear parenthesised() {
+    ++at_;
+    if (++depth_ > 50) throw SyntaxError{at_, "too deeply nested", form};
+    auto inner = sum();
+    --depth_;
+    if (!accept(')')) throw SyntaxError{at_, "a \")\" is missing", form};
+    return inner;
+  }
+
+  Linear number() {
+    Linear result;
+    const auto [end, error] = std::from_chars(source_.data() + at_, source_.data() + end_, result.constant);
+    if (error != std::errc() || !std::isfinite(result.constant)) throw SyntaxError{at_, "not a number", form};
+    at_ = static_cast<std::size_t>(end - source_.data());
+    return result;
+  }
+
+  Linear name() {
+    const auto begin = at_;
+    while (at_ < end_ && (std::isalnum(static_cast<unsigned char>(source_[at_])) || source_[at_] == '_'))
+      ++at_;
+    const auto word = source_.substr(begin, at_ - begin);
+    if (word == "abs" && peek() == '(') {
+      auto inner = parenthesised();
+      inner.absolute = !inner.is_constant();
+      inner.constant = inner.absolute ? inner.constant : std::fabs(inner.constant);
+      return inner;
+    }
+    const auto* factor = find_factor(factors_, word);
+    if (!factor)
+      throw SyntaxError{begin, "unknown factor \"" + word + "\"", suggestion(word, names(factors_))};
+    if (!span(*factor) && !is_broken(*factor))
+      throw SyntaxError{begin, "the factor \"" + word + "\" has names, not numbers", form};
+    Linear result;
+    result.terms.emplace_back(word, 1.0);
+    return result;
+  }
+
+  static void add(Linear& left, const Linear& right, double sign, std::size_t at) {
+    if (left.absolute || right.absolute) throw SyntaxError{at, "abs(...) inside a sum is not linear", form};
+    left.constant += sign * right.constant;
+    for (const auto& [name, coefficient] : right.terms) {
+      const auto same = [&, word = name](const auto& term) { return term.first == word; };
+      const auto found = std::find_if(left.terms.begin(), left.terms.end(), same);
+      if (found == left.terms.end())
+        left.terms.emplace_back(name, sign * coefficient);
+      else
+        found->second += sign * coefficient;
+    }
+  }
+
+  static void scale(Linear& expression, double by, std::size_t at) {
+    if (expression.absolute) throw SyntaxError{at, "abs(...) inside a product is not linear", form};
+    expression.constant *= by;
+    for (auto& term : expression.terms) term.second *= by;
+  }
+
+  const std::string& source_;
+  std::size_t at_, end_;
+  const std::vector<Factor>& factors_;
+  int depth_ = 0;
+};
+
+// The text starts one column after its opening quote; columns count characters, not bytes.
+text::Place inside(const text::Place& place, const std::string& source, std::size_t at) {
+  const auto end = source.begin() + static_cast<std::ptrdiff_t>(std::min(at, source.size()));
+  const auto characters = std::count_if(
+      source.begin(), end, [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; });
+  return {place.file, place.line, place.column + 1 + static_cast<int>(characters)};
+}
+
+std::optional<Linear> side(const std::string& source, std::size_t begin, std::size_t end,
+                           const text::Place& place, const std::vector<Factor>& factors,
+                           text::Findings& findings) {
+  try {
+    auto result = Parser(source, begin, end, factors).whole();
+    result.source = source.substr(begin, end - begin);
+    result.place = place;
+    return result;
+  } catch (const SyntaxError& error) {
+    findings.add(inside(place, source, error.at), "\"" + source + "\": " + error.what, error.allowed);
+    return std::nullopt;
+  }
+}
+
+}  // namespace
+
+std::optional<Linear> parse_linear(const std::string& source, const text::Place& place,
+                                   const std::vector<Factor>& factors, text::Findings& findings) {
+  return side(source, 0, source.size(), place, factors, findings);
+}
+
+std::optional<Comparison> parse_comparison(const std::string& source, const text::Place& place,
+                                           const std::vector<Factor>& factors, text::Findings& findings) {
+  const auto at = source.find_first_of("<>=");
+  const std::string two = at == std::string::npos ? "" : source.substr(at, 2);
+  Comparison comparison;
+  std::size_t length = 2;
+  if (two == "<=")
+    comparison.relation = Relation::less_equal;
+  else if (two == ">=")
+    comparison.relation = Relation::greater_equal;
+  else if (two == "==")
+    comparison.relation = Relation::equal;
+  else if (!two.empty() && two[0] != '=') {
+    comparison.relation = two[0] == '<' ? Relation::less : Relation::greater;
+    length = 1;
+  } else {
+    findings.add(place, "\"" + source + "\" is not a comparison",
+                 "two sides with one of < <= == >= > between: \"offset_mm < 0\"");
+    return std::nullopt;
+  }
+  const auto left = side(source, 0, at, place, factors, findings);
+  const auto right = side(source, at + length, source.size(), place, factors, findings);
+  if (!left || !right) return std::nullopt;
+  comparison.left = *left, comparison.right = *right;
+  return comparison;
+}
+
+std::optional<Linear> linear_from(const text::Value& value, const std::string& key, const text::Range& range,
+                                  const std::vector<Factor>& factors, text::Findings& findings) {
+  using Kind = text::Value::Kind;
+  std::optional<Linear> result;
+  if (value.kind == Kind::string) {
+    result = parse_linear(value.string, value.place, factors, findings);
+    if (!result) return std::nullopt;
+  } else if (value.kind == Kind::number || value.kind == Kind::integer) {
+    result.emplace();
+    result->constant = value.number;
+    result->source = text::exact(value.number);
+    result->place = value.place;
+  } else {
+    findings.add(value.place, "\"" + key + "\" is " + describe(value),
+                 "a number, or a text with linear arithmetic on factors: \"mark_mm + offset_mm\"");
+    return std::nullopt;
+  }
+  const auto broken = [&](const auto& term) { return is_broken(*find_factor(factors, term.first)); };
+  if (std::any_of(result->terms.begin(), result->terms.end(), broken)) return result;
+  const auto [low, high] = bounds(*result, factors);
+  if (text::inside_range(low, range) && inside_range(high, range)) return result;
+  if (result->is_constant())
+    findings.add(value.place, "\"" + key + "\" is " + text::number(low), "allowed: " + describe(range));
+  else
+    findings.add(value.place,
+                 "\"" + key + "\" runs from " + text::number(low) + " to " + text::number(high) +
+                     " over the values of its factors",
+                 "allowed: " + describe(range));
+  return std::nullopt;
+}
+
+std::pair<double, double> bounds(const Linear& expression, const std::vector<Factor>& factors) {
+  double low = expression.constant, high = expression.constant;
+  for (const auto& [name, coefficient] : expression.terms) {
+    const auto* factor = find_factor(factors, name);
+    const auto values = factor ? span(*factor) : std::nullopt;
+    if (!values) continue;
+    const double a = coefficient * values->first, b = coefficient * values->second;
+    low += std::min(a, b), high += std::max(a, b);
+  }
+  if (!expression.absolute) return {low, high};
+  const double furthest = std::max(std::fabs(low), std::fabs(high));
+  return {low <= 0 && high >= 0 ? 0 : std::min(std::fabs(low), std::fabs(high)), furthest};
+}
+
+std::optional<std::pair<double, double>> span(const Factor& factor) {
+  if (factor.range) return factor.range;
+  std::optional<std::pair<double, double>> result;
+  for (const auto& level : factor.levels) {
+    const auto* number = std::get_if<double>(&level);
+    if (!number) return std::nullopt;
+    if (!result) result = {*number, *number};
+    result = {std::min(result->first, *number), std::max(result->second, *number)};
+  }
+  return result;
+}
+
+bool is_broken(const Factor& factor) { return !factor.range && factor.levels.empty(); }
+
+const Factor* find_factor(const std::vector<Factor>& factors, const std::string& name) {
+  const auto found =
+      std::find_if(factors.begin(), factors.end(), [&](const Factor& f) { return f.name == name; });
+  return found == factors.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> names(const std::vector<Factor>& factors) {
+  std::vector<std::string> list;
+  for (const auto& factor : factors) list.push_back(factor.name);
+  return list;
+}
+
+std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
+  if (known.empty()) return "there is none in this file";
+  const auto near = text::nearest(word, known);
+  std::string all;
+  for (const auto& name : known) all += (all.empty() ? "" : ", ") + name;
+  return (near.empty() ? "" : "did you mean \"" + near + "\"? ") + "known: " + all;
+}
+
+}  // namespace turnpoint::protocol

@@ -1,0 +1,121 @@
+#include "station/protocol/grid.hpp"
+
+#include <cmath>
+
+#include "station/random/elementary.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+using text::Range;
+using text::TableReader;
+
+constexpr int most_points = 10001;
+constexpr const char* forms =
+    "{ from, to, step }, { from, to, count }, { log_from, log_to, count } or { values = [...] }";
+
+// from + i step: multiplied, not added up, so that no rounding error grows along the grid.
+std::vector<double> even_steps(TableReader& reader, double from, double to) {
+  const double step = reader.number("step", {0, 1e6, Range::Ends::open_low});
+  const double intervals = (to - from) / step;
+  if (!(intervals <= most_points - 1)) {
+    reader.problem("step", "the grid has " + text::number(intervals + 1) + " points",
+                   "at most " + std::to_string(most_points));
+    return {from};
+  }
+  const double whole = std::round(intervals);
+  if (std::fabs(intervals - whole) > 1e-6 || whole < 0)
+    reader.problem("to",
+                   "the steps from " + text::number(from) + " by " + text::number(step) + " do not end at " +
+                       text::number(to),
+                   "for example " + text::number(from + std::max(whole, 0.0) * step));
+  std::vector<double> values;
+  for (int i = 0; i <= static_cast<int>(whole); ++i) values.push_back(from + i * step);
+  return values;
+}
+
+std::vector<double> linear_axis(TableReader& reader) {
+  const double from = reader.number("from", {-1e6, 1e6}), to = reader.number("to", {-1e6, 1e6});
+  if (reader.has("to") && to < from) {
+    reader.problem("to", "\"to\" is below \"from\"", "at least " + text::number(from));
+    return {from};
+  }
+  if (!reader.has("count")) return even_steps(reader, from, to);
+  const int count = reader.integer("count", 2, most_points);
+  std::vector<double> values;
+  for (int i = 0; i < count; ++i) values.push_back(from + (to - from) * i / (count - 1));
+  return values;
+}
+
+std::vector<double> log_axis(TableReader& reader) {
+  const Range positive{1e-9, 1e9};
+  const double from = reader.number("log_from", positive), to = reader.number("log_to", positive);
+  const int count = reader.integer("count", 2, most_points);
+  if (reader.has("log_to") && to <= from) {
+    reader.problem("log_to", "\"log_to\" is not above \"log_from\"", "above " + text::number(from));
+    return {from};
+  }
+  std::vector<double> values{from};
+  const double first = random::log(from), range = random::log(to) - first;
+  for (int i = 1; i + 1 < count; ++i) values.push_back(random::exp(first + range * i / (count - 1)));
+  values.push_back(to);
+  return values;
+}
+
+}  // namespace
+
+procedure::Grid read_grid(const text::Value& table, const std::string& name, Axis axis,
+                          text::Findings& findings) {
+  procedure::Grid grid;
+  if (table.kind != text::Value::Kind::table) {
+    findings.add(table.place, "\"" + name + "\" is " + describe(table), std::string("allowed: ") + forms);
+    return grid;
+  }
+  TableReader reader(table, name, findings);
+  if (axis == Axis::parameter && reader.has("tied")) {
+    grid.tied = reader.word("tied", {"lapse"});
+  } else if (reader.has("values")) {
+    grid.values = reader.numbers("values", {-1e6, 1e6});
+    for (std::size_t i = 1; i < grid.values.size(); ++i)
+      if (grid.values[i] <= grid.values[i - 1]) {
+        reader.problem("values", "\"values\" do not rise", "each above the one before");
+        break;
+      }
+  } else if (reader.has("log_from")) {
+    grid.values = log_axis(reader);
+  } else if (reader.has("from")) {
+    grid.values = linear_axis(reader);
+  } else {
+    findings.add(table.place, "\"" + name + "\" is no grid", std::string("allowed: ") + forms);
+    for (const auto* key : {"values", "from", "to", "step", "count", "log_from", "log_to"}) reader.take(key);
+  }
+  reader.finish();
+  return grid;
+}
+
+procedure::Prior read_prior(const text::Value& table, const std::string& name, text::Findings& findings) {
+  procedure::Prior prior;
+  if (table.kind != text::Value::Kind::table) {
+    findings.add(table.place, "\"" + name + "\" is " + describe(table),
+                 "{ normal = { mean, sd } } or { weights = [...] }");
+    return prior;
+  }
+  TableReader reader(table, name, findings);
+  const auto* normal = reader.maybe_table("normal");
+  prior.weights = reader.maybe_numbers("weights", {0, 1e12});
+  if (reader.has("normal") == reader.has("weights"))
+    findings.add(table.place, "\"" + name + "\" has " + (normal ? "two forms" : "no form"),
+                 "exactly one of \"normal\" or \"weights\"");
+  if (normal) {
+    TableReader inner(*normal, name + ".normal", findings);
+    const double mean = inner.number("mean", {-1e6, 1e6});
+    prior.normal = {mean, inner.number("sd", {0, 1e6, Range::Ends::open_low})};
+    inner.finish();
+  }
+  reader.finish();
+  return prior;
+}
+
+}  // namespace turnpoint::protocol

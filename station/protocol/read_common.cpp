@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <cctype>
+
+#include "station/protocol/expression.hpp"
+#include "station/protocol/reading.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+using text::TableReader;
+using Kind = text::Value::Kind;
+
+Localised localised_from(const text::Value& value, const std::string& key, const Reading& reading) {
+  Localised texts;
+  const auto& languages = reading.protocol.languages;
+  auto& findings = reading.findings;
+  const std::string example = "{ " + (languages.empty() ? "en" : languages.front()) + " = \"...\" }";
+  if (value.kind != Kind::table) {
+    findings.add(value.place, "\"" + key + "\" is " + describe(value),
+                 "a text in each language is needed: " + example);
+    return texts;
+  }
+  for (const auto& entry : value.entries) {
+    if (std::find(languages.begin(), languages.end(), entry.key) == languages.end())
+      findings.add(entry.place, "\"" + key + "\" has a text in \"" + entry.key + "\", which is not declared",
+                   "[protocol] languages has " + text::quoted_list(languages));
+    else if (entry.value.kind != Kind::string || entry.value.string.empty())
+      findings.add(entry.value.place, "\"" + key + "\" is " + describe(entry.value),
+                   "a text in quotes is needed");
+    else
+      texts[entry.key] = entry.value.string;
+  }
+  for (const auto& language : languages)
+    if (!value.find(language))
+      findings.add(value.place, "\"" + key + "\" has no text in \"" + language + "\"",
+                   "one in each of [protocol] languages is needed");
+  return texts;
+}
+
+Localised read_localised(TableReader& reader, const std::string& key, const Reading& reading) {
+  const auto* value = reader.require(key, "a text in each language: { en = \"...\" }");
+  return value ? localised_from(*value, key, reading) : Localised{};
+}
+
+std::optional<Distribution> read_distribution(TableReader& reader, const std::string& key) {
+  const auto* value = reader.take(key);
+  if (!value) return std::nullopt;
+  const text::Range seconds{0, 3600, text::Range::Ends::closed, "s"};
+  if (value->kind == Kind::table) {
+    TableReader inner(*value, reader.path(key), reader.findings());
+    inner.require("uniform", "two times in seconds: { uniform = [0.8, 1.2] }");
+    const auto interval = inner.maybe_interval("uniform", seconds);
+    inner.finish();
+    return interval ? std::optional(Distribution{interval->first, interval->second}) : std::nullopt;
+  }
+  const auto fixed = reader.maybe_number(key, seconds);
+  return fixed ? std::optional(Distribution{*fixed, *fixed}) : std::nullopt;
+}
+
+std::string read_name(TableReader& reader, const std::string& key, const std::string& what) {
+  const auto name = reader.string(key, what);
+  const auto good = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
+  };
+  if (!std::all_of(name.begin(), name.end(), good) || name.size() > 64)
+    reader.problem(key, "\"" + key + "\" is \"" + name + "\"",
+                   "letters, digits, _ and - only, at most 64 of them");
+  return name;
+}
+
+namespace {
+
+std::string shown(const FactorValue& value) {
+  const auto* number = std::get_if<double>(&value);
+  return number ? text::number(*number) : "\"" + std::get<std::string>(value) + "\"";
+}
+
+}  // namespace
+
+std::optional<FactorValue> read_factor_value(const text::Value& value, const Factor& factor,
+                                             text::Findings& findings) {
+  if (is_broken(factor)) return std::nullopt;
+  const bool numeric = span(factor).has_value();
+  const bool is_number = value.kind == Kind::number || value.kind == Kind::integer;
+  if (numeric != is_number || (!numeric && value.kind != Kind::string)) {
+    findings.add(value.place, "a value of \"" + factor.name + "\" is " + describe(value),
+                 numeric ? "a number is needed" : "one of its names in quotes is needed");
+    return std::nullopt;
+  }
+  const FactorValue result = numeric ? FactorValue(value.number) : FactorValue(value.string);
+  if (factor.range) {
+    const text::Range range{factor.range->first, factor.range->second};
+    if (text::inside_range(value.number, range)) return result;
+    findings.add(value.place, "\"" + factor.name + "\" is " + text::number(value.number),
+                 "its range is " + describe(range));
+    return std::nullopt;
+  }
+  if (std::find(factor.levels.begin(), factor.levels.end(), result) != factor.levels.end()) return result;
+  std::string levels;
+  for (const auto& level : factor.levels) levels += (levels.empty() ? "" : ", ") + shown(level);
+  findings.add(value.place, "\"" + factor.name + "\" is " + shown(result), "its levels are " + levels);
+  return std::nullopt;
+}
+
+const Factor* read_numeric_factor(TableReader& reader, const std::string& key, const Reading& reading) {
+  const auto& factors = reading.protocol.factors;
+  const auto name = reader.string(key, "the name of a factor");
+  if (name.empty()) return nullptr;
+  const auto* factor = find_factor(factors, name);
+  if (!factor)
+    reader.problem(key, "unknown factor \"" + name + "\"", suggestion(name, names(factors)));
+  else if (!span(*factor) && !is_broken(*factor))
+    reader.problem(key, "the factor \"" + name + "\" has names, not numbers",
+                   "a factor with a range or numeric levels");
+  return factor && (span(*factor) || is_broken(*factor)) ? factor : nullptr;
+}
+
+}  // namespace turnpoint::protocol

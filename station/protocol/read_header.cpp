@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "station/protocol/expression.hpp"
+#include "station/protocol/reading.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+using text::Range;
+using text::TableReader;
+using Kind = text::Value::Kind;
+
+namespace {
+
+bool is_language(const std::string& code) {
+  const auto letter = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) || c == '-'; };
+  return code.size() >= 2 && code.size() <= 16 && std::all_of(code.begin(), code.end(), letter) &&
+         code[0] != '-';
+}
+
+void read_seed(TableReader& file, Reading& reading) {
+  const auto* table = file.maybe_table("random");
+  if (!table) {
+    if (!file.has("random")) reading.findings.defaults_used.push_back("random.seed = \"per-session\"");
+    return;
+  }
+  TableReader reader(*table, "random", reading.findings);
+  const auto* seed = reader.require("seed", "\"per-session\" or a whole number from 0 to 2^53");
+  if (seed && seed->kind == Kind::integer && seed->integer >= 0 && seed->integer <= (std::int64_t{1} << 53))
+    reading.protocol.seed = static_cast<std::uint64_t>(seed->integer);
+  else if (seed && (seed->kind != Kind::string || seed->string != "per-session"))
+    reader.problem(
+        "seed",
+        "\"seed\" is " + (seed->kind == Kind::integer ? std::to_string(seed->integer) : describe(*seed)),
+        "allowed: \"per-session\" or a whole number from 0 to 2^53");
+  reader.finish();
+}
+
+void check_factor_name(TableReader& reader, const std::string& name) {
+  const auto good = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
+  if (name.empty()) return;
+  if (!std::all_of(name.begin(), name.end(), good) || std::isdigit(static_cast<unsigned char>(name[0])) ||
+      name == "abs")
+    reader.problem(
+        "name", "\"" + name + "\" cannot stand in arithmetic",
+        "letters, digits and _, not starting with a digit; the unit goes at its end: \"offset_mm\"");
+}
+
+void read_level(const text::Value& item, Factor& factor, text::Findings& findings) {
+  const bool number = item.kind == Kind::number || item.kind == Kind::integer;
+  const bool fits = number ? text::inside_range(item.number, {-1e6, 1e6})
+                           : item.kind == Kind::string && !item.string.empty() && !factor.range;
+  const FactorValue value = number ? FactorValue(item.number) : FactorValue(item.string);
+  const auto& levels = factor.levels;
+  if (!fits || (!levels.empty() && value.index() != levels.front().index()))
+    findings.add(item.place, "a level of \"" + factor.name + "\" is " + describe(item),
+                 "all numbers (finite, up to a million) or all names");
+  else if (std::find(levels.begin(), levels.end(), value) != levels.end())
+    findings.add(item.place, "a level of \"" + factor.name + "\" stands twice", "levels must differ");
+  else if (factor.range && !text::inside_range(item.number, {factor.range->first, factor.range->second}))
+    findings.add(item.place, "a level of \"" + factor.name + "\" is outside its range",
+                 describe(Range{factor.range->first, factor.range->second}));
+  else
+    factor.levels.push_back(value);
+}
+
+Factor read_factor(const text::Value& table, Reading& reading) {
+  TableReader reader(table, titled("factor", table), reading.findings);
+  Factor factor;
+  factor.place = table.place;
+  factor.name = reader.string("name", "a name: \"offset_mm\"");
+  check_factor_name(reader, factor.name);
+  factor.range = reader.maybe_interval("range", {-1e6, 1e6});
+  const auto* levels = reader.take("levels");
+  if (!reader.has("range") && !levels)
+    reading.findings.add(table.place, "the factor \"" + factor.name + "\" has no values",
+                         "\"range\" = [low, high] or \"levels\" = [...]");
+  if (levels && (levels->kind != Kind::array || levels->items.empty()))
+    reader.problem("levels",
+                   "\"levels\" is " + std::string(levels->kind == Kind::array ? "empty" : describe(*levels)),
+                   "a list of numbers or of names is needed");
+  else if (levels)
+    for (const auto& item : levels->items) read_level(item, factor, reading.findings);
+  reader.finish();
+  return factor;
+}
+
+}  // namespace
+
+void read_header(TableReader& file, Reading& reading) {
+  file.word("format", {"friction-protocol/1"});
+  auto& protocol = reading.protocol;
+  if (const auto* table = file.table("protocol", "a table [protocol] with id, version, title, languages")) {
+    TableReader reader(*table, "protocol", reading.findings);
+    protocol.id = read_name(reader, "id", "a short name; exported data go to a folder of this name");
+    protocol.version = reader.string("version", "a text such as \"1.0.0\"; raise it with each change");
+    protocol.title = reader.string("title", "a title for the researcher");
+    protocol.languages = reader.strings("languages", "a list of language codes: [\"en\", \"ja\"]");
+    std::set<std::string> seen;
+    for (const auto& code : protocol.languages)
+      if (!is_language(code) || !seen.insert(code).second)
+        reader.problem("languages", "\"" + code + "\" in \"languages\"",
+                       "each language code once: \"en\", \"de\", \"ja\"");
+    reader.finish();
+  }
+  read_seed(file, reading);
+}
+
+void read_factors(TableReader& file, Reading& reading) {
+  auto& factors = reading.protocol.factors;
+  for (const auto* table : file.tables("factor")) {
+    auto factor = read_factor(*table, reading);
+    if (find_factor(factors, factor.name))
+      reading.findings.add(table->place, "a second factor named \"" + factor.name + "\"",
+                           "names must differ");
+    else
+      factors.push_back(std::move(factor));
+  }
+}
+
+void read_analysis(TableReader& file, Reading& reading) {
+  const auto* table = file.maybe_table("analysis");
+  if (!table) return;
+  TableReader reader(*table, "analysis", reading.findings);
+  auto& analysis = reading.protocol.analysis;
+  analysis.by = reader.maybe_string("by").value_or("");
+  const auto& factors = reading.protocol.factors;
+  if (!analysis.by.empty() && !find_factor(factors, analysis.by))
+    reader.problem("by", "unknown factor \"" + analysis.by + "\"", suggestion(analysis.by, names(factors)));
+  if (const auto* difficulty = reader.take("difficulty"))
+    analysis.difficulty = linear_from(*difficulty, "difficulty", {-1e9, 1e9}, factors, reading.findings);
+  analysis.show = reader.maybe_strings("show");
+  const std::vector<std::string> known{"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime", "trace"};
+  for (const auto& word : analysis.show)
+    if (std::find(known.begin(), known.end(), word) == known.end())
+      reader.problem("show", "\"show\" has \"" + word + "\"", suggestion(word, known));
+  if (const auto* exclude = reader.maybe_table("response_time_exclude")) {
+    TableReader inner(*exclude, "analysis.response_time_exclude", reading.findings);
+    analysis.exclude_below_s = inner.number("below_s", {0, 10, Range::Ends::closed, "s"}, 0);
+    analysis.exclude_mad =
+        inner.maybe_number("mad", {0, 100, Range::Ends::open_low, "median absolute deviations"});
+    inner.finish();
+  }
+  reader.finish();
+}
+
+void read_resume(TableReader& file, Reading& reading) {
+  static const text::Value empty;
+  const auto* table = file.maybe_table("resume");
+  TableReader reader(table ? *table : empty, "resume", reading.findings);
+  auto& resume = reading.protocol.resume;
+  const std::vector<std::string> words{"ask", "resume", "restart", "block"};
+  const auto word = reader.word("incomplete", words, "ask");
+  resume.incomplete = static_cast<ResumePolicy>(std::find(words.begin(), words.end(), word) - words.begin());
+  resume.max_age_h = reader.number("max_age_h", {0, 8760, Range::Ends::open_low, "h"}, 24);
+  resume.warmup = reader.integer("warmup", 0, 100, 0);
+  resume.restart_unit = reader.maybe_word("restart_unit", {"block"}).value_or("");
+  reader.finish();
+}
+
+}  // namespace turnpoint::protocol

@@ -1,0 +1,205 @@
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "station/protocol/expression.hpp"
+#include "station/protocol/reading.hpp"
+
+namespace turnpoint::protocol {
+
+using text::Range;
+using text::TableReader;
+using text::Value;
+using Kind = Value::Kind;
+
+namespace {
+
+void read_what(TableReader& reader, Block& block, const Reading& reading) {
+  block.procedures = reader.maybe_strings("procedures");
+  std::vector<std::string> known;
+  for (const auto& spec : reading.protocol.procedures) known.push_back(spec.name);
+  std::set<std::string> seen;
+  for (const auto& name : block.procedures) {
+    // Procedures with problems of their own are not in the protocol; then only those are worth reporting.
+    if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
+      reader.problem("procedures", "unknown procedure \"" + name + "\"", suggestion(name, known));
+    if (!seen.insert(name).second)
+      reader.problem("procedures", "\"" + name + "\" stands twice", "each procedure once");
+  }
+  const bool levels = reader.has("level") || reader.has("levels");
+  reader.take("level"), reader.take("levels");
+  if (reader.has("procedures") == levels)
+    return reading.findings.add(
+        reader.place(),
+        reader.title() + (levels ? " has both procedures and fixed levels" : " presents nothing"),
+        "either \"procedures\" or both \"level\" and \"levels\"");
+  if (!levels) return;
+  const auto* factor = read_numeric_factor(reader, "level", reading);
+  const auto* list = reader.require("levels", "the values to show in turn");
+  reader.numbers("levels", {-1e6, 1e6});
+  if (!factor || !list || list->kind != Kind::array) return;
+  block.level = factor->name;
+  for (const auto& item : list->items)
+    if (const auto value = read_factor_value(item, *factor, reading.findings))
+      if (const auto* number = std::get_if<double>(&*value)) block.levels.push_back(*number);
+}
+
+void read_catch(TableReader& reader, Block& block, const Reading& reading) {
+  const auto* table = reader.maybe_table("catch");
+  if (!table) return;
+  TableReader inner(*table, reader.path("catch"), reading.findings);
+  Catch trials;
+  trials.rate = inner.number("rate", {0, 0.5, Range::Ends::open_low});
+  for (const auto& factor : reading.protocol.factors) {
+    const auto* value = inner.take(factor.name);
+    if (!value) continue;
+    if (!trials.factor.empty())
+      inner.problem(factor.name, "\"catch\" sets a second factor", "one factor only");
+    trials.factor = factor.name;
+    const auto one = [&](const Value& item) {
+      const auto read = read_factor_value(item, factor, reading.findings);
+      if (const auto* number = read ? std::get_if<double>(&*read) : nullptr)
+        trials.levels.push_back(*number);
+      else if (read)
+        inner.problem(factor.name, "\"catch\" sets a factor that has names", "a numeric factor");
+    };
+    if (value->kind != Kind::array)
+      one(*value);
+    else
+      for (const auto& item : value->items) one(item);
+    if (value->kind == Kind::array && value->items.empty())
+      inner.problem(factor.name, "\"catch\" has an empty list", "at least one level that is easy");
+  }
+  if (trials.factor.empty() && table->entries.size() <= 1)
+    reading.findings.add(table->place, "\"catch\" does not say what it shows",
+                         "a factor and its easy levels: { rate = 0.06, offset_mm = [-25.0, 25.0] }");
+  inner.finish();
+  block.catch_trials = trials;
+}
+
+void read_practice(TableReader& reader, Block& block, const Reading& reading) {
+  block.practice = reader.boolean("practice", "false");
+  const auto* table = reader.maybe_table("pass");
+  if (!table) return;
+  if (!block.practice) reader.problem("pass", "\"pass\" in a block that is not practice", "practice = true");
+  TableReader inner(*table, reader.path("pass"), reading.findings);
+  block.pass = Pass{inner.number("accuracy", {0, 1, Range::Ends::open_low}), inner.integer("retries", 0, 20)};
+  inner.finish();
+}
+
+void read_break(TableReader& reader, Block& block, const Reading& reading) {
+  const auto* table = reader.maybe_table("break_after");
+  if (!table) return;
+  TableReader inner(*table, reader.path("break_after"), reading.findings);
+  block.break_after = Break{inner.integer("trials", 1, 100000),
+                            inner.number("min_s", {0, 3600, Range::Ends::closed, "s"}, 0)};
+  inner.finish();
+}
+
+void read_block_keys(TableReader& reader, Block& block, const Reading& reading) {
+  block.place = reader.place();
+  read_what(reader, block, reading);
+  block.trials = reader.maybe_integer("trials", 1, 100000);
+  if (!block.levels.empty() && !block.trials) block.trials = static_cast<int>(block.levels.size());
+  const auto feedback = reader.word("feedback", {"none", "trial", "block"}, "none");
+  block.feedback = feedback == "trial"   ? Feedback::trial
+                   : feedback == "block" ? Feedback::block
+                                         : Feedback::none;
+  read_practice(reader, block, reading);
+  const auto order = reader.maybe_word("interleave", {"none", "random", "alternate"});
+  block.interleave = order == "random"      ? Interleave::random
+                     : order == "alternate" ? Interleave::alternate
+                                            : Interleave::none;
+  if (std::set(block.procedures.begin(), block.procedures.end()).size() > 1)
+    reader.require("interleave", "allowed: \"none\" (one after the other), \"random\" or \"alternate\"");
+  read_catch(reader, block, reading);
+  read_break(reader, block, reading);
+  if (const auto name = reader.maybe_string("instruction")) {
+    std::vector<std::string> known;
+    for (const auto& [key, instruction] : reading.protocol.instructions) known.push_back(key);
+    if (std::find(known.begin(), known.end(), *name) == known.end())
+      reader.problem("instruction", "there is no [instructions." + *name + "]", suggestion(*name, known));
+    block.fixed["instruction"] = *name;
+  }
+}
+
+Block read_block(const Value& table, const Reading& reading) {
+  TableReader reader(table, titled("block", table), reading.findings);
+  Block block;
+  block.name = read_name(reader, "name", "a name for the data file");
+  read_block_keys(reader, block, reading);
+  reader.finish();
+  return block;
+}
+
+void check_instruction_levels(const Factor& factor, TableReader& reader, const Reading& reading) {
+  if (factor.name != "instruction") return;
+  for (const auto& level : factor.levels) {
+    const auto* name = std::get_if<std::string>(&level);
+    if (name && !reading.protocol.instructions.count(*name))
+      reader.problem("over", "there is no [instructions." + *name + "]",
+                     "one for each level of \"instruction\"");
+  }
+}
+
+Sequence read_sequence(const Value& table, const Reading& reading) {
+  TableReader reader(table, titled("sequence", table), reading.findings);
+  Sequence sequence;
+  sequence.name = read_name(reader, "name", "a name for the data file");
+  reader.word("design", {"latin-square"});
+  sequence.over = reader.string("over", "the factor that differs between the blocks");
+  const auto& factors = reading.protocol.factors;
+  const auto* factor = find_factor(factors, sequence.over);
+  if (!sequence.over.empty() && !factor)
+    reader.problem("over", "unknown factor \"" + sequence.over + "\"",
+                   suggestion(sequence.over, names(factors)));
+  if (factor && factor->levels.size() < 2)
+    reader.problem("over", "the factor \"" + sequence.over + "\" has no levels to order",
+                   "a factor with two \"levels\" or more");
+  if (factor) check_instruction_levels(*factor, reader, reading);
+  sequence.cycles = reader.integer("cycles", 1, 100, 1);
+  sequence.mirror = reader.boolean("mirror", "false");
+  if (const auto* block = reader.table("block", "what each block does: { procedures = [\"levels\"] }")) {
+    TableReader inner(*block, reader.path("block"), reading.findings);
+    read_block_keys(inner, sequence.block, reading);
+    inner.finish();
+  }
+  sequence.block.name = sequence.name;
+  reader.finish();
+  return sequence;
+}
+
+}  // namespace
+
+void read_plan(TableReader& file, Reading& reading) {
+  std::vector<std::pair<const Value*, bool>> tables;  // with whether it is a sequence
+  for (const auto* table : file.tables("block")) tables.emplace_back(table, false);
+  for (const auto* table : file.tables("sequence")) tables.emplace_back(table, true);
+  const auto above = [](const auto& a, const auto& b) {
+    return std::tie(a.first->place.line, a.first->place.column) <
+           std::tie(b.first->place.line, b.first->place.column);
+  };
+  std::stable_sort(tables.begin(), tables.end(), above);
+  std::set<std::string> seen;
+  for (const auto& [table, is_sequence] : tables) {
+    std::string name;
+    if (is_sequence) {
+      auto sequence = read_sequence(*table, reading);
+      name = sequence.name;
+      reading.protocol.plan.emplace_back(std::move(sequence));
+    } else {
+      auto block = read_block(*table, reading);
+      name = block.name;
+      reading.protocol.plan.emplace_back(std::move(block));
+    }
+    if (!name.empty() && !seen.insert(name).second)
+      reading.findings.add(table->place, "a second block named \"" + name + "\"",
+                           "names of blocks and sequences must differ");
+  }
+  if (tables.empty() && !file.has("block") && !file.has("sequence"))
+    reading.findings.add(file.place(), "the file has no [[block]] and no [[sequence]]",
+                         "at least one is needed");
+}
+
+}  // namespace turnpoint::protocol

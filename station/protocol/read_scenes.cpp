@@ -1,0 +1,269 @@
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "station/protocol/expression.hpp"
+#include "station/protocol/reading.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+using text::Findings;
+using text::Range;
+using text::TableReader;
+using text::Value;
+using Ends = Range::Ends;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+const Range position_mm{0, 1e5, Ends::open_low, "mm"};
+const Range displacement_um{0, 1000, Ends::open_low, "um"};
+const Range relative_friction{0, 1, Ends::open};
+const std::vector<std::string> edge_names{"turning", "peak", "p70", "p50", "p25", "p10"};
+
+std::optional<Linear> read_linear(TableReader& reader, const std::string& key, const Range& range,
+                                  const Reading& reading) {
+  const auto* value = reader.take(key);
+  return value ? linear_from(*value, key, range, reading.protocol.factors, reader.findings()) : std::nullopt;
+}
+
+Edge read_edge(TableReader& reader) {
+  Edge edge;
+  const auto* value =
+      reader.require("edge", "which edge \"boundary_mm\" means: " + text::quoted_list(edge_names) +
+                                 ", or { friction = 0.7 }");
+  if (!value) return edge;
+  if (value->kind != Value::Kind::table) {
+    edge.name = reader.maybe_word("edge", edge_names).value_or("");
+    return edge;
+  }
+  TableReader inner(*value, reader.path("edge"), reader.findings());
+  edge.name = "friction";
+  edge.friction = inner.number("friction", relative_friction);
+  inner.finish();
+  return edge;
+}
+
+SceneTone read_tone(const Value& table, const std::string& name, Findings& findings, const Reading& reading) {
+  TableReader reader(table, name, findings);
+  SceneTone tone;
+  tone.boundary_mm = read_linear(reader, "boundary_mm", position_mm, reading);
+  tone.frequency_Hz = read_linear(reader, "frequency_Hz", {0, 1e6, Ends::open_low, "Hz"}, reading);
+  if (reader.has("boundary_mm") == reader.has("frequency_Hz"))
+    findings.add(table.place,
+                 "a tone of " + name + " has " + (reader.has("boundary_mm") ? "two places" : "no place"),
+                 "exactly one of \"boundary_mm\" or \"frequency_Hz\"");
+  if (reader.has("boundary_mm"))
+    tone.edge = read_edge(reader);
+  else if (reader.take("edge"))
+    reader.problem("edge", "an \"edge\" without \"boundary_mm\"", "a tone placed by frequency has none");
+  reader.require("displacement_um", "peak displacement at the tone's last maximum, in um");
+  if (const auto displacement = read_linear(reader, "displacement_um", displacement_um, reading))
+    tone.displacement_um = *displacement;
+  tone.phase_deg = reader.maybe_number("phase_deg", {-360, 360, Ends::closed, "degrees"}).value_or(0);
+  reader.finish();
+  return tone;
+}
+
+Zone read_zone(const Value& table, const std::string& name, Findings& findings, const Reading& reading) {
+  TableReader reader(table, name, findings);
+  Zone zone;
+  zone.from_mm = reader.number("from_mm", {0, 1e5, Ends::closed, "mm"});
+  reader.require("friction", "mean relative friction inside the zone, above 0 and below 1");
+  zone.friction = read_linear(reader, "friction", relative_friction, reading);
+  zone.tones = reader.integer("tones", 1, 16);
+  reader.finish();
+  return zone;
+}
+
+Tolerance read_tolerance(const Value& table, const std::string& name, Findings& findings) {
+  TableReader reader(table, name, findings);
+  Tolerance tolerance;
+  tolerance.boundary_mm = reader.maybe_number("boundary_mm", {0, 1000, Ends::open_low, "mm"});
+  tolerance.level_dB = reader.maybe_number("level_dB", {0, 60, Ends::open_low, "dB"});
+  tolerance.friction = reader.maybe_number("friction", {0, 1, Ends::open});
+  reader.finish();
+  return tolerance;
+}
+
+// What a scene shows comes in three forms; exactly one may be there.
+void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
+  const auto form =
+      "one boundary (\"boundary_mm\", \"edge\" and \"displacement_um\" or \"friction\"), a \"zone\" with "
+      "\"boundary_mm\" and \"edge\", or explicit \"tones\"";
+  const bool tones = reader.has("tones"), zone = reader.has("zone"), boundary = reader.has("boundary_mm");
+  if (!tones && !boundary) return findings.add(reader.place(), reader.title() + " presents nothing", form);
+  if (tones) {
+    for (const auto* key :
+         {"boundary_mm", "edge", "zone", "displacement_um", "friction", "friction_contrast_dB"})
+      if (reader.has(key))
+        reader.problem(key, std::string("\"") + key + "\" beside \"tones\" in " + reader.title(), form);
+    return;
+  }
+  const int levels = reader.has("displacement_um") + reader.has("friction");
+  if (zone) {
+    for (const auto* key : {"displacement_um", "friction"})
+      if (reader.has(key))
+        reader.problem(key, std::string("\"") + key + "\" beside \"zone\"",
+                       "the zone's own \"friction\" says it");
+  } else if (levels != 1) {
+    findings.add(levels == 2 ? reader.place("friction") : reader.place(),
+                 reader.title() + (levels == 2 ? " has both \"displacement_um\" and \"friction\""
+                                               : " does not say how strong it is"),
+                 "exactly one of \"displacement_um\" (at the last maximum) or \"friction\"");
+  }
+  if (scene.friction_contrast_dB && !zone && !reader.has("friction"))
+    reader.problem("friction_contrast_dB", "\"friction_contrast_dB\" needs a base that states friction",
+                   "a base with \"friction\" or with a \"zone\"");
+  if (scene.zone && scene.boundary_mm && scene.zone->from_mm) {
+    const auto least = bounds(*scene.boundary_mm, {}).first;
+    if (scene.boundary_mm->is_constant() && *scene.zone->from_mm >= least)
+      reader.problem("zone",
+                     "the zone begins at " + text::number(*scene.zone->from_mm) + " mm, behind its boundary",
+                     "\"from_mm\" below \"boundary_mm\"");
+  }
+}
+
+Scene read_scene(const Value& table, const std::string& name, const Value& own, Findings& findings,
+                 const Reading& reading) {
+  const std::string path = "scene." + name;
+  TableReader reader(table, path, findings);
+  Scene scene;
+  scene.name = name;
+  scene.place = table.place;
+  scene.base = reader.maybe_string("base").value_or("");
+  scene.boundary_mm = read_linear(reader, "boundary_mm", position_mm, reading);
+  if (reader.has("boundary_mm"))
+    scene.edge = read_edge(reader);
+  else if (reader.take("edge"))
+    reader.problem("edge", "an \"edge\" without \"boundary_mm\"", "the boundary that it is the edge of");
+  scene.displacement_um = read_linear(reader, "displacement_um", displacement_um, reading);
+  scene.friction = read_linear(reader, "friction", relative_friction, reading);
+  for (const auto* tone : reader.tables("tones"))
+    scene.tones.push_back(read_tone(*tone, path + ".tones", findings, reading));
+  if (reader.has("tones") && scene.tones.empty())
+    reader.problem("tones", "\"tones\" has no tone", "at least one { ... }");
+  if (const auto* zone = reader.maybe_table("zone"))
+    scene.zone = read_zone(*zone, path + ".zone", findings, reading);
+  scene.friction_contrast_dB =
+      read_linear(reader, "friction_contrast_dB", {-infinity, 0, Ends::open_high, "dB"}, reading);
+  if (own.find("friction_contrast_dB") && scene.base.empty())
+    reader.problem("friction_contrast_dB", "\"friction_contrast_dB\" without a \"base\"",
+                   "the scene that it is lower than");
+  scene.rove_dB = reader.number("rove_dB", {0, 40, Ends::closed, "dB"}, 0);
+  scene.ramp_ms = reader.number("ramp_ms", {1, 2000, Ends::closed, "ms"}, 50);
+  if (const auto* tolerance = reader.maybe_table("tolerance"))
+    scene.tolerance = read_tolerance(*tolerance, path + ".tolerance", findings);
+  check_form(reader, scene, findings);
+  reader.finish();
+  return scene;
+}
+
+void erase(Value& table, const std::string& key) {
+  std::erase_if(table.entries, [&](const auto& entry) { return entry.key == key; });
+}
+
+// A base's keys with the scene's own on top; `zone` and `tolerance` are laid over key by key.
+Value overlay(Value base, const Value& own) {
+  const auto states = [&](const char* key) { return own.find(key) != nullptr; };
+  if (states("displacement_um")) erase(base, "friction");
+  if (states("friction")) erase(base, "displacement_um");
+  if (states("tones"))
+    for (const auto* key : {"boundary_mm", "edge", "zone", "displacement_um", "friction"}) erase(base, key);
+  if (states("boundary_mm") || states("zone")) erase(base, "tones");
+  for (const auto& entry : own.entries) {
+    const auto* below = base.find(entry.key);
+    const bool tables =
+        below && below->value.kind == Value::Kind::table && entry.value.kind == Value::Kind::table;
+    auto merged = entry;
+    if (tables && (entry.key == "zone" || entry.key == "tolerance"))
+      merged.value = overlay(below->value, entry.value);
+    erase(base, entry.key);
+    base.entries.push_back(std::move(merged));
+  }
+  base.place = own.place;
+  return base;
+}
+
+class Resolver {
+ public:
+  Resolver(const Value& scenes, Reading& reading) : scenes_(scenes), reading_(reading) {}
+
+  /// The scene's table with its bases below it; reads it on the way. nullptr after a problem with a base.
+  const Value* resolve(const std::string& name) {
+    if (const auto done = resolved_.find(name); done != resolved_.end()) return &done->second;
+    const auto& own = scenes_.find(name)->value;
+    open_.insert(name);
+    auto table = own;
+    if (const auto* base = own.find("base"); base && base->value.kind == Value::Kind::string) {
+      const auto* below = base_of(name, base->value);
+      if (!below) return open_.erase(name), nullptr;
+      if (own.find("friction_contrast_dB") && below->find("friction_contrast_dB"))
+        reading_.findings.add(base->value.place,
+                              "the base \"" + base->value.string + "\" has a contrast itself",
+                              "a base without \"friction_contrast_dB\"");
+      if (own.find("friction_contrast_dB") && (own.find("zone") || own.find("friction")))
+        reading_.findings.add(own.find("friction_contrast_dB")->place,
+                              "both a contrast to the base and a friction of its own", "one of them");
+      table = overlay(*below, own);
+    }
+    open_.erase(name);
+    read(name, table, own);
+    return &(resolved_[name] = std::move(table));
+  }
+
+ private:
+  const Value* base_of(const std::string& name, const Value& base) {
+    std::vector<std::string> others;
+    for (const auto& entry : scenes_.entries)
+      if (entry.key != name) others.push_back(entry.key);
+    if (open_.count(base.string)) {
+      reading_.findings.add(base.place, "the bases of \"" + name + "\" run in a circle",
+                            "a base that leads to no other way back");
+      return nullptr;
+    }
+    const auto* found = scenes_.find(base.string);
+    if (found && found->value.kind == Value::Kind::table) return resolve(base.string);
+    reading_.findings.add(base.place, "unknown scene \"" + base.string + "\"",
+                          suggestion(base.string, others));
+    return nullptr;
+  }
+
+  // What a base has wrong stands in the merged table too: report each place once.
+  void read(const std::string& name, const Value& table, const Value& own) {
+    Findings found;
+    auto scene = read_scene(table, name, own, found, reading_);
+    for (auto& problem : found.problems)
+      if (places_.insert({problem.place.line, problem.place.column}).second)
+        reading_.findings.problems.push_back(std::move(problem));
+    auto& defaults = reading_.findings.defaults_used;
+    defaults.insert(defaults.end(), found.defaults_used.begin(), found.defaults_used.end());
+    reading_.protocol.scenes.emplace(name, std::move(scene));
+  }
+
+  const Value& scenes_;
+  Reading& reading_;
+  std::map<std::string, Value> resolved_;
+  std::set<std::string> open_;
+  std::set<std::pair<int, int>> places_;
+};
+
+}  // namespace
+
+void read_scenes(TableReader& file, Reading& reading) {
+  const auto* scenes = file.table("scene", "at least one table [scene.NAME]");
+  if (!scenes) return;
+  for (const auto& entry : scenes->entries) reading.declared_scenes.push_back(entry.key);
+  Resolver resolver(*scenes, reading);
+  for (const auto& entry : scenes->entries) {
+    if (entry.value.kind == Value::Kind::table)
+      resolver.resolve(entry.key);
+    else
+      reading.findings.add(entry.place, "\"scene." + entry.key + "\" is " + describe(entry.value),
+                           "a table [scene.NAME] is needed");
+  }
+}
+
+}  // namespace turnpoint::protocol

@@ -1,0 +1,236 @@
+#include <algorithm>
+#include <set>
+
+#include "station/protocol/expression.hpp"
+#include "station/protocol/reading.hpp"
+
+namespace turnpoint::protocol {
+
+using text::Range;
+using text::TableReader;
+using text::Value;
+using Kind = Value::Kind;
+
+namespace {
+
+const std::vector<std::string> kinds{"single-interval", "2ifc", "same-different", "oddity", "adjustment"};
+
+void check_scene(const std::string& name, const text::Place& place, const Reading& reading) {
+  const auto& known = reading.declared_scenes;
+  if (std::find(known.begin(), known.end(), name) == known.end())
+    reading.findings.add(place, "unknown scene \"" + name + "\"", suggestion(name, known));
+}
+
+std::vector<std::string> read_interval(const Value& item, const Reading& reading) {
+  std::vector<std::string> scenes;
+  const auto one = [&](const Value& value) {
+    if (value.kind != Kind::string)
+      return reading.findings.add(value.place, "an interval holds " + describe(value),
+                                  "the name of a scene in quotes");
+    check_scene(value.string, value.place, reading);
+    scenes.push_back(value.string);
+  };
+  if (item.kind != Kind::array)
+    one(item);
+  else
+    for (const auto& value : item.items) one(value);
+  if (item.kind == Kind::array && item.items.size() != 1 && item.items.size() != 2)
+    reading.findings.add(item.place, "an interval has " + std::to_string(item.items.size()) + " scenes",
+                         "one, or two of which the second follows after the foreperiod");
+  return scenes;
+}
+
+void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
+  const bool pair = task.kind == TaskKind::same_different || task.kind == TaskKind::oddity;
+  if (pair) {
+    task.standard = reader.string("standard", "the name of the scene that is usual");
+    task.target = reader.string("target", "the name of the scene that differs");
+    for (const auto* key : {"standard", "target"})
+      if (reader.has(key))
+        check_scene(key == std::string("standard") ? task.standard : task.target, reader.place(key), reading);
+    if (!task.standard.empty() && task.standard == task.target)
+      reader.problem("target", "\"target\" and \"standard\" are the same scene", "two different ones");
+    return;
+  }
+  const auto* list = reader.require("intervals", "a list of scene names: [\"edge\"]");
+  if (!list) return;
+  if (list->kind != Kind::array)
+    return reader.problem("intervals", "\"intervals\" is " + describe(*list),
+                          "a list of scene names: [\"edge\"]");
+  for (const auto& item : list->items) task.intervals.push_back(read_interval(item, reading));
+  const std::size_t needed = task.kind == TaskKind::two_interval ? 2 : 1;
+  if (task.intervals.size() != needed)
+    reader.problem("intervals", "\"intervals\" has " + std::to_string(task.intervals.size()),
+                   std::to_string(needed) + " for this kind of task");
+}
+
+void read_times(TableReader& reader, Task& task) {
+  const Range seconds{0, 600, Range::Ends::open_low, "s"};
+  const bool several = task.kind != TaskKind::single_interval && task.kind != TaskKind::adjustment;
+  if (several) {
+    task.duration_s = reader.number("duration_s", seconds);
+    task.gap_s = reader.number("gap_s", {0, 60, Range::Ends::closed, "s"});
+  } else {
+    task.duration_s = reader.maybe_number("duration_s", seconds);
+  }
+  const auto sequence = [](const auto& interval) { return interval.size() > 1; };
+  const bool change = std::any_of(task.intervals.begin(), task.intervals.end(), sequence);
+  if (change) {
+    reader.require("foreperiod_s", "the time before the second scene, in seconds: { uniform = [1.0, 2.5] }");
+    task.foreperiod_s = read_distribution(reader, "foreperiod_s");
+    task.transition_ms = reader.number("transition_ms", {1, 5000, Range::Ends::closed, "ms"});
+  } else {
+    for (const auto* key : {"foreperiod_s", "transition_ms"})
+      if (reader.take(key))
+        reader.problem(key, std::string("\"") + key + "\" without a second scene",
+                       "it belongs to an interval of two scenes: intervals = [[\"a\", \"b\"]]");
+  }
+}
+
+void read_choices(TableReader& reader, Task& task, const Reading& reading) {
+  reader.require("choices", "the answers: [ { id = \"left\", label = { en = \"Left\" } }, ... ]");
+  std::set<std::string> seen;
+  for (const auto* table : reader.tables("choices")) {
+    TableReader inner(*table, "task.choices", reading.findings);
+    Choice choice;
+    choice.id = read_name(inner, "id", "a short name for the data file");
+    choice.label = read_localised(inner, "label", reading);
+    if (!choice.id.empty() && !seen.insert(choice.id).second)
+      inner.problem("id", "a second choice \"" + choice.id + "\"", "ids must differ");
+    inner.finish();
+    task.choices.push_back(std::move(choice));
+  }
+  const std::size_t needed = task.kind == TaskKind::oddity ? 3 : task.kind == TaskKind::adjustment ? 1 : 2;
+  const auto* list = reader.take("choices");
+  if (list && list->kind == Kind::array && list->items.size() != needed)
+    reader.problem("choices", "\"choices\" has " + std::to_string(list->items.size()),
+                   std::to_string(needed) + " for this kind of task");
+  if (task.kind == TaskKind::same_different && task.choices.size() == 2 &&
+      seen != std::set<std::string>{"same", "different"})
+    reader.problem("choices", "the answers of a same-different task have other ids",
+                   "\"same\" and \"different\"");
+}
+
+void read_correct_scene(TableReader& reader, Task& task, const Reading& reading) {
+  task.correct_scene = reader.string("correct", "the scene whose interval is the right answer");
+  if (task.correct_scene.empty()) return;
+  check_scene(task.correct_scene, reader.place("correct"), reading);
+  const auto in = [&](const auto& interval) {
+    return std::find(interval.begin(), interval.end(), task.correct_scene) != interval.end();
+  };
+  if (task.intervals.size() == 2 && in(task.intervals[0]) == in(task.intervals[1]))
+    reader.problem("correct",
+                   "\"" + task.correct_scene + "\" is in " +
+                       (in(task.intervals[0]) ? "both intervals" : "neither interval"),
+                   "a scene that only one of the two intervals holds");
+}
+
+void read_correct_answers(TableReader& reader, Task& task, const Reading& reading) {
+  const auto* table = reader.maybe_table("correct");
+  if (!table) return;
+  std::vector<std::string> ids;
+  for (const auto& choice : task.choices) ids.push_back(choice.id);
+  for (const auto& entry : table->entries) {
+    if (std::find(ids.begin(), ids.end(), entry.key) == ids.end())
+      reading.findings.add(entry.place, "\"correct\" has \"" + entry.key + "\", which is no choice",
+                           suggestion(entry.key, ids));
+    if (entry.value.kind != Kind::string) {
+      reading.findings.add(entry.value.place, "\"correct\" has " + describe(entry.value),
+                           "a comparison in quotes: \"offset_mm < 0\"");
+      continue;
+    }
+    const auto comparison =
+        parse_comparison(entry.value.string, entry.value.place, reading.protocol.factors, reading.findings);
+    if (comparison) task.correct_answer.emplace_back(entry.key, *comparison);
+  }
+  for (const auto& id : ids)
+    if (!id.empty() && !table->find(id))
+      reading.findings.add(table->place, "\"correct\" does not say when \"" + id + "\" is right",
+                           "a comparison for each choice");
+}
+
+void read_correct(TableReader& reader, Task& task, const Reading& reading) {
+  switch (task.kind) {
+    case TaskKind::single_interval:
+      return read_correct_answers(reader, task, reading);
+    case TaskKind::two_interval:
+      return read_correct_scene(reader, task, reading);
+    case TaskKind::oddity: {
+      const auto odd = reader.word("odd", {"either", "target", "standard"}, "either");
+      task.odd = odd == "target" ? Odd::target : odd == "standard" ? Odd::standard : Odd::either;
+      return;
+    }
+    case TaskKind::adjustment:
+      if (const auto* factor = read_numeric_factor(reader, "adjusts", reading)) {
+        task.adjusts = factor->name;
+        if (!factor->range)
+          reader.problem("adjusts", "the factor \"" + factor->name + "\" has no range",
+                         "the slider runs over a \"range\"");
+      }
+      task.step = reader.number("step", {0, 1e6, Range::Ends::open_low});
+      return;
+    case TaskKind::same_different:
+      return;
+  }
+}
+
+}  // namespace
+
+void read_task(TableReader& file, Reading& reading) {
+  const auto* table = file.table("task", "a table [task]");
+  if (!table) return;
+  TableReader reader(*table, "task", reading.findings);
+  auto& task = reading.protocol.task;
+  const auto kind = reader.word("kind", kinds);
+  task.kind = static_cast<TaskKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
+  read_intervals(reader, task, reading);
+  read_times(reader, task);
+  const auto device = reader.word("device", {"touch", "buttons", "either"});
+  task.device = device == "touch" ? Device::touch : device == "buttons" ? Device::buttons : Device::either;
+  if (task.kind == TaskKind::adjustment && task.device == Device::buttons)
+    reader.problem("device", "a slider cannot be moved with buttons", "\"touch\"");
+  task.question = read_localised(reader, "question", reading);
+  read_choices(reader, task, reading);
+  read_correct(reader, task, reading);
+  reader.finish();
+}
+
+void read_timing(TableReader& file, Reading& reading) {
+  const auto* table = file.table("timing", "a table [timing]");
+  if (!table) return;
+  TableReader reader(*table, "timing", reading.findings);
+  auto& timing = reading.protocol.timing;
+  const std::vector<std::string> zeros{"go_cue", "change", "interval_off", "first_contact", "lift_off"};
+  const auto zero = reader.word("response_zero", zeros);
+  timing.response_zero =
+      static_cast<ResponseZero>(std::find(zeros.begin(), zeros.end(), zero) - zeros.begin());
+  timing.explore_s = reader.maybe_number("explore_s", {0, 600, Range::Ends::open_low, "s"});
+  timing.deadline_s = reader.maybe_number("deadline_s", {0, 3600, Range::Ends::open_low, "s"});
+  reader.require("iti_s", "the pause between trials in seconds: a number or { uniform = [0.8, 1.2] }");
+  timing.iti_s = read_distribution(reader, "iti_s").value_or(Distribution{1, 1});
+  timing.anticipation_s = reader.number("anticipation_s", {0, 10, Range::Ends::closed, "s"}, 0);
+  reader.finish();
+}
+
+void read_instructions(TableReader& file, Reading& reading) {
+  const auto* tables = file.maybe_table("instructions");
+  if (!tables) return;
+  for (const auto& entry : tables->entries) {
+    if (entry.value.kind != Kind::table) {
+      reading.findings.add(entry.place, "\"instructions." + entry.key + "\" is " + describe(entry.value),
+                           "a table [instructions.NAME] is needed");
+      continue;
+    }
+    TableReader reader(entry.value, "instructions." + entry.key, reading.findings);
+    Instruction instruction;
+    instruction.text = read_localised(reader, "text", reading);
+    if (const auto* late = reader.take("late_message"))
+      instruction.late_message = localised_from(*late, "late_message", reading);
+    instruction.deadline_s = reader.maybe_number("deadline_s", {0, 3600, Range::Ends::open_low, "s"});
+    instruction.target_accuracy = reader.maybe_interval("target_accuracy", {0, 1});
+    reader.finish();
+    reading.protocol.instructions.emplace(entry.key, std::move(instruction));
+  }
+}
+
+}  // namespace turnpoint::protocol

@@ -1,0 +1,123 @@
+#include "station/protocol/sources.hpp"
+
+#include <algorithm>
+
+#include "station/protocol/expression.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+void add(const std::optional<Linear>& expression, std::set<std::string>& names) {
+  if (!expression) return;
+  for (const auto& [name, coefficient] : expression->terms) names.insert(name);
+}
+
+// What a staircase can reach is everything between its limits: those stand for it.
+std::vector<double> levels_of(const procedure::Spec& spec) {
+  auto levels = spec.values;
+  levels.insert(levels.end(), spec.stimuli.values.begin(), spec.stimuli.values.end());
+  for (const auto& limit : {spec.min, spec.start, spec.max})
+    if (limit) levels.push_back(*limit);
+  return levels;
+}
+
+void add_block(const Protocol& protocol, const Block& block, const std::string& over,
+               std::vector<Source>& sources) {
+  std::set<std::string> fixed;
+  for (const auto& [name, value] : block.fixed) fixed.insert(name);
+  if (!over.empty()) fixed.insert(over);
+  const auto push = [&](const std::string& what, const std::string& level, std::vector<double> levels,
+                        const procedure::Spec* spec) {
+    auto sets = fixed;
+    sets.insert(level);
+    if (spec) sets.insert(spec->balance.begin(), spec->balance.end());
+    sources.push_back({&block, what, level, std::move(levels), std::move(sets), spec});
+  };
+  for (const auto& name : block.procedures)
+    if (const auto* spec = find_procedure(protocol, name); spec && !spec->level.empty())
+      push("procedure \"" + name + "\"", spec->level, levels_of(*spec), spec);
+  if (!block.level.empty()) push("fixed levels", block.level, block.levels, nullptr);
+  if (block.catch_trials && !block.catch_trials->factor.empty())
+    push("catch trials", block.catch_trials->factor, block.catch_trials->levels, nullptr);
+}
+
+}  // namespace
+
+std::vector<Source> sources_of(const Protocol& protocol) {
+  std::vector<Source> sources;
+  for (const auto& part : protocol.plan) {
+    const auto* sequence = std::get_if<Sequence>(&part);
+    add_block(protocol, block_of(part), sequence ? sequence->over : "", sources);
+  }
+  return sources;
+}
+
+std::vector<std::string> scenes_used(const Protocol& protocol) {
+  std::vector<std::string> names;
+  const auto add_name = [&](const std::string& name) {
+    if (protocol.scenes.count(name) && std::find(names.begin(), names.end(), name) == names.end())
+      names.push_back(name);
+  };
+  for (const auto& interval : protocol.task.intervals)
+    for (const auto& name : interval) add_name(name);
+  add_name(protocol.task.standard), add_name(protocol.task.target);
+  return names;
+}
+
+std::set<std::string> factors_used(const Protocol& protocol) {
+  std::set<std::string> names;
+  for (const auto& name : scenes_used(protocol)) {
+    const auto& scene = protocol.scenes.at(name);
+    for (const auto& expression :
+         {scene.boundary_mm, scene.displacement_um, scene.friction, scene.friction_contrast_dB})
+      add(expression, names);
+    if (scene.zone) add(scene.zone->friction, names);
+    for (const auto& tone : scene.tones)
+      add(tone.boundary_mm, names), add(tone.frequency_Hz, names), add(tone.displacement_um, names);
+  }
+  for (const auto& [id, comparison] : protocol.task.correct_answer)
+    add(comparison.left, names), add(comparison.right, names);
+  return names;
+}
+
+Factors any_factors(const Protocol& protocol) {
+  Factors factors;
+  for (const auto& factor : protocol.factors) {
+    if (!factor.levels.empty())
+      factors[factor.name] = factor.levels.front();
+    else if (factor.range)
+      factors[factor.name] = 0.5 * (factor.range->first + factor.range->second);
+    else
+      factors[factor.name] = 0.0;  // a factor with a problem of its own
+  }
+  return factors;
+}
+
+const procedure::Spec* find_procedure(const Protocol& protocol, const std::string& name) {
+  for (const auto& spec : protocol.procedures)
+    if (spec.name == name) return &spec;
+  return nullptr;
+}
+
+const Block& block_of(const std::variant<Block, Sequence>& part) {
+  const auto* block = std::get_if<Block>(&part);
+  return block ? *block : std::get<Sequence>(part).block;
+}
+
+std::vector<Block> all_blocks(const Protocol& protocol) {
+  std::vector<Block> blocks;
+  for (const auto& part : protocol.plan) {
+    const auto* sequence = std::get_if<Sequence>(&part);
+    const auto* factor = sequence ? find_factor(protocol.factors, sequence->over) : nullptr;
+    if (!sequence) blocks.push_back(block_of(part));
+    if (!factor) continue;
+    for (const auto& level : factor->levels) {
+      blocks.push_back(sequence->block);
+      blocks.back().fixed[factor->name] = level;
+    }
+  }
+  return blocks;
+}
+
+}  // namespace turnpoint::protocol

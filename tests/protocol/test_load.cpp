@@ -1,0 +1,190 @@
+#include <filesystem>
+#include <system_error>
+
+#include "station/protocol/protocol.hpp"
+#include "station/text/toml.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string shipped = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/";
+
+protocol::Protocol with(const std::string& file, const std::string& from, const std::string& to) {
+  auto source = text::read_file(shipped + file);
+  const auto at = source.find(from);
+  REQUIRE(at != std::string::npos);
+  return protocol::parse(source.replace(at, from.size(), to), "p.toml");
+}
+
+const protocol::Block& block(const protocol::Protocol& protocol, std::size_t i) {
+  return std::get<protocol::Block>(protocol.plan.at(i));
+}
+
+std::string instruction(const protocol::Block& block) {
+  return std::get<std::string>(block.fixed.at("instruction"));
+}
+
+}  // namespace
+
+TEST_CASE("every shipped protocol loads, and no two have the same id", "[protocol]") {
+  std::map<std::string, std::string> ids;
+  for (const auto& entry : fs::directory_iterator(shipped)) {
+    if (entry.path().extension() != ".toml") continue;
+    INFO(entry.path().string());
+    const auto protocol = protocol::load(entry.path().string());
+    CHECK(protocol.id == entry.path().stem().string());
+    CHECK(ids.emplace(protocol.id, protocol.path).second);
+  }
+  CHECK(ids.size() >= 10);
+}
+
+TEST_CASE("the demo has ten trials of boundary localisation with one tone", "[protocol]") {
+  const auto demo = protocol::load(shipped + "demo.toml");
+  REQUIRE(demo.procedures.size() == 1);
+  CHECK(demo.procedures[0].values.size() * static_cast<std::size_t>(demo.procedures[0].repeats) == 10);
+  CHECK(demo.task.kind == protocol::TaskKind::single_interval);
+  CHECK(demo.task.question.size() == 3);
+  CHECK(demo.languages == std::vector<std::string>{"en", "de", "ja"});
+  const auto& scene = demo.scenes.at("edge");
+  CHECK(protocol::evaluate(*scene.boundary_mm, {{"mark_mm", 150.0}, {"offset_mm", -12.0}}) == 138.0);
+  CHECK(scene.edge.name == "p50");
+  CHECK(demo.timing.iti_s.low == 0.6);
+  CHECK_FALSE(demo.seed.has_value());
+}
+
+TEST_CASE("a single-interval answer is right where its comparison holds, and none is at 0", "[protocol]") {
+  const auto demo = protocol::load(shipped + "demo.toml");
+  REQUIRE(demo.task.correct_answer.size() == 2);
+  const auto right = [&](double offset_mm) {
+    std::string ids;
+    for (const auto& [id, comparison] : demo.task.correct_answer)
+      if (holds(comparison, {{"offset_mm", offset_mm}})) ids += id;
+    return ids;
+  };
+  CHECK(right(-12) == "left");
+  CHECK(right(12) == "right");
+  CHECK(right(0).empty());
+}
+
+TEST_CASE("a scene takes over what its base says, zones key by key", "[protocol]") {
+  const auto change = protocol::load(shipped + "speed-accuracy.toml");
+  const auto& after = change.scenes.at("after");
+  REQUIRE(after.zone.has_value());
+  CHECK(after.zone->from_mm == 60.0);
+  CHECK(after.zone->tones == 3);
+  CHECK(after.tolerance.level_dB == 0.1);
+  CHECK(protocol::evaluate(*after.zone->friction, {{"change", -0.4}}) == Approx(0.39));
+  CHECK(change.task.intervals == std::vector<std::vector<std::string>>{{"before", "after"}});
+  CHECK(change.task.foreperiod_s->high == 2.5);
+  const auto contrast = protocol::load(shipped + "friction-2ifc.toml");
+  CHECK(contrast.scenes.at("comparison").friction_contrast_dB.has_value());
+  CHECK_FALSE(contrast.scenes.at("reference").friction_contrast_dB.has_value());
+}
+
+TEST_CASE("a sequence runs A S S A for one participant and S A A S for the next", "[protocol]") {
+  const auto protocol = protocol::load(shipped + "speed-accuracy.toml");
+  const auto order = [&](int index) {
+    std::string letters;
+    for (const auto& block : block_order(protocol, index))
+      letters += (block.practice ? "p" : "m") + instruction(block).substr(0, 1);
+    return letters;
+  };
+  CHECK(order(0) == "pspamsmamams");
+  CHECK(order(1) == "papsmamsmsma");
+  CHECK(order(2) == order(0));
+  CHECK_THROWS_AS(block_order(protocol, -1), std::invalid_argument);
+}
+
+TEST_CASE("in a Williams square each condition follows each other equally often", "[protocol]") {
+  for (const int n : {2, 3, 4, 5, 6}) {
+    std::string levels;
+    for (int i = 0; i < n; ++i)
+      levels += (i ? ", \"" : "\"") + std::string(1, static_cast<char>('a' + i)) + "\"";
+    auto source = text::read_file(shipped + "speed-accuracy.toml");
+    const auto factor = source.find("[scene.before]");
+    source.insert(factor, "[[factor]]\nname = \"order\"\nlevels = [" + levels + "]\n");
+    for (std::size_t at; (at = source.find("over = \"instruction\"")) != std::string::npos;)
+      source.replace(at, 20, "over = \"order\"");
+    source.replace(source.find("anticipation_s"), 0, "deadline_s = 3.0\n");
+    source.replace(source.find("cycles = 2\n"), 11, "");
+    source.replace(source.find("mirror = true"), 13, "");
+    const auto protocol = protocol::parse(source, "p.toml");
+    std::map<std::string, int> follows;
+    const int rows = n % 2 == 0 ? n : 2 * n;
+    for (int index = 0; index < rows; ++index) {
+      std::string last;
+      for (const auto& block : block_order(protocol, index)) {
+        if (block.practice) continue;
+        const auto here = std::get<std::string>(block.fixed.at("order"));
+        if (!last.empty()) ++follows[last + here];
+        last = here;
+      }
+    }
+    CHECK(follows.size() == static_cast<std::size_t>(n * (n - 1)));
+    for (const auto& [pair, count] : follows) CHECK(count == (n % 2 == 0 ? 1 : 2));
+  }
+}
+
+TEST_CASE("arithmetic on factors is linear, with the usual precedence", "[protocol]") {
+  const auto value = [](const std::string& expression) {
+    const auto protocol = with("demo.toml", "\"mark_mm + offset_mm\"", "\"" + expression + "\"");
+    return evaluate(*protocol.scenes.at("edge").boundary_mm, {{"mark_mm", 150.0}, {"offset_mm", -20.0}});
+  };
+  CHECK(value("mark_mm + offset_mm") == 130.0);
+  CHECK(value("mark_mm - 0.5 * offset_mm") == 160.0);
+  CHECK(value("2 * (mark_mm + offset_mm) / 4 - -1") == 66.0);
+  CHECK(value("mark_mm * 2 - mark_mm") == 150.0);
+  CHECK(value("abs(offset_mm - 30)") == 50.0);
+  CHECK(value("+170.5e0") == 170.5);
+}
+
+TEST_CASE("a grid in the file becomes values, with both ends exact", "[protocol]") {
+  const auto oddity = protocol::load(shipped + "two-spots-oddity.toml");
+  const auto& spec = oddity.procedures.at(0);
+  REQUIRE(spec.stimuli.values.size() == 25);
+  CHECK(spec.stimuli.values.front() == 2.0);
+  CHECK(spec.stimuli.values.back() == 40.0);
+  CHECK(spec.stimuli.values[12] == Approx(std::sqrt(80.0)).epsilon(1e-12));
+  CHECK(spec.nuisance == std::vector<std::string>{"lapse"});
+  const auto contrast = protocol::load(shipped + "friction-2ifc.toml");
+  CHECK(contrast.procedures.at(0).threshold.values.size() == 28);
+  CHECK(contrast.procedures.at(0).prior_threshold.normal->second == 8.0);
+}
+
+TEST_CASE("a copied procedure differs only in what it states", "[protocol]") {
+  const auto protocol = protocol::load(shipped + "boundary-adaptive.toml");
+  const auto& upper = protocol.procedures.at(0);
+  const auto& lower = protocol.procedures.at(1);
+  CHECK(lower.name == "lower");
+  CHECK(lower.start == -20.0);
+  CHECK(lower.target == 0.25);
+  CHECK(lower.step_down == upper.step_down);
+  CHECK(lower.tracks == "right");
+  CHECK(lower.stop.trials == 40);
+}
+
+TEST_CASE("blocks and sequences keep the order of the file", "[protocol]") {
+  const auto protocol = protocol::load(shipped + "boundary-constant.toml");
+  REQUIRE(protocol.plan.size() == 2);
+  CHECK(block(protocol, 0).name == "practice");
+  CHECK(block(protocol, 0).levels == std::vector<double>{-28, 28});
+  CHECK(block(protocol, 0).pass->retries == 2);
+  CHECK(block(protocol, 1).break_after->trials == 40);
+}
+
+TEST_CASE("the defaults that stood in are named", "[protocol]") {
+  const auto used = protocol::load(shipped + "no-touch-control.toml").defaults_used;
+  const auto has = [&](const char* line) { return std::find(used.begin(), used.end(), line) != used.end(); };
+  CHECK(has("random.seed = \"per-session\""));
+  CHECK(has("scene.edge.ramp_ms = 50"));
+  CHECK(has("block.no-touch.feedback = \"none\""));
+  CHECK(has("resume.warmup = 0"));
+  CHECK_FALSE(has("scene.edge.rove_dB = 2"));
+}
+
+TEST_CASE("a protocol file that is not there is a system error", "[protocol]") {
+  CHECK_THROWS_AS(protocol::load("no/such/protocol.toml"), std::system_error);
+}
