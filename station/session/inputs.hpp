@@ -16,6 +16,7 @@ enum class InputKind {
   contact,     ///< value 1: finger on the surface, 0: lifted
   stop,        ///< participant or operator wants to stop; what was done is kept
   pause,       ///< operator
+  xrun,        ///< the drive lost frames
   fault,       ///< text says what; from drive or panel
 };
 

@@ -215,11 +215,10 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
   const auto& levels = protocol.procedures;
   for (const auto& procedure : levels) {
     const auto& values = procedure.values.empty() ? procedure.stimuli.values : procedure.values;
-    double sum = 0;
-    for (const double value : values) sum += std::fabs(value);
-    if (!values.empty()) question.default_threshold = 0.5 * sum / static_cast<double>(values.size());
     question.decibel = procedure.level.ends_with("_dB");
-    if (question.decibel) question.default_threshold = -2 * question.default_threshold;
+    double sum = 0;
+    for (const double value : values) sum += question.decibel ? value : 0.5 * std::fabs(value);
+    if (!values.empty()) question.default_threshold = sum / static_cast<double>(values.size());
     if (!values.empty()) break;
   }
   // Two answers, told apart by the sign of the level: the observer may be biased.

@@ -51,6 +51,7 @@ void ScriptedSession::take(const session::Input& input) {
       inputs_ += "pause";
       break;
     case InputKind::contact:
+    case InputKind::xrun:
     case InputKind::fault:
       qFatal("the screen cannot send this input");
   }

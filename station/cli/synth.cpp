@@ -1,0 +1,112 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+#include "station/cli/command.hpp"
+#include "station/cli/json.hpp"
+#include "station/cli/tones.hpp"
+#include "station/drive/engine.hpp"
+#include "station/rig/rig.hpp"
+#include "station/scene/transducer.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+struct Options {
+  std::string rig, out;
+  std::vector<std::string> tones;
+  double seconds = 1, ramp_ms = 50;
+};
+
+drive::Burst burst_for(const rig::Rig& rig, const Options& options) {
+  drive::Burst burst;
+  const auto frames = [&rig](double s) {
+    return static_cast<std::int64_t>(std::llround(s * rig.output.rate_Hz));
+  };
+  burst.length_frames = frames(options.seconds);
+  burst.ramp.frames = frames(options.ramp_ms * 1e-3);
+  if (2 * burst.ramp.frames > burst.length_frames)
+    throw UsageError(fmt::format(
+        "synth: two ramps of {} ms do not fit into {} s; --ramp-ms {} or less is allowed",
+        text::number(options.ramp_ms), text::number(options.seconds), text::number(500 * options.seconds)));
+  const auto tones = parse_tones(options.tones);
+  if (tones.size() > static_cast<std::size_t>(drive::max_tones))
+    throw UsageError(fmt::format("synth: {} tones; at most {} are allowed", tones.size(), drive::max_tones));
+  for (const auto& tone : tones) {
+    scene::DrivenTone driven;
+    driven.frequency_Hz = tone.frequency_Hz;
+    driven.amplitude_m = tone.amplitude_m;
+    driven.phase_rad = tone.phase_rad;
+    scene::assign_transducer(rig, driven);
+    auto& played = burst.tones.tones[static_cast<std::size_t>(burst.tones.count++)];
+    played = {driven.frequency_Hz, driven.full_scale, driven.output_phase_rad + std::numbers::pi / 2,
+              driven.channel};
+  }
+  return burst;
+}
+
+Json to_json(const drive::PlayReport& report, const Options& options) {
+  const auto& c = report.counters;
+  return {{"out", options.out},
+          {"frames", c.frames},
+          {"onset_frame", report.onset_frame},
+          {"peak", json_number(report.peak)},
+          {"largest_sample", json_number(report.largest_sample)},
+          {"counters",
+           {{"bursts", c.bursts},
+            {"missed", c.missed},
+            {"underruns", c.underruns},
+            {"lost_frames", c.lost_frames},
+            {"saturated", c.saturated},
+            {"device_losses", c.device_losses}}}};
+}
+
+void synth(const Options& options, Context& context) {
+  const auto rig = rig::load(options.rig);
+  drive::StreamConfig config;
+  config.output.uri = options.out;
+  config.output.rate_Hz = rig.output.rate_Hz;
+  config.output.bits = rig.output.bits;
+  config.output.period_frames = rig.output.period_frames;
+  config.output.periods = rig.output.periods;
+  config.output.allow_plugin = rig.output.allow_plugin;
+  for (const auto& transducer : rig.transducers)
+    config.output.channels = std::max(config.output.channels, transducer.channel + 1);
+  const auto report = drive::play(config, burst_for(rig, options));
+  if (context.json) {
+    context.out << to_json(report, options).dump(2) << "\n";
+    return;
+  }
+  fmt::print(context.out, "{}: {} frames, onset at frame {}, peak {} of full scale, {} underruns\n",
+             options.out, report.counters.frames, report.onset_frame, text::number(report.peak, 6),
+             report.counters.underruns);
+}
+
+}  // namespace
+
+void add_synth(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("synth", "Play or render tones");
+  command->add_option("--rig", options->rig, "Rig file: rate, depth, transducers")->required();
+  command->add_option("--tone", options->tones, "HZ[:UM[:DEG]]: frequency, drive-edge displacement, phase")
+      ->required();
+  command->add_option("--seconds", options->seconds, "Length, both ramps included")
+      ->required()
+      ->check(CLI::Range(0.001, 3600.0));
+  command->add_option("--ramp-ms", options->ramp_ms, "Length of each ramp")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--out", options->out, "null: | wav:FILE | alsa:NAME")->required();
+  add_json(*command, context);
+  command->footer(
+      "Example: turnpoint synth --rig deploy/rigs/simulated.toml --tone 30000:0.5 --seconds 2 --out "
+      "wav:tone.wav");
+  command->callback([options, &context] { synth(*options, context); });
+}
+
+}  // namespace turnpoint::cli
