@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "station/procedure/constant_stimuli.hpp"
+#include "station/procedure/quest_plus.hpp"
 #include "station/procedure/staircase.hpp"
 
 namespace turnpoint::procedure {
@@ -17,7 +18,11 @@ std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& conte
     case Kind::up_down:
     case Kind::weighted_up_down:
       return std::make_unique<Staircase>(spec, context);
-    default:
+    case Kind::quest_plus:
+    case Kind::psi:
+    case Kind::psi_marginal:
+      return std::make_unique<QuestPlus>(spec);
+    case Kind::adjustment:
       break;
   }
   throw std::invalid_argument("procedure " + spec.name + ": " + name(spec.kind) + " is not there yet");

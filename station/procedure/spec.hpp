@@ -12,7 +12,7 @@ enum class Function { weibull, normal, logistic };
 enum class Scale { linear, log10, dB };
 enum class Shuffle { within_repeat, within_block, none };
 enum class StopRule { any, all };  ///< "or", "and"
-enum class Select { min_expected_entropy, min_n_entropy };
+enum class Select { min_expected_entropy };
 
 /// Values of one axis of a grid, made explicit when the file is read: from-to-step, log_from-log_to-count, or
 /// a list. `tied` = "lapse": this parameter always equals that one.

@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "station/procedure/posterior.hpp"
+#include "station/procedure/procedure.hpp"
+
+namespace turnpoint::procedure {
+
+/// QUEST+ (Watson 2017), psi (Kontsevich & Tyler 1999: QUEST+ on threshold and slope) and psi-marginal (Prins
+/// 2013: entropy over the kept parameters). An unanswered trial teaches nothing; the same level comes again,
+/// and after three in a row one trial of the budget is spent, so that nobody can be asked for ever.
+class QuestPlus : public Procedure {
+ public:
+  explicit QuestPlus(const Spec& spec);
+
+  std::optional<Proposal> next() const override;
+  void record(Answer answer) override;
+  int recorded() const override { return recorded_; }
+  int expected() const override;
+  std::map<std::string, Estimate> estimates() const override;
+  std::optional<double> entropy_nats() const override { return posterior_.entropy_nats(); }
+  std::uint64_t state_hash() const override;
+
+ private:
+  bool done() const;
+
+  Spec spec_;
+  Posterior posterior_;
+  std::size_t stimulus_ = 0;
+  int recorded_ = 0, unanswered_ = 0, spent_ = 0;
+  std::vector<std::uint64_t> history_;  ///< stimulus index and answer of each learnt trial
+};
+
+}  // namespace turnpoint::procedure

@@ -1,0 +1,25 @@
+#pragma once
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/procedure/procedure.hpp"
+
+namespace turnpoint::procedure {
+
+/// What a procedure does for given answers.
+struct Trace {
+  std::vector<double> levels;  ///< one an answer
+  std::optional<double> next;  ///< none: it has stopped
+  std::map<std::string, Estimate> estimates;
+  std::optional<double> entropy_nats;
+  std::vector<double> reversals;
+};
+
+/// Runs a procedure on answers of 1 (correct, or the tracked answer) and 0. Throws std::invalid_argument for
+/// another character, or for answers after the procedure has stopped.
+Trace trace(const Spec& spec, const Context& context, const std::string& answers,
+            const random::Key& key = {});
+
+}  // namespace turnpoint::procedure
