@@ -28,6 +28,7 @@ void add_map(CLI::App& app, Context& context);
 void add_field(CLI::App& app, Context& context);
 void add_plan(CLI::App& app, Context& context);
 void add_synth(CLI::App& app, Context& context);
+void add_trace(CLI::App& app, Context& context);
 void add_run(CLI::App& app, Context& context);
 
 /// Adds `--json` to a sub-command.

@@ -1,0 +1,90 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <memory>
+
+#include "station/cli/command.hpp"
+#include "station/cli/json.hpp"
+#include "station/procedure/trace.hpp"
+#include "station/protocol/protocol.hpp"
+#include "station/session/trial_orders.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+struct Options {
+  std::string protocol, procedure, answers;
+  std::uint64_t seed = 0;
+};
+
+const procedure::Spec& find(const protocol::Protocol& protocol, const std::string& name) {
+  std::string known;
+  for (const auto& spec : protocol.procedures) {
+    if (spec.name == name) return spec;
+    known += (known.empty() ? "" : ", ") + spec.name;
+  }
+  throw UsageError(fmt::format("--procedure {}: the protocol has {}", name, known));
+}
+
+/// What the procedure must know of the protocol, the other factors at their first levels.
+procedure::Context context_of(const protocol::Protocol& protocol, const procedure::Spec& spec) {
+  procedure::Context context;
+  protocol::Factors factors;
+  for (const auto& factor : protocol.factors) {
+    context.factor_levels[factor.name] = factor.levels.size();
+    if (!factor.levels.empty()) factors[factor.name] = factor.levels.front();
+  }
+  context.right_answer = [&protocol, factors, level = spec.level](double value) mutable {
+    factors[level] = value;
+    return session::correct_choice(protocol.task, factors).value_or(-1);
+  };
+  return context;
+}
+
+void trace(const Options& options, Context& context) {
+  const auto protocol = protocol::load(options.protocol);
+  const auto& spec = find(protocol, options.procedure);
+  const auto result =
+      procedure::trace(spec, context_of(protocol, spec), options.answers,
+                       {options.seed ? options.seed : protocol.seed.value_or(0), {}, 0, 0, 0});
+  if (context.json) {
+    Json estimates = Json::object();
+    for (const auto& [parameter, e] : result.estimates)
+      estimates[parameter] = {
+          {"mode", json_number(e.mode)}, {"mean", json_number(e.mean)}, {"sd", json_number(e.sd)}};
+    context.out << Json{{"levels", json_numbers(result.levels)},
+                        {"next", json_number(result.next)},
+                        {"estimates", estimates},
+                        {"entropy_nats", json_number(result.entropy_nats)},
+                        {"reversals", json_numbers(result.reversals)}}
+                       .dump(2)
+                << "\n";
+    return;
+  }
+  for (std::size_t i = 0; i < result.levels.size(); ++i)
+    fmt::print(context.out, "{:>4} {:>10} {}\n", i + 1, text::number(result.levels[i]), options.answers[i]);
+  fmt::print(context.out, "next {}\n", result.next ? text::number(*result.next) : "none: it has stopped");
+  for (const auto& [parameter, e] : result.estimates)
+    fmt::print(context.out, "{}: mode {}, mean {}, SD {}\n", parameter, text::number(e.mode),
+               text::number(e.mean), text::number(e.sd));
+}
+
+}  // namespace
+
+void add_trace(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("trace", "The levels that a procedure gives for given answers");
+  command->add_option("protocol", options->protocol, "Protocol file")->required();
+  command->add_option("--procedure", options->procedure, "Name of the procedure")->required();
+  command->add_option("--answers", options->answers, "1 (correct, or the tracked answer) and 0, as in 1011")
+      ->required();
+  command->add_option("--seed", options->seed, "Seed of shuffles; otherwise the file's, or 0");
+  add_json(*command, context);
+  command->footer(
+      "Example: turnpoint trace protocols/friction-2ifc-questplus.toml --procedure qp --answers 11101");
+  command->callback([options, &context] { trace(*options, context); });
+}
+
+}  // namespace turnpoint::cli
