@@ -7,6 +7,8 @@
 #include "physics/airy_profile.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
+#include "physics/modal_field.hpp"
+#include "physics/uniform_profile.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -42,6 +44,12 @@ void CentreLine::evaluate(std::span<const double> x, std::complex<double> phase,
   }
 }
 
+double CentreLine::drive_conditioning(double k) const {
+  const Scaled v0 = value(0);
+  const double magnitude = std::abs(v0.mantissa);
+  return magnitude > 0 ? std::hypot(magnitude, std::abs(slope(0).mantissa) / k) / magnitude : 1e300;
+}
+
 MarchEquation march_equation(const Surface& surface, double frequency_Hz, Model model, Losses losses) {
   const double k = wavenumber_per_m(surface, frequency_Hz);
   const std::complex<double> lossy(1, losses == Losses::kept ? -0.5 / surface.quality_factor : 0);
@@ -56,6 +64,17 @@ MarchEquation march_equation(const Surface& surface, double frequency_Hz, Model 
     equation.c = pi * pi / 6 - 0.25;
     equation.w_power = 0.5;
   }
+  return equation;
+}
+
+MarchEquation best_equation(const Surface& surface, double frequency_Hz, Losses losses) {
+  MarchEquation equation = march_equation(surface, frequency_Hz, Model::mode, losses);
+  const auto* taper = std::get_if<LinearTaper>(&surface.taper);
+  if (taper == nullptr || !(taper->slope > 0) || Dispersion(surface).clamped_bending()) return equation;
+  // J_nu(k s) solves the marched equation with B/d^2 + C + 1/4 = nu^2 and v = g W^-1/2.
+  const double nu = pi / (2 * std::atan(taper->slope));
+  const double m = pi / (2 * taper->slope);
+  equation.c = (nu - m) * (nu + m) - 0.25;
   return equation;
 }
 
@@ -76,10 +95,16 @@ std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double freq
       return make_airy_line(surface, frequency_Hz);
     case Model::seed:
     case Model::mode:
+      if (model == Model::mode && Dispersion(surface).clamped_bending()) {
+        ModalResolution resolution;
+        resolution.across = ModalResolution::Across::cut_off_shape;
+        return make_modal_line(surface, frequency_Hz, losses, resolution);
+      }
       return make_marched_line(surface, march_equation(surface, frequency_Hz, model, losses));
     case Model::uniform:
+      return make_uniform_line(surface, frequency_Hz);
     case Model::modes:
-      break;
+      return make_modal_line(surface, frequency_Hz, losses, {});
   }
   throw std::domain_error("model " + std::string(name(model)) + " is not available for this surface");
 }

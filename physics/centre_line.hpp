@@ -25,13 +25,16 @@ class CentreLine {
   virtual std::optional<double> last_peak_m() const = 0;
   // Outermost point at `level` of the last maximum; none without one.
   virtual std::optional<double> level_m(double level) const = 0;
+  // How much a division by v(0) amplifies errors: the envelope of the standing wave at the drive edge over
+  // |v(0)|.
+  virtual double drive_conditioning(double wavenumber_per_m) const;
 };
 
 // Whether losses are kept (k -> k (1 - i/2Q)) or left out.
 enum class Losses { kept, left_out };
 
 // Throws std::invalid_argument for Model::edge (it has no profile), std::domain_error where the model has no
-// answer: `airy` and `uniform` without a turning point on the (continued) taper, `modes` on clamped plates.
+// answer: `airy` and `uniform` without a turning point on the (continued) taper.
 std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double frequency_Hz, Model model,
                                              Losses losses = Losses::kept);
 
@@ -40,6 +43,10 @@ std::optional<double> turning_point_m(const Surface& surface, double frequency_H
 
 // The marched equation of `seed` or `mode`.
 MarchEquation march_equation(const Surface& surface, double frequency_Hz, Model model, Losses losses);
+
+// The first transverse mode as exactly as one equation can have it: on a linear taper J_nu(k s), nu = pi / (2
+// atan d), the two-dimensional mode of the wedge; elsewhere `mode`.
+MarchEquation best_equation(const Surface& surface, double frequency_Hz, Losses losses);
 
 // A centre line that solves a given marched equation.
 std::unique_ptr<CentreLine> make_marched_line(const Surface& surface, const MarchEquation& equation);

@@ -2,15 +2,12 @@
 
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
 
 namespace turnpoint::physics {
 namespace {
-
-using std::numbers::pi;
 
 // Five-point Gauss-Legendre rule on [-1, 1].
 constexpr std::array nodes{-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
@@ -22,17 +19,10 @@ constexpr std::array weights{0.2369268850561891, 0.4786286704993665, 0.568888888
 
 std::unique_ptr<CentreLine> make_feature_line(const Surface& surface, double frequency_Hz, Model model,
                                               Wave wave, Losses losses) {
-  const auto* taper = std::get_if<LinearTaper>(&surface.taper);
-  const bool wedge =
-      wave == Wave::exact && taper != nullptr && taper->slope > 0 && !Dispersion(surface).clamped_bending();
-  if (!wedge)
-    return make_centre_line(surface, frequency_Hz, wave == Wave::exact ? Model::mode : model, losses);
-  // J_nu(k s) solves the marched equation with B/d^2 + C + 1/4 = nu^2 and v = g W^-1/2.
-  MarchEquation equation = march_equation(surface, frequency_Hz, Model::mode, losses);
-  const double nu = pi / (2 * std::atan(taper->slope));
-  const double m = pi / (2 * taper->slope);
-  equation.c = nu * nu - m * m - 0.25;
-  return make_marched_line(surface, equation);
+  if (wave == Wave::as_modelled) return make_centre_line(surface, frequency_Hz, model, losses);
+  if (Dispersion(surface).clamped_bending())
+    return make_centre_line(surface, frequency_Hz, Model::mode, losses);
+  return make_marched_line(surface, best_equation(surface, frequency_Hz, losses));
 }
 
 std::optional<double> friction_edge_m(double length_m, const CentreLine& line, const FrictionContext& context,

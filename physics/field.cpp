@@ -36,12 +36,6 @@ std::string why_no_peak(const Surface& surface, double frequency_Hz) {
   return text.str();
 }
 
-// How much the division by v(0) amplifies rounding: the local envelope of the standing wave over |v(0)|.
-double drive_conditioning(const CentreLine& line, const Scaled& v0, double k) {
-  const double envelope = std::hypot(std::abs(v0.mantissa), std::abs(line.slope(0).mantissa) / k);
-  return std::abs(v0.mantissa) > 0 ? envelope / std::abs(v0.mantissa) : 1e300;
-}
-
 Solved solve(const Surface& surface, double frequency_Hz, Model model) {
   Solved s;
   s.line = make_centre_line(surface, frequency_Hz, model);
@@ -53,7 +47,7 @@ Solved solve(const Surface& surface, double frequency_Hz, Model model) {
   s.at_peak = s.info.last_peak_m ? s.line->value(*s.info.last_peak_m) : s.at_drive;
   const double ln_gain = s.at_peak.ln_magnitude() - s.at_drive.ln_magnitude();
   s.info.gain = std::exp(std::clamp(ln_gain, -700.0, 700.0));
-  s.info.conditioning = drive_conditioning(*s.line, s.at_drive, wavenumber_per_m(surface, frequency_Hz));
+  s.info.conditioning = s.line->drive_conditioning(wavenumber_per_m(surface, frequency_Hz));
   return s;
 }
 

@@ -1,0 +1,55 @@
+#pragma once
+// Element matrices of the two-dimensional field in the coordinates (x, eta = y / W(x)).
+#include <Eigen/Dense>
+#include <complex>
+#include <vector>
+
+#include "physics/element_basis.hpp"
+#include "physics/taper.hpp"
+#include "physics/transverse_basis.hpp"
+
+namespace turnpoint::physics {
+
+// bending lap v lap w + tension grad v grad w - inertia v w
+struct ModalEquation {
+  double bending = 0;
+  double tension = 1;
+  std::complex<double> inertia;
+  bool plate() const { return bending > 0; }
+};
+
+// One interval of x. `left` and `right` count the transverse functions at its ends (0: held).
+struct ModalElement {
+  double x0 = 0, h = 0;
+  int left = 0, right = 0;
+  double ln_scale = 0;
+  Eigen::MatrixXcd transfer;  // unknowns of bubbles and right vertex per unknown of the left vertex
+  Eigen::VectorXcd centre;    // centre-line coefficient of each basis function, after solving
+};
+
+class ModalAssembler {
+ public:
+  ModalAssembler(const Taper& taper, const TransverseBasis& across, const ElementBasis& along,
+                 const ModalEquation& equation, double slope_unit_m);
+  // Dense symmetric matrix of an element, unknowns ordered by basis function, then transverse function.
+  Eigen::MatrixXcd matrix(const ModalElement& element) const;
+  // Factor that turns the vertex slope unknown (dv/dx slope_unit) into a slope in t.
+  double slope_factor(const ModalElement& element) const { return 0.5 * element.h / slope_unit_m_; }
+
+ private:
+  struct Point {
+    double weight, w, w1, w2;  // of the integral over x; half-width and two derivatives
+    BasisValues basis;         // with respect to x, slope unknowns scaled
+  };
+  std::vector<Point> points(const ModalElement& element) const;
+
+  const Taper& taper_;
+  const TransverseBasis& across_;
+  const ElementBasis& along_;
+  ModalEquation equation_;
+  double slope_unit_m_;
+  Quadrature rule_;
+  std::vector<BasisValues> table_;
+};
+
+}  // namespace turnpoint::physics
