@@ -2,6 +2,8 @@
 #include <string>
 #include <vector>
 
+#include "station/store/error.hpp"
+
 namespace turnpoint::store {
 
 enum class ExportFormat { csv, bids };

@@ -31,6 +31,7 @@ struct SessionStart {
   std::string level_unit;
   std::string rig_name, rig_path, rig_text, rig_sha256;
   std::optional<std::string> calibration_id;  ///< sha256 of the calibration file, absent on a simulated rig
+  std::string calibration_text;               ///< the file itself, kept once; "" without one
   std::uint64_t seed = 0;
   std::string language, observer;  ///< observer: "" or the text after `--observer`
   std::string software_version, columns_version, kernel, station_id, realtime_rights;
@@ -70,6 +71,7 @@ struct ToneRow {
 
 /// One trial as it ended; committed whole, before the next begins.
 struct TrialRow {
+  int segment_index = 1;   ///< from 1; set by the log, not by who appends
   int trial_index = 0;     ///< from 0 within the session, counting every presented trial
   int trial_in_block = 0;  ///< the key of its random draws
   TrialType type = TrialType::experimental;
@@ -100,6 +102,7 @@ struct EventRow {
   std::string kind;
   std::string value;
   std::optional<int> trial_index;
+  int segment_index = 1;  ///< from 1; set by the log
 };
 
 }  // namespace turnpoint::store

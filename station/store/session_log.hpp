@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "station/store/error.hpp"
 #include "station/store/records.hpp"
 
 namespace turnpoint::store {
@@ -13,9 +14,12 @@ struct SessionRecord {
   int session_index = 0;   ///< from 1, within participant and protocol
   int sequence_index = 0;  ///< the participant's, from 0, within the protocol
   SessionStatus status = SessionStatus::running;
+  std::string status_reason;
   SessionStart start;
   int segments = 0;
-  std::int64_t last_activity_realtime_ns = 0;
+  int trials = 0;                              ///< committed, of every type and outcome
+  std::int64_t last_activity_realtime_ns = 0;  ///< wall clock of the last commit of a trial or segment
+  std::vector<std::string> annotations;        ///< oldest first
 };
 
 /// A block of a stored session with its finished trials, in the order run.
@@ -35,7 +39,8 @@ class SessionLog {
   static SessionLog begin(const std::string& database, const SessionStart& start,
                           const SegmentStart& segment);
 
-  /// Opens a new segment of an interrupted session.
+  /// Opens a new segment of an interrupted session. A trial that was presented but never ended gets an event
+  /// `aborted`, and is the session's to present again.
   static SessionLog resume(const std::string& database, const std::string& session_id,
                            const SegmentStart& segment);
 
@@ -46,6 +51,7 @@ class SessionLog {
   const SessionRecord& session() const;
   const std::vector<BlockRecord>& stored_blocks() const;  ///< of a resumed session; empty for a new one
 
+  /// A block that the log knows already (same index and attempt) goes on; it must be described the same way.
   void begin_block(const BlockStart& block);
 
   /// Committed before a stimulus: an interrupted trial leaves this trace.
@@ -54,7 +60,8 @@ class SessionLog {
   /// Kept in memory until the next commit of a trial or state change.
   void event(EventRow event);
 
-  /// One transaction: the trial, its tones and the events gathered since the last.
+  /// One transaction: the trial, its tones and the events gathered since the last. When it throws nothing was
+  /// written and nothing forgotten: the same call may be made again, once a full disk has space.
   void append(const TrialRow& trial);
 
   void annotate(const std::string& text);

@@ -1,0 +1,156 @@
+#include "station/store/export.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "station/store/export_files.hpp"
+#include "station/store/export_tables.hpp"
+#include "station/store/open.hpp"
+#include "station/store/sqlite.hpp"
+
+namespace turnpoint::store {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Protocol ids are the researchers' words; a folder's name is not theirs to escape from.
+std::string folder_name(const std::string& protocol_id) {
+  std::string name = protocol_id.empty() || protocol_id.front() == '.' ? "_" : "";
+  for (const char c : protocol_id) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
+    name += plain ? c : '_';
+  }
+  return name;
+}
+
+void check_style(const ExportOptions& options) {
+  const auto refuse = [](const std::string& what) { throw std::invalid_argument("export: " + what); };
+  if (options.decimal != '.' && options.decimal != ',')
+    refuse(fmt::format("decimal mark '{}'; '.' or ',' is allowed", options.decimal));
+  if (std::string(",;\t|").find(options.separator) == std::string::npos)
+    refuse(fmt::format("separator '{}'; ',' ';' '|' or a tab is allowed", options.separator));
+  if (options.separator == options.decimal)
+    refuse(
+        fmt::format("separator and decimal mark are both '{}'; with a decimal comma take the separator ';'",
+                    options.separator));
+  if (options.format == ExportFormat::bids && (options.separator != ',' || options.decimal != '.'))
+    refuse("BIDS tables have tabs and decimal points; --separator and --decimal are for CSV");
+}
+
+void add_factors(std::vector<std::string>& all, const std::vector<std::string>& more) {
+  for (const auto& factor : more)
+    if (std::find(all.begin(), all.end(), factor) == all.end()) all.push_back(factor);
+}
+
+std::vector<ProtocolSelection> select(Database& database, const std::string& directory,
+                                      const ExportOptions& options) {
+  std::map<std::string, ProtocolSelection> protocols;
+  for (auto& session :
+       list_sessions(database, {options.session_id, options.participant, options.protocol_id})) {
+    auto& selection = protocols[session.start.protocol_id];
+    add_factors(selection.factors, session.start.factor_columns);
+    selection.sessions.push_back(std::move(session));
+  }
+  std::vector<ProtocolSelection> list;
+  std::map<std::string, std::string> owners;
+  for (auto& [id, selection] : protocols) {
+    const auto folder = folder_name(id);
+    if (const auto [owner, fresh] = owners.emplace(folder, id); !fresh)
+      throw StoreError(Fault::conflict,
+                       fmt::format("export: the protocols \"{}\" and \"{}\" would share the folder "
+                                   "{}; export them one by one with --protocol",
+                                   owner->second, id, folder));
+    selection.protocol_id = id;
+    selection.folder = (fs::path(directory) / folder).string();
+    list.push_back(std::move(selection));
+  }
+  return list;
+}
+
+}  // namespace
+
+void write_file(const std::string& path, const std::string& bytes) {
+  const auto temporary = path + ".new";
+  std::error_code error;
+  fs::create_directories(fs::path(path).parent_path(), error);
+  if (!error) {
+    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
+    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    file.close();
+    if (!file) error = std::error_code(errno, std::generic_category());
+  }
+  if (!error) {
+    sync_path(temporary);
+    fs::rename(temporary, path, error);
+  }
+  if (!error) return;
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  const bool full = error == std::errc::no_space_on_device;
+  throw StoreError(
+      full ? Fault::disk_full : Fault::read_only,
+      fmt::format("export to {}: {}; {}", path, error.message(),
+                  full ? "free some space and export again" : "name a folder that can be written"));
+}
+
+void write_table(const std::string& path, const TextTable& table, std::vector<ExportedFile>& files) {
+  write_file(path, table.text());
+  files.push_back({path, table.rows()});
+}
+
+void export_csv(Database& database, const ProtocolSelection& selection, const TableStyle& style,
+                std::vector<ExportedFile>& files) {
+  TextTable trials(style, names_of(trial_columns(selection.factors)));
+  TextTable intervals(style, names_of(interval_columns()));
+  TextTable events(style, names_of(event_columns()));
+  TextTable sessions(style, names_of(session_columns()));
+  for (const auto& session : selection.sessions) {
+    const auto stored = read_session(database, session.session_id);
+    sessions.row(session_cells(stored.session));
+    for (const auto& block : stored.blocks)
+      for (const auto& trial : block.trials) {
+        trials.row(trial_cells(stored.session, block.start, trial, selection.factors));
+        for (const auto& tone : trial.tones)
+          intervals.row(interval_cells(stored.session, block.start, trial, tone));
+      }
+    for (const auto& event : stored.events) {
+      const auto& segment = stored.segments.at(static_cast<std::size_t>(event.segment_index) - 1);
+      events.row(event_cells(stored.session, event, segment.monotonic_ns));
+    }
+  }
+  write_table(selection.folder + "/trials.csv", trials, files);
+  write_table(selection.folder + "/intervals.csv", intervals, files);
+  write_table(selection.folder + "/events.csv", events, files);
+  write_table(selection.folder + "/sessions.csv", sessions, files);
+  write_file(selection.folder + "/codebook.json", codebook_json(selection.protocol_id, selection.factors));
+  files.push_back({selection.folder + "/codebook.json", 0});
+}
+
+std::vector<ExportedFile> export_data(const std::string& path, const std::string& directory,
+                                      const ExportOptions& options) {
+  check_style(options);
+  auto database = open_reader(path);
+  // One snapshot for all files, whatever a running session adds meanwhile.
+  database.execute("BEGIN");
+  const auto selections = select(database, directory, options);
+  if (selections.empty())
+    throw StoreError(Fault::missing, fmt::format("export: no session of {} is asked for by these options; "
+                                                 "`turnpoint sessions --db {}` lists what there is",
+                                                 path, path));
+  std::vector<ExportedFile> files;
+  for (const auto& selection : selections) {
+    if (options.format == ExportFormat::bids)
+      export_bids(database, selection, files);
+    else
+      export_csv(database, selection, {TableStyle::Kind::rfc4180, options.separator, options.decimal}, files);
+  }
+  return files;
+}
+
+}  // namespace turnpoint::store

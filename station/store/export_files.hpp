@@ -1,0 +1,30 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "station/store/export.hpp"
+#include "station/store/read.hpp"
+#include "station/store/text_table.hpp"
+
+namespace turnpoint::store {
+
+/// All sessions of one protocol that an export takes, and the columns of its factors.
+struct ProtocolSelection {
+  std::string protocol_id, folder;  ///< folder: where its files go, ends without a slash
+  std::vector<std::string> factors;
+  std::vector<SessionRecord> sessions;
+};
+
+/// Writes the bytes by way of a temporary file, so that a reader sees the old or the new ones. Makes the
+/// folder. Throws StoreError.
+void write_file(const std::string& path, const std::string& bytes);
+
+/// The same for a table; notes it in `files`.
+void write_table(const std::string& path, const TextTable& table, std::vector<ExportedFile>& files);
+
+/// The two formats.
+void export_csv(Database& database, const ProtocolSelection& selection, const TableStyle& style,
+                std::vector<ExportedFile>& files);
+void export_bids(Database& database, const ProtocolSelection& selection, std::vector<ExportedFile>& files);
+
+}  // namespace turnpoint::store

@@ -1,0 +1,220 @@
+#include "station/store/open.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sqlite3.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "station/store/identity.hpp"
+#include "station/store/schema.hpp"
+
+namespace turnpoint::store {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+[[noreturn]] void fail_system(Fault fault, const std::string& what, int code, const std::string& advice) {
+  throw StoreError(fault, fmt::format("{}: {}; {}", what, std::strerror(code), advice));
+}
+
+Fault fault_of_errno(int code) {
+  if (code == ENOSPC || code == EDQUOT) return Fault::disk_full;
+  if (code == EACCES || code == EROFS || code == EPERM) return Fault::read_only;
+  return code == ENOENT ? Fault::missing : Fault::io;
+}
+
+/// The real file behind links, so that two names of one database share one lock.
+std::string canonical(const std::string& path) {
+  std::error_code ignored;
+  const auto resolved = fs::weakly_canonical(path, ignored);
+  return resolved.empty() ? path : resolved.string();
+}
+
+enum class FileState { absent, empty, something };
+
+FileState state_of(const std::string& path) {
+  std::error_code error;
+  const auto size = fs::file_size(path, error);
+  if (error == std::errc::no_such_file_or_directory) return FileState::absent;
+  if (error) fail_system(Fault::missing, "database " + path, error.value(), "name a file");
+  return size == 0 ? FileState::empty : FileState::something;
+}
+
+void refuse_empty(const std::string& path) {
+  throw StoreError(
+      Fault::not_a_database,
+      fmt::format("database {}: the file is empty (0 bytes): what was in it is lost, or it never was a "
+                  "database; it was left untouched; restore the newest backup (turnpoint backup --db "
+                  "FILE --dir FOLDER --restore), or remove it to begin a new one",
+                  path));
+}
+
+void refuse_absent(const std::string& path) {
+  throw StoreError(Fault::missing, fmt::format("database {}: there is no such file; check the path", path));
+}
+
+/// A half-made file must never stand under the final name: a later start could not tell it from a lost one.
+void create_file(const std::string& path) {
+  const auto temporary = path + ".new";
+  for (const auto* suffix : {"", "-wal", "-shm", "-journal"}) fs::remove(temporary + suffix);
+  {
+    Database database(temporary, Database::Access::create);
+    database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
+    create_schema(database, schema_version());
+    Statement(database, "INSERT INTO meta VALUES ('database_id', ?)").bind(new_uuid()).run();
+  }
+  sync_path(temporary);
+  fs::rename(temporary, path);
+  sync_path(fs::path(path).parent_path().string());
+}
+
+void recover_sessions(Database& database) {
+  Transaction transaction(database);
+  database.execute(
+      "UPDATE session SET status = 'interrupted', status_reason = 'the process ended without a word'"
+      " WHERE status = 'running';"
+      "UPDATE session SET status = 'abandoned', status_reason = 'no trial was made'"
+      " WHERE status = 'interrupted' AND NOT EXISTS"
+      " (SELECT 1 FROM trial WHERE trial.session_id = session.session_id)");
+  transaction.commit();
+}
+
+/// SQLite opens a file that it may not write without a word, and for reading only.
+void require_writable(Database& database) {
+  if (sqlite3_db_readonly(database.handle(), "main") == 0) return;
+  throw StoreError(
+      Fault::read_only,
+      fmt::format("database {}: the file or its disk cannot be written; nothing was changed; make the "
+                  "file and its folder writable, or name a database elsewhere",
+                  database.path()));
+}
+
+/// Some file systems and folders leave no room for the shared memory of WAL mode: then, and only without a
+/// log that would be passed over, the file is read as it stands.
+Database open_plain_reader(const std::string& path) {
+  try {
+    Database database(path, Database::Access::read_only);
+    database.execute("PRAGMA busy_timeout = 2000");
+    database.integer("SELECT count(*) FROM sqlite_schema");
+    return database;
+  } catch (const StoreError& error) {
+    const bool no_shared_memory = error.fault() == Fault::missing || error.fault() == Fault::read_only;
+    if (!no_shared_memory || fs::exists(path + "-wal")) throw;
+  }
+  return Database(path, Database::Access::immutable);
+}
+
+}  // namespace
+
+StationLock::StationLock(const std::string& database) {
+  const auto path = database + ".lock";
+  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0660);
+  if (descriptor_ < 0)
+    fail_system(fault_of_errno(errno), "lock file " + path, errno,
+                "the folder of the database must exist and be writable");
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    char owner[64] = {};
+    const auto size = ::pread(descriptor_, owner, sizeof owner - 1, 0);
+    ::close(std::exchange(descriptor_, -1));
+    throw StoreError(
+        Fault::busy,
+        fmt::format("database {}: another station process{}{} is writing it; end that one first, or "
+                    "name another database",
+                    database, size > 0 ? ", pid " : "", std::string(owner)));
+  }
+  const auto owner = std::to_string(::getpid());
+  // Only a courtesy to whoever finds the lock taken: a full disk must not keep the station from starting
+  // here.
+  if (::ftruncate(descriptor_, 0) == 0) (void)!::pwrite(descriptor_, owner.data(), owner.size(), 0);
+}
+
+StationLock::StationLock(StationLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+StationLock::~StationLock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+void check_pages(Database& database) {
+  const auto pages = database.text("PRAGMA quick_check(1)");
+  if (pages != "ok") database.fail(SQLITE_CORRUPT, "quick_check: " + pages);
+  Statement keys(database, "PRAGMA foreign_key_check");
+  if (keys.step()) database.fail(SQLITE_CORRUPT, "foreign_key_check: table " + keys.text(0));
+}
+
+void sync_path(const std::string& path) {
+  const auto name = path.empty() ? std::string(".") : path;
+  const int descriptor = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
+  const int code = descriptor < 0 || ::fsync(descriptor) != 0 ? errno : 0;
+  if (descriptor >= 0) ::close(descriptor);
+  if (code != 0) fail_system(fault_of_errno(code), "sync " + name, code, "check the disk");
+}
+
+void copy_to_file(Database& from, const std::string& to) {
+  const auto temporary = to + ".new";
+  const auto clean = [&temporary] {
+    for (const auto* suffix : {"", "-wal", "-shm", "-journal"}) {
+      std::error_code ignored;
+      fs::remove(temporary + suffix, ignored);
+    }
+  };
+  clean();
+  try {
+    {
+      Database copy(temporary, Database::Access::create);
+      copy_database(from, copy);
+      check_pages(copy);
+      // A copy is one file: out of WAL mode it can be read from any medium.
+      copy.execute("PRAGMA journal_mode = DELETE");
+    }
+    sync_path(temporary);
+    fs::rename(temporary, to);
+    sync_path(fs::path(to).parent_path().string());
+  } catch (...) {
+    clean();
+    throw;
+  }
+}
+
+Writer open_writer(const std::string& name, IfMissing if_missing) {
+  const auto path = canonical(name);
+  if (if_missing == IfMissing::fail && state_of(path) == FileState::absent) refuse_absent(path);
+  StationLock lock(path);
+  const auto state = state_of(path);
+  if (state == FileState::empty) refuse_empty(path);
+  if (state == FileState::absent) create_file(path);
+  Database database(path, Database::Access::read_write);
+  database.execute("PRAGMA busy_timeout = 2000");
+  const int version = checked_version(database);
+  require_writable(database);
+  check_pages(database);
+  if (version < schema_version())
+    copy_to_file(database, fmt::format("{}.before-v{}", path, schema_version()));
+  database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
+  migrate(database);
+  recover_sessions(database);
+  return {std::move(lock), std::move(database)};
+}
+
+Database open_reader(const std::string& name) {
+  const auto path = canonical(name);
+  const auto state = state_of(path);
+  if (state == FileState::absent) refuse_absent(path);
+  if (state == FileState::empty) refuse_empty(path);
+  auto database = open_plain_reader(path);
+  const int version = checked_version(database);
+  check_pages(database);
+  if (version == schema_version()) return database;
+  Database migrated(":memory:", Database::Access::create);
+  copy_database(database, migrated);
+  migrate(migrated);
+  return migrated;
+}
+
+}  // namespace turnpoint::store

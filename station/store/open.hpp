@@ -1,0 +1,50 @@
+#pragma once
+#include <string>
+
+#include "station/store/sqlite.hpp"
+
+namespace turnpoint::store {
+
+/// Held by the one process that may write a database: an flock on FILE.lock beside it, given back by the
+/// kernel however the process ends. Move-only.
+class StationLock {
+ public:
+  /// Throws StoreError (busy) naming the process that has it.
+  explicit StationLock(const std::string& database);
+  StationLock(StationLock&& other) noexcept;
+  StationLock& operator=(StationLock&&) = delete;
+  ~StationLock();
+
+ private:
+  int descriptor_ = -1;
+};
+
+/// A lock and the write connection under it.
+struct Writer {
+  StationLock lock;
+  Database database;
+};
+
+/// What open_writer does where there is no file.
+enum class IfMissing { create, fail };
+
+/// Opens a database for writing: WAL, synchronous FULL, foreign keys; checks its pages, and takes an older
+/// schema to the current one after a copy FILE.before-vN. A new file appears whole or not at all.
+/// Sessions that a dead process left running become interrupted, those without trials abandoned.
+/// Throws StoreError and changes nothing for a file that is empty, damaged, not Turnpoint's or newer.
+Writer open_writer(const std::string& path, IfMissing if_missing);
+
+/// Opens a database for reading only, also beside a running session and on a read-only disk. An older schema
+/// is read through a migrated copy in memory.
+Database open_reader(const std::string& path);
+
+/// PRAGMA quick_check and foreign_key_check; throws StoreError (corrupt) with what they say.
+void check_pages(Database& database);
+
+/// Makes a file's or folder's contents durable. Throws StoreError.
+void sync_path(const std::string& path);
+
+/// Writes all of `from` into the file `to` by way of a temporary: durable, checked, then renamed.
+void copy_to_file(Database& from, const std::string& to);
+
+}  // namespace turnpoint::store

@@ -1,0 +1,44 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/store/session_log.hpp"
+
+namespace turnpoint::store {
+
+class Database;
+
+/// Which sessions; "" takes all.
+struct SessionFilter {
+  std::string session_id, participant, protocol_id;
+};
+
+/// Sessions in the order of participant, protocol, index and id. Reads only; works beside a running session.
+/// Throws StoreError.
+std::vector<SessionRecord> list_sessions(const std::string& database, const SessionFilter& filter = {});
+std::vector<SessionRecord> list_sessions(Database& database, const SessionFilter& filter = {});
+
+/// A whole session as it stands. Throws StoreError (missing) where there is none of that id.
+struct StoredSession {
+  SessionRecord session;
+  std::vector<SegmentStart> segments;  ///< segment_index 1 first
+  std::vector<BlockRecord> blocks;     ///< in the order run
+  std::vector<EventRow> events;        ///< in the order logged
+};
+StoredSession read_session(const std::string& database, const std::string& session_id);
+StoredSession read_session(Database& database, const std::string& session_id);
+
+/// A session that can be gone on with.
+struct Interrupted {
+  SessionRecord session;
+  /// Wall-clock time since its last commit; below 0 where the clock was set back since.
+  double age_s = 0;
+};
+
+/// The interrupted session of that id, or the newest one for ""; none where there is none. Sessions without a
+/// trial are not among them: the next write access closes them as abandoned.
+std::optional<Interrupted> interrupted_session(const std::string& database,
+                                               const std::string& session_id = "");
+
+}  // namespace turnpoint::store

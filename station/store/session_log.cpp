@@ -1,0 +1,279 @@
+#include "station/store/session_log.hpp"
+
+#include <fmt/format.h>
+#include <sys/statvfs.h>
+
+#include <bit>
+#include <filesystem>
+#include <utility>
+
+#include "station/store/identity.hpp"
+#include "station/store/open.hpp"
+#include "station/store/read.hpp"
+#include "station/store/rows.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::store {
+
+namespace {
+
+/// A long session writes some MiB; with less than this free it might not end as it began.
+constexpr std::uint64_t kFreeBytesWanted = 16U << 20U;
+
+void require_space(const std::string& database) {
+  struct statvfs disk {};
+  auto folder = std::filesystem::absolute(database).parent_path().string();
+  if (::statvfs(folder.c_str(), &disk) != 0) return;  // opening the file says it better
+  const auto free_bytes = static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize;
+  if (free_bytes >= kFreeBytesWanted) return;
+  throw StoreError(
+      Fault::disk_full,
+      fmt::format("database {}: {} MiB are free on its disk and a session wants {}; nothing was written; "
+                  "free some space, then begin again",
+                  database, free_bytes >> 20U, kFreeBytesWanted >> 20U));
+}
+
+void refuse(Database& database, Fault fault, const std::string& what) {
+  throw StoreError(fault, fmt::format("database {}: {}", database.path(), what));
+}
+
+/// The participant's place in the protocol's counterbalancing: kept for a code that is known, else the lowest
+/// one free, so that who withdrew leaves no hole in the design.
+int enrol(Database& database, const SessionStart& start) {
+  Statement known(database,
+                  "SELECT sequence_index FROM enrolment WHERE protocol_id = ?1 AND participant = ?2"
+                  " ORDER BY station_id <> ?3, station_id LIMIT 1");
+  known.bind(start.protocol_id, start.participant, start.station_id);
+  if (known.step()) return static_cast<int>(known.integer(0));
+  Statement taken(
+      database,
+      "SELECT DISTINCT sequence_index FROM enrolment WHERE protocol_id = ? ORDER BY sequence_index");
+  taken.bind(start.protocol_id);
+  int free_index = 0;
+  while (taken.step() && taken.integer(0) == free_index) ++free_index;
+  Statement(database, "INSERT OR IGNORE INTO participant VALUES (?)").bind(start.participant).run();
+  Statement(database, "INSERT INTO enrolment VALUES (?,?,?,?)")
+      .bind(start.station_id, start.protocol_id, start.participant, free_index)
+      .run();
+  return free_index;
+}
+
+std::string keep_protocol(Database& database, const SessionStart& start) {
+  const auto key =
+      text::sha256(start.protocol_id + '\n' + start.protocol_version + '\n' + start.protocol_sha256 + '\n' +
+                   start.protocol_text + '\n' + start.protocol_canonical);
+  Statement(database, "INSERT OR IGNORE INTO protocol VALUES (?,?,?,?,?,?)")
+      .bind(key, start.protocol_id, start.protocol_version, start.protocol_sha256, start.protocol_text,
+            start.protocol_canonical)
+      .run();
+  return key;
+}
+
+std::string keep_rig(Database& database, const SessionStart& start) {
+  const auto key = text::sha256(start.rig_name + '\n' + start.rig_sha256 + '\n' + start.rig_text);
+  Statement(database, "INSERT OR IGNORE INTO rig VALUES (?,?,?,?)")
+      .bind(key, start.rig_name, start.rig_sha256, start.rig_text)
+      .run();
+  return key;
+}
+
+int next_session_index(Database& database, const SessionStart& start) {
+  Statement last(database,
+                 "SELECT coalesce(max(session_index), 0) + 1 FROM session JOIN protocol USING (protocol_key)"
+                 " WHERE participant = ? AND protocol_id = ?");
+  last.bind(start.participant, start.protocol_id);
+  last.step();
+  return static_cast<int>(last.integer(0));
+}
+
+void insert_session(Database& database, const std::string& id, const SessionStart& start) {
+  const int sequence_index = enrol(database, start);
+  if (start.calibration_id)
+    Statement(database, "INSERT OR IGNORE INTO calibration VALUES (?,?)")
+        .bind(*start.calibration_id, start.calibration_text)
+        .run();
+  const auto protocol_key = keep_protocol(database, start);
+  const auto rig_key = keep_rig(database, start);
+  Statement(
+      database,
+      "INSERT INTO session (session_id, participant, protocol_key, protocol_path, rig_key, rig_path,"
+      " calibration_id, run_mode, session_index, sequence_index, seed, language, observer, factor_columns,"
+      " level_unit, software_version, columns_version, kernel, station_id, realtime_rights, started_local,"
+      " consent_version, status, status_reason)"
+      " VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,'running','')")
+      .bind(id, start.participant, protocol_key, start.protocol_path, rig_key, start.rig_path,
+            start.calibration_id, name(start.run_mode), next_session_index(database, start), sequence_index,
+            std::bit_cast<std::int64_t>(start.seed), start.language, start.observer,
+            list_json(start.factor_columns), start.level_unit, start.software_version, start.columns_version,
+            start.kernel, start.station_id, start.realtime_rights, start.started_local, start.consent_version)
+      .run();
+}
+
+void insert_segment(Database& database, const std::string& id, int index, const SegmentStart& segment) {
+  Statement(database, "INSERT INTO segment VALUES (?,?,?,?,?,?,?)")
+      .bind(id, index, segment.boot_id, segment.reason, segment.monotonic_ns, segment.boottime_ns,
+            segment.realtime_ns)
+      .run();
+}
+
+}  // namespace
+
+struct SessionLog::Impl {
+  explicit Impl(Writer opened) : writer(std::move(opened)), rows(writer.database) {}
+
+  /// The events gathered so far, inside the transaction of the caller.
+  void write_events() {
+    auto index = next_event;
+    for (const auto& event : events) rows.event(place, index++, event);
+  }
+  void events_are_durable() {
+    next_event += static_cast<std::int64_t>(events.size());
+    events.clear();
+  }
+
+  Writer writer;
+  RowWriter rows;
+  TrialPlace place;
+  SessionRecord session;
+  std::vector<BlockRecord> blocks;
+  std::vector<EventRow> events;
+  std::int64_t next_event = 0;
+  bool in_block = false;
+};
+
+SessionLog::SessionLog(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SessionLog::SessionLog(SessionLog&&) noexcept = default;
+SessionLog& SessionLog::operator=(SessionLog&&) noexcept = default;
+SessionLog::~SessionLog() = default;
+
+SessionLog SessionLog::begin(const std::string& path, const SessionStart& start,
+                             const SegmentStart& segment) {
+  require_space(path);
+  auto impl = std::make_unique<Impl>(open_writer(path, IfMissing::create));
+  auto& database = impl->writer.database;
+  const auto id = new_uuid();
+  Transaction transaction(database);
+  insert_session(database, id, start);
+  insert_segment(database, id, 1, segment);
+  transaction.commit();
+  impl->place = {id, 1, 0, 0};
+  impl->session = list_sessions(database, {id, "", ""}).front();
+  return SessionLog(std::move(impl));
+}
+
+SessionLog SessionLog::resume(const std::string& path, const std::string& id, const SegmentStart& segment) {
+  require_space(path);
+  auto impl = std::make_unique<Impl>(open_writer(path, IfMissing::fail));
+  auto& database = impl->writer.database;
+  auto stored = read_session(database, id);
+  if (stored.session.status != SessionStatus::interrupted)
+    refuse(database, Fault::refused,
+           fmt::format("session {} is {}; only an interrupted one can be gone on with", id,
+                       name(stored.session.status)));
+  const int index = stored.session.segments + 1;
+  impl->place = {id, index, 0, 0};
+  Statement last(database, "SELECT coalesce(max(event_index), -1) + 1 FROM event WHERE session_id = ?");
+  last.bind(id).step();
+  impl->next_event = last.integer(0);
+  last.reset();
+  Statement open(
+      database,
+      "SELECT max(trial_index) FROM event WHERE session_id = ?1 AND kind = 'presented' AND NOT EXISTS"
+      " (SELECT 1 FROM trial t WHERE t.session_id = ?1 AND t.trial_index = event.trial_index)");
+  open.bind(id).step();
+  if (const auto trial = open.maybe_integer(0))
+    impl->events.push_back({segment.monotonic_ns, "aborted",
+                            "presented, but the process ended before the trial did",
+                            static_cast<int>(*trial)});
+  open.reset();
+  Transaction transaction(database);
+  insert_segment(database, id, index, segment);
+  impl->write_events();
+  Statement(database, "UPDATE session SET status = 'running', status_reason = '' WHERE session_id = ?")
+      .bind(id)
+      .run();
+  transaction.commit();
+  impl->events_are_durable();
+  impl->session = list_sessions(database, {id, "", ""}).front();
+  impl->blocks = std::move(stored.blocks);
+  return SessionLog(std::move(impl));
+}
+
+const SessionRecord& SessionLog::session() const { return impl_->session; }
+const std::vector<BlockRecord>& SessionLog::stored_blocks() const { return impl_->blocks; }
+
+void SessionLog::begin_block(const BlockStart& block) {
+  auto& database = impl_->writer.database;
+  const auto& id = impl_->place.session_id;
+  Statement known(database,
+                  "SELECT name = ? AND instruction = ? AND practice = ? FROM block"
+                  " WHERE session_id = ? AND block_index = ? AND attempt = ?");
+  known.bind(block.name, block.instruction, block.practice, id, block.block_index, block.attempt);
+  const bool exists = known.step();
+  if (exists && known.integer(0) == 0)
+    refuse(database, Fault::conflict,
+           fmt::format("block {} attempt {} of session {} was begun with another name or instruction",
+                       block.block_index, block.attempt, id));
+  known.reset();
+  Transaction transaction(database);
+  if (!exists)
+    Statement(database,
+              "INSERT INTO block VALUES (?1, ?2, ?3,"
+              " (SELECT coalesce(max(run_order), -1) + 1 FROM block WHERE session_id = ?1), ?4, ?5, ?6)")
+        .bind(id, block.block_index, block.attempt, block.name, block.instruction, block.practice)
+        .run();
+  impl_->write_events();
+  transaction.commit();
+  impl_->events_are_durable();
+  impl_->place.block_index = block.block_index;
+  impl_->place.attempt = block.attempt;
+  impl_->in_block = true;
+}
+
+void SessionLog::event(EventRow event) { impl_->events.push_back(std::move(event)); }
+
+void SessionLog::presented(int trial_index, std::int64_t time_ns) {
+  const EventRow row{time_ns, "presented", "", trial_index, impl_->place.segment_index};
+  Transaction transaction(impl_->writer.database);
+  impl_->write_events();
+  impl_->rows.event(impl_->place, impl_->next_event + static_cast<std::int64_t>(impl_->events.size()), row);
+  transaction.commit();
+  impl_->events_are_durable();
+  ++impl_->next_event;
+}
+
+void SessionLog::append(const TrialRow& trial) {
+  if (!impl_->in_block)
+    refuse(impl_->writer.database, Fault::refused, "a trial belongs to a block; begin_block comes first");
+  const auto now = realtime_ns();
+  Transaction transaction(impl_->writer.database);
+  impl_->rows.trial(impl_->place, trial, now);
+  impl_->write_events();
+  transaction.commit();
+  impl_->events_are_durable();
+  ++impl_->session.trials;
+  impl_->session.last_activity_realtime_ns = now;
+}
+
+void SessionLog::annotate(const std::string& text) {
+  Transaction transaction(impl_->writer.database);
+  Statement(impl_->writer.database, "INSERT INTO annotation VALUES (?,?,?,?)")
+      .bind(new_uuid(), impl_->place.session_id, realtime_ns(), text)
+      .run();
+  transaction.commit();
+  impl_->session.annotations.push_back(text);
+}
+
+void SessionLog::finish(SessionStatus status, const std::string& reason) {
+  Transaction transaction(impl_->writer.database);
+  impl_->write_events();
+  Statement(impl_->writer.database, "UPDATE session SET status = ?, status_reason = ? WHERE session_id = ?")
+      .bind(name(status), reason, impl_->place.session_id)
+      .run();
+  transaction.commit();
+  impl_->events_are_durable();
+  impl_->session.status = status;
+  impl_->session.status_reason = reason;
+}
+
+}  // namespace turnpoint::store

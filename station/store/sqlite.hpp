@@ -1,0 +1,121 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <type_traits>
+
+#include "station/store/error.hpp"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace turnpoint::store {
+
+class Database;
+
+/// A prepared statement. Parameters are bound in order by bind(); text is copied. Move-only; must not outlive
+/// its database.
+class Statement {
+ public:
+  Statement(Database& database, const std::string& sql);
+  Statement(Statement&& other) noexcept;
+  Statement& operator=(Statement&&) = delete;
+  ~Statement();
+
+  /// Binds all parameters from the first on: integers, doubles, text, optionals (none is NULL).
+  template <class... Values>
+  Statement& bind(const Values&... values) {
+    reset();
+    int index = 0;
+    (bind_one(++index, values), ...);
+    return *this;
+  }
+
+  bool step();  ///< true while there is a row
+  void run();   ///< steps to the end and resets
+  void reset();
+
+  int columns() const;
+  std::string column_name(int column) const;
+  bool is_null(int column) const;
+  bool is_real(int column) const;
+  bool is_text(int column) const;
+  std::int64_t integer(int column) const;
+  double real(int column) const;
+  std::string text(int column) const;  ///< "" for NULL
+  std::optional<std::int64_t> maybe_integer(int column) const;
+  std::optional<double> maybe_real(int column) const;
+  std::optional<std::string> maybe_text(int column) const;
+
+ private:
+  void bind_integer(int index, std::int64_t value);
+  void bind_real(int index, double value);
+  void bind_text(int index, const char* value, std::size_t size);
+  void bind_null(int index);
+
+  template <class Value>
+  void bind_one(int index, const Value& value) {
+    if constexpr (std::is_same_v<Value, std::nullopt_t>)
+      bind_null(index);
+    else if constexpr (std::is_integral_v<Value>)
+      bind_integer(index, static_cast<std::int64_t>(value));
+    else if constexpr (std::is_floating_point_v<Value>)
+      bind_real(index, value);
+    else if constexpr (std::is_convertible_v<Value, std::string>)
+      bind_string(index, value);
+    else if (value)
+      bind_one(index, *value);
+    else
+      bind_null(index);
+  }
+  void bind_string(int index, const std::string& value) { bind_text(index, value.data(), value.size()); }
+
+  Database* database_;
+  sqlite3_stmt* statement_ = nullptr;
+};
+
+/// One SQLite connection, private to one thread.
+class Database {
+ public:
+  enum class Access { read_only, immutable, read_write, create };
+
+  /// `path` may be ":memory:". Throws StoreError.
+  Database(const std::string& path, Access access);
+  Database(Database&& other) noexcept;
+  Database& operator=(Database&&) = delete;
+  ~Database();
+
+  void execute(const std::string& sql);  ///< one or more statements, rows thrown away
+  std::int64_t integer(const std::string& sql);
+  std::string text(const std::string& sql);
+  int changes() const;
+
+  const std::string& path() const { return path_; }
+  sqlite3* handle() { return handle_; }
+
+  /// Throws the StoreError that SQLite's last result on this connection stands for.
+  [[noreturn]] void fail(int code, const std::string& what) const;
+
+ private:
+  std::string path_;
+  sqlite3* handle_ = nullptr;
+};
+
+/// BEGIN IMMEDIATE ... COMMIT; rolls back when destroyed without commit().
+class Transaction {
+ public:
+  explicit Transaction(Database& database);
+  Transaction(const Transaction&) = delete;
+  Transaction& operator=(const Transaction&) = delete;
+  ~Transaction();
+  void commit();
+
+ private:
+  Database& database_;
+  bool open_ = true;
+};
+
+/// Copies all pages of one database into another (the online backup interface). Throws StoreError.
+void copy_database(Database& from, Database& to);
+
+}  // namespace turnpoint::store

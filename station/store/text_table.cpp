@@ -1,0 +1,71 @@
+#include "station/store/text_table.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "station/text/number.hpp"
+
+namespace turnpoint::store {
+
+namespace {
+
+std::string defused(const std::string& text) {
+  static const std::string dangerous = "=+-@\t\r";
+  return dangerous.find(text.front()) == std::string::npos ? text : "'" + text;
+}
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"') result += '"';
+    result += c;
+  }
+  return result + '"';
+}
+
+struct Formatter {
+  const TableStyle& style;
+
+  std::string operator()(std::monostate) const { return "n/a"; }
+  std::string operator()(std::int64_t value) const { return std::to_string(value); }
+  std::string operator()(double value) const {
+    auto text = text::exact(value);
+    if (style.decimal != '.') std::replace(text.begin(), text.end(), '.', style.decimal);
+    return text;
+  }
+  std::string operator()(const std::string& text) const { return text.empty() ? "n/a" : defused(text); }
+};
+
+}  // namespace
+
+TextTable::TextTable(const TableStyle& style, const std::vector<std::string>& columns)
+    : style_(style), columns_(columns.size()) {
+  for (const auto& column : columns) field(column);
+  end_row();
+  rows_ = 0;
+}
+
+void TextTable::row(const std::vector<Cell>& cells) {
+  if (cells.size() != columns_)
+    throw std::logic_error("a row of a table has as many cells as it has columns");
+  for (const auto& one : cells) field(std::visit(Formatter{style_}, one));
+  end_row();
+}
+
+void TextTable::field(const std::string& text) {
+  if (style_.kind == TableStyle::Kind::bids) {
+    for (const char c : text) text_ += c == '\t' || c == '\n' || c == '\r' ? ' ' : c;
+  } else {
+    const std::string special = std::string("\"\r\n") + style_.separator;
+    text_ += text.find_first_of(special) == std::string::npos ? text : quoted(text);
+  }
+  text_ += style_.separator;
+}
+
+void TextTable::end_row() {
+  text_.pop_back();
+  text_ += style_.kind == TableStyle::Kind::bids ? "\n" : "\r\n";
+  ++rows_;
+}
+
+}  // namespace turnpoint::store

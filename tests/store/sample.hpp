@@ -1,0 +1,167 @@
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "station/store/session_log.hpp"
+#include "station/store/sqlite.hpp"
+
+/// A folder of its own for one test, removed afterwards.
+struct TemporaryFolder {
+  TemporaryFolder() {
+    // In memory where there is such a place: what is durable is not what these tests are about.
+    std::string name = std::filesystem::exists("/dev/shm") ? "/dev/shm" : "/tmp";
+    name += "/turnpoint-store-XXXXXX";
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+    path = name;
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  std::string operator/(const std::string& name) const { return path + "/" + name; }
+  std::string path;
+};
+
+namespace sample {
+
+using namespace turnpoint::store;
+
+inline SessionStart start(const std::string& participant = "P01") {
+  SessionStart s;
+  s.participant = participant;
+  s.run_mode = RunMode::simulated;
+  s.protocol_id = "two-boundaries";
+  s.protocol_version = "1.2.0";
+  s.protocol_path = "protocols/two.toml";
+  s.protocol_text = "format = \"friction-protocol/1\"\n";
+  s.protocol_sha256 = std::string(64, 'a');
+  s.protocol_canonical = "canonical";
+  s.factor_columns = {"contrast", "instruction"};
+  s.level_unit = "dB";
+  s.rig_name = "plate";
+  s.rig_path = "rigs/plate.toml";
+  s.rig_text = "format = \"friction-rig/1\"\n";
+  s.rig_sha256 = std::string(64, 'b');
+  s.seed = 20240229;
+  s.language = "en";
+  s.observer = "sim:threshold=0.1";
+  s.software_version = "0.1.0";
+  s.columns_version = "1";
+  s.kernel = "Linux 6.1";
+  s.station_id = "bench-a";
+  s.realtime_rights = "none";
+  s.started_local = "2024-02-29T10:00:00+01:00";
+  s.consent_version = "c1";
+  return s;
+}
+
+inline SegmentStart segment(const std::string& reason = "start") {
+  return {"boot-1", reason, 1'000'000'000, 2'000'000'000, 1'709'197'200'000'000'000};
+}
+
+inline ToneRow tone(int interval, int index) {
+  ToneRow t;
+  t.interval_index = interval;
+  t.tone_index = index;
+  t.scene = interval == 0 ? "reference" : "comparison";
+  t.boundary_mm = 150.25;
+  t.frequency_Hz = 30123.4567890123;
+  t.amplitude_um = 0.75;
+  t.displacement_um = 2.5;
+  t.friction = 0.62;
+  t.model = "mode";
+  t.error_bound_mm = 0.1;
+  t.uncertainty_mm = 0.4;
+  t.reason = "cheapest inside the tolerance";
+  t.onset_frame = 192000 + interval * 96000;
+  t.length_frames = 96000;
+  return t;
+}
+
+inline TrialRow answered(int index, int tones = 2) {
+  TrialRow t;
+  t.trial_index = index;
+  t.trial_in_block = index;
+  t.procedure = "staircase";
+  t.level = -12.5 + 0.1 * index;
+  t.factors = {{"contrast", 0.1 + 0.2}, {"instruction", std::string("speed")}};
+  t.boundary_mm = 150.25;
+  t.frequency_Hz = 30123.4567890123;
+  t.amplitude = 2.5;
+  t.correct_response = "first";
+  t.response = index % 3 == 0 ? "second" : "first";
+  t.correct = index % 3 != 0;
+  t.onset_ns = 3'000'000'000 + 1'000'000'000LL * index;
+  t.onset_s = 2.0 + index;
+  t.duration_s = 3.5;
+  t.response_time_s = 0.4375 + 0.001 * index;
+  t.response_zero = "go_cue";
+  t.response_time_quality = "simulated";
+  t.deadline_s = 2.0;
+  t.threshold_est = -10.0;
+  t.threshold_sd = 1.5;
+  t.clock_slope_ns_per_frame = 5208.333;
+  t.clock_residual_ns = 42;
+  t.state_hash = 0xfedcba9876543210ULL + static_cast<unsigned>(index);
+  for (int i = 0; i < 2; ++i)
+    for (int k = 0; k < tones; ++k) t.tones.push_back(tone(i, k));
+  return t;
+}
+
+inline TrialRow timeout(int index) {
+  auto t = answered(index);
+  t.outcome = TrialOutcome::timeout;
+  t.response.reset();
+  t.correct.reset();
+  t.response_time_s.reset();
+  t.response_time_quality = "n/a";
+  return t;
+}
+
+inline BlockStart block(int index = 0, int attempt = 0) { return {index, attempt, "main", "speed", false}; }
+
+/// A finished session of `trials` trials, all events included. Returns its id.
+inline std::string session(const std::string& database, int trials, const SessionStart& with = start(),
+                           SessionStatus status = SessionStatus::completed) {
+  auto log = SessionLog::begin(database, with, segment());
+  log.begin_block(block());
+  for (int i = 0; i < trials; ++i) {
+    log.presented(i, 3'000'000'000 + 1'000'000'000LL * i);
+    log.event({3'100'000'000 + 1'000'000'000LL * i, "answer", "1", i});
+    log.append(i % 5 == 4 ? timeout(i) : answered(i));
+  }
+  log.finish(status, "");
+  return log.session().session_id;
+}
+
+inline std::string bytes_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream all;
+  all << file.rdbuf();
+  return all.str();
+}
+
+/// A connection of the test's own, past the store's rules of access.
+inline Database raw(const std::string& path) { return Database(path, Database::Access::read_write); }
+
+/// The fault and message of what `action` throws; fault io and "" where it throws nothing.
+template <class Action>
+std::pair<Fault, std::string> failure(Action&& action) {
+  try {
+    action();
+  } catch (const StoreError& error) {
+    return {error.fault(), error.what()};
+  }
+  return {Fault::io, ""};
+}
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace sample

@@ -1,0 +1,151 @@
+#include "station/store/export.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "station/store/text_table.hpp"
+#include "tests/store/sample.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::store;
+
+namespace {
+
+std::vector<std::string> lines_of(const std::string& text, const std::string& end) {
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at < text.size();) {
+    const auto next = text.find(end, at);
+    REQUIRE(next != std::string::npos);
+    lines.push_back(text.substr(at, next - at));
+    at = next + end.size();
+  }
+  return lines;
+}
+
+const char* const kHeader =
+    "participant_id,session_id,session_index,run_mode,protocol_id,protocol_version,protocol_sha256,block_"
+    "index,"
+    "block_name,instruction,practice,attempt,segment_id,trial_index,trial_type,procedure,onset,duration,"
+    "level,"
+    "level_unit,contrast,factor_instruction,boundary_mm,frequency_hz,amplitude,model,correct_response,"
+    "response,"
+    "correct,"
+    "outcome,response_time,decision_time,movement_time,response_zero,response_time_quality,response_offset_s,"
+    "deadline,xruns,extra_touches,threshold_est,threshold_sd,seed,station_id,calibration_id,software_version,"
+    "columns_version";
+
+}  // namespace
+
+TEST_CASE("trials.csv has the fixed columns, all of them, with the factors in their place", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  const auto id = sample::session(db, 5);
+  const auto files = export_data(db, folder / "out", {});
+  REQUIRE(files.size() == 5);
+  CHECK(files[0].path == folder / "out/two-boundaries/trials.csv");
+  CHECK(files[0].rows == 5);
+  CHECK(files[1].rows == 20);
+  CHECK(files[2].rows == 10);
+  CHECK(files[3].rows == 1);
+  const auto lines = lines_of(sample::bytes_of(files[0].path), "\r\n");
+  REQUIRE(lines.size() == 6);
+  CHECK(lines[0] == kHeader);
+  CHECK(
+      lines[1] ==
+      "P01," + id + ",1,simulated,two-boundaries,1.2.0," + std::string(64, 'a') +
+          ",0,main,speed,0,0,1,0,experimental,staircase,2,3.5,-12.5,dB,0.30000000000000004,speed,150.25,"
+          "30123.4567890123,2.5,mode,first,second,0,answered,0.4375,n/a,n/a,go_cue,simulated,0,2,0,0,-10,1.5,"
+          "20240229,bench-a,n/a,0.1.0,1");
+  CHECK(sample::contains(lines[5], ",mode,first,n/a,n/a,timeout,n/a,n/a,n/a,go_cue,n/a,"));
+}
+
+TEST_CASE("the codebook explains every column of every table", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  sample::session(db, 2);
+  const auto files = export_data(db, folder / "out", {});
+  const auto codebook = nlohmann::json::parse(sample::bytes_of(files[4].path));
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto name = std::filesystem::path(files[i].path).filename().string();
+    std::istringstream header(lines_of(sample::bytes_of(files[i].path), "\r\n")[0]);
+    for (std::string column; std::getline(header, column, ',');) {
+      INFO(name << " " << column);
+      CHECK(codebook.at(name).at(column).at("Description").get<std::string>().size() > 3);
+    }
+  }
+}
+
+TEST_CASE("the same data give the same bytes, through a new connection and beside a running session",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  sample::session(db, 7);
+  sample::session(db, 3, sample::start("P02"));
+  auto running = SessionLog::begin(db, sample::start("P03"), sample::segment());
+  const auto format = GENERATE(ExportFormat::csv, ExportFormat::bids);
+  ExportOptions options;
+  options.format = format;
+  const auto first = export_data(db, folder / "one", options);
+  const auto second = export_data(db, folder / "two", options);
+  REQUIRE(first.size() == second.size());
+  for (std::size_t i = 0; i < first.size(); ++i)
+    CHECK(sample::bytes_of(first[i].path) == sample::bytes_of(second[i].path));
+}
+
+TEST_CASE("options select by session, participant and protocol; each protocol has a folder", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  const auto id = sample::session(db, 3);
+  sample::session(db, 2, sample::start("P02"));
+  auto other = sample::start("P02");
+  other.protocol_id = "../other design";
+  other.factor_columns = {"mask"};
+  sample::session(db, 4, other);
+  const auto all = export_data(db, folder / "all", {});
+  REQUIRE(all.size() == 10);
+  CHECK(all[0].path == folder / "all/_.._other_design/trials.csv");
+  CHECK(all[5].rows == 5);
+  ExportOptions options;
+  options.session_id = id;
+  CHECK(export_data(db, folder / "one", options)[0].rows == 3);
+  options = {};
+  options.participant = "P02";
+  options.protocol_id = "two-boundaries";
+  CHECK(export_data(db, folder / "two", options)[0].rows == 2);
+  options.participant = "P09";
+  const auto [fault, message] = sample::failure([&] { export_data(db, folder / "none", options); });
+  CHECK(fault == Fault::missing);
+  CHECK_FALSE(std::filesystem::exists(folder / "none"));
+}
+
+TEST_CASE("separator and decimal mark are options, and may not be the same", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  sample::session(db, 1);
+  ExportOptions options;
+  options.separator = ';';
+  options.decimal = ',';
+  const auto files = export_data(db, folder / "out", options);
+  const auto lines = lines_of(sample::bytes_of(files[0].path), "\r\n");
+  CHECK(sample::contains(lines[1], ";-12,5;dB;0,30000000000000004;speed;150,25;30123,4567890123;"));
+  options.separator = ',';
+  CHECK_THROWS_AS(export_data(db, folder / "out", options), std::invalid_argument);
+  options.decimal = 'x';
+  CHECK_THROWS_AS(export_data(db, folder / "out", options), std::invalid_argument);
+}
+
+TEST_CASE("texts are quoted by RFC 4180, and none is a formula to a spreadsheet", "[store]") {
+  TextTable table({}, {"a", "b"});
+  table.row({cell("say \"no\""), cell("a, b")});
+  table.row({cell("two\r\nlines"), cell("=HYPERLINK(\"x\")")});
+  table.row({cell("+1"), cell(-1.5)});
+  table.row({cell("@x"), cell("-x")});
+  table.row({cell(""), Cell{}});
+  CHECK(table.text() ==
+        "a,b\r\n\"say \"\"no\"\"\",\"a, "
+        "b\"\r\n\"two\r\nlines\",\"'=HYPERLINK(\"\"x\"\")\"\r\n'+1,-1.5\r\n'@x,'-x\r\n"
+        "n/a,n/a\r\n");
+  CHECK(table.rows() == 5);
+  TextTable bids({TableStyle::Kind::bids, '\t', '.'}, {"a"});
+  bids.row({cell("a\tb\nc")});
+  CHECK(bids.text() == "a\na b c\n");
+}
