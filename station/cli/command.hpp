@@ -5,7 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "station/app/prepare.hpp"
+
 namespace turnpoint::cli {
+
+/// Runs a session on a screen, asking there for what the request leaves open (language, participant's code).
+/// Only turnpoint-ui has one; turnpoint hands over to turnpoint-ui.
+using Screen = std::function<session::Summary(app::RunRequest)>;
 
 /// What every sub-command gets: where its document and its messages go, and whether JSON was asked for.
 struct Context {
@@ -14,6 +20,7 @@ struct Context {
   bool json = false;
   int exit_code = 0;             ///< what a command sets when it is neither 0 nor an exception
   std::vector<char*> arguments;  ///< the command line as given, null at the end, for handing over
+  Screen screen = {};            ///< empty in the program without one
 };
 
 /// Wrong usage that the option parser could not see: exit 2.
@@ -36,6 +43,6 @@ void add_json(CLI::App& command, Context& context);
 
 /// Parses and does what the command line says. Returns the exit status: 0 done, 1 failed at run time, 2 bad
 /// input or usage. The only catch-all of the program.
-int run(int argc, char** argv, std::ostream& out, std::ostream& err);
+int run(int argc, char** argv, std::ostream& out, std::ostream& err, const Screen& screen = {});
 
 }  // namespace turnpoint::cli

@@ -25,8 +25,8 @@ void add_json(CLI::App& command, Context& context) {
   command.add_flag("--json", context.json, "Print one JSON document on standard output");
 }
 
-int run(int argc, char** argv, std::ostream& out, std::ostream& err) {
-  Context context{out, err, false, 0, {argv, argv + argc + 1}};
+int run(int argc, char** argv, std::ostream& out, std::ostream& err, const Screen& screen) {
+  Context context{out, err, false, 0, {argv, argv + argc + 1}, screen};
   CLI::App app("Turnpoint: a psychophysics station for ultrasonic tapered friction displays", "turnpoint");
   app.require_subcommand(1);
   app.set_version_flag("--version", TURNPOINT_VERSION);

@@ -81,7 +81,7 @@ std::shared_ptr<app::RunRequest> add_run_options(CLI::App& command) {
   auto request = std::make_shared<app::RunRequest>();
   command.add_option("protocol", request->protocol, "Protocol file")->required();
   command.add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
-  command.add_option("--participant", request->participant, "Participant code (never a name)")->required();
+  command.add_option("--participant", request->participant, "Participant code (never a name); the screen asks for it where it is left out");
   command.add_option("--db", request->database, "Database file; made if it does not exist")->required();
   command.add_option("--mode", request->mode, "live | pilot")
       ->capture_default_str()
@@ -110,8 +110,12 @@ void add_run(CLI::App& app, Context& context) {
       throw UsageError(
           "run: nobody can answer without a screen; give --observer sim for a simulated observer, or "
           "--buttons-only");
-    if (person && !request->buttons_only) return become_ui(context);
+    const bool on_screen = person && !request->buttons_only;
+    if (on_screen && !context.screen) return become_ui(context);
+    if (!on_screen && request->participant.empty())
+      throw UsageError("run: --participant is missing; only a screen can ask for it");
     request->rig = app::rig_or_default(request->rig, context.err);
+    if (on_screen) return show_summary(context, context.screen(*request));
     const auto setup = app::prepare(*request);
     session::Inputs inputs;
     show_summary(context, session::run(setup, nullptr, inputs));

@@ -19,6 +19,7 @@ enum class PageKind {
   fault,         ///< what happened, what is safe, what to do; Continue after the operator has mended it
   paused,        ///< stopped by participant or operator; Continue or end
   end,           ///< thanks; the summary for the operator comes after
+  failed,        ///< the session cannot go on; `text` says why, what was done is kept
 };
 
 struct AnswerButton {

@@ -8,18 +8,20 @@ Rectangle {
     required property Theme theme
     property string text
     property string glyph
+    property real size: theme.textBody
     property bool armed: true
     property bool primary: true
+    property bool quiet: false
     signal activated()
 
     readonly property bool filled: primary !== area.pressed
-    readonly property color foreground: filled ? theme.actionText : theme.action
+    readonly property color foreground: filled ? theme.actionText : quiet ? theme.quiet : theme.action
 
     implicitHeight: theme.controlHeight
     implicitWidth: Math.max(row.implicitWidth + 5 * theme.unit, theme.targetMin)
     radius: theme.radius
-    color: filled ? theme.action : theme.raised
-    border { color: theme.action; width: theme.stroke }
+    color: filled ? theme.action : quiet ? theme.paper : theme.raised
+    border { color: quiet ? theme.line : theme.action; width: quiet ? theme.stroke / 2 : theme.stroke }
     opacity: enabled ? 1 : 0.35
 
     Row {
@@ -30,14 +32,14 @@ Rectangle {
             visible: root.glyph !== ""
             name: root.glyph
             color: root.foreground
-            height: root.theme.textBody * 1.1
+            height: root.size * 1.1
             anchors.verticalCenter: parent.verticalCenter
         }
         Text {
             visible: root.text !== ""
             text: root.text
             color: root.foreground
-            font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
+            font { pixelSize: root.size; weight: Font.DemiBold }
             anchors.verticalCenter: parent.verticalCenter
         }
     }

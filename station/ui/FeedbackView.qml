@@ -1,7 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Right, not right, or the message of a late answer: one sign, one word, no score.
+// Right, not right, the message of a late answer, or (where no answer is right) that it was noted: one sign, one
+// word, no score.
 Column {
     id: root
     required property Theme theme
@@ -11,6 +12,7 @@ Column {
 
     readonly property bool good: verdict === PageModel.Right
     readonly property bool bad: verdict === PageModel.Wrong
+    readonly property bool plain: !good && !bad && message === ""
     readonly property color tint: good ? theme.right : bad ? theme.wrong : theme.ink
 
     spacing: 2 * theme.unit
@@ -25,13 +27,14 @@ Column {
         Glyph {
             anchors.centerIn: parent
             height: 0.6 * parent.height
-            name: root.good ? "tick" : root.bad ? "cross" : "clock"
+            name: root.good ? "tick" : root.bad ? "cross" : root.plain ? "dots" : "clock"
             color: root.good || root.bad ? root.theme.actionText : root.tint
         }
     }
     Text {
         width: parent.width
-        text: root.message !== "" ? root.message : root.good ? root.texts.right : root.texts.wrong
+        text: root.message !== "" ? root.message : root.good ? root.texts.right : root.bad ? root.texts.wrong
+            : root.texts.noted
         color: root.tint
         font { pixelSize: root.theme.textTitle; weight: Font.DemiBold }
         horizontalAlignment: Text.AlignHCenter

@@ -39,6 +39,7 @@ Item {
         case "bars": return "M8.5 5 L8.5 19 M15.5 5 L15.5 19"
         case "alert": return "M12 3 L22 20.5 L2 20.5 Z M12 9.5 L12 14 M12 17.1 L12 17.2"
         case "backspace": return "M9 5 L21 5 L21 19 L9 19 L3 12 Z M12 9.5 L17 14.5 M17 9.5 L12 14.5"
+        case "dots": return "M6 12 L6 12.1 M12 12 L12 12.1 M18 12 L18 12.1"
         case "minus": return "M5 12 L19 12"
         case "plus": return "M5 12 L19 12 M12 5 L12 19"
         }

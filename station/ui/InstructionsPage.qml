@@ -48,7 +48,7 @@ Item {
         id: surface
         visible: root.page.lengthMm > 0
         anchors { left: parent.left; right: parent.right; bottom: go.top; bottomMargin: 2 * root.theme.unit }
-        height: 0.36 * parent.height
+        height: 0.4 * parent.height
         lengthMm: root.page.lengthMm
         wideHalfWidthMm: root.page.wideHalfWidthMm
         narrowHalfWidthMm: root.page.narrowHalfWidthMm

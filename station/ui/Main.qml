@@ -6,13 +6,9 @@ import Turnpoint
 Window {
     id: root
     required property SessionBridge bridge
+    required property StartController start
     required property real pixelsPerMm
-    required property string language
     property bool leftHanded: false
-    property bool askCode: false
-    property bool codeKnown: false
-    signal codeEdited(code: string)
-    signal codeAccepted(code: string)
     signal sessionClosed()
 
     width: 1280
@@ -29,26 +25,34 @@ Window {
     }
     Texts {
         id: texts
-        language: root.language
+        language: root.start.language
+    }
+    LanguagePage {
+        objectName: "languagePage"
+        anchors { fill: parent; margins: theme.margin }
+        visible: root.start.stage === StartController.Language
+        theme: theme
+        names: root.start.languageNames
+        onChosen: index => root.start.chooseLanguage(index)
+    }
+    CodePage {
+        id: codePage
+        objectName: "codePage"
+        anchors { fill: parent; margins: theme.margin }
+        visible: root.start.stage === StartController.Code
+        theme: theme
+        texts: texts
+        leftHanded: root.leftHanded
+        onEdited: code => codePage.known = root.start.isKnown(code)
+        onAccepted: code => root.start.enterCode(code)
     }
     ParticipantView {
         objectName: "participantView"
         anchors.fill: parent
-        visible: !root.askCode
+        visible: root.start.stage === StartController.Session
         bridge: root.bridge
         pixelsPerMm: root.pixelsPerMm
         leftHanded: root.leftHanded
         onClosed: root.sessionClosed()
-    }
-    CodePage {
-        objectName: "codePage"
-        anchors { fill: parent; margins: theme.margin }
-        visible: root.askCode
-        theme: theme
-        texts: texts
-        leftHanded: root.leftHanded
-        known: root.codeKnown
-        onEdited: code => root.codeEdited(code)
-        onAccepted: code => root.codeAccepted(code)
     }
 }

@@ -10,7 +10,11 @@ Item {
     property bool armed: true
     property bool asking: false
     readonly property PageModel page: bridge.page
-    readonly property bool fault: page.kind === PageModel.Fault
+    readonly property bool failed: page.kind === PageModel.Failed
+    readonly property bool fault: page.kind === PageModel.Fault || failed
+    signal closed()
+
+    onVisibleChanged: asking = false
 
     Column {
         anchors { left: parent.left; right: parent.right; bottom: buttons.top; bottomMargin: root.theme.unit; top: parent.top }
@@ -25,7 +29,7 @@ Item {
         Text {
             width: parent.width
             text: root.asking ? root.texts.reallyEnd : root.page.title !== "" ? root.page.title
-                : root.fault ? root.texts.faultTitle : root.texts.paused
+                : root.failed ? root.texts.failedTitle : root.fault ? root.texts.faultTitle : root.texts.paused
             color: root.theme.ink
             font { pixelSize: 0.85 * root.theme.textTitle; weight: Font.Bold }
             horizontalAlignment: Text.AlignHCenter
@@ -40,6 +44,15 @@ Item {
             horizontalAlignment: Text.AlignHCenter
             wrapMode: Text.Wrap
         }
+        Text {
+            width: parent.width
+            visible: root.failed
+            text: root.texts.failedText
+            color: root.theme.ink
+            font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
+            horizontalAlignment: Text.AlignHCenter
+            wrapMode: Text.Wrap
+        }
     }
     Row {
         id: buttons
@@ -47,6 +60,7 @@ Item {
         spacing: root.theme.targetGap
         ActionButton {
             objectName: "end"
+            visible: !root.failed
             theme: root.theme
             primary: root.asking
             armed: root.armed
@@ -62,8 +76,9 @@ Item {
             width: Math.max(implicitWidth, 22 * root.theme.unit)
             primary: !root.asking
             armed: root.armed
-            text: root.asking ? root.texts.keepGoing : root.texts.proceed
+            text: root.failed ? root.texts.close : root.asking ? root.texts.keepGoing : root.texts.proceed
             onActivated: {
+                if (root.failed) return root.closed()
                 if (!root.asking) root.bridge.next()
                 root.asking = false
             }

@@ -70,6 +70,8 @@ Rectangle {
             implicitHeight: Math.max(9 * theme.pixelsPerMm, 5 * theme.unit)
             theme: theme
             primary: false
+            quiet: true
+            size: theme.textSmall
             glyph: "bars"
             text: texts.pause
             onActivated: root.bridge.pause()
@@ -118,11 +120,12 @@ Rectangle {
         }
         NoticePage {
             anchors.fill: parent
-            visible: root.kind === PageModel.Fault || root.kind === PageModel.Paused
+            visible: root.kind === PageModel.Fault || root.kind === PageModel.Paused || root.kind === PageModel.Failed
             theme: theme
             texts: texts
             bridge: root.bridge
             armed: !arming.running
+            onClosed: root.closed()
         }
         EndPage {
             anchors.fill: parent

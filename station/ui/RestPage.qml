@@ -9,7 +9,21 @@ Item {
     required property SessionBridge bridge
     property bool armed: true
     readonly property PageModel page: bridge.page
-    readonly property int secondsLeft: Math.ceil(page.remainingSeconds)
+    /// The session tells the length when the break begins and 0 when it is over; in between this counts down.
+    property int secondsLeft: 0
+
+    function read() { secondsLeft = Math.ceil(page.remainingSeconds) }
+    Component.onCompleted: read()
+    Connections {
+        target: root.page
+        function onChanged() { root.read() }
+    }
+    Timer {
+        interval: 1000
+        repeat: true
+        running: root.visible && root.secondsLeft > 1
+        onTriggered: --root.secondsLeft
+    }
 
     Column {
         anchors { left: parent.left; right: parent.right; bottom: go.top; top: parent.top }
@@ -25,7 +39,7 @@ Item {
         }
         Text {
             width: parent.width
-            text: root.page.text !== "" ? root.page.text : root.secondsLeft > 0 ? root.texts.breakRunning : root.texts.breakOver
+            text: root.secondsLeft > 0 ? root.texts.breakRunning : root.texts.breakOver
             color: root.theme.quiet
             font.pixelSize: 1.1 * root.theme.textBody
             horizontalAlignment: Text.AlignHCenter

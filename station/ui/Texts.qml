@@ -19,7 +19,11 @@ QtObject {
     readonly property string slideNow: pick("Slide now", "Jetzt gleiten", "すべらせてください")
     readonly property string keepStill: pick("Wait", "Warten", "待ってください")
     readonly property string right: pick("Right", "Richtig", "正解")
-    readonly property string wrong: pick("Not this time", "Diesmal nicht", "不正解")
+    readonly property string wrong: pick("Wrong", "Falsch", "不正解")
+    readonly property string noted: pick("Noted", "Notiert", "記録しました")
+    readonly property string failedTitle: pick("The session had to stop", "Die Sitzung musste enden", "セッションを中断しました")
+    readonly property string failedText: pick("Every answer up to here is saved.", "Alle Antworten bis hierher sind gespeichert.",
+                                              "ここまでの回答はすべて保存されています。")
     readonly property string speed: pick("Fast", "Schnell", "速さ優先")
     readonly property string accuracy: pick("Accurate", "Genau", "正確さ優先")
     readonly property string breakTitle: pick("Time for a break", "Zeit für eine Pause", "休憩しましょう")

@@ -18,10 +18,9 @@ Item {
 
     SurfaceDrawing {
         id: surface
-        visible: root.cue || (root.stimulus && !root.counted) || root.page.kind === PageModel.Response
-                 && !root.counted
+        visible: !root.counted && (root.cue || root.stimulus || root.page.kind === PageModel.Response)
         anchors { left: parent.left; right: parent.right; top: parent.top }
-        height: 0.43 * parent.height
+        height: 0.46 * parent.height
         lengthMm: root.page.lengthMm
         wideHalfWidthMm: root.page.wideHalfWidthMm
         narrowHalfWidthMm: root.page.narrowHalfWidthMm
@@ -36,8 +35,8 @@ Item {
 
     // Intervals: as many places as there are intervals, the running one filled.
     Row {
-        visible: root.counted && (root.stimulus || root.page.kind === PageModel.Pause || root.page.kind === PageModel.Response)
-        anchors { horizontalCenter: parent.horizontalCenter; top: parent.top; topMargin: 0.1 * parent.height }
+        visible: root.counted && !root.feedback && root.page.kind !== PageModel.Interval
+        anchors { horizontalCenter: parent.horizontalCenter; verticalCenter: surface.verticalCenter }
         spacing: root.theme.targetGap
         Repeater {
             model: root.page.intervals
@@ -64,10 +63,9 @@ Item {
         id: question
         visible: !root.feedback && root.page.kind !== PageModel.Interval
         anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: 1.5 * root.theme.unit; top: surface.bottom }
-        text: root.cue ? (root.page.text !== "" ? root.page.text : root.texts.slideHere)
-            : root.page.text !== "" ? root.page.text
-            : root.stimulus ? root.texts.slideNow
-            : root.page.kind === PageModel.Pause ? root.texts.keepStill : ""
+        text: root.counted && root.stimulus ? root.texts.slideNow
+            : root.counted && !root.asks ? root.texts.getReady
+            : root.cue ? root.texts.slideHere : root.page.text
         color: root.theme.ink
         font { pixelSize: 1.15 * root.theme.textBody; weight: Font.Medium }
         fontSizeMode: Text.Fit

@@ -34,6 +34,8 @@ PageModel::Kind PageModel::kind() const {
       return Kind::Paused;
     case PageKind::end:
       return Kind::End;
+    case PageKind::failed:
+      return Kind::Failed;
   }
   return Kind::Interval;
 }

@@ -56,7 +56,8 @@ class PageModel : public QObject {
     Adjust,
     Fault,
     Paused,
-    End
+    End,
+    Failed
   };
   Q_ENUM(Kind)
   /// What a feedback page says; Message has only its text (a late answer).

@@ -1,9 +1,10 @@
 #pragma once
 #include <QObject>
 #include <QQmlEngine>
-#include <QWindow>
+#include <QTimer>
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "station/session/inputs.hpp"
 #include "station/session/page.hpp"
@@ -21,6 +22,9 @@ class SessionBridge : public QObject, public session::Display {
   Q_PROPERTY(turnpoint::ui::PageModel* page READ page CONSTANT)
 
  public:
+  /// The id under which mouse presses are stamped; touch ids are not negative.
+  static constexpr int kMouse = -1;
+
   using Clock = std::function<std::int64_t()>;
   using Sink = std::function<void(session::Input)>;
 
@@ -29,14 +33,18 @@ class SessionBridge : public QObject, public session::Display {
   /// Any thread; returns at once. Pages appear in the order shown.
   void show(const session::Page& page) override;
 
-  /// Reports each touch or mouse press on the window as `touch_down`, whatever it lands on.
+  /// Stamps each touch and mouse press on the window, whatever it lands on. Those that no answer claims
+  /// within a moment are reported as `touch_down`.
   Q_INVOKABLE void watch(QObject* window);
 
   PageModel* page() { return &page_; }
   std::int64_t now_ns() const { return clock_(); }
 
-  /// An answer that the touch field has judged; `time_ns` is when the touch began.
-  void answer(int index, std::int64_t time_ns, session::TimeQuality quality);
+  /// When the touch with this id began, as stamped by watch(); now for one that was not seen.
+  std::int64_t began_ns(int touch_id) const;
+
+  /// An answer that the touch field has judged: the touch that began at `time_ns` chose the answer `index`.
+  void answer(int index, std::int64_t time_ns);
 
   Q_INVOKABLE void next();
   Q_INVOKABLE void moveSlider(double value);
@@ -51,10 +59,20 @@ class SessionBridge : public QObject, public session::Display {
   bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
+  /// A touch that may yet become an answer.
+  struct Pending {
+    int id = 0;
+    std::int64_t time_ns = 0;
+  };
+
+  void note_touch(int id);
+  void flush();
   void push(session::InputKind kind, int value = 0, double number = 0);
   Clock clock_;
   Sink sink_;
   PageModel page_;
+  std::vector<Pending> pending_;
+  QTimer flush_;
 };
 
 }  // namespace turnpoint::ui

@@ -47,7 +47,7 @@ SurfaceDrawing::Layout SurfaceDrawing::layout() const {
   at.unit = std::min(height() / 20, width() / 60);
   at.wide_left = wide_end_left_;
   at.length_mm = length_mm_;
-  const double driver = 3.2 * at.unit, margin = 1.0 * at.unit;
+  const double driver = 3.2 * at.unit, margin = 1.8 * at.unit;
   at.left = wide_end_left_ ? driver + margin : margin;
   at.right = width() - (wide_end_left_ ? margin : driver + margin);
   at.px_per_mm = (at.right - at.left) / length_mm_;
@@ -105,7 +105,7 @@ void SurfaceDrawing::paint_strip(QPainter& painter, const Layout& at) const {
 
 void SurfaceDrawing::paint_scale(QPainter& painter, const Layout& at) const {
   QFont font = painter.font();
-  font.setPixelSize(std::max(9, static_cast<int>(1.35 * at.unit)));
+  font.setPixelSize(std::max(10, static_cast<int>(1.6 * at.unit)));
   painter.setFont(font);
   const QFontMetricsF metrics(font);
   const double y0 = at.axis_y + at.wide_half + 0.9 * at.unit;
@@ -160,23 +160,32 @@ void SurfaceDrawing::paint_finger(QPainter& painter, const Layout& at) const {
   const double u = at.unit;
   const double centre_mm = has_mark_ ? mark_mm_ : 0.5 * length_mm_;
   // Beside the mark, so that neither hides the other; always towards the middle of the strip.
-  const double shift = (has_mark_ ? 7.5 : 0.0) * u * (at.x(centre_mm) > width() / 2 ? -1 : 1);
-  const double x = at.x(centre_mm) + shift, tip_y = at.axis_y - 1.2 * u, width_px = 3.6 * u;
+  const double shift = (has_mark_ ? 9.0 : 0.0) * u * (at.x(centre_mm) > width() / 2 ? -1 : 1);
+  const double x = at.x(centre_mm) + shift, tip_y = at.axis_y - 1.4 * u, width_px = 5.0 * u;
 
+  // The finger fades out below: it comes from the person, not from the drawing.
+  const double bottom = height();
   QPainterPath finger;
-  const double bottom = height() + 2 * u;
   finger.moveTo(x - width_px / 2, bottom);
-  finger.lineTo(x - width_px / 2, tip_y + width_px / 2);
-  finger.arcTo(QRectF(x - width_px / 2, tip_y, width_px, width_px), 180, -180);
+  finger.lineTo(x - width_px / 2, tip_y + 0.62 * width_px);
+  finger.cubicTo(x - width_px / 2, tip_y + 0.1 * width_px, x - 0.28 * width_px, tip_y, x, tip_y);
+  finger.cubicTo(x + 0.28 * width_px, tip_y, x + width_px / 2, tip_y + 0.1 * width_px, x + width_px / 2,
+                 tip_y + 0.62 * width_px);
   finger.lineTo(x + width_px / 2, bottom);
-  painter.setPen(QPen(ink_, std::max(1.5, 0.22 * u)));
-  painter.setBrush(mixed(paper_, ink_, 0.05));
-  painter.save();
-  painter.setClipRect(QRectF(0, 0, width(), height()));
+  const auto fading = [&](const QColor& colour) {
+    QLinearGradient fade(0, tip_y, 0, bottom);
+    QColor gone = colour;
+    gone.setAlpha(0);
+    fade.setColorAt(0, colour);
+    fade.setColorAt(0.45, colour);
+    fade.setColorAt(1, gone);
+    return fade;
+  };
+  painter.setPen(QPen(QBrush(fading(ink_)), std::max(1.5, 0.22 * u)));
+  painter.setBrush(fading(mixed(paper_, ink_, 0.04)));
   painter.drawPath(finger);
-  painter.restore();
   QPainterPath nail;
-  nail.addRoundedRect(QRectF(x - 0.95 * u, tip_y + 0.55 * u, 1.9 * u, 2.3 * u), 0.95 * u, 0.95 * u);
+  nail.addRoundedRect(QRectF(x - 1.3 * u, tip_y + 0.5 * u, 2.6 * u, 3.0 * u), 1.25 * u, 1.25 * u);
   painter.setPen(QPen(mixed(ink_, paper_, 0.3), std::max(1.0, 0.14 * u)));
   painter.setBrush(mixed(paper_, ink_, 0.12));
   painter.drawPath(nail);
@@ -184,7 +193,7 @@ void SurfaceDrawing::paint_finger(QPainter& painter, const Layout& at) const {
   // Two arrows along the strip: slide to and fro.
   painter.setBrush(accent_);
   for (const int side : {-1, 1}) {
-    const double from = x + side * 2.6 * u, to = x + side * 5.4 * u, y = at.axis_y;
+    const double from = x + side * 3.4 * u, to = x + side * 6.6 * u, y = at.axis_y;
     painter.setPen(QPen(accent_, 0.5 * u, Qt::SolidLine, Qt::RoundCap));
     painter.drawLine(QPointF(from, y), QPointF(to - side * 0.4 * u, y));
     painter.setPen(Qt::NoPen);

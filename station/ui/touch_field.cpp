@@ -5,10 +5,6 @@
 
 namespace turnpoint::ui {
 
-namespace {
-constexpr int kMouseId = -1;
-}
-
 TouchField::TouchField(QQuickItem* parent) : QQuickItem(parent) {
   setAcceptTouchEvents(true);
   setAcceptedMouseButtons(Qt::LeftButton);
@@ -40,7 +36,7 @@ int TouchField::target_at(QPointF position) const {
 }
 
 void TouchField::down(int id, QPointF position, double diameter_mm) {
-  judge_.down({id, bridge_->now_ns(), target_at(position), diameter_mm});
+  judge_.down({bridge_->began_ns(id), target_at(position), diameter_mm});
   if (const auto due_ns = judge_.due_ns()) {
     const auto left_ms = (*due_ns - bridge_->now_ns()) / 1'000'000 + 1;
     timer_.start(std::max(1, static_cast<int>(left_ms)));
@@ -50,7 +46,7 @@ void TouchField::down(int id, QPointF position, double diameter_mm) {
 
 void TouchField::settle() {
   if (const auto answer = judge_.decide(bridge_->now_ns())) {
-    bridge_->answer(answer->target, answer->time_ns, session::TimeQuality::toolkit);
+    bridge_->answer(answer->target, answer->time_ns);
   } else if (judge_.due_ns()) {
     timer_.start(1);
   }
@@ -80,7 +76,7 @@ void TouchField::touchEvent(QTouchEvent* event) {
 
 void TouchField::mousePressEvent(QMouseEvent* event) {
   event->accept();
-  down(kMouseId, event->position(), 0);
+  down(SessionBridge::kMouse, event->position(), 0);
 }
 
 }  // namespace turnpoint::ui

@@ -30,7 +30,7 @@ void TouchJudge::cancel() { candidate_.reset(); }
 
 std::optional<TouchJudge::Answer> TouchJudge::decide(std::int64_t now_ns) {
   if (!open_ || !candidate_ || now_ns < candidate_->time_ns + rules_.settle_ns) return std::nullopt;
-  const Answer answer{candidate_->target, candidate_->id, candidate_->time_ns};
+  const Answer answer{candidate_->target, candidate_->time_ns};
   given_ = answer.target;
   candidate_.reset();
   return answer;

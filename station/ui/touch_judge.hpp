@@ -6,7 +6,6 @@ namespace turnpoint::ui {
 
 /// A finger that came down on the panel. Times are CLOCK_MONOTONIC.
 struct Touch {
-  int id = 0;  ///< the toolkit's point id, unique while the finger is down
   std::int64_t time_ns = 0;
   int target = -1;         ///< index of the answer under it, -1 for none
   double diameter_mm = 0;  ///< of the contact; 0 where the panel does not tell
@@ -27,7 +26,6 @@ class TouchJudge {
   };
   struct Answer {
     int target = 0;
-    int touch_id = 0;
     std::int64_t time_ns = 0;
   };
 

@@ -10,6 +10,7 @@
 
 #include "station/ui/screen.hpp"
 #include "station/ui/session_bridge.hpp"
+#include "station/ui/start_controller.hpp"
 #include "tests/ui/gallery.hpp"
 
 Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
@@ -17,6 +18,9 @@ Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
 namespace {
 
 using turnpoint::ui::SessionBridge;
+using turnpoint::ui::StartController;
+
+const QStringList kLanguages{"en", "de", "ja"};
 
 /// The panels looked at: pixels and the density of a common panel of that size.
 struct Panel {
@@ -31,59 +35,60 @@ Panel panel_of(const QString& text) {
   return {size, size.width() <= 800 ? 5.2 : size.width() <= 1280 ? 5.9 : 5.6};  // 7", 10.1", 15.6"
 }
 
+/// The station's window on one panel in one language.
 class Camera {
  public:
-  explicit Camera(const QString& out) : out_(out), bridge_([] { return 0; }, [](const auto&) {}) {
+  Camera(const QString& out, const Panel& panel, const QString& prefix, const QString& only)
+      : out_(out),
+        prefix_(prefix),
+        only_(only),
+        bridge_([] { return 0; }, [](const auto&) {}),
+        start_(kLanguages, "", "", [](const QString&) { return true; }) {
     engine_.addImportPath("qrc:/qt/qml");
-    engine_.setInitialProperties(
-        {{"bridge", QVariant::fromValue(&bridge_)}, {"pixelsPerMm", 5.2}, {"language", "en"}});
+    engine_.setInitialProperties({{"bridge", QVariant::fromValue(&bridge_)},
+                                  {"start", QVariant::fromValue(&start_)},
+                                  {"pixelsPerMm", panel.pixels_per_mm}});
     engine_.load(QUrl("qrc:/qt/qml/Turnpoint/Main.qml"));
     window_ = engine_.rootObjects().isEmpty() ? nullptr
                                               : qobject_cast<QQuickWindow*>(engine_.rootObjects().first());
     if (window_ == nullptr) qFatal("Main.qml does not load");
-  }
-
-  void set_panel(const Panel& panel) {
-    window_->setProperty("pixelsPerMm", panel.pixels_per_mm);
     window_->resize(panel.size);
   }
 
-  void set_language(const QString& language) { window_->setProperty("language", language); }
-  QQuickWindow& window() { return *window_; }
+  StartController& start() { return start_; }
+
+  void shoot(const QString& name) {
+    if (!only_.isEmpty() && only_ != name) return;
+    QGuiApplication::processEvents();
+    const QString file = out_ + "/" + prefix_ + name + ".png";
+    if (!window_->grabWindow().save(file)) qFatal("cannot write %s", qPrintable(file));
+    ++count_;
+  }
 
   void shoot(const turnpoint::session::Page& page, const QString& name) {
     bridge_.show(page);
-    save(name);
-  }
-
-  void save(const QString& name) {
-    QGuiApplication::processEvents();
-    const QString file = out_ + "/" + name + ".png";
-    if (!window_->grabWindow().save(file)) qFatal("cannot write %s", qPrintable(file));
-    ++count_;
+    shoot(name);
   }
 
   int count() const { return count_; }
 
  private:
-  QString out_;
+  QString out_, prefix_, only_;
   SessionBridge bridge_;
+  StartController start_;
   QQmlApplicationEngine engine_;
   QQuickWindow* window_ = nullptr;
   int count_ = 0;
 };
 
-void shoot_all(Camera& camera, const QString& size, const QString& language, const QString& only) {
-  const QString prefix = size + "-" + language + "-";
-  camera.set_language(language);
-  for (const auto& exhibit : turnpoint::ui::gallery(language.toStdString())) {
-    const QString name = QString::fromStdString(exhibit.name);
-    if (only.isEmpty() || only == name) camera.shoot(exhibit.page, prefix + name);
-  }
-  if (!only.isEmpty() && only != "code") return;
-  camera.window().setProperty("askCode", true);
-  camera.save(prefix + "code");
-  camera.window().setProperty("askCode", false);
+int shoot_all(Camera& camera, const QString& language) {
+  camera.shoot("language");
+  camera.start().chooseLanguage(static_cast<int>(kLanguages.indexOf(language)));
+  camera.shoot("code");
+  camera.start().enterCode("P07");
+  for (const auto& exhibit : turnpoint::ui::gallery(language.toStdString()))
+    camera.shoot(exhibit.page, QString::fromStdString(exhibit.name));
+  return camera.count();
 }
 
 }  // namespace
@@ -102,12 +107,15 @@ int main(int argc, char** argv) {
   turnpoint::ui::set_fonts();
   const QString out = parser.value("out");
   if (!QDir().mkpath(out)) qFatal("cannot make %s", qPrintable(out));
-  Camera camera(out);
+  int count = 0;
   for (const auto& size : parser.value("sizes").split(',')) {
-    camera.set_panel(panel_of(size));
-    for (const auto& language : parser.value("languages").split(','))
-      shoot_all(camera, size, language, parser.value("only"));
+    for (const auto& language : parser.value("languages").split(',')) {
+      if (!kLanguages.contains(language))
+        qFatal("--languages: %s; allowed: en, de, ja", qPrintable(language));
+      Camera camera(out, panel_of(size), size + "-" + language + "-", parser.value("only"));
+      count += shoot_all(camera, language);
+    }
   }
-  std::printf("%d pictures in %s\n", camera.count(), qPrintable(QDir(out).absolutePath()));
+  std::printf("%d pictures in %s\n", count, qPrintable(QDir(out).absolutePath()));
   return 0;
 }

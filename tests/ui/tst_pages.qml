@@ -73,9 +73,8 @@ Item {
             tryCompare(script, "inputs", ["answer 1"])
             verify(script.answerAgeMs() >= settleMs)
             mouseClick(item("answer0"))
-            wait(100)
+            tryCompare(script, "touches", 1)  // the second tap alone: the first became the answer
             compare(script.inputs, ["answer 1"])
-            compare(script.touches, 2)
         }
 
         function test_the_button_shows_a_press_at_once() {
@@ -109,7 +108,7 @@ Item {
             touch.commit()
             wait(100)
             compare(script.inputs, [])
-            compare(script.touches, 10)
+            tryCompare(script, "touches", 10)
             mouseClick(item("answer1"))
             tryCompare(script, "inputs", ["answer 1"])
         }

@@ -1,0 +1,49 @@
+import QtQuick
+import Turnpoint
+
+// The first question: in which language to go on. Each language under its own name, so nothing else needs reading.
+Item {
+    id: root
+    required property Theme theme
+    required property list<string> names
+    signal chosen(index: int)
+
+    readonly property int columns: names.length > 3 ? 2 : 1
+    readonly property int rows: Math.ceil(names.length / columns)
+    readonly property real gap: theme.targetGap * 0.7
+    readonly property real cell: Math.min(10 * theme.unit, (height - sign.height - (rows + 1) * gap) / rows)
+
+    Row {
+        id: sign
+        anchors { horizontalCenter: parent.horizontalCenter; top: parent.top; topMargin: root.theme.unit }
+        spacing: 1.5 * root.theme.unit
+        Repeater {
+            model: ["A", "あ", "Ä"]
+            Text {
+                required property string modelData
+                text: modelData
+                color: root.theme.quiet
+                font { pixelSize: root.theme.textTitle; weight: Font.DemiBold }
+            }
+        }
+    }
+    Grid {
+        anchors { horizontalCenter: parent.horizontalCenter; verticalCenter: parent.verticalCenter; verticalCenterOffset: sign.height / 2 }
+        columns: root.columns
+        spacing: root.gap
+        Repeater {
+            model: root.names
+            ActionButton {
+                required property int index
+                required property string modelData
+                objectName: "language" + index
+                width: root.columns === 1 ? 44 * root.theme.unit : 35 * root.theme.unit
+                height: root.cell
+                theme: root.theme
+                size: root.theme.textTitle
+                text: modelData
+                onActivated: root.chosen(index)
+            }
+        }
+    }
+}
