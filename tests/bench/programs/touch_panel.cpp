@@ -1,0 +1,117 @@
+// touch_panel WIDTH HEIGHT: a multitouch panel by uinput that does what standard input says, a line each:
+//   tap X Y | down SLOT X Y | move SLOT X Y | up SLOT | sleep MS | gone
+// Prints "device /dev/input/eventN" once, and "tapped NS" (CLOCK_MONOTONIC just before the touch is injected) for taps.
+#include <fcntl.h>
+#include <linux/uinput.h>
+#include <sys/ioctl.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <iostream>
+#include <sstream>
+#include <string>
+
+namespace {
+
+int panel = -1;
+
+void emit(int type, int code, int value) {
+  input_event event{};
+  event.type = static_cast<unsigned short>(type);
+  event.code = static_cast<unsigned short>(code);
+  event.value = value;
+  if (::write(panel, &event, sizeof event) != sizeof event) std::perror("uinput write"), std::exit(1);
+}
+
+void axis(int code, int maximum) {
+  uinput_abs_setup setup{};
+  setup.code = static_cast<unsigned short>(code);
+  setup.absinfo.maximum = maximum;
+  ::ioctl(panel, UI_ABS_SETUP, &setup);
+}
+
+void down(int slot, int x, int y) {
+  static int id = 1;
+  emit(EV_ABS, ABS_MT_SLOT, slot);
+  emit(EV_ABS, ABS_MT_TRACKING_ID, id++);
+  emit(EV_ABS, ABS_MT_POSITION_X, x);
+  emit(EV_ABS, ABS_MT_POSITION_Y, y);
+  emit(EV_KEY, BTN_TOUCH, 1);
+  emit(EV_SYN, SYN_REPORT, 0);
+}
+
+void up(int slot) {
+  emit(EV_ABS, ABS_MT_SLOT, slot);
+  emit(EV_ABS, ABS_MT_TRACKING_ID, -1);
+  emit(EV_KEY, BTN_TOUCH, 0);
+  emit(EV_SYN, SYN_REPORT, 0);
+}
+
+void sleep_ms(int ms) { ::usleep(static_cast<useconds_t>(ms) * 1000); }
+
+long long now_ns() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
+}
+
+std::string device_path() {
+  char name[64] = {};
+  ::ioctl(panel, UI_GET_SYSNAME(sizeof name), name);
+  for (const auto& entry : std::filesystem::directory_iterator(std::string("/sys/devices/virtual/input/") + name))
+    if (entry.path().filename().string().rfind("event", 0) == 0) return "/dev/input/" + entry.path().filename().string();
+  return "";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) return std::fprintf(stderr, "touch_panel WIDTH HEIGHT\n"), 2;
+  panel = ::open("/dev/uinput", O_WRONLY | O_CLOEXEC);
+  if (panel < 0) return std::perror("/dev/uinput"), 1;
+  for (const int type : {EV_SYN, EV_KEY, EV_ABS}) ::ioctl(panel, UI_SET_EVBIT, type);
+  ::ioctl(panel, UI_SET_KEYBIT, BTN_TOUCH);
+  ::ioctl(panel, UI_SET_PROPBIT, INPUT_PROP_DIRECT);
+  axis(ABS_MT_SLOT, 9);
+  axis(ABS_MT_TRACKING_ID, 65535);
+  axis(ABS_MT_POSITION_X, std::atoi(argv[1]) - 1);
+  axis(ABS_MT_POSITION_Y, std::atoi(argv[2]) - 1);
+  uinput_setup setup{};
+  setup.id.bustype = BUS_USB;
+  std::strcpy(setup.name, "bench touch panel");
+  ::ioctl(panel, UI_DEV_SETUP, &setup);
+  if (::ioctl(panel, UI_DEV_CREATE) < 0) return std::perror("uinput"), 1;
+  sleep_ms(100);
+  std::cout << "device " << device_path() << std::endl;
+  for (std::string line; std::getline(std::cin, line);) {
+    std::istringstream words(line);
+    std::string what;
+    int a = 0, b = 0, c = 0;
+    words >> what >> a >> b >> c;
+    if (what == "tap") {
+      const auto at = now_ns();
+      down(0, a, b);
+      std::cout << "tapped " << at << std::endl;
+      sleep_ms(60);
+      up(0);
+    } else if (what == "down") {
+      down(a, b, c);
+    } else if (what == "move") {
+      emit(EV_ABS, ABS_MT_SLOT, a);
+      emit(EV_ABS, ABS_MT_POSITION_X, b);
+      emit(EV_ABS, ABS_MT_POSITION_Y, c);
+      emit(EV_SYN, SYN_REPORT, 0);
+    } else if (what == "up") {
+      up(a);
+    } else if (what == "sleep") {
+      sleep_ms(a);
+    } else if (what == "gone") {
+      break;
+    }
+  }
+  ::ioctl(panel, UI_DEV_DESTROY);
+}
