@@ -8,6 +8,7 @@
 #include "station/drive/burst.hpp"
 #include "station/drive/frame_clock.hpp"
 #include "station/drive/output.hpp"
+#include "station/drive/rate_check.hpp"
 #include "station/drive/synth.hpp"
 
 namespace turnpoint::drive {
@@ -19,6 +20,7 @@ enum class EventKind : std::int32_t {
   underrun,       ///< frames: how many passed in silence; what sounded goes on, ramped in
   device_lost,    ///< the device is gone: nothing sounds until it is back and the operator re-arms
   device_back,    ///< reopened by name; frames count on
+  rate_wrong,  ///< the measured rate is more than 200 ppm off (`frames`: the rate in mHz): stop the session
 };
 
 struct Event {
@@ -72,7 +74,8 @@ class Stream {
   /// when the audio thread takes no commands.
   virtual void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame = {}) = 0;
 
-  /// The next event of the audio side, oldest first.
+  /// The next event of the audio side, oldest first. To be called at least every few seconds: it also takes
+  /// up the time stamps of the device, of which the audio thread can keep 2048.
   virtual std::optional<Event> poll() = 0;
 
   /// The soonest frame that a burst scheduled now is sure to reach.
@@ -83,6 +86,8 @@ class Stream {
   virtual std::int64_t time_of(std::int64_t frame) = 0;
   virtual std::int64_t frame_at(std::int64_t time_ns) = 0;
 
+  /// What the device's clock was measured at; none before 2 s, and for streams without a device.
+  virtual std::optional<MeasuredRate> measured_rate() = 0;
   virtual Counters counters() const = 0;
   virtual Rights rights() const = 0;
   virtual const StreamConfig& config() const = 0;
@@ -113,8 +118,9 @@ struct PlayReport {
   Counters counters;
   Rights rights;
   ClockFit clock;
-  double peak = 0;            ///< computed before playing, full scale
-  double largest_sample = 0;  ///< that was really written, full scale; 0 where the output is a device
+  std::optional<MeasuredRate> rate;  ///< of a device that played for 2 s or more
+  double peak = 0;                   ///< computed before playing, full scale
+  double largest_sample = 0;         ///< that was really written, full scale; 0 where the output is a device
   std::int64_t onset_frame = 0;
 };
 

@@ -109,6 +109,7 @@ void EngineCore::report(const Event& event) noexcept {
       break;
     case EventKind::burst_ended:
     case EventKind::device_back:
+    case EventKind::rate_wrong:
       break;
   }
   if (!events_->push(event)) atomics_.events_dropped.fetch_add(1);

@@ -24,12 +24,13 @@ struct OutputConfig {
 
 Format format_of(const OutputConfig& config) noexcept;
 
-/// How a write ended. Anything but `ok` has lost frames or the device; `error` is the negative errno.
-/// `reopened`: a device that was lost takes frames again.
-enum class WriteStatus { ok, recovered, lost, reopened };
+/// How a write ended. skipped: the device ran on in silence and the lost frames were passed over. restarted:
+/// it had to be started anew, so frames and time have a new relation. lost: the device is gone (said at every
+/// write until it is back). reopened: it takes frames again.
+enum class WriteStatus { ok, skipped, restarted, lost, reopened };
 struct WriteResult {
   WriteStatus status = WriteStatus::ok;
-  int error = 0;
+  int error = 0;                 ///< negative errno
   std::int64_t lost_frames = 0;  ///< that passed in silence
 };
 

@@ -35,6 +35,7 @@ PlayReport played(const StreamConfig& config, Burst burst) {
   report.counters = stream->counters();
   report.rights = stream->rights();
   report.clock = stream->clock();
+  report.rate = stream->measured_rate();
   return report;
 }
 

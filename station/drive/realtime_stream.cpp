@@ -13,6 +13,9 @@
 namespace turnpoint::drive {
 namespace {
 
+// Stands in the ring of positions where the device was started anew.
+constexpr Position new_relation{-1'000'000'000'000, 0};
+
 class Realtime final : public Stream {
  public:
   explicit Realtime(const StreamConfig& config)
@@ -21,7 +24,8 @@ class Realtime final : public Stream {
         output_(open_output(config.output)),
         block_(static_cast<std::size_t>(config.output.channels) *
                static_cast<std::size_t>(config.output.period_frames)),
-        clock_(config.output.rate_Hz, 1024) {
+        clock_(config.output.rate_Hz, 1024),
+        rate_check_(config.output.rate_Hz) {
     rights_ = lock_memory();
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
     started_.wait();
@@ -50,7 +54,10 @@ class Realtime final : public Stream {
   void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame) override {
     core_.stop(burst, ramp, frame);
   }
-  std::optional<Event> poll() override { return core_.poll(); }
+  std::optional<Event> poll() override {
+    gather_positions();
+    return core_.poll();
+  }
 
   // Two periods beyond what has been rendered: one is being rendered now.
   std::int64_t earliest_frame() const override {
@@ -58,13 +65,17 @@ class Realtime final : public Stream {
   }
 
   ClockFit clock() override {
-    Position pair;
-    while (positions_->pop(pair)) clock_.add(pair.frame, pair.time_ns);
+    gather_positions();
     return clock_.fit();
   }
   std::int64_t time_of(std::int64_t frame) override { return clock().time_of(frame) + delay_ns(); }
   std::int64_t frame_at(std::int64_t time_ns) override { return clock().frame_at(time_ns - delay_ns()); }
 
+  std::optional<MeasuredRate> measured_rate() override {
+    MeasuredRate rate;
+    if (rates_->pop(rate)) measured_rate_ = rate;
+    return measured_rate_;
+  }
   Counters counters() const override { return core_.counters(); }
   Rights rights() const override { return rights_; }
   const StreamConfig& config() const override { return config_; }
@@ -72,35 +83,62 @@ class Realtime final : public Stream {
  private:
   std::int64_t delay_ns() const noexcept { return std::llround(config_.converter_delay_s * 1e9); }
 
+  void gather_positions() {
+    Position pair;
+    while (positions_->pop(pair))
+      pair.frame == new_relation.frame ? clock_.reset() : clock_.add(pair.frame, pair.time_ns);
+  }
+
   void run(const std::stop_token& stop) noexcept {
     granted_.store(become_realtime(config_.fifo_priority));
-    const std::int64_t rate = config_.output.rate_Hz;
+    started_.count_down();
     const std::int64_t origin_ns = monotonic_ns();
     std::int64_t frame = 0;
-    bool announced = false;
     while (!stop.stop_requested()) {
       core_.process(frame, block_);
       const WriteResult result = output_->write(block_);
-      frame += config_.output.period_frames;
-      if (result.status == WriteStatus::recovered) {
-        core_.report({EventKind::underrun, 0, frame, result.lost_frames, result.error});
-        frame += result.lost_frames;
-      } else if (result.status == WriteStatus::lost) {
-        core_.report({EventKind::device_lost, 0, frame, 0, result.error});
-      } else if (result.status == WriteStatus::reopened) {
-        core_.report({EventKind::device_back, 0, frame, result.lost_frames, 0});
-        frame += result.lost_frames;
-      }
-      if (!output_->paced()) {
-        sleep_until_ns(origin_ns + (frame - config_.output.period_frames) * 1'000'000'000 / rate);
-        static_cast<void>(positions_->push({frame, origin_ns + frame * 1'000'000'000 / rate}));
-      } else if (const auto position = output_->position()) {
-        static_cast<void>(positions_->push(*position));
-      }
-      if (!announced) started_.count_down();
-      announced = true;
+      frame += config_.output.period_frames + result.lost_frames;
+      report(result, frame);
+      output_->paced() ? follow_device() : follow_clock(origin_ns, frame);
     }
-    if (!announced) started_.count_down();
+  }
+
+  // A loss is reported once, however long it lasts.
+  void report(const WriteResult& result, std::int64_t frame) noexcept {
+    if (result.status == WriteStatus::skipped || result.status == WriteStatus::restarted)
+      core_.report({EventKind::underrun, 0, frame, result.lost_frames, result.error});
+    else if (result.status == WriteStatus::lost && !lost_)
+      core_.report({EventKind::device_lost, 0, frame, 0, result.error});
+    else if (result.status == WriteStatus::reopened)
+      core_.report({EventKind::device_back, 0, frame, result.lost_frames, 0});
+    lost_ = result.status == WriteStatus::lost;
+    if (result.status == WriteStatus::ok || result.status == WriteStatus::skipped) return;
+    rate_check_.restart();
+    static_cast<void>(positions_->push(new_relation));
+  }
+
+  void follow_device() noexcept {
+    const auto position = output_->position();
+    if (!position) return;
+    // When nobody asks for the clock the ring is full of older pairs, which do as well.
+    static_cast<void>(positions_->push(*position));
+    if (rate_told_) return;
+    rate_check_.add(position->frame, position->time_ns + raw_minus_monotonic_ns());
+    const auto rate = rate_check_.result();
+    if (!rate) return;
+    rate_told_ = true;
+    static_cast<void>(rates_->push(*rate));
+    if (std::abs(rate->deviation_ppm) > RateCheck::tolerance_ppm)
+      core_.report({EventKind::rate_wrong, 0, position->frame, std::llround(rate->rate_Hz * 1000), 0});
+  }
+
+  // Files and null take frames at once; the clock stands in for a converter one period behind.
+  void follow_clock(std::int64_t origin_ns, std::int64_t frame) noexcept {
+    const std::int64_t rate = config_.output.rate_Hz, heard = frame - config_.output.period_frames;
+    const std::int64_t due_ns =
+        origin_ns + heard / rate * 1'000'000'000 + heard % rate * 1'000'000'000 / rate;
+    sleep_until_ns(due_ns);
+    static_cast<void>(positions_->push({heard, due_ns}));
   }
 
   StreamConfig config_;
@@ -109,7 +147,12 @@ class Realtime final : public Stream {
   std::vector<std::int32_t> block_;
   FrameClock clock_;
   std::unique_ptr<Ring<Position, 2048>> positions_ = std::make_unique<Ring<Position, 2048>>();
+  std::unique_ptr<Ring<MeasuredRate, 2>> rates_ = std::make_unique<Ring<MeasuredRate, 2>>();
+  std::optional<MeasuredRate> measured_rate_;
   Rights rights_;
+  RateCheck rate_check_;  // this and the next two: audio thread only
+  bool rate_told_ = false;
+  bool lost_ = false;
   std::atomic<int> granted_{0};
   std::latch started_{1};
   std::jthread thread_;  // last: joined before what it uses goes

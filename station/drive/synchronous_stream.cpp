@@ -27,6 +27,7 @@ class Synchronous final : public SynchronousStream {
   std::int64_t earliest_frame() const override { return frame_; }
   Counters counters() const override { return core_.counters(); }
   Rights rights() const override { return {}; }
+  std::optional<MeasuredRate> measured_rate() override { return std::nullopt; }
   const StreamConfig& config() const override { return config_; }
   std::int64_t frame() const override { return frame_; }
   std::int64_t now_ns() const override { return exact_time(frame_); }

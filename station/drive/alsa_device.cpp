@@ -1,0 +1,181 @@
+#include "station/drive/alsa_device.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+namespace turnpoint::drive {
+namespace {
+
+constexpr int no_conversion =
+    SND_PCM_NO_AUTO_RESAMPLE | SND_PCM_NO_AUTO_FORMAT | SND_PCM_NO_AUTO_CHANNELS | SND_PCM_NO_SOFTVOL;
+
+template <typename... Args>
+[[noreturn]] void refuse(const std::string& name, fmt::format_string<Args...> text, Args&&... args) {
+  throw OutputRefused("alsa:" + name + ": " + fmt::format(text, std::forward<Args>(args)...));
+}
+
+void check(int result, const std::string& name, const char* what) {
+  if (result < 0) throw std::system_error(-result, std::generic_category(), "alsa:" + name + ": " + what);
+}
+
+std::string lower(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+void check_type(snd_pcm_t* pcm, const OutputConfig& config, const std::string& name) {
+  const snd_pcm_type_t type = snd_pcm_type(pcm);
+  if (type == SND_PCM_TYPE_HW) return;
+  const std::string found = lower(snd_pcm_type_name(type));
+  const auto& allowed = config.allow_plugin;
+  if (std::find(allowed.begin(), allowed.end(), found) == allowed.end())
+    refuse(name,
+           "is the alsa-lib plug-in '{}', not hardware; use a name that begins with hw:, as 'aplay -l' lists",
+           found);
+}
+
+// The rates that the device takes as it is, in words.
+std::string offered_rates(snd_pcm_t* pcm, const snd_pcm_hw_params_t* params) {
+  std::string text;
+  for (const unsigned rate :
+       {44100u, 48000u, 88200u, 96000u, 176400u, 192000u, 352800u, 384000u, 705600u, 768000u})
+    if (snd_pcm_hw_params_test_rate(pcm, const_cast<snd_pcm_hw_params_t*>(params), rate, 0) == 0)
+      text += fmt::format("{}{}", text.empty() ? "" : ", ", rate);
+  return text.empty() ? "none of the common rates" : text + " Hz";
+}
+
+struct ParamsFree {
+  void operator()(snd_pcm_hw_params_t* params) const noexcept { snd_pcm_hw_params_free(params); }
+  void operator()(snd_pcm_sw_params_t* params) const noexcept { snd_pcm_sw_params_free(params); }
+  void operator()(snd_pcm_info_t* info) const noexcept { snd_pcm_info_free(info); }
+};
+using HwParams = std::unique_ptr<snd_pcm_hw_params_t, ParamsFree>;
+
+HwParams any_params(snd_pcm_t* pcm, const std::string& name) {
+  snd_pcm_hw_params_t* raw = nullptr;
+  check(snd_pcm_hw_params_malloc(&raw), name, "hardware parameters");
+  HwParams params(raw);
+  check(snd_pcm_hw_params_any(pcm, raw), name, "hardware parameters");
+  return params;
+}
+
+// Each refusal is an error here: after one, alsa-lib would install some other value all the same.
+void set_hardware(AlsaDevice& device, const OutputConfig& config, const std::string& name) {
+  snd_pcm_t* pcm = device.pcm.get();
+  const HwParams params = any_params(pcm, name);
+  snd_pcm_hw_params_t* p = params.get();
+  check(snd_pcm_hw_params_set_rate_resample(pcm, p, 0), name, "switching resampling off");
+  if (snd_pcm_hw_params_set_access(pcm, p, SND_PCM_ACCESS_RW_INTERLEAVED) < 0)
+    refuse(name, "takes no interleaved frames");
+  if (snd_pcm_hw_params_set_format(pcm, p, SND_PCM_FORMAT_S32_LE) < 0)
+    refuse(name, "takes no 32-bit samples (S32_LE)");
+  if (snd_pcm_hw_params_set_channels(pcm, p, static_cast<unsigned>(config.channels)) < 0)
+    refuse(name, "does not take {} channels", config.channels);
+  const auto rate = static_cast<unsigned>(config.rate_Hz);
+  if (snd_pcm_hw_params_set_rate(pcm, p, rate, 0) < 0)
+    refuse(name, "rate {} Hz not supported; it offers {}", rate, offered_rates(pcm, p));
+  if (snd_pcm_hw_params_set_period_size(pcm, p, static_cast<snd_pcm_uframes_t>(config.period_frames), 0) < 0)
+    refuse(name, "does not take periods of {} frames", config.period_frames);
+  if (snd_pcm_hw_params_set_periods(pcm, p, static_cast<unsigned>(config.periods), 0) < 0)
+    refuse(name, "does not take {} periods of {} frames", config.periods, config.period_frames);
+  check(snd_pcm_hw_params(pcm, p), name, "installing hardware parameters");
+  unsigned numerator = 0, denominator = 0;
+  check(snd_pcm_hw_params_get_rate_numden(p, &numerator, &denominator), name, "reading the rate back");
+  if (denominator == 0 || numerator != rate * denominator)
+    refuse(name, "runs at {}/{} Hz when asked for {} Hz", numerator, denominator, rate);
+  const int depth = snd_pcm_hw_params_get_sbits(p);
+  if (snd_pcm_type(pcm) == SND_PCM_TYPE_HW && depth > 0 && depth < config.bits)
+    refuse(name, "the converter has {} bits, the rig says {}", depth, config.bits);
+  device.period_frames = static_cast<snd_pcm_uframes_t>(config.period_frames);
+  check(snd_pcm_hw_params_get_buffer_size(p, &device.buffer_frames), name, "reading the buffer size");
+}
+
+// The stream runs on, on silence, through an underrun: it stops by itself never.
+void set_software(const AlsaDevice& device, const std::string& name) {
+  snd_pcm_t* pcm = device.pcm.get();
+  snd_pcm_sw_params_t* p = nullptr;
+  check(snd_pcm_sw_params_malloc(&p), name, "software parameters");
+  const std::unique_ptr<snd_pcm_sw_params_t, ParamsFree> params(p);
+  snd_pcm_uframes_t boundary = 0;
+  check(snd_pcm_sw_params_current(pcm, p), name, "software parameters");
+  check(snd_pcm_sw_params_get_boundary(p, &boundary), name, "software parameters");
+  check(snd_pcm_sw_params_set_start_threshold(pcm, p, boundary), name, "start threshold");
+  check(snd_pcm_sw_params_set_stop_threshold(pcm, p, boundary), name, "stop threshold");
+  check(snd_pcm_sw_params_set_silence_threshold(pcm, p, 0), name, "silence threshold");
+  check(snd_pcm_sw_params_set_silence_size(pcm, p, boundary), name, "silence size");
+  check(snd_pcm_sw_params_set_avail_min(pcm, p, device.period_frames), name, "wake-up level");
+  check(snd_pcm_sw_params_set_tstamp_mode(pcm, p, SND_PCM_TSTAMP_ENABLE), name, "time stamps");
+  check(snd_pcm_sw_params_set_tstamp_type(pcm, p, SND_PCM_TSTAMP_TYPE_MONOTONIC), name,
+        "monotonic time stamps");
+  check(snd_pcm_sw_params(pcm, p), name, "installing software parameters");
+}
+
+std::string described(snd_pcm_t* pcm) {
+  snd_output_t* buffer = nullptr;
+  if (snd_output_buffer_open(&buffer) < 0) return "";
+  snd_pcm_dump(pcm, buffer);
+  char* text = nullptr;
+  const std::size_t size = snd_output_buffer_string(buffer, &text);
+  std::string chain(text, size);
+  snd_output_close(buffer);
+  return chain;
+}
+
+// A wrapper that is allowed may hide a converter: every rate along the chain must be the one asked for.
+void check_chain(const AlsaDevice& device, const OutputConfig& config, const std::string& name) {
+  if (device.chain.empty()) refuse(name, "alsa-lib does not say what the samples pass through");
+  if (device.chain.find("Rate conversion PCM") != std::string::npos)
+    refuse(name, "resamples: a rate converter is behind it");
+  for (std::size_t at = device.chain.find("  rate "); at != std::string::npos;
+       at = device.chain.find("  rate ", at + 1)) {
+    const auto colon = device.chain.find(':', at);
+    const long rate =
+        colon == std::string::npos ? 0 : std::strtol(device.chain.c_str() + colon + 1, nullptr, 10);
+    if (rate != config.rate_Hz) refuse(name, "resamples: {} Hz behind {} Hz", rate, config.rate_Hz);
+  }
+}
+
+// What the kernel itself has set the hardware to.
+void check_kernel(snd_pcm_t* pcm, const OutputConfig& config, const std::string& name) {
+  if (snd_pcm_type(pcm) != SND_PCM_TYPE_HW) return;
+  snd_pcm_info_t* raw = nullptr;
+  check(snd_pcm_info_malloc(&raw), name, "device information");
+  const std::unique_ptr<snd_pcm_info_t, ParamsFree> info(raw);
+  check(snd_pcm_info(pcm, raw), name, "device information");
+  const std::string path =
+      fmt::format("/proc/asound/card{}/pcm{}p/sub{}/hw_params", snd_pcm_info_get_card(raw),
+                  snd_pcm_info_get_device(raw), snd_pcm_info_get_subdevice(raw));
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind("rate: ", 0) != 0) continue;
+    if (std::strtol(line.c_str() + 6, nullptr, 10) == config.rate_Hz) return;
+    refuse(name, "the kernel runs it at {} when asked for {} Hz ({})", line.substr(6), config.rate_Hz, path);
+  }
+  refuse(name, "{} does not state the rate", path);
+}
+
+}  // namespace
+
+AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name) {
+  AlsaDevice device;
+  snd_pcm_t* pcm = nullptr;
+  const int opened =
+      snd_pcm_open(&pcm, name.c_str(), SND_PCM_STREAM_PLAYBACK, no_conversion | SND_PCM_NONBLOCK);
+  check(opened, name, opened == -EBUSY ? "in use by another program" : "cannot be opened");
+  device.pcm.reset(pcm);
+  check_type(pcm, config, name);
+  set_hardware(device, config, name);
+  set_software(device, name);
+  device.chain = described(pcm);
+  check_chain(device, config, name);
+  check_kernel(pcm, config, name);
+  return device;
+}
+
+}  // namespace turnpoint::drive

@@ -1,0 +1,120 @@
+#include <alsa/asoundlib.h>
+
+#include <cstdlib>
+
+#include "station/drive/alsa_output.hpp"
+#include "station/drive/engine.hpp"
+#include "tests/drive/bursts.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::drive;
+
+namespace {
+
+void quiet(const char*, int, const char*, int, const char*, ...) {}
+
+// Points alsa-lib at the definitions of these tests.
+const bool configured = [] {
+  ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
+  snd_lib_error_set_handler(quiet);
+  return true;
+}();
+
+OutputConfig config_for(const std::string& name) {
+  OutputConfig config;
+  config.uri = "alsa:" + name;
+  return config;
+}
+
+bool opens(const OutputConfig& config) {
+  try {
+    open_output(config);
+    return true;
+  } catch (const OutputRefused&) {
+    return false;
+  } catch (const std::system_error&) {
+    return false;
+  }
+}
+
+// What a program that only asks for an exact rate would conclude.
+bool accepts_exact_rate(const char* name, unsigned rate) {
+  snd_pcm_t* pcm = nullptr;
+  if (snd_pcm_open(&pcm, name, SND_PCM_STREAM_PLAYBACK, SND_PCM_NONBLOCK) < 0) return false;
+  snd_pcm_hw_params_t* params = nullptr;
+  snd_pcm_hw_params_alloca(&params);
+  snd_pcm_hw_params_any(pcm, params);
+  const bool accepted = snd_pcm_hw_params_set_rate(pcm, params, rate, 0) == 0;
+  snd_pcm_close(pcm);
+  return accepted;
+}
+
+const char* const resampling[] = {
+    "rated",           "rated_linear",    "rated_speex",       "rated_samplerate",        "rated_lav",
+    "plugged",         "file_over_rate",  "hooks_over_rate",   "copy_over_rate",          "linear_over_rate",
+    "route_over_rate", "multi_over_rate", "softvol_over_rate", "meter_over_rate",         "mmap_over_rate",
+    "asym_over_rate",  "empty_over_rate", "lfloat_over_rate",  "plug_over_file_over_rate"};
+
+}  // namespace
+
+TEST_CASE("every plug-in of alsa-lib that resamples or mixes is refused by default", "[drive][alsa]") {
+  REQUIRE(configured);
+  for (const char* name : resampling) {
+    INFO(name);
+    CHECK_FALSE(opens(config_for(name)));
+  }
+  CHECK_FALSE(opens(config_for("straight")));  // not hardware either
+}
+
+TEST_CASE("a resampler behind an allowed plug-in is refused as well", "[drive][alsa]") {
+  for (const char* name : resampling) {
+    OutputConfig config = config_for(name);
+    config.allow_plugin = {"rate",  "plug",    "file",  "hooks",     "copy",         "linear", "route",
+                           "multi", "softvol", "meter", "mmap_emul", "linear_float", "null"};
+    INFO(name);
+    CHECK_FALSE(opens(config));
+  }
+}
+
+TEST_CASE("asking for an exact rate is not enough: alsa-lib's plug says yes", "[drive][alsa]") {
+  // The negative control of the two tests above: the definitions do open and do claim 192 kHz.
+  for (const char* name :
+       {"rated", "rated_linear", "plugged", "file_over_rate", "copy_over_rate", "asym_over_rate",
+        "empty_over_rate", "hooks_over_rate", "route_over_rate", "multi_over_rate"}) {
+    INFO(name);
+    CHECK(accepts_exact_rate(name, 192000));
+  }
+}
+
+TEST_CASE("plug-ins that a rig allows and that pass samples on are accepted", "[drive][alsa]") {
+  OutputConfig config = config_for("straight");
+  config.allow_plugin = {"null"};
+  CHECK(opens(config));
+  config = config_for("to_file");
+  config.allow_plugin = {"file"};
+  CHECK(opens(config));
+  config = config_for("plugged_any");
+  config.allow_plugin = {"plug"};
+  CHECK(opens(config));
+}
+
+TEST_CASE("a refusal names the device and what it is; a device that is not there is ENODEV or ENOENT",
+          "[drive][alsa]") {
+  CHECK_THROWS_WITH(
+      open_output(config_for("plugged")),
+      "alsa:plugged: is the alsa-lib plug-in 'plug', not hardware; use a name that begins with hw:, as "
+      "'aplay -l' lists");
+  OutputConfig config = config_for("rated");
+  config.allow_plugin = {"rate",  "plug",    "file",  "hooks",     "copy",         "linear", "route",
+                         "multi", "softvol", "meter", "mmap_emul", "linear_float", "null"};
+  CHECK_THROWS_WITH(open_output(config), "alsa:rated: resamples: a rate converter is behind it");
+  config = config_for("plugged");
+  config.allow_plugin = {"plug"};
+  CHECK_THROWS_WITH(open_output(config), "alsa:plugged: rate 192000 Hz not supported; it offers 48000 Hz");
+  try {
+    open_output(config_for("hw:7,3"));
+    FAIL("opened");
+  } catch (const std::system_error& error) {
+    CHECK(error.code().value() == ENOENT);
+  }
+}

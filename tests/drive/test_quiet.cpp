@@ -1,0 +1,78 @@
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+#include <vector>
+
+#include "station/drive/engine_core.hpp"
+#include "tests/drive/bursts.hpp"
+#include "tests/drive/watch.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::drive;
+
+TEST_CASE("the counter sees an allocation, a lock and a log line: the negative control",
+          "[drive][realtime]") {
+  CHECK(violations_in([] {
+          std::vector<int>* const made = new std::vector<int>(7);
+          delete made;
+        }) >= 2);
+  std::mutex mutex;
+  CHECK(violations_in([&] { const std::lock_guard lock(mutex); }) >= 1);
+  CHECK(violations_in([] { std::puts(""); }) >= 1);
+}
+
+TEST_CASE("the audio side allocates, locks and logs nothing, whatever it is sent", "[drive][realtime]") {
+  StreamConfig config;
+  EngineCore core(config);
+  std::vector<std::int32_t> block(2 * 384);
+  std::int64_t frame = 0;
+  Burst burst = one_tone(20000, 0.4);
+  burst.tones.count = 3;
+  burst.tones.tones[1] = {23000, 0.2, 0, 0};
+  burst.tones.tones[2] = {25000, 0.2, 0, 1};
+  burst.start_frame = 1000;
+  burst.change_count = 1;
+  burst.changes[0] = {30000, 9600, one_tone(21000, 0.4).tones};
+  burst.marker.kind = MarkerKind::tone;
+  burst.marker.amplitude = 0.1;
+  burst.noise.rms = 0.01;
+  const auto id = core.schedule(burst, 0);
+  const auto run = [&](int blocks) {
+    return violations_in([&] {
+      for (int k = 0; k < blocks; ++k, frame += 384) core.process(frame, block);
+    });
+  };
+  CHECK(run(50) == 0);
+  Change change;
+  change.at_frame = 60000;
+  change.to = one_tone(24000, 0.3).tones;
+  core.change(id, change);
+  CHECK(run(50) == 0);
+  core.stop(0, Ramp{}, std::nullopt);
+  frame += 1000;  // lost frames
+  CHECK(run(100) == 0);
+  CHECK(violations_in([&] { core.report({EventKind::underrun, 0, frame, 1000, -EPIPE}); }) == 0);
+  while (core.poll()) {
+  }
+  CHECK(core.counters().events_dropped == 0);
+}
+
+TEST_CASE("writing through alsa-lib allocates, locks and logs nothing", "[drive][realtime][alsa]") {
+  ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
+  // alsa-lib guards plug-ins, never hardware, with a mutex of their own: off, as for hardware.
+  ::setenv("LIBASOUND_THREAD_SAFE", "0", 1);
+  OutputConfig config;
+  config.uri = "alsa:straight";
+  config.allow_plugin = {"null"};
+  const auto output = open_output(config);
+  const std::vector<std::int32_t> block(2 * 384);
+  WriteResult result;
+  CHECK(violations_in([&] {
+          for (int k = 0; k < 100 && result.status == WriteStatus::ok; ++k) {
+            result = output->write(block);
+            static_cast<void>(output->position());
+          }
+        }) == 0);
+  CHECK(result.status == WriteStatus::ok);
+}

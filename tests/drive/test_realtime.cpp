@@ -1,0 +1,37 @@
+#include "station/drive/engine.hpp"
+#include "station/drive/monotonic.hpp"
+#include "tests/drive/bursts.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::drive;
+
+TEST_CASE("a real-time stream to null plays bursts at their frames and tells what it was granted",
+          "[drive][realtime][threads]") {
+  StreamConfig config;
+  const auto stream = open_realtime(config);
+  CHECK(stream->rights().asked);
+  if (stream->rights().fifo_priority == 0 || !stream->rights().memory_locked)
+    CHECK_FALSE(stream->rights().note.empty());
+  std::vector<std::int64_t> asked, started, ended;
+  for (int k = 0; k < 3; ++k) {
+    Burst burst = one_tone(20000, 0.3);
+    burst.start_frame = stream->earliest_frame() + 2000;
+    burst.length_frames = 3000;
+    burst.ramp.frames = 1000;
+    asked.push_back(burst.start_frame);
+    stream->schedule(burst);
+    while (ended.size() <= static_cast<std::size_t>(k)) {
+      sleep_until_ns(monotonic_ns() + 1'000'000);
+      while (const auto event = stream->poll()) {
+        if (event->kind == EventKind::burst_started) started.push_back(event->frame);
+        if (event->kind == EventKind::burst_ended) ended.push_back(event->frame - 3000);
+      }
+    }
+  }
+  CHECK(started == asked);
+  CHECK(ended == asked);
+  const ClockFit fit = stream->clock();
+  CHECK(fit.pairs > 8);
+  CHECK(fit.rate_Hz() == Approx(192000).epsilon(1e-6));
+  CHECK(stream->frame_at(stream->time_of(asked[0])) == asked[0]);
+}
