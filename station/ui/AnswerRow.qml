@@ -6,7 +6,7 @@ import Turnpoint
 Item {
     id: root
     required property Theme theme
-    required property list<string> answers
+    required property var answers
     required property int pressed
     readonly property real gap: theme.targetGap
     readonly property int count: answers.length

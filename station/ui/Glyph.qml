@@ -1,6 +1,5 @@
 import QtQuick
 import QtQuick.Shapes
-import Turnpoint
 
 // A sign drawn in strokes: tick, cross, clock, chevrons (speed), rings (accuracy), bars (pause), alert, backspace.
 Item {

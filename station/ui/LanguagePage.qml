@@ -5,7 +5,7 @@ import Turnpoint
 Item {
     id: root
     required property Theme theme
-    required property list<string> names
+    required property var names
     signal chosen(index: int)
 
     readonly property int columns: names.length > 3 ? 2 : 1

@@ -1,5 +1,4 @@
 import QtQuick
-import Turnpoint
 
 // What the station itself says, in each language shipped; the protocol brings its own texts. A language that is
 // not here falls back to English.

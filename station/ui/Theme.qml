@@ -1,5 +1,4 @@
 import QtQuick
-import Turnpoint
 
 // Sizes and colours of every page. Sizes grow with the panel and never fall below what a finger or an eye needs
 // (millimetres by the panel's own density); text and what it stands on differ by a contrast of 7:1 or more.
