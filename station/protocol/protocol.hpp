@@ -114,6 +114,7 @@ struct Task {
   std::optional<Distribution> foreperiod_s;  ///< from the interval's start to its second scene
   std::optional<double> transition_ms;
   Device device = Device::touch;
+  Place device_place;
   Localised question;
   std::vector<Choice> choices;
   std::string correct_scene;  ///< 2ifc: the interval that held this scene
@@ -127,8 +128,10 @@ enum class ResponseZero { go_cue, change, interval_off, first_contact, lift_off 
 
 struct Timing {
   ResponseZero response_zero = ResponseZero::go_cue;
+  Place response_zero_place;
   std::optional<double> explore_s;   ///< single interval: the tones last at most this long
   std::optional<double> deadline_s;  ///< from response_zero; absent where instructions state it
+  Place place;                       ///< of [timing]
   Distribution iti_s;
   double anticipation_s = 0;
 };
@@ -212,6 +215,7 @@ struct Protocol {
   Task task;
   Timing timing;
   std::vector<procedure::Spec> procedures;
+  std::map<std::string, Place> procedure_places;
   std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences, in file order
   std::map<std::string, Instruction> instructions;
   Analysis analysis;
@@ -232,6 +236,7 @@ std::vector<Block> block_order(const Protocol& protocol, int sequence_index);
 
 /// What stands between this protocol and this rig: unreachable boundaries, missing devices, limits. Empty:
 /// none.
+/// These are the problems of survey() (station/protocol/survey.hpp), which says more.
 std::vector<text::Problem> check_against(const Protocol& protocol, const rig::Rig& rig);
 
 }  // namespace turnpoint::protocol

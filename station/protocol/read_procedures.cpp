@@ -17,14 +17,6 @@ using text::Value;
 
 namespace {
 
-const std::vector<std::pair<std::string, Kind>> kinds{{"constant-stimuli", Kind::constant_stimuli},
-                                                      {"up-down", Kind::up_down},
-                                                      {"weighted-up-down", Kind::weighted_up_down},
-                                                      {"quest-plus", Kind::quest_plus},
-                                                      {"psi", Kind::psi},
-                                                      {"psi-marginal", Kind::psi_marginal},
-                                                      {"adjustment", Kind::adjustment}};
-
 const Range any_level{-1e6, 1e6};
 
 // A copy's keys lie over those of the procedure that it copies; grids and priors axis by axis.
@@ -154,12 +146,10 @@ void read_staircase(TableReader& reader, Spec& spec, const Reading& reading) {
     spec.n_up = reader.integer("n_up", 1, 20, 1);
     spec.initial_down = reader.maybe_integer("initial_down", 1, 20);
   } else {
-    spec.target = reader.maybe_number("target", {0, 1, Range::Ends::open});
-    if (reader.has("target") == reader.has("step_up"))
-      reader.findings().add(
-          reader.place(),
-          reader.title() + (spec.target ? " has both \"target\" and \"step_up\"" : " has no target"),
-          "\"target\" (the step up follows from it) or \"step_up\"");
+    spec.target = reader.number("target", {0, 1, Range::Ends::open});
+    if (reader.has("step_up"))
+      reader.problem("step_up", "\"step_up\" beside \"target\"",
+                     "the step up follows from the target and the step down");
   }
   read_stop(reader, spec);
 }
@@ -230,16 +220,30 @@ void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
   if (spec.max) check("max", *spec.max);
 }
 
+// The procedures' own rules; a fault names its key, dotted for a key of an inner table.
+void check_spec(const Value& table, const Spec& spec, text::Findings& findings) {
+  for (const auto& fault : procedure::validate(spec)) {
+    const Value* at = &table;
+    std::string rest = fault.key;
+    while (!rest.empty()) {
+      const auto dot = rest.find('.');
+      const auto* entry = at->find(rest.substr(0, dot));
+      if (!entry) break;
+      at = &entry->value;
+      rest = dot == std::string::npos ? "" : rest.substr(dot + 1);
+    }
+    findings.add(at->place, "procedure \"" + spec.name + "\": \"" + fault.key + "\": " + fault.what,
+                 fault.allowed);
+  }
+}
+
 Spec read_procedure(const Value& table, const Reading& reading, text::Findings& findings) {
   TableReader reader(table, titled("procedure", table), findings);
   Spec spec;
   spec.name = read_name(reader, "name", "a name for the data file");
   reader.take("copy");
-  std::vector<std::string> words;
-  for (const auto& [word, kind] : kinds) words.push_back(word);
-  const auto kind = reader.word("kind", words);
-  for (const auto& [word, value] : kinds)
-    if (word == kind) spec.kind = value;
+  spec.kind =
+      procedure::parse_kind(reader.word("kind", procedure::kind_names())).value_or(Kind::constant_stimuli);
   const auto* factor = read_numeric_factor(reader, "level", reading);
   if (factor) spec.level = factor->name;
   switch (spec.kind) {
@@ -257,6 +261,7 @@ Spec read_procedure(const Value& table, const Reading& reading, text::Findings& 
       read_posterior(reader, spec, reading);
   }
   if (factor && !is_broken(*factor)) check_levels(reader, spec, *factor);
+  if (findings.problems.empty()) check_spec(table, spec, findings);
   reader.finish();
   return spec;
 }
@@ -300,7 +305,8 @@ void read_procedures(TableReader& file, Reading& reading) {
     if (!name.empty() && !above.emplace(name, whole).second)
       reading.findings.add(table->place, "a second procedure named \"" + name + "\"", "names must differ");
     else if (!name.empty())
-      spec.name = name, reading.protocol.procedures.push_back(std::move(spec));
+      spec.name = name, reading.protocol.procedure_places[name] = table->place,
+      reading.protocol.procedures.push_back(std::move(spec));
   }
 }
 

@@ -186,6 +186,7 @@ void read_task(TableReader& file, Reading& reading) {
   read_intervals(reader, task, reading);
   read_times(reader, task);
   const auto device = reader.word("device", {"touch", "buttons", "either"});
+  task.device_place = reader.place("device");
   task.device = device == "touch" ? Device::touch : device == "buttons" ? Device::buttons : Device::either;
   if (task.kind == TaskKind::adjustment && task.device == Device::buttons)
     reader.problem("device", "a slider cannot be moved with buttons", "\"touch\"");
@@ -202,6 +203,8 @@ void read_timing(TableReader& file, Reading& reading) {
   auto& timing = reading.protocol.timing;
   const std::vector<std::string> zeros{"go_cue", "change", "interval_off", "first_contact", "lift_off"};
   const auto zero = reader.word("response_zero", zeros);
+  timing.place = table->place;
+  timing.response_zero_place = reader.place("response_zero");
   timing.response_zero =
       static_cast<ResponseZero>(std::find(zeros.begin(), zeros.end(), zero) - zeros.begin());
   timing.explore_s = reader.maybe_number("explore_s", {0, 600, Range::Ends::open_low, "s"});

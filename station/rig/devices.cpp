@@ -66,12 +66,14 @@ void read_devices(TableReader& file, Rig& rig) {
   if (!file.has("amplifier")) file.require("amplifier", "a table [amplifier] with uri");
   rig.amplifier_uri = read_device(file, "amplifier", {"sim:", "gpio:*"},
                                   "\"sim:\" or \"gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE\"",
-                                  {"enable", "fault"}, {"stop", "heartbeat"})
+                                  {"enable"}, {"fault", "stop", "heartbeat", "active"})
                           .value_or("");
-  rig.buttons_uri = read_device(file, "buttons", {"sim:", "gpio:*"},
-                                "\"sim:\" or \"gpio:left=LINE,right=LINE\"", {"left", "right"}, {"third"});
-  rig.contact_uri = read_device(file, "contact", {"sim:", "gpio:*", "evdev:*"},
-                                "\"sim:\", \"gpio:line=LINE\" or \"evdev:DEVICE\"", {"line"});
+  rig.buttons_uri =
+      read_device(file, "buttons", {"sim:", "gpio:*"}, "\"sim:\" or \"gpio:left=LINE,right=LINE\"",
+                  {"left", "right"}, {"third", "active", "refractory_ms"});
+  rig.contact_uri =
+      read_device(file, "contact", {"sim:", "gpio:*", "evdev:*"},
+                  "\"sim:\", \"gpio:line=LINE\" or \"evdev:DEVICE\"", {"line"}, {"active", "refractory_ms"});
   rig.touch_uri =
       read_device(file, "touch", {"sim:", "qt:", "evdev:*"}, "\"sim:\", \"qt:\" or \"evdev:DEVICE\"", {});
 }

@@ -96,8 +96,8 @@ TEST_CASE("what a rig file may not say is refused with what is allowed", "[rig]"
   CHECK(contains(problems("tension_Pa = 0 ", "tension_Pa = inf "), "\"tension_Pa\" is inf"));
   CHECK(contains(problems("model = \"load-sharing\"", "table_csv = \"none.csv\""), "cannot read"));
   CHECK(contains(problems("friction-rig/1", "friction-rig/2"), "allowed: \"friction-rig/1\""));
-  CHECK(contains(problems("[amplifier]\nuri = \"sim:\"", "[amplifier]\nuri = \"gpio:enable=A\""),
-                 "no line \"fault\""));
+  CHECK(contains(problems("[amplifier]\nuri = \"sim:\"", "[amplifier]\nuri = \"gpio:fault=A\""),
+                 "no line \"enable\""));
   CHECK(contains(problems("[surface]", "[surface"), "not valid TOML"));
   CHECK(problems("quality_factor = 60", "quality_factor = inf").empty());
 }

@@ -1,0 +1,174 @@
+#include "station/protocol/survey.hpp"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "physics/boundary_map.hpp"
+#include "station/protocol/combinations.hpp"
+#include "station/protocol/resolve.hpp"
+#include "station/scene/planner.hpp"
+#include "station/scene/transducer.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+// A zone's design takes some 15 ms, a boundary's less than 2: together a check should feel immediate.
+constexpr std::size_t most_plans_of_a_scene = 120, most_plans_of_a_zone = 6;
+
+// Where the edges of a boundary can be put with this rig's bands, for messages.
+std::string reach(const scene::Scene& scene, const rig::Rig& rig, const scene::Planner& planner) {
+  if (!scene.boundary_m) return "";
+  physics::MapOptions options;
+  options.edge = scene.edge;
+  if (scene.edge.kind == physics::Edge::Kind::friction)
+    options.friction = physics::FrictionContext{planner.friction(), scene.displacement_m.value_or(1e-6),
+                                                rig.friction.fingertip_m};
+  const physics::BoundaryMap map(planner.surface(), options);
+  const double low_Hz = scene::lowest_frequency(rig, 0),
+               high_Hz = scene::highest_frequency(rig, 0.45 * rig.output.rate_Hz);
+  std::optional<double> nearest, furthest;
+  constexpr int steps = 400;
+  for (int i = 0; i <= steps; ++i)
+    if (const auto x = map.boundary_m(low_Hz + (high_Hz - low_Hz) * i / steps)) {
+      nearest = std::min(nearest.value_or(*x), *x);
+      furthest = std::max(furthest.value_or(*x), *x);
+    }
+  if (!nearest) return "this rig reaches no boundary with this edge";
+  return "with this edge the rig reaches " + text::number(1e3 * *nearest, 4) + " to " +
+         text::number(1e3 * *furthest, 4) + " mm (" + text::number(1e-3 * low_Hz, 4) + " to " +
+         text::number(1e-3 * high_Hz, 4) + " kHz)";
+}
+
+Sight sight_of(const Combination& combination, const scene::DrivePlan& plan) {
+  Sight sight;
+  sight.scene = combination.scene, sight.block = combination.block, sight.factors = combination.factors;
+  for (const auto& tone : plan.tones) {
+    sight.lowest_Hz = sight.lowest_Hz == 0 ? tone.frequency_Hz : std::min(sight.lowest_Hz, tone.frequency_Hz);
+    sight.highest_Hz = std::max(sight.highest_Hz, tone.frequency_Hz);
+  }
+  if (plan.boundary_m) sight.boundary_mm = 1e3 * *plan.boundary_m;
+  sight.displacement_um = 1e6 * plan.peak_displacement_m;
+  sight.lowest_friction = plan.lowest_friction;
+  sight.model = physics::name(plan.model);
+  sight.error_bound_mm = 1e3 * plan.error_bound_m;
+  sight.inside_tolerance = plan.inside_tolerance;
+  sight.cues = plan.cues;
+  return sight;
+}
+
+// The same trouble in many combinations is one problem, with its first case and the number of the others.
+struct Trouble {
+  std::string first, allowed;
+  int cases = 0;
+};
+
+std::string in_case(const Combination& combination) {
+  return "scene \"" + combination.scene + "\" in block \"" + combination.block + "\"" +
+         (combination.factors.empty() ? "" : " at " + format(combination.factors));
+}
+
+std::string counted(const Trouble& trouble) {
+  return trouble.first +
+         (trouble.cases > 1 ? " (and in " + std::to_string(trouble.cases - 1) + " more cases)" : "");
+}
+
+std::vector<Combination> planned(const Protocol& protocol, const std::vector<Combination>& all) {
+  std::vector<Combination> chosen;
+  for (const auto& name : scenes_used(protocol)) {
+    std::vector<Combination> of_scene;
+    for (const auto& combination : all)
+      if (combination.scene == name) of_scene.push_back(combination);
+    const bool zone = protocol.scenes.at(name).zone.has_value();
+    const auto some = thinned(of_scene, zone ? most_plans_of_a_zone : most_plans_of_a_scene);
+    chosen.insert(chosen.end(), some.begin(), some.end());
+  }
+  return chosen;
+}
+
+void plan_scenes(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
+  scene::Planner planner(rig);
+  const auto all = combinations_of(protocol);
+  survey.combinations = all.size();
+  std::map<std::string, Trouble> unreachable, inexact;
+  std::map<std::string, std::string> told;  // warnings of the planner by code
+  for (const auto& combination : planned(protocol, all)) {
+    const auto& from = protocol.scenes.at(combination.scene);
+    // Roving upwards: the limits must hold for the strongest stimulus that can be drawn.
+    const auto scene = resolve(protocol, combination.scene, combination.factors, from.rove_dB);
+    try {
+      const auto plan = planner.plan(scene);
+      survey.sights.push_back(sight_of(combination, plan));
+      survey.models.emplace(physics::name(plan.model));
+      if (!plan.inside_tolerance && inexact[combination.scene].cases++ == 0)
+        inexact[combination.scene].first = in_case(combination) + ": " + plan.reason;
+      for (const auto& warning : plan.warnings)
+        told.emplace(warning.code, in_case(combination) + ": " + warning.text);
+    } catch (const scene::Unreachable& error) {
+      auto& trouble = unreachable[combination.scene];
+      if (trouble.cases++ == 0)
+        trouble = {in_case(combination) + ": " + error.what(), reach(scene, rig, planner), 1};
+    }
+  }
+  for (const auto& [name, trouble] : unreachable)
+    survey.problems.push_back({protocol.scenes.at(name).place, counted(trouble), trouble.allowed});
+  for (const auto& [name, trouble] : inexact)
+    survey.warnings.push_back(
+        {protocol.scenes.at(name).place, counted(trouble), "no model is known to be inside its tolerance"});
+  if (rig.reproduction) return;  // a historical rig's impossibilities are known
+  for (const auto& [code, warning] : told) survey.warnings.push_back({{protocol.path, 0, 0}, warning, ""});
+}
+
+void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
+  const auto add = [&](const Place& place, const std::string& what, const std::string& allowed) {
+    survey.problems.push_back({place, what, allowed});
+  };
+  const auto& task = protocol.task;
+  if (task.device == Device::buttons && !rig.buttons_uri)
+    add(task.device_place, "the task needs buttons, and the rig has none",
+        "a rig with [buttons], or device = \"touch\"");
+  if (task.device == Device::touch && !rig.touch_uri)
+    add(task.device_place, "the task needs a touchscreen, and the rig has none",
+        "a rig with [touch], or device = \"buttons\"");
+  if (task.device == Device::either && !rig.touch_uri && !rig.buttons_uri)
+    add(task.device_place, "the rig has neither touchscreen nor buttons", "a rig with [touch] or [buttons]");
+  const bool two_lines = rig.buttons_uri && rig.buttons_uri->rfind("gpio:", 0) == 0 &&
+                         rig.buttons_uri->find("third=") == std::string::npos;
+  if (task.device == Device::buttons && task.choices.size() > 2 && two_lines)
+    add(task.device_place, "the task has three answers, and the rig two buttons",
+        "a line \"third\" in [buttons], or device = \"touch\"");
+  const auto zero = protocol.timing.response_zero;
+  const bool contact = zero == ResponseZero::first_contact || zero == ResponseZero::lift_off;
+  if (contact && !rig.contact_uri)
+    add(protocol.timing.response_zero_place,
+        "response times are counted from the finger's contact, and the rig does not sense it",
+        "a rig with [contact], or another \"response_zero\"");
+}
+
+void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
+  const double longest_s =
+      protocol.task.duration_s ? *protocol.task.duration_s : protocol.timing.explore_s.value_or(0);
+  if (longest_s > rig.limits.continuous_s)
+    survey.problems.push_back(
+        {protocol.timing.place, "tones last up to " + text::number(longest_s) + " s without a pause",
+         "at most the rig's continuous_s = " + text::number(rig.limits.continuous_s) + " s"});
+}
+
+}  // namespace
+
+Survey survey(const Protocol& protocol, const rig::Rig& rig) {
+  Survey survey;
+  check_devices(protocol, rig, survey);
+  check_limits(protocol, rig, survey);
+  plan_scenes(protocol, rig, survey);
+  for (auto& warning : advice(protocol)) survey.warnings.push_back(std::move(warning));
+  return survey;
+}
+
+std::vector<text::Problem> check_against(const Protocol& protocol, const rig::Rig& rig) {
+  return survey(protocol, rig).problems;
+}
+
+}  // namespace turnpoint::protocol

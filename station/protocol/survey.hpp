@@ -1,0 +1,45 @@
+#pragma once
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "station/protocol/protocol.hpp"
+#include "station/scene/cues.hpp"
+
+namespace turnpoint::protocol {
+
+/// One combination of factors in which a scene occurs, and what the planner made of it.
+struct Sight {
+  std::string scene;
+  std::string block;
+  Factors factors;  ///< those on which the scene depends
+  double lowest_Hz = 0, highest_Hz = 0;
+  std::optional<double> boundary_mm;
+  double displacement_um = 0;  ///< largest anywhere on the surface, roving upwards
+  double lowest_friction = 1;
+  std::string model;
+  double error_bound_mm = 0;
+  bool inside_tolerance = true;
+  scene::Cues cues;
+};
+
+/// What a protocol asks of a rig. Problems prevent a session, warnings do not.
+struct Survey {
+  std::vector<text::Problem> problems, warnings;
+  std::vector<Sight> sights;     ///< in file order of blocks; each combination once
+  std::size_t combinations = 0;  ///< how many there are; above the number planned, the extremes were taken
+  std::set<std::string> models;
+};
+
+/// Plans every scene for the combinations of factors that can occur (a staircase by its limits), and checks
+/// devices, limits and levels. Beyond 120 combinations of a scene, or 6 of one with a zone, it takes those
+/// with extreme values and an even choice of the others: sights.size() against combinations says so.
+Survey survey(const Protocol& protocol, const rig::Rig& rig);
+
+/// What is probably not meant, whatever the rig: targets that the steps miss, one-point grids, levels below
+/// four times the tolerance or all above what everybody feels, practice that one key passes, parts never
+/// used.
+std::vector<text::Problem> advice(const Protocol& protocol);
+
+}  // namespace turnpoint::protocol

@@ -1,0 +1,149 @@
+#include "station/protocol/survey.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "station/text/toml.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string root = TURNPOINT_SOURCE_DIR;
+
+std::string replaced(std::string where, const std::string& from, const std::string& to) {
+  const auto at = where.find(from);
+  REQUIRE(at != std::string::npos);
+  return where.replace(at, from.size(), to);
+}
+
+std::string source(const std::string& name) { return text::read_file(root + "/protocols/" + name); }
+std::string rig_source() { return text::read_file(root + "/deploy/rigs/simulated.toml"); }
+rig::Rig simulated() { return rig::load(root + "/deploy/rigs/simulated.toml"); }
+
+std::string all_of(const std::vector<text::Problem>& problems) {
+  std::string all;
+  for (const auto& problem : problems) all += format(problem) + "\n";
+  return all;
+}
+
+std::string problems(const std::string& protocol_text, const rig::Rig& rig) {
+  return all_of(check_against(protocol::parse(protocol_text, "p.toml"), rig));
+}
+
+bool contains(const std::string& all, const std::string& part) { return all.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("every shipped protocol can be run on the simulated rig, without a warning", "[protocol]") {
+  const auto rig = simulated();
+  for (const auto& entry : fs::directory_iterator(root + "/protocols")) {
+    if (entry.path().extension() != ".toml") continue;
+    INFO(entry.path().string());
+    const auto survey = protocol::survey(protocol::load(entry.path().string()), rig);
+    CHECK(all_of(survey.problems) == "");
+    CHECK(all_of(survey.warnings) == "");
+    CHECK_FALSE(survey.sights.empty());
+    for (const auto& sight : survey.sights) {
+      CHECK(sight.lowest_Hz >= 22400);
+      CHECK(sight.inside_tolerance);
+    }
+  }
+}
+
+TEST_CASE("a survey plans each combination of level and mark once, with its boundary", "[protocol]") {
+  const auto survey = protocol::survey(protocol::parse(source("demo.toml"), "p.toml"), simulated());
+  CHECK(survey.combinations == 10);
+  REQUIRE(survey.sights.size() == 10);
+  for (const auto& sight : survey.sights) {
+    const double mark = std::get<double>(sight.factors.at("mark_mm"));
+    const double offset = std::get<double>(sight.factors.at("offset_mm"));
+    REQUIRE(sight.boundary_mm.has_value());
+    CHECK(*sight.boundary_mm == Approx(mark + offset).margin(0.5));
+  }
+}
+
+TEST_CASE("a boundary that the rig cannot reach is refused with what it can reach", "[protocol]") {
+  auto text = replaced(source("demo.toml"), "levels = [150.0, 160.0]", "levels = [250.0, 260.0]");
+  const auto found = problems(text, simulated());
+  CHECK(contains(found, "p.toml:24:1: scene \"edge\" in block \"main\" at mark_mm = 250, offset_mm = "));
+  CHECK(contains(found, "more cases"));
+  CHECK(contains(found, "with this edge the rig reaches"));
+}
+
+TEST_CASE("a displacement above the rig's limit is refused, roving included", "[protocol]") {
+  const auto quiet = replaced(source("demo.toml"), "rove_dB = 2.0", "rove_dB = 0.0");
+  const auto limit = replaced(rig_source(), "displacement_um = 8.0", "displacement_um = 4.0");
+  const auto rig = rig::parse(limit, "r.toml");
+  const auto peak = protocol::survey(protocol::parse(quiet, "p.toml"), rig);
+  REQUIRE(peak.problems.empty());
+  double largest_um = 0;
+  for (const auto& sight : peak.sights) largest_um = std::max(largest_um, sight.displacement_um);
+  const auto tight = rig::parse(replaced(rig_source(), "displacement_um = 8.0",
+                                         "displacement_um = " + std::to_string(1.05 * largest_um)),
+                                "r.toml");
+  CHECK(problems(quiet, tight).empty());
+  CHECK(contains(problems(replaced(quiet, "rove_dB = 0.0", "rove_dB = 6.0"), tight), "the rig's limit is"));
+}
+
+TEST_CASE("devices that the task needs and the rig lacks are named at the key that asks for them",
+          "[protocol]") {
+  const auto buttons = replaced(source("demo.toml"), "device = \"either\"", "device = \"buttons\"");
+  const auto without = rig::parse(replaced(rig_source(), "[buttons]\nuri = \"sim:\"\n", ""), "r.toml");
+  CHECK(contains(problems(buttons, without), "p.toml:35:10: the task needs buttons, and the rig has none"));
+  CHECK(problems(source("demo.toml"), without).empty());
+  const auto no_contact = rig::parse(replaced(rig_source(), "[contact]\nuri = \"sim:\"\n", ""), "r.toml");
+  const auto lift =
+      replaced(source("demo.toml"), "response_zero = \"go_cue\"", "response_zero = \"lift_off\"");
+  CHECK(contains(problems(lift, no_contact), "the rig does not sense it"));
+  CHECK(problems(lift, simulated()).empty());
+}
+
+TEST_CASE("tones that last longer than the rig allows are refused", "[protocol]") {
+  const auto text = replaced(source("demo.toml"), "explore_s = 4.0", "explore_s = 40.0");
+  CHECK(contains(problems(text, simulated()), "at most the rig's continuous_s = 30 s"));
+}
+
+TEST_CASE("what is probably not meant is a warning at its place", "[protocol]") {
+  const auto advice = [](const std::string& text) {
+    return all_of(protocol::advice(protocol::parse(text, "p.toml")));
+  };
+  const auto constant = source("boundary-constant.toml");
+  SECTION("levels finer than four times the tolerance") {
+    CHECK(contains(advice(replaced(constant, "boundary_mm = 0.5,", "boundary_mm = 1.0,")),
+                   "its tolerance is 1 mm"));
+  }
+  SECTION("levels that everybody feels") {
+    const auto coarse =
+        replaced(source("friction-same-different.toml"), "[-20.0, -14.0, -9.0, -4.0]", "[-8.0, -4.0]");
+    CHECK(contains(advice(coarse), "which everybody feels"));
+  }
+  SECTION("practice that one key passes") {
+    CHECK(contains(advice(replaced(constant, "levels = [-28.0, 28.0]", "levels = [20.0, 28.0]")),
+                   "is passed by one key"));
+    CHECK(contains(advice(replaced(constant, "accuracy = 0.75", "accuracy = 0.5")), "is passed by one key"));
+  }
+  SECTION("catch trials with one right answer") {
+    const auto text =
+        replaced(source("boundary-adaptive.toml"), "offset_mm = [-24.0, 24.0] }", "offset_mm = 24.0 }");
+    CHECK(contains(advice(text), "have one right answer only"));
+  }
+  SECTION("a grid of one stimulus") {
+    const auto text =
+        replaced(source("friction-2ifc.toml"), "stimuli = { from = -30.0, to = -3.0, step = 1.0 }",
+                 "stimuli = { values = [-20.0] }");
+    CHECK(contains(advice(text), "a grid of one point"));
+  }
+  SECTION("unequal steps whose target is not the usual one") {
+    const auto text = replaced(source("friction-staircase.toml"), "step = [4.0, 2.0, 1.0]",
+                               "step_down = [1.0]\nstep_up = [2.0]");
+    CHECK(contains(advice(text), "make it settle near 87.4 % right"));
+  }
+  SECTION("parts that nothing uses") {
+    CHECK(contains(advice(replaced(constant, "[scene.edge]",
+                                   "[[factor]]\nname = \"spare\"\nlevels = [1, 2]\n[scene.edge]")),
+                   "the factor \"spare\" is not used"));
+  }
+}
