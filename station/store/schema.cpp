@@ -200,6 +200,41 @@ CREATE TRIGGER session_keeps_its_provenance BEFORE UPDATE OF session_id, partici
   BEGIN SELECT RAISE(ABORT, 'the provenance of a session is never changed'); END;
 )sql";
 
+// Version 2: many stations. A session with a tombstone was withdrawn by its participant: its rows may go, and
+// may not come back. The code itself is kept only as a salted hash, so that it is not given out again.
+const char* const kStep2 = R"sql(
+CREATE TABLE tombstone (
+  session_id TEXT PRIMARY KEY CHECK (length(session_id) = 36),
+  salt TEXT NOT NULL,
+  participant_sha256 TEXT NOT NULL,
+  withdrawn_realtime_ns INTEGER NOT NULL
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE merged (
+  session_id TEXT NOT NULL REFERENCES session (session_id),
+  sha256 TEXT NOT NULL,
+  source_database_id TEXT NOT NULL,
+  realtime_ns INTEGER NOT NULL,
+  PRIMARY KEY (session_id, sha256)
+) STRICT, WITHOUT ROWID;
+
+DROP TRIGGER trial_is_never_deleted;
+DROP TRIGGER tone_is_never_deleted;
+DROP TRIGGER event_is_never_deleted;
+CREATE TRIGGER trial_is_never_deleted BEFORE DELETE ON trial
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'trial is append-only'); END;
+CREATE TRIGGER tone_is_never_deleted BEFORE DELETE ON tone
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'tone is append-only'); END;
+CREATE TRIGGER event_is_never_deleted BEFORE DELETE ON event
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'event is append-only'); END;
+CREATE TRIGGER session_stays_gone BEFORE INSERT ON session
+  WHEN EXISTS (SELECT 1 FROM tombstone WHERE session_id = NEW.session_id)
+  BEGIN SELECT RAISE(ABORT, 'the session was withdrawn'); END;
+)sql";
+
 [[noreturn]] void refuse(Fault fault, const Database& database, const std::string& what) {
   throw StoreError(fault, fmt::format("database {}: {}", database.path(), what));
 }
@@ -213,7 +248,7 @@ void apply(Database& database, int from, int to) {
 }  // namespace
 
 const std::vector<std::string>& schema_steps() {
-  static const std::vector<std::string> steps = {kStep1};
+  static const std::vector<std::string> steps = {kStep1, kStep2};
   return steps;
 }
 

@@ -11,6 +11,7 @@
 #include "station/store/open.hpp"
 #include "station/store/read.hpp"
 #include "station/store/rows.hpp"
+#include "station/store/withdraw.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::store {
@@ -40,6 +41,11 @@ void refuse(Database& database, Fault fault, const std::string& what) {
 /// The participant's place in the protocol's counterbalancing: kept for a code that is known, else the lowest
 /// one free, so that who withdrew leaves no hole in the design.
 int enrol(Database& database, const SessionStart& start) {
+  if (is_withdrawn(database, start.participant))
+    throw StoreError(Fault::refused,
+                     fmt::format("database {}: participant {} has withdrawn; the code is not given out "
+                                 "again; take a new one",
+                                 database.path(), start.participant));
   Statement known(database,
                   "SELECT sequence_index FROM enrolment WHERE protocol_id = ?1 AND participant = ?2"
                   " ORDER BY station_id <> ?3, station_id LIMIT 1");

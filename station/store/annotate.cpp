@@ -1,0 +1,37 @@
+#include "station/store/annotate.hpp"
+
+#include <fmt/format.h>
+
+#include "station/store/identity.hpp"
+#include "station/store/open.hpp"
+#include "station/store/read.hpp"
+
+namespace turnpoint::store {
+
+void annotate(const std::string& path, const std::string& session_id, const std::string& text) {
+  if (text.empty()) throw std::invalid_argument("annotate: the note is empty");
+  auto writer = open_writer(path, IfMissing::fail);
+  const auto session = read_session(writer.database, session_id).session;
+  Transaction transaction(writer.database);
+  Statement(writer.database, "INSERT INTO annotation VALUES (?,?,?,?)")
+      .bind(new_uuid(), session.session_id, realtime_ns(), text)
+      .run();
+  transaction.commit();
+}
+
+void abandon(const std::string& path, const std::string& session_id, const std::string& reason) {
+  auto writer = open_writer(path, IfMissing::fail);
+  const auto session = read_session(writer.database, session_id).session;
+  if (session.status != SessionStatus::interrupted)
+    throw StoreError(Fault::refused,
+                     fmt::format("database {}: session {} is {}; only an interrupted one is abandoned", path,
+                                 session_id, name(session.status)));
+  Transaction transaction(writer.database);
+  Statement(writer.database,
+            "UPDATE session SET status = 'abandoned', status_reason = ? WHERE session_id = ?")
+      .bind(reason, session_id)
+      .run();
+  transaction.commit();
+}
+
+}  // namespace turnpoint::store

@@ -1,0 +1,247 @@
+#include "station/store/merge.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "station/store/backup.hpp"
+#include "station/store/checksum.hpp"
+#include "station/store/identity.hpp"
+#include "station/store/open.hpp"
+#include "station/store/withdraw.hpp"
+
+namespace turnpoint::store {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A table that merges: its key, columns that belong to one database only, and which rows come along.
+struct Part {
+  std::string table, key, own_columns, incoming;
+};
+
+const std::string kBySession = "s.session_id IN (SELECT session_id FROM temp.incoming)";
+
+/// In the order of their references.
+const std::vector<Part>& parts() {
+  static const std::vector<Part> all = {
+      {"participant", "code", "", "s.code IN (SELECT participant FROM temp.incoming)"},
+      {"enrolment", "station_id,protocol_id,participant", "",
+       "s.participant IN (SELECT participant FROM temp.incoming)"},
+      {"protocol", "protocol_key", "", "s.protocol_key IN (SELECT protocol_key FROM temp.incoming)"},
+      {"rig", "rig_key", "", "s.rig_key IN (SELECT rig_key FROM temp.incoming)"},
+      {"calibration", "calibration_id", "", "s.calibration_id IN (SELECT calibration_id FROM temp.incoming)"},
+      {"session", "session_id", "status,status_reason", kBySession},
+      {"segment", "session_id,segment_index", "", kBySession},
+      {"block", "session_id,block_index,attempt", "", kBySession},
+      {"trial", "session_id,trial_index", "trial_id", kBySession},
+      {"tone", "session_id,trial_index,interval_index,scene_index,tone_index", "", kBySession},
+      {"event", "session_id,event_index", "", kBySession},
+      {"annotation", "annotation_id", "", kBySession},
+  };
+  return all;
+}
+
+bool in_list(const std::string& name, const std::string& list) {
+  return ("," + list + ",").find("," + name + ",") != std::string::npos;
+}
+
+std::vector<std::string> columns_of(Database& database, const std::string& table) {
+  std::vector<std::string> names;
+  Statement rows(database, "SELECT name FROM pragma_table_info(?)");
+  rows.bind(table);
+  while (rows.step()) names.push_back(rows.text(0));
+  return names;
+}
+
+std::string same_key(const Part& part, const std::vector<std::string>& columns) {
+  std::string condition;
+  for (const auto& column : columns)
+    if (in_list(column, part.key))
+      condition += fmt::format("{}m.{} = s.{}", condition.empty() ? "" : " AND ", column, column);
+  return condition;
+}
+
+/// The first row that both have and that differs, if any.
+void refuse_conflicts(Database& database, const Part& part) {
+  const auto columns = columns_of(database, part.table);
+  std::string key;
+  for (const auto& column : columns)
+    if (in_list(column, part.key))
+      key += fmt::format("{}'{} ' || s.{}", key.empty() ? "" : " || ', ' || ", column, column);
+  for (const auto& column : columns) {
+    if (in_list(column, part.key) || in_list(column, part.own_columns)) continue;
+    Statement rows(database,
+                   fmt::format("SELECT {}, m.{}, s.{} FROM source.{} s JOIN main.{} m ON {} WHERE {} AND "
+                               "m.{} IS NOT s.{} LIMIT 1",
+                               key, column, column, part.table, part.table, same_key(part, columns),
+                               part.incoming, column, column));
+    if (rows.step())
+      throw StoreError(
+          Fault::conflict,
+          fmt::format("merge: table {}, {}: {} is {} here and {} there; nothing was merged; one of the "
+                      "two databases was changed by hand, or the session was gone on with in both",
+                      part.table, rows.text(0), column, rows.text(1), rows.text(2)));
+  }
+}
+
+/// One place in the counterbalancing given to two people: two databases call themselves the same station.
+void refuse_shared_places(Database& database) {
+  Statement rows(
+      database,
+      "SELECT s.station_id, s.protocol_id, s.sequence_index, m.participant, s.participant"
+      " FROM source.enrolment s JOIN main.enrolment m USING (station_id, protocol_id, sequence_index)"
+      " WHERE s.participant <> m.participant AND s.participant IN (SELECT participant FROM temp.incoming)"
+      " LIMIT 1");
+  if (rows.step())
+    throw StoreError(Fault::conflict,
+                     fmt::format("merge: table enrolment: station {} has given place {} of protocol "
+                                 "{} to {} here and to {} there; nothing was merged; two databases "
+                                 "bear the name of one station",
+                                 rows.text(0), rows.integer(2), rows.text(1), rows.text(3), rows.text(4)));
+}
+
+void copy_rows(Database& database, const Part& part) {
+  const auto columns = columns_of(database, part.table);
+  std::string list;
+  for (const auto& column : columns)
+    if (column != "trial_id") list += (list.empty() ? "" : ", ") + column;
+  database.execute(fmt::format(
+      "INSERT INTO main.{} ({}) SELECT {} FROM source.{} s WHERE {} AND NOT EXISTS (SELECT 1 "
+      "FROM main.{} m WHERE {}) ORDER BY {}",
+      part.table, list, list, part.table, part.incoming, part.table, same_key(part, columns), part.key));
+}
+
+std::int64_t trials_of(Database& database, const std::string& schema, const std::string& id) {
+  Statement rows(database, "SELECT count(*) FROM " + schema + ".trial WHERE session_id = ?");
+  rows.bind(id).step();
+  return rows.integer(0);
+}
+
+std::vector<MergedSession> list_incoming(Database& database) {
+  std::vector<MergedSession> sessions;
+  Statement rows(
+      database,
+      "SELECT session_id, participant, protocol_id, station_id, session_id IN (SELECT session_id FROM"
+      " main.tombstone), session_id IN (SELECT session_id FROM main.session)"
+      " FROM source.session JOIN source.protocol USING (protocol_key) ORDER BY participant, session_id");
+  while (rows.step()) {
+    MergedSession session{
+        rows.text(0), rows.text(1), rows.text(2), rows.text(3), "", MergedSession::What::added, 0};
+    if (rows.integer(4) != 0 || is_withdrawn(database, session.participant))
+      session.what = MergedSession::What::withdrawn;
+    else if (rows.integer(5) != 0)
+      session.what = MergedSession::What::unchanged;
+    sessions.push_back(std::move(session));
+  }
+  return sessions;
+}
+
+/// The status of a session that came in goes with its newest rows.
+void take_status(Database& database, const std::string& id) {
+  Statement(
+      database,
+      "UPDATE main.session SET (status, status_reason) = (SELECT status, status_reason FROM source.session s"
+      " WHERE s.session_id = ?1) WHERE session_id = ?1")
+      .bind(id)
+      .run();
+}
+
+void settle(Database& database, MergedSession& session, std::int64_t trials_before,
+            const std::string& before) {
+  const auto& id = session.session_id;
+  const auto there = session_checksum(database, "source", id);
+  session.sha256 = session_checksum(database, "main", id);
+  session.trials = trials_of(database, "main", id) - trials_before;
+  if (session.what == MergedSession::What::unchanged && session.sha256 != before)
+    session.what = MergedSession::What::extended;
+  if (session.what == MergedSession::What::added && session.sha256 != there)
+    throw StoreError(Fault::corrupt,
+                     fmt::format("merge: session {} does not read back as it was; nothing was merged; "
+                                 "check the disk",
+                                 id));
+  if (session.what == MergedSession::What::unchanged) return;
+  if (session.sha256 == there) take_status(database, id);
+  Statement(
+      database,
+      "INSERT OR IGNORE INTO main.merged SELECT ?, ?, value, ? FROM source.meta WHERE key = 'database_id'")
+      .bind(id, session.sha256, realtime_ns())
+      .run();
+}
+
+MergeReport merge_attached(Database& database) {
+  MergeReport report;
+  Transaction transaction(database);
+  report.sessions = list_incoming(database);
+  Statement gone(database, "SELECT session_id FROM source.tombstone JOIN main.session USING (session_id)");
+  while (gone.step()) report.withdrawn_there.push_back(gone.text(0));
+  Statement incoming(
+      database,
+      "INSERT INTO temp.incoming SELECT session_id, participant, protocol_key, rig_key, calibration_id"
+      " FROM source.session WHERE session_id = ?");
+  std::vector<std::pair<std::int64_t, std::string>> before;
+  for (const auto& session : report.sessions) {
+    if (session.what != MergedSession::What::withdrawn) incoming.bind(session.session_id).run();
+    before.emplace_back(trials_of(database, "main", session.session_id),
+                        session_checksum(database, "main", session.session_id));
+  }
+  refuse_shared_places(database);
+  for (const auto& part : parts()) refuse_conflicts(database, part);
+  for (const auto& part : parts()) copy_rows(database, part);
+  for (std::size_t i = 0; i < report.sessions.size(); ++i)
+    if (report.sessions[i].what != MergedSession::What::withdrawn)
+      settle(database, report.sessions[i], before[i].first, before[i].second);
+  transaction.commit();
+  return report;
+}
+
+/// A private, current, checked copy of the source: neither its schema nor a session that writes it matters.
+class SourceCopy {
+ public:
+  SourceCopy(const std::string& source, const std::string& beside) : path_(beside + ".merging") {
+    verify_checksum_file(source);
+    auto reader = open_reader(source);
+    copy_to_file(reader, path_);
+  }
+  SourceCopy(const SourceCopy&) = delete;
+  SourceCopy& operator=(const SourceCopy&) = delete;
+  ~SourceCopy() {
+    std::error_code ignored;
+    fs::remove(path_, ignored);
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace
+
+const char* name(MergedSession::What what) {
+  switch (what) {
+    case MergedSession::What::added:
+      return "added";
+    case MergedSession::What::extended:
+      return "extended";
+    case MergedSession::What::unchanged:
+      return "unchanged";
+    case MergedSession::What::withdrawn:
+      return "withdrawn";
+  }
+  return "";
+}
+
+MergeReport merge(const std::string& path, const std::string& source) {
+  if (fs::exists(source) && fs::exists(path) && fs::equivalent(source, path))
+    throw StoreError(Fault::refused, fmt::format("merge: {} and {} are one file", path, source));
+  auto writer = open_writer(path, IfMissing::create);
+  const SourceCopy copy(source, path);
+  auto& database = writer.database;
+  Statement(database, "ATTACH ? AS source").bind(copy.path()).run();
+  database.execute(
+      "CREATE TEMP TABLE incoming (session_id, participant, protocol_key, rig_key, calibration_id)");
+  return merge_attached(database);
+}
+
+}  // namespace turnpoint::store

@@ -1,0 +1,15 @@
+#pragma once
+#include <cstdint>
+
+/// Makes SQLite write to a disk that fills up: a shim over the real file system, the default for connections
+/// opened while it lives. Not thread-safe.
+class FailingDisk {
+ public:
+  FailingDisk();
+  FailingDisk(const FailingDisk&) = delete;
+  FailingDisk& operator=(const FailingDisk&) = delete;
+  ~FailingDisk();
+
+  void bytes_left(std::int64_t bytes);  ///< writes beyond this fail with SQLITE_FULL
+  void space_again();
+};

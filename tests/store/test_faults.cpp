@@ -1,0 +1,188 @@
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <functional>
+
+#include "station/store/backup.hpp"
+#include "station/store/export.hpp"
+#include "station/store/read.hpp"
+#include "tests/store/failing_disk.hpp"
+#include "tests/store/sample.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::store;
+
+namespace {
+
+void write_bytes(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+/// Runs `action` in a child process; its exit status is what the action returns.
+int in_child(const std::function<int()>& action) {
+  const auto child = ::fork();
+  if (child == 0) {
+    int status = 99;
+    try {
+      status = action();
+    } catch (...) {
+    }
+    ::_exit(status);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "a full disk stops the session before its next trial, keeps every earlier row, and the same trial is "
+    "written once there is space",
+    "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  const std::int64_t bytes = GENERATE(0, 1000, 5000, 13000, 40000);
+  {
+    FailingDisk disk;
+    auto log = SessionLog::begin(db, sample::start(), sample::segment());
+    log.begin_block(sample::block());
+    disk.bytes_left(bytes);
+    int acknowledged = 0;
+    std::pair<Fault, std::string> failure;
+    for (; acknowledged < 100 && failure.second.empty(); ++acknowledged) {
+      log.event({1, "touch", "", acknowledged});
+      failure = sample::failure([&] { log.append(sample::answered(acknowledged)); });
+    }
+    --acknowledged;
+    REQUIRE(acknowledged < 99);
+    CHECK(failure.first == Fault::disk_full);
+    CHECK(sample::contains(failure.second, "free some space"));
+    auto reader = sample::raw(db);
+    CHECK(reader.integer("SELECT count(*) FROM trial") == acknowledged);
+    CHECK(reader.text("PRAGMA integrity_check") == "ok");
+    disk.space_again();
+    log.append(sample::answered(acknowledged));
+    log.finish(SessionStatus::completed, "");
+    CHECK(reader.integer("SELECT count(*) FROM trial") == acknowledged + 1);
+    CHECK(reader.integer("SELECT count(*) FROM event") == acknowledged + 1);
+  }
+}
+
+TEST_CASE("a file of 0 bytes is a lost database, not a new one", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  write_bytes(db, "");
+  for (const auto& action : std::vector<std::function<void()>>{
+           [&] { SessionLog::begin(db, sample::start(), sample::segment()); }, [&] { list_sessions(db); }}) {
+    const auto [fault, message] = sample::failure(action);
+    CHECK(fault == Fault::not_a_database);
+    CHECK(sample::contains(message, "0 bytes"));
+    CHECK(sample::contains(message, "restore"));
+  }
+  CHECK(std::filesystem::file_size(db) == 0);
+}
+
+TEST_CASE("a file that is no database, or another program's, is not touched", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  SECTION("text") { write_bytes(db, "participant,response\nP01,left\n" + std::string(5000, 'x')); }
+  SECTION("another program's database") {
+    Database(db, Database::Access::create).execute("CREATE TABLE trial (a); INSERT INTO trial VALUES (1)");
+  }
+  const auto before = sample::bytes_of(db);
+  const auto [fault, message] =
+      sample::failure([&] { SessionLog::begin(db, sample::start(), sample::segment()); });
+  CHECK(fault == Fault::not_a_database);
+  CHECK(sample::contains(message, db));
+  CHECK(sample::bytes_of(db) == before);
+}
+
+TEST_CASE("a damaged database is left as it is, by every command", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  sample::session(db, 200);
+  auto bytes = sample::bytes_of(db);
+  SECTION("pages of zeros") { bytes.replace(5 * 4096, 8 * 4096, 8 * 4096, '\0'); }
+  SECTION("cut short") { bytes.resize(bytes.size() / 2 + 100); }
+  SECTION("cut inside its first page") { bytes.resize(1000); }
+  write_bytes(db, bytes);
+  for (const auto& action : std::vector<std::function<void()>>{
+           [&] { SessionLog::begin(db, sample::start(), sample::segment()); }, [&] { list_sessions(db); },
+           [&] { export_data(db, folder / "out", {}); },
+           [&] {
+             backup(db, {folder / "backups", 3});
+           }}) {
+    const auto [fault, message] = sample::failure(action);
+    INFO(message);
+    CHECK((fault == Fault::corrupt || fault == Fault::not_a_database));
+    CHECK(sample::contains(message, db));
+  }
+  CHECK(sample::bytes_of(db) == bytes);
+  CHECK_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+TEST_CASE("a second station process is told who has the database, and the first goes on", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  auto log = SessionLog::begin(db, sample::start(), sample::segment());
+  log.begin_block(sample::block());
+  const int status = in_child([&] {
+    const auto [fault, message] =
+        sample::failure([&] { SessionLog::begin(db, sample::start("P02"), sample::segment()); });
+    const bool named = sample::contains(message, "pid " + std::to_string(::getppid()));
+    return fault == Fault::busy && named ? 0 : 1;
+  });
+  CHECK(status == 0);
+  std::filesystem::create_symlink(db, folder / "link.sqlite");
+  CHECK(sample::failure([&] {
+          SessionLog::begin(folder / "link.sqlite", sample::start("P02"), sample::segment());
+        }).first == Fault::busy);
+  log.append(sample::answered(0));
+  CHECK(list_sessions(db).size() == 1);  // readers are welcome meanwhile
+}
+
+TEST_CASE("the lock goes with its process, however that ends", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  CHECK(in_child([&] {
+          auto log = SessionLog::begin(db, sample::start(), sample::segment());
+          ::_exit(7);
+          return 0;
+        }) == 7);
+  CHECK(sample::session(db, 1).size() == 36);
+}
+
+TEST_CASE("a database that may not be written is refused before the session, and can still be exported",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "data/a.sqlite";
+  std::filesystem::create_directory(folder / "data");
+  std::filesystem::create_directory(folder / "out");
+  sample::session(db, 3);
+  std::filesystem::permissions(folder.path, std::filesystem::perms::all);
+  std::filesystem::permissions(folder / "out", std::filesystem::perms::all);
+  std::filesystem::permissions(db, static_cast<std::filesystem::perms>(0444));
+  std::filesystem::permissions(db + ".lock", static_cast<std::filesystem::perms>(0444));
+  std::filesystem::permissions(folder / "data", static_cast<std::filesystem::perms>(0555));
+  const auto before = sample::bytes_of(db);
+  const int status = in_child([&] {
+    if (::geteuid() == 0 && ::setuid(65534) != 0) return 50;  // root may write anything
+    const auto [fault, message] =
+        sample::failure([&] { SessionLog::begin(db, sample::start(), sample::segment()); });
+    if (fault != Fault::read_only || !sample::contains(message, "writable")) return 1;
+    if (list_sessions(db).size() != 1) return 2;
+    return export_data(db, folder / "out", {})[0].rows == 3 ? 0 : 3;
+  });
+  CHECK(status == 0);
+  CHECK(sample::bytes_of(db) == before);
+  std::filesystem::permissions(folder / "data", std::filesystem::perms::all);
+}
+
+TEST_CASE("a folder that is not there is named", "[store]") {
+  const auto [fault, message] = sample::failure(
+      [] { SessionLog::begin("/nonexistent/folder/a.sqlite", sample::start(), sample::segment()); });
+  CHECK(fault == Fault::missing);
+  CHECK(sample::contains(message, "/nonexistent/folder"));
+}

@@ -1,0 +1,97 @@
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <random>
+
+#include "station/store/read.hpp"
+#include "tests/store/sample.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::store;
+
+namespace {
+
+enum class Acknowledge { after_commit, before_commit };
+
+/// Goes on with the interrupted session of a database, or begins one, and appends trials for ever. Writes the
+/// index of each trial to the pipe when it is said to be durable.
+[[noreturn]] void write_for_ever(const std::string& db, int pipe, Acknowledge when) {
+  const auto interrupted = std::filesystem::exists(db) ? interrupted_session(db) : std::nullopt;
+  auto log = interrupted ? SessionLog::resume(db, interrupted->session.session_id, sample::segment("resume"))
+                         : SessionLog::begin(db, sample::start(), sample::segment());
+  log.begin_block(sample::block());
+  for (int i = log.session().trials;; ++i) {
+    log.presented(i, i);
+    if (when == Acknowledge::before_commit && ::write(pipe, &i, sizeof i) != sizeof i) ::_exit(3);
+    log.append(sample::answered(i));
+    if (when == Acknowledge::after_commit && ::write(pipe, &i, sizeof i) != sizeof i) ::_exit(3);
+  }
+}
+
+struct Toll {
+  int kills = 0, acknowledged = 0, lost = 0, damaged = 0, repeated = 0;
+};
+
+/// Kills a writer at a random moment; then looks at what is there.
+void kill_once(const std::string& db, Acknowledge when, std::mt19937& random, Toll& toll) {
+  int ends[2];
+  REQUIRE(::pipe(ends) == 0);
+  const auto child = ::fork();
+  if (child == 0) {
+    ::close(ends[0]);
+    try {
+      write_for_ever(db, ends[1], when);
+    } catch (...) {
+      ::_exit(2);
+    }
+  }
+  ::close(ends[1]);
+  ::usleep(std::uniform_int_distribution<useconds_t>(0, 12000)(random));
+  ::kill(child, SIGKILL);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  REQUIRE(WIFSIGNALED(status));  // it did not end by itself
+  int last = -1;
+  for (int index = 0; ::read(ends[0], &index, sizeof index) == sizeof index;) {
+    last = index;
+    ++toll.acknowledged;
+  }
+  ::close(ends[0]);
+  ++toll.kills;
+  if (!std::filesystem::exists(db)) {
+    toll.lost += last + 1;
+    return;
+  }
+  auto raw = sample::raw(db);
+  if (raw.text("PRAGMA integrity_check") != "ok") ++toll.damaged;
+  const auto trials = raw.integer("SELECT count(*) FROM trial");
+  toll.lost += trials < last + 1 ? last + 1 - static_cast<int>(trials) : 0;
+  toll.repeated += trials != raw.integer("SELECT coalesce(max(trial_index), -1) + 1 FROM trial") ? 1 : 0;
+}
+
+Toll kill_many(int kills, Acknowledge when) {
+  Toll toll;
+  std::mt19937 random(7);
+  for (int round = 0; toll.kills < kills; ++round) {
+    TemporaryFolder folder;  // begun afresh now and then: creation is killed too
+    for (int i = 0; i < 25 && toll.kills < kills; ++i) kill_once(folder / "a.sqlite", when, random, toll);
+  }
+  return toll;
+}
+
+}  // namespace
+
+TEST_CASE("of hundreds of writers killed at random moments none loses a trial that it acknowledged",
+          "[store]") {
+  const auto toll = kill_many(400, Acknowledge::after_commit);
+  CHECK(toll.kills == 400);
+  CHECK(toll.acknowledged > 400);
+  CHECK(toll.lost == 0);
+  CHECK(toll.damaged == 0);
+  CHECK(toll.repeated == 0);
+}
+
+TEST_CASE("a writer that acknowledges before it commits loses trials: the negative control", "[store]") {
+  CHECK(kill_many(150, Acknowledge::before_commit).lost > 0);
+}

@@ -1,0 +1,265 @@
+#include <nlohmann/json.hpp>
+
+#include "station/store/annotate.hpp"
+#include "station/store/backup.hpp"
+#include "station/store/export.hpp"
+#include "station/store/merge.hpp"
+#include "station/store/read.hpp"
+#include "station/store/withdraw.hpp"
+#include "tests/store/sample.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::store;
+
+namespace {
+
+SessionStart at_station(const std::string& participant, const std::string& station) {
+  auto start = sample::start(participant);
+  start.station_id = station;
+  return start;
+}
+
+std::string trials_csv(const std::string& db, const std::string& out) {
+  return sample::bytes_of(export_data(db, out, {})[0].path);
+}
+
+/// Every file of the folder whose name begins with the database's, as one text.
+std::string all_bytes(const std::string& db) {
+  std::string all;
+  for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(db).parent_path()))
+    if (entry.path().string().rfind(db, 0) == 0) all += sample::bytes_of(entry.path().string());
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("merge brings the sessions of another station, whole, and a second time changes nothing",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
+  sample::session(a, 5, at_station("P01", "a"));
+  const auto id = sample::session(b, 7, at_station("P01", "b"));
+  sample::session(b, 3, at_station("P02", "b"));
+  annotate(b, id, "lights went out at trial 3");
+  const auto report = merge(a, b);
+  REQUIRE(report.sessions.size() == 2);
+  CHECK(report.sessions[0].what == MergedSession::What::added);
+  CHECK(report.sessions[0].trials == 7);
+  CHECK(list_sessions(a).size() == 3);
+  ExportOptions options;
+  options.session_id = id;
+  CHECK(sample::bytes_of(export_data(a, folder / "from-a", options)[0].path) ==
+        sample::bytes_of(export_data(b, folder / "from-b", options)[0].path));
+  CHECK(read_session(a, id).session.annotations.size() == 1);
+  CHECK(sample::raw(a).text("PRAGMA integrity_check") == "ok");
+  const auto before = trials_csv(a, folder / "one");
+  const auto again = merge(a, b);
+  for (const auto& session : again.sessions) CHECK(session.what == MergedSession::What::unchanged);
+  CHECK(trials_csv(a, folder / "two") == before);
+  CHECK(report.sessions[0].sha256 == again.sessions[0].sha256);
+}
+
+TEST_CASE("merge carries a session on that went on at its own station", "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
+  const auto id = sample::session(b, 2, at_station("P01", "b"), SessionStatus::interrupted);
+  CHECK(merge(a, b).sessions[0].what == MergedSession::What::added);
+  {
+    auto log = SessionLog::resume(b, id, sample::segment("resume"));
+    log.begin_block(sample::block());
+    log.append(sample::answered(2));
+    log.finish(SessionStatus::completed, "");
+  }
+  const auto report = merge(a, b);
+  CHECK(report.sessions[0].what == MergedSession::What::extended);
+  CHECK(report.sessions[0].trials == 1);
+  CHECK(read_session(a, id).session.status == SessionStatus::completed);
+  CHECK(merge(b, a).sessions[0].what == MergedSession::What::unchanged);
+}
+
+TEST_CASE("merge refuses rows that contradict, says which, and merges nothing", "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
+  const auto id = sample::session(b, 4, at_station("P01", "b"));
+  merge(a, b);
+  sample::session(b, 2, at_station("P02", "b"));
+  const auto sessions_before = list_sessions(a).size();
+  std::string expected;
+  SECTION("a trial changed by hand") {
+    sample::raw(b).execute(
+        "DROP TRIGGER trial_is_never_changed; UPDATE trial SET response_time_s = 0.25"
+        " WHERE trial_index = 2 AND outcome = 'answered'");
+    expected = "table trial, session_id " + id + ", trial_index 2: response_time_s is";
+  }
+  SECTION("a session gone on with in both") {
+    for (const auto& db : {a, b}) {
+      sample::raw(db).execute("UPDATE session SET status = 'interrupted' WHERE participant = 'P01'");
+      auto log = SessionLog::resume(db, id, sample::segment("resume"));
+      log.begin_block(sample::block());
+      auto trial = sample::answered(4);
+      trial.onset_ns += db == a ? 1 : 2;
+      log.append(trial);
+    }
+    expected = "table trial, session_id " + id + ", trial_index 4: onset_ns is";
+  }
+  SECTION("two databases that bear the name of one station") {
+    std::filesystem::remove(a);
+    sample::session(a, 1, at_station("P09", "b"));
+    expected = "station b has given place 0 of protocol two-boundaries to P09 here and to P01 there";
+  }
+  const auto [fault, message] = sample::failure([&] { merge(a, b); });
+  CHECK(fault == Fault::conflict);
+  INFO(message);
+  CHECK(sample::contains(message, expected));
+  CHECK(list_sessions(a).size() == sessions_before);
+}
+
+TEST_CASE(
+    "merge takes a backup, refuses one that its checksum does not know, and never merges a file with itself",
+    "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
+  sample::session(b, 4, at_station("P01", "b"));
+  const auto made = backup(b, {folder / "backups", 3});
+  CHECK(merge(a, made.path).sessions.size() == 1);
+  std::ofstream(made.path, std::ios::app | std::ios::binary) << "x";
+  const auto [fault, message] = sample::failure([&] { merge(a, made.path); });
+  CHECK(fault == Fault::corrupt);
+  CHECK(sample::contains(message, "sha256"));
+  CHECK(sample::failure([&] { merge(a, a); }).first == Fault::refused);
+}
+
+TEST_CASE("a backup is made beside a running session, is checked, and older ones rotate out", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", dir = folder / "backups";
+  sample::session(db, 4);
+  auto log = SessionLog::begin(db, sample::start("P02"), sample::segment());
+  log.begin_block(sample::block());
+  std::vector<BackupReport> made;
+  for (int i = 0; i < 4; ++i) {
+    log.append(sample::answered(i));
+    made.push_back(backup(db, {dir, 2}));
+    CHECK(made.back().trials == 5 + i);
+    CHECK(made.back().sessions == 2);
+  }
+  const auto left = backups_in(dir, db);
+  REQUIRE(left.size() == 2);
+  CHECK(left[1] == made[3].path);
+  CHECK(made[3].removed == std::vector<std::string>{made[1].path});
+  CHECK_FALSE(std::filesystem::exists(made[0].path + ".sha256"));
+  CHECK(list_sessions(left[1]).size() == 2);
+  CHECK(sample::contains(sample::bytes_of(left[1] + ".sha256"), made[3].sha256));
+}
+
+TEST_CASE("a damaged database is set aside and the newest good backup takes its place", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", dir = folder / "backups";
+  sample::session(db, 4);
+  backup(db, {dir, 9});
+  sample::session(db, 3, sample::start("P02"));
+  const auto newest = backup(db, {dir, 9});
+  CHECK(sample::failure([&] { restore_backup(db, dir); }).first == Fault::refused);  // it is good
+  auto bytes = sample::bytes_of(db);
+  bytes.resize(6000);
+  std::ofstream(db, std::ios::binary | std::ios::trunc) << bytes;
+  bool newest_is_good = true;
+  SECTION("the newest is good") {}
+  SECTION("the newest is damaged too") {
+    newest_is_good = false;
+    std::filesystem::resize_file(newest.path, 5000);
+  }
+  const auto restored = restore_backup(db, dir);
+  CHECK(restored.trials == (newest_is_good ? 7 : 4));
+  CHECK(restored.rejected.size() == (newest_is_good ? 0 : 1));
+  CHECK(sample::bytes_of(restored.quarantined) == bytes);
+  CHECK(list_sessions(db).size() == (newest_is_good ? 2 : 1));
+  CHECK(sample::session(db, 1).size() == 36);
+}
+
+TEST_CASE("without a good backup nothing is moved", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  std::ofstream(db, std::ios::binary) << "";
+  CHECK(sample::failure([&] { restore_backup(db, folder / "none"); }).first == Fault::missing);
+  CHECK(std::filesystem::exists(db));
+}
+
+TEST_CASE("withdraw lists what it removes and leaves no trace in the file, its log or later backups",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  auto start = sample::start("XQ77ZK");
+  start.observer = "sim:secret=QWERTZ";
+  auto id = sample::session(db, 60, start);
+  annotate(db, id, "told us about JKLMNO");
+  sample::session(db, 5, sample::start("P02"));
+  CHECK(sample::contains(all_bytes(db), "XQ77ZK"));  // the search finds what is there
+  const auto old_backup = backup(db, {folder / "backups", 9});
+  const auto gone = withdraw(db, "XQ77ZK", folder / "backups");
+  REQUIRE(gone.sessions.size() == 1);
+  CHECK(gone.sessions[0].session_id == id);
+  CHECK(gone.trials == 60);
+  CHECK(gone.tones == 240);
+  CHECK(gone.events == 120);
+  CHECK(gone.annotations == 1);
+  CHECK(gone.removed_copies == std::vector<std::string>{old_backup.path});
+  const auto later = backup(db, {folder / "backups", 9});
+  for (const auto& trace : {"XQ77ZK", "QWERTZ", "JKLMNO"}) {
+    CHECK_FALSE(sample::contains(all_bytes(db), trace));
+    CHECK_FALSE(sample::contains(sample::bytes_of(later.path), trace));
+  }
+  CHECK(list_sessions(db).size() == 1);
+  CHECK(sample::raw(db).text("PRAGMA integrity_check") == "ok");
+  CHECK(withdraw(db, "XQ77ZK").sessions.empty());  // repeating it is harmless
+  CHECK(sample::failure([&] { withdraw(db, "P99"); }).first == Fault::missing);
+  CHECK(sample::failure([&] { sample::session(db, 1, start); }).first == Fault::refused);
+}
+
+TEST_CASE("a plain delete leaves traces: the negative control of the search", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  const auto id = sample::session(db, 60, sample::start("P01"));
+  annotate(db, id, "told us about JKLMNO");
+  sample::raw(db).execute("PRAGMA secure_delete = OFF; DELETE FROM annotation");
+  CHECK(sample::contains(all_bytes(db), "JKLMNO"));
+}
+
+TEST_CASE("what was withdrawn is not brought back by merge, nor are later sessions of that code", "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
+  sample::session(b, 4, at_station("P01", "b"));
+  merge(a, b);
+  withdraw(a, "P01");
+  sample::session(b, 4, at_station("P01", "b"));
+  sample::session(b, 2, at_station("P02", "b"));
+  const auto report = merge(a, b);
+  REQUIRE(report.sessions.size() == 3);
+  CHECK(report.sessions[0].what == MergedSession::What::withdrawn);
+  CHECK(report.sessions[1].what == MergedSession::What::withdrawn);
+  CHECK(report.sessions[2].what == MergedSession::What::added);
+  REQUIRE(list_sessions(a).size() == 1);
+  CHECK_FALSE(sample::contains(all_bytes(a), "P01"));
+  CHECK(merge(b, a).withdrawn_there.size() == 1);  // station b is told that it still holds one
+}
+
+TEST_CASE("who comes after a withdrawal takes the place that became free", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  for (const auto* code : {"P01", "P02", "P03"}) sample::session(db, 1, sample::start(code));
+  withdraw(db, "P02");
+  const auto id = sample::session(db, 1, sample::start("P04"));
+  CHECK(read_session(db, id).session.sequence_index == 1);
+}
+
+TEST_CASE("an interrupted session can be closed for good, a completed one cannot", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  const auto open = sample::session(db, 2, sample::start(), SessionStatus::interrupted);
+  const auto done = sample::session(db, 2);
+  REQUIRE(interrupted_session(db));
+  abandon(db, open, "too old");
+  CHECK_FALSE(interrupted_session(db));
+  CHECK(read_session(db, open).session.status_reason == "too old");
+  CHECK(sample::failure([&] { abandon(db, done, ""); }).first == Fault::refused);
+  CHECK_THROWS_AS(annotate(db, done, ""), std::invalid_argument);
+}
