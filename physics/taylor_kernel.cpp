@@ -1,6 +1,7 @@
 #include "physics/taylor_kernel.hpp"
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 
 // Function multiversioning where the compiler and C library offer it; the code is the same elsewhere.
@@ -18,37 +19,34 @@ constexpr std::size_t lanes = 16;
 
 }  // namespace
 
+// The last, incomplete group is padded: a scalar loop would wait for each of its own steps.
 TURNPOINT_CLONES
 void horner_real(const TaylorStep& step, const double* x, std::size_t n, double* re) {
   const double inverse = 1 / step.scale;
-  std::size_t i = 0;
-  for (; i + lanes <= n; i += lanes) {
+  for (std::size_t i = 0; i < n; i += lanes) {
+    const std::size_t count = n - i < lanes ? n - i : lanes;
     double tau[lanes], sum[lanes];
+    for (std::size_t j = 0; j < lanes; ++j) tau[j] = x[i + (j < count ? j : 0)];
     for (std::size_t j = 0; j < lanes; ++j) {
-      tau[j] = (step.x_start - x[i + j]) * inverse;
+      tau[j] = (step.x_start - tau[j]) * inverse;
       sum[j] = step.re[taylor_order];
     }
     for (int k = taylor_order - 1; k >= 0; --k) {
       for (std::size_t j = 0; j < lanes; ++j) sum[j] = sum[j] * tau[j] + step.re[k];
     }
-    for (std::size_t j = 0; j < lanes; ++j) re[i + j] = sum[j];
-  }
-  for (; i < n; ++i) {
-    const double tau = (step.x_start - x[i]) * inverse;
-    double sum = step.re[taylor_order];
-    for (int k = taylor_order - 1; k >= 0; --k) sum = sum * tau + step.re[k];
-    re[i] = sum;
+    for (std::size_t j = 0; j < count; ++j) re[i + j] = sum[j];
   }
 }
 
 TURNPOINT_CLONES
 void horner_complex(const TaylorStep& step, const double* x, std::size_t n, double* re, double* im) {
   const double inverse = 1 / step.scale;
-  std::size_t i = 0;
-  for (; i + lanes <= n; i += lanes) {
+  for (std::size_t i = 0; i < n; i += lanes) {
+    const std::size_t count = n - i < lanes ? n - i : lanes;
     double tau[lanes], a[lanes], b[lanes];
+    for (std::size_t j = 0; j < lanes; ++j) tau[j] = x[i + (j < count ? j : 0)];
     for (std::size_t j = 0; j < lanes; ++j) {
-      tau[j] = (step.x_start - x[i + j]) * inverse;
+      tau[j] = (step.x_start - tau[j]) * inverse;
       a[j] = step.re[taylor_order];
       b[j] = step.im[taylor_order];
     }
@@ -58,31 +56,45 @@ void horner_complex(const TaylorStep& step, const double* x, std::size_t n, doub
         b[j] = b[j] * tau[j] + step.im[k];
       }
     }
-    for (std::size_t j = 0; j < lanes; ++j) {
+    for (std::size_t j = 0; j < count; ++j) {
       re[i + j] = a[j];
       im[i + j] = b[j];
     }
   }
-  for (; i < n; ++i) {
-    const double tau = (step.x_start - x[i]) * inverse;
-    double a = step.re[taylor_order], b = step.im[taylor_order];
-    for (int k = taylor_order - 1; k >= 0; --k) {
-      a = a * tau + step.re[k];
-      b = b * tau + step.im[k];
-    }
-    re[i] = a;
-    im[i] = b;
+}
+
+TURNPOINT_CLONES
+void divide_by_root_width(double half_width, double slope, const double* x, std::size_t n, double* re,
+                          double* im) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double factor = 1 / std::sqrt(half_width - slope * x[i]);
+    re[i] *= factor;
+    im[i] *= factor;
   }
 }
 
 TURNPOINT_CLONES
-void half_log_square(const double* re, const double* im, std::size_t n, double offset, double* out) {
+void rotate(const double* re, const double* im, std::size_t n, double factor_re, double factor_im,
+            double* out) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double a = re[i] * factor_re - im[i] * factor_im;
+    const double b = re[i] * factor_im + im[i] * factor_re;
+    out[2 * i] = a;
+    out[2 * i + 1] = b;
+  }
+}
+
+TURNPOINT_CLONES
+bool half_log_square(const double* re, const double* im, std::size_t n, double offset, double* out) {
   // ln(m 2^e), m in [sqrt(1/2), sqrt 2): 2 atanh((m - 1)/(m + 1)) by its series, e exact through the exponent
   // bits.
   constexpr double ln2 = 0.693147180559945309417232121458;
   constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcdULL;
+  constexpr std::uint64_t small = 0x03d0000000000000ULL;  // 1e-289, near enough
+  std::uint64_t any_small = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const double square = re[i] * re[i] + im[i] * im[i];
+    any_small |= (std::bit_cast<std::uint64_t>(square) - small) >> 63;
     const std::uint64_t bits = std::bit_cast<std::uint64_t>(square) - sqrt_half;
     // The exponent as a double without an integer conversion, which few instruction sets vectorise.
     const std::uint64_t biased = (bits + 0x7ff0000000000000ULL) >> 52;  // e + 2047, a small positive number
@@ -103,6 +115,7 @@ void half_log_square(const double* re, const double* im, std::size_t n, double o
     series = series * z + 1.0 / 3;
     out[i] = s * (series * z + 1) + (0.5 * e * ln2 + offset);
   }
+  return any_small == 0;
 }
 
 }  // namespace turnpoint::physics

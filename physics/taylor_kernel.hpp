@@ -19,11 +19,20 @@ struct TaylorStep {
   double im[taylor_order + 1];
 };
 
-// How a displacement follows from g: v = g W^-1/2 (or g), W = w0 + tau w1 + ... is passed per point.
+// Values of the polynomial at n points.
 void horner_real(const TaylorStep& step, const double* x, std::size_t n, double* re);
 void horner_complex(const TaylorStep& step, const double* x, std::size_t n, double* re, double* im);
 
-// 0.5 ln(re^2 + im^2) + offset, absolute error below 1e-15 of 1 + |ln|; arguments of normal size.
-void half_log_square(const double* re, const double* im, std::size_t n, double offset, double* out);
+// Multiplies by (half_width - slope x)^-1/2.
+void divide_by_root_width(double half_width, double slope, const double* x, std::size_t n, double* re,
+                          double* im);
+
+// out[2 i], out[2 i + 1] = (re + i im)(factor_re + i factor_im).
+void rotate(const double* re, const double* im, std::size_t n, double factor_re, double factor_im,
+            double* out);
+
+// 0.5 ln(re^2 + im^2) + offset, absolute error below 1e-15 of 1 + |ln|; returns whether all squares were
+// above 1e-289, as that takes.
+bool half_log_square(const double* re, const double* im, std::size_t n, double offset, double* out);
 
 }  // namespace turnpoint::physics

@@ -51,6 +51,7 @@ struct TaylorMarch::State {
   Local local(double x, double& ln_scale) const;
   double rise(const Local& g, double x) const;
   std::optional<double> peak_in(const TaylorStep& step) const;
+  void run(const TaylorStep& step, std::span<const double> x, double* re, double* im) const;
 };
 
 void TaylorMarch::State::march(TaylorState state) {
@@ -227,61 +228,70 @@ namespace {
 constexpr std::size_t batch = 256;
 
 struct Scratch {
-  std::array<double, batch> re, im, width;
+  std::array<double, batch> re, im;
 };
 
+// Points from `first` on that the step covers, up to a batch.
+std::size_t run_length(std::span<const double> x, std::size_t first, const TaylorStep& step, double end) {
+  const double inner = step.x_start - step.length;
+  const double outer = std::min(step.x_start, std::nextafter(end, 0));
+  const std::size_t most = std::min(x.size(), first + batch);
+  std::size_t i = first + 1;
+  while (i < most && x[i] > inner && x[i] <= outer) ++i;
+  return i - first;
+}
+
 }  // namespace
+
+// v = g W^-power, for a run of points inside one step.
+void TaylorMarch::State::run(const TaylorStep& step, std::span<const double> x, double* re,
+                             double* im) const {
+  if (equation.a.imag() != 0) {
+    horner_complex(step, x.data(), x.size(), re, im);
+  } else {
+    horner_real(step, x.data(), x.size(), re);
+  }
+  if (equation.w_power == 0) return;
+  if (const auto* linear = std::get_if<LinearTaper>(&taper.form())) {
+    divide_by_root_width(linear->half_width_m, linear->slope, x.data(), x.size(), re, im);
+    return;
+  }
+  for (std::size_t j = 0; j < x.size(); ++j) {
+    const double factor = std::pow(taper.half_width_m(x[j]), -equation.w_power);
+    re[j] *= factor;
+    im[j] *= factor;
+  }
+}
 
 void TaylorMarch::evaluate(std::span<const double> x, std::complex<double> phase_reference,
                            double ln_reference, std::span<std::complex<double>> v,
                            std::span<double> ln_amplitude) const {
   const State& s = *state_;
-  const bool lossy = s.equation.a.imag() != 0;
   Scratch scratch;
   scratch.im.fill(0);
   const std::complex<double> turn = 1.0 / phase_reference;
-  const auto* linear = std::get_if<LinearTaper>(&s.taper.form());
+  const double end = s.taper.length_m();
   const TaylorStep* step = nullptr;
   for (std::size_t i = 0; i < x.size();) {
-    const double x0 = x[i];
-    if (step == nullptr || !(x0 > step->x_start - step->length && x0 <= step->x_start)) step = s.step_at(x0);
-    if (step == nullptr || x0 >= s.taper.length_m()) {  // the apex series, or an exact zero at the end
-      const Scaled one = value(x0);
+    if (step == nullptr || !(x[i] > step->x_start - step->length && x[i] <= step->x_start))
+      step = s.step_at(x[i]);
+    if (step == nullptr || x[i] >= end) {  // the apex series, or an exact zero at the end
+      const Scaled one = value(x[i]);
       ln_amplitude[i] = one.mantissa == 0.0 ? ln_zero : one.ln_magnitude() - ln_reference;
-      v[i] = one.mantissa * turn * std::exp(one.ln_scale - ln_reference);
+      v[i] = one.mantissa * turn * std::exp(std::min(one.ln_scale - ln_reference, 700.0));
       ++i;
       continue;
     }
-    const double inner = step->x_start - step->length;
-    std::size_t n = 1;
-    while (n < batch && i + n < x.size() && x[i + n] > inner && x[i + n] <= step->x_start &&
-           x[i + n] < s.taper.length_m()) {
-      ++n;
-    }
-    if (lossy) {
-      horner_complex(*step, &x[i], n, scratch.re.data(), scratch.im.data());
-    } else {
-      horner_real(*step, &x[i], n, scratch.re.data());
-    }
-    if (s.equation.w_power != 0) {
-      if (linear != nullptr) {
-        divide_by_root_width(*linear, &x[i], n, scratch.re.data(), scratch.im.data());
-      } else {
-        for (std::size_t j = 0; j < n; ++j) {
-          const double factor = std::pow(s.taper.half_width_m(x[i + j]), -s.equation.w_power);
-          scratch.re[j] *= factor;
-          scratch.im[j] *= factor;
-        }
-      }
-    }
+    const std::size_t n = run_length(x, i, *step, end);
+    double* re = scratch.re.data();
+    double* im = scratch.im.data();
+    s.run(*step, x.subspan(i, n), re, im);
     const double ln_step = step->ln_scale - ln_reference;
-    half_log_square(scratch.re.data(), scratch.im.data(), n, ln_step, &ln_amplitude[i]);
     const std::complex<double> factor = turn * std::exp(std::min(ln_step, 700.0));
-    for (std::size_t j = 0; j < n; ++j) {
-      const double re = scratch.re[j], im = scratch.im[j];
-      v[i + j] = {re * factor.real() - im * factor.imag(), re * factor.imag() + im * factor.real()};
-      if (re * re + im * im < 1e-290) {  // at, or within rounding of, a zero
-        const double magnitude = std::hypot(re, im);
+    rotate(re, im, n, factor.real(), factor.imag(), reinterpret_cast<double*>(&v[i]));
+    if (!half_log_square(re, im, n, ln_step, &ln_amplitude[i])) {
+      for (std::size_t j = 0; j < n; ++j) {  // at, or within rounding of, a zero
+        const double magnitude = std::hypot(re[j], im[j]);
         ln_amplitude[i + j] = magnitude > 0 ? std::log(magnitude) + ln_step : ln_zero;
       }
     }

@@ -21,19 +21,20 @@ constexpr auto inverse_products = [] {
 // Length over which the series is exact to rounding, judged by its last three terms (one or two of which may
 // vanish by symmetry).
 double exact_length(const TaylorStep& step) {
-  const double size = std::max(std::hypot(step.re[0], step.im[0]), std::hypot(step.re[1], step.im[1]));
-  double ratio = 1e300;
+  const double size =
+      std::max({std::abs(step.re[0]), std::abs(step.im[0]), std::abs(step.re[1]), std::abs(step.im[1])});
+  double ln_ratio = std::numbers::ln2 * 2;  // no step is longer than four trial scales
   for (int n = taylor_order - 2; n <= taylor_order; ++n) {
     const double term = std::max(std::abs(step.re[n]), std::abs(step.im[n]));
-    if (term > 0) ratio = std::min(ratio, std::exp((std::log(size / term) + ln_truncation) / n));
+    if (term > 0) ln_ratio = std::min(ln_ratio, (std::log(size / term) + ln_truncation) / n);
   }
-  return step.scale * std::min(ratio, 4.0);
+  return step.scale * std::exp(ln_ratio);
 }
 
 }  // namespace
 
 void TaylorState::normalise(double scale) {
-  const double size = std::max(std::abs(g), std::abs(dg) * scale);
+  const double size = std::sqrt(std::max(std::norm(g), std::norm(dg) * scale * scale));
   const int power = std::ilogb(size);
   const double factor = std::scalbn(1.0, -power);
   g *= factor;
@@ -57,38 +58,37 @@ std::complex<double> SeriesMaker::potential(double x) const {
 double SeriesMaker::trial_scale(double x) const {
   const double meet = std::abs(taper_.half_width_m(x) / taper_.slope(x));
   double scale = 0.35 * std::min(meet, 1e6 * taper_.length_m());
-  const double here = std::abs(potential(x));
+  const double here = std::sqrt(std::norm(potential(x)));
   const double try_in = std::max(0.0, x - std::min(scale, 3 / std::sqrt(here + 1e-300)));
-  const double k = std::sqrt(std::max(here, std::abs(potential(try_in))) + 1e-300);
+  const double k = std::sqrt(std::max(here, std::sqrt(std::norm(potential(try_in)))) + 1e-300);
   return std::min({scale, 3 / k, 4 * taper_.length_m()});
 }
 
 // s^2 g'' + (A s^2 - mu'^2) g = 0 with s = s0 (1 + e tau): a five-term recurrence.
+template <bool lossy>
 void SeriesMaker::linear(double x, TaylorStep& step) const {
   const double slope = std::get<LinearTaper>(taper_.form()).slope;
   const double s0 = taper_.half_width_m(x) / slope;
   const double e = step.scale / s0;
   const std::complex<double> a = equation_.a * (step.scale * step.scale);
-  const double ar = a.real(), ai = a.imag();
+  const double ar = a.real();
+  [[maybe_unused]] const double ai = a.imag();
   const double strength = (equation_.b / (slope * slope) + equation_.c) * e * e;
   double* re = step.re;
-  double* im = step.im;
+  [[maybe_unused]] double* im = step.im;
   for (int n = 0; n + 2 <= taylor_order; ++n) {
     const double same = e * e * n * (n - 1.0) - strength + ar;
     const double next = 2 * e * (n + 1.0) * n;
-    double sum_re = next * re[n + 1] + same * re[n] - ai * im[n];
-    double sum_im = next * im[n + 1] + same * im[n] + ai * re[n];
-    if (n >= 1) {
-      sum_re += 2 * e * (ar * re[n - 1] - ai * im[n - 1]);
-      sum_im += 2 * e * (ar * im[n - 1] + ai * re[n - 1]);
-    }
-    if (n >= 2) {
-      sum_re += e * e * (ar * re[n - 2] - ai * im[n - 2]);
-      sum_im += e * e * (ar * im[n - 2] + ai * re[n - 2]);
-    }
     const double factor = -inverse_products[static_cast<std::size_t>(n)];
+    // A times the combination that s^2 = s0^2 (1 + 2 e tau + e^2 tau^2) makes; its n-th term is in `same`.
+    const double before_re = n >= 2 ? 2 * e * re[n - 1] + e * e * re[n - 2] : n == 1 ? 2 * e * re[0] : 0;
+    double sum_re = next * re[n + 1] + same * re[n] + ar * before_re;
+    if constexpr (lossy) {
+      const double before_im = n >= 2 ? 2 * e * im[n - 1] + e * e * im[n - 2] : n == 1 ? 2 * e * im[0] : 0;
+      sum_re -= ai * (im[n] + before_im);
+      im[n + 2] = factor * (next * im[n + 1] + same * im[n] + ai * (re[n] + before_re) + ar * before_im);
+    }
     re[n + 2] = factor * sum_re;
-    im[n + 2] = factor * sum_im;
   }
 }
 
@@ -179,7 +179,7 @@ void SeriesMaker::fill(const TaylorState& from, TaylorStep& step) const {
   step.im[1] = dg.imag();
   const auto* taper = std::get_if<LinearTaper>(&taper_.form());
   if (taper != nullptr && taper->slope > 0) {
-    linear(from.x, step);
+    equation_.a.imag() != 0 ? linear<true>(from.x, step) : linear<false>(from.x, step);
   } else {
     convolved(from.x, knot, step);
   }
@@ -193,7 +193,10 @@ ApexSeries::ApexSeries(const Taper& taper, const MarchEquation& equation)
       slope_(std::get<LinearTaper>(taper.form()).slope),
       a_(equation.a) {
   mu_ = std::sqrt(equation.b / (slope_ * slope_) + equation.c + 0.25);
-  const double reach = std::min(2 * std::sqrt(mu_ + 1), mu_) / std::sqrt(std::abs(equation.a));
+  // Steps are cheaper per point than this series: leave it the tip only, unless a steep order makes steps
+  // many.
+  const double share = 1 / (1 + 9 * std::min(1.0, 20 / mu_));
+  const double reach = share * std::min(2 * std::sqrt(mu_ + 1), mu_) / std::sqrt(std::abs(equation.a));
   inner_m_ = std::max(0.0, half_width_m_ / slope_ - reach);
 }
 
@@ -212,14 +215,6 @@ TaylorState ApexSeries::at(double x) const {
   // Relative to the inner end, so that the logarithm stays as small as it can be.
   const double s1 = half_width_m_ / slope_ - inner_m_;
   return {x, sum, -(power * sum + derivative) / s, power * std::log(s / s1), 0};
-}
-
-void divide_by_root_width(const LinearTaper& taper, const double* x, std::size_t n, double* re, double* im) {
-  for (std::size_t i = 0; i < n; ++i) {
-    const double factor = 1 / std::sqrt(taper.half_width_m - taper.slope * x[i]);
-    re[i] *= factor;
-    im[i] *= factor;
-  }
 }
 
 }  // namespace turnpoint::physics

@@ -33,6 +33,7 @@ class SeriesMaker {
  private:
   double trial_scale(double x) const;
   std::complex<double> potential(double x) const;
+  template <bool lossy>
   void linear(double x, TaylorStep& step) const;
   void convolved(double x, double knot, TaylorStep& step) const;
   int potential_series(double x, double knot, double scale, std::array<double, taylor_order>& q) const;
@@ -56,8 +57,5 @@ class ApexSeries {
   double inner_m_;
   std::complex<double> a_;
 };
-
-// Multiplies by W^-1/2 of a linear taper.
-void divide_by_root_width(const LinearTaper& taper, const double* x, std::size_t n, double* re, double* im);
 
 }  // namespace turnpoint::physics

@@ -1,0 +1,118 @@
+#include "physics/mode_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "physics/dispersion.hpp"
+#include "physics/taper.hpp"
+#include "physics/taylor_march.hpp"
+
+namespace turnpoint::physics {
+namespace {
+
+using std::numbers::pi;
+
+// Measured constants; see the header.
+constexpr double coupling = 0.15;           // higher-mode amplitude per slope times width ratio
+constexpr double piston_coupling = 0.55;    // of a stiff bar, at any slope
+constexpr double phase_uncertainty = 0.12;  // of a higher mode's standing wave at the drive edge
+constexpr double curvature_shift = 0.2;     // edge position per W'' W, in cut-off half-widths
+constexpr double slope_shift = 0.1;         // per W'^3
+constexpr double end_shift = 0.15;          // of a clamped end just beyond the turning point, per W'^2
+constexpr double shallow = 6;               // edge shift per share of higher modes, in cut-off half-widths
+constexpr double largest = 2;               // nothing is known beyond this
+
+// Equation of the n-th symmetric transverse mode, n = 1, 2, ...; on a wedge its order is right to the second
+// power of the slope.
+MarchEquation equation(const Surface& surface, double f, int n) {
+  const double k = wavenumber_per_m(surface, f);
+  const std::complex<double> lossy(1, -0.5 / surface.quality_factor);
+  const double odd = 2 * n - 1;
+  MarchEquation e;
+  e.a = k * k * lossy * lossy;
+  e.b = odd * odd * pi * pi / 4;
+  e.c = odd * odd * pi * pi / 6 - 0.25;
+  e.w_power = 0.5;
+  return e;
+}
+
+// Largest amplitude of a higher mode on the surface over its amplitude at the drive edge.
+double amplification(const Surface& surface, const Taper& taper, double f, int n) {
+  const double k = wavenumber_per_m(surface, f);
+  const auto turning = taper.position_continued_m((2 * n - 1) * cut_off_half_width_m(surface, f));
+  const double reach = std::clamp(turning.value_or(taper.length_m()), 0.0, taper.length_m());
+  const double loss = std::tanh(0.5 * k * reach / surface.quality_factor);
+  const TaylorMarch march(taper, equation(surface, f, n));
+  const double ln_drive = march.value(0).ln_magnitude();
+  double most = ln_drive;
+  for (int i = 1; i <= 200; ++i) most = std::max(most, march.value(reach * i / 200).ln_magnitude());
+  // Near its resonance the standing wave at the drive edge is known to a phase only.
+  const double standing = std::exp(ln_drive - most);
+  return 1 / std::max({standing - phase_uncertainty, loss, 1e-3});
+}
+
+double curvature_times_width(const Taper& taper, double x) {
+  const double w = taper.half_width_m(x);
+  const double step = 0.05 * w;
+  const double low = std::max(0.0, x - step), high = std::min(taper.length_m(), x + step);
+  return std::abs(taper.slope(high) - taper.slope(low)) / (high - low) * w;
+}
+
+}  // namespace
+
+double higher_mode_decay(const Surface& surface, double f, double x) {
+  const Taper taper(surface);
+  const double k = wavenumber_per_m(surface, f);
+  double ln = 0;
+  constexpr int panels = 24;
+  for (int i = 0; i < panels; ++i) {
+    const double w = taper.half_width_m(x * (i + 0.5) / panels);
+    const double across = 3 * pi / (2 * w);
+    ln += x / panels * std::sqrt(std::max(0.0, across * across - k * k));
+  }
+  return std::exp(-ln);
+}
+
+ModeBound mode_bound(const Surface& surface, double f, double conditioning) {
+  ModeBound bound;
+  const Dispersion dispersion(surface);
+  const Taper taper(surface);
+  const double cut = dispersion.cut_off_half_width_m(f);
+  const double ratio = taper.half_width_m(0) / cut;
+  const double slope0 = std::abs(taper.slope(0));
+  const double x0 = taper.position_m(cut).value_or(taper.length_m());
+  const double steepest =
+      std::max(std::abs(taper.slope(x0)), std::abs(taper.slope(std::max(0.0, x0 - 2 * cut))));
+  double bend = 0;
+  for (int i = -4; i <= 2; ++i) {
+    bend =
+        std::max(bend, curvature_times_width(taper, std::clamp(x0 + 0.5 * i * cut, 0.0, taper.length_m())));
+  }
+  const bool piston = surface.drive == DriveShape::piston;
+  const double coupled =
+      coupling * std::max(slope0, steepest) * ratio + coupling * bend + (piston ? piston_coupling : 0);
+  double modes = coupled;
+  const bool membrane = !dispersion.clamped_bending();
+  for (int n = 2; membrane && 2 * n - 1 < ratio; ++n) {
+    modes = std::max(modes, coupled / (n - 1) * amplification(surface, taper, f, n));
+  }
+  bound.higher_modes = std::min(largest, modes);
+  bound.shape = std::min(largest, modes + 0.3 * bend + slope_shift * steepest * steepest);
+  const double phase = coupled + bend;  // of the first mode at the drive edge
+  bound.drive = std::min(1e6, bound.shape + 2 * (phase + modes) * conditioning);
+  // A share of the wave at the drive edge may add to the first mode or cancel it.
+  bound.level_dB = -20 * std::log10(std::max(1e-6, 1 - (phase + modes) * conditioning));
+  // The outermost maximum lies about one Airy length before the turning point; where that is close to the
+  // drive edge it is shallow, and a small share of the higher modes moves it far.
+  const double airy_length = cut * std::cbrt(2 / (pi * pi * std::max(steepest, 1e-6)));
+  const double near = std::max(0.0, x0 - 1.1 * airy_length);
+  const double polluted = shallow * bound.higher_modes * higher_mode_decay(surface, f, near);
+  // A straight clamped end close beyond the turning point cuts the curved wave fronts.
+  const double end = taper.half_width_m(taper.length_m()) > 0.5 * cut ? end_shift * steepest * steepest : 0;
+  bound.position_m =
+      cut * (curvature_shift * bend + slope_shift * std::pow(steepest, 3) + end + std::min(1.0, polluted));
+  return bound;
+}
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,24 @@
+#pragma once
+// How far the one-mode field can be from the two-dimensional one, before the latter is solved.
+#include "physics/surface.hpp"
+
+namespace turnpoint::physics {
+
+// All for `mode` (or the exact first mode) against `modes`. Scaling from the wave front's curvature across
+// the straight drive edge, constants measured on random surfaces (tests/physics/planner_test.cpp).
+struct ModeBound {
+  double shape = 0;         // of |v| with the last maximum at one, relative to the largest value
+  double drive = 0;         // of |v| with v(0) at one, relative to the largest value
+  double level_dB = 0;      // of the last maximum over the drive edge
+  double position_m = 0;    // of an edge
+  double higher_modes = 0;  // share of `shape` that the drive edge's higher modes make
+};
+
+// `conditioning` is that of the first mode's v(0) (CentreLine::drive_conditioning).
+ModeBound mode_bound(const Surface& surface, double frequency_Hz, double conditioning);
+
+// The same for the displacement of the higher modes at a position, relative to the drive edge's: they fall
+// beyond their own turning points.
+double higher_mode_decay(const Surface& surface, double frequency_Hz, double x_m);
+
+}  // namespace turnpoint::physics
