@@ -40,6 +40,7 @@ class SimulatedAmplifier final : public Amplifier {
   AmplifierState state() const noexcept override { return state_; }
   std::string fault() const override { return fault_; }
   std::int64_t fault_time_ns() const noexcept override { return fault_time_ns_; }
+  std::int64_t reaction_ns() const noexcept override { return -1; }
 
  private:
   AmplifierState state_ = AmplifierState::disarmed;

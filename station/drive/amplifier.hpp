@@ -40,6 +40,8 @@ class Amplifier {
   /// What latched the fault, "" otherwise; and when (CLOCK_MONOTONIC, ns).
   virtual std::string fault() const = 0;
   virtual std::int64_t fault_time_ns() const noexcept = 0;
+  /// From the kernel's stamp of the last fault or stop edge until the line was low; -1 before there was one.
+  virtual std::int64_t reaction_ns() const noexcept = 0;
 };
 
 /// An amplifier without hardware: the same states, no lines. Product code for `sim:`.

@@ -1,0 +1,195 @@
+#include "station/panel/amplifier.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include "station/drive/monotonic.hpp"
+#include "station/drive/rights.hpp"
+#include "station/panel/guard.hpp"
+#include "station/panel/guarded_amplifier.hpp"
+#include "station/panel/uri.hpp"
+
+namespace turnpoint::panel {
+namespace {
+
+constexpr int guard_priority = 75;
+
+class GuardedAmplifier final : public drive::Amplifier {
+ public:
+  GuardedAmplifier(std::unique_ptr<Lines> lines, const GuardLines& roles)
+      : lines_(std::move(lines)), roles_(roles) {
+    drive_low();
+    take_levels();
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  }
+
+  ~GuardedAmplifier() override {
+    thread_.request_stop();
+    thread_.join();
+    drive_low();
+  }
+
+  void arm() override { carry_out("armed", &Guard::arm); }
+  void enable() override { carry_out("enabled", &Guard::enable); }
+  void clear() override {
+    const std::lock_guard lock(mutex_);
+    if (const std::string why = guard_.clear(); !why.empty())
+      throw std::runtime_error("amplifier: cannot be cleared: " + why);
+  }
+  void disarm() noexcept override {
+    const std::lock_guard lock(mutex_);
+    guard_.disarm();
+    drive_low();
+  }
+  void disable() noexcept override {
+    const std::lock_guard lock(mutex_);
+    guard_.disable();
+    drive_low();
+  }
+  void trip(std::string_view reason) noexcept override {
+    drive_low();
+    const std::lock_guard lock(mutex_);
+    guard_.trip(drive::monotonic_ns(), reason);
+    drive_low();
+  }
+  void audio_alive() noexcept override { audio_ns_.store(drive::monotonic_ns()); }
+  void session_alive() noexcept override { session_ns_.store(drive::monotonic_ns()); }
+
+  drive::AmplifierState state() const noexcept override {
+    const std::lock_guard lock(mutex_);
+    return guard_.state();
+  }
+  std::string fault() const override {
+    const std::lock_guard lock(mutex_);
+    return guard_.fault();
+  }
+  std::int64_t fault_time_ns() const noexcept override {
+    const std::lock_guard lock(mutex_);
+    return guard_.fault_time_ns();
+  }
+  std::int64_t reaction_ns() const noexcept override { return reaction_ns_.load(); }
+
+ private:
+  void carry_out(const char* what, std::string (Guard::*step)(std::int64_t)) {
+    const std::lock_guard lock(mutex_);
+    const std::int64_t now = drive::monotonic_ns();
+    take_signs();
+    if (const std::string why = (guard_.*step)(now); !why.empty())
+      throw std::runtime_error(std::string("amplifier: cannot be ") + what + ": " + why);
+    lines_->drive(roles_.enable, guard_.outputs().enable);
+  }
+
+  void take_signs() noexcept {
+    if (const auto at = audio_ns_.load(); at >= 0) guard_.audio_alive(at);
+    if (const auto at = session_ns_.load(); at >= 0) guard_.session_alive(at);
+  }
+
+  // A line that cannot be driven belongs to a chip that is gone; the thread finds that out by itself.
+  void drive_low() noexcept {
+    try {
+      lines_->drive(roles_.enable, 0);
+    } catch (const std::exception&) {
+    }
+  }
+
+  bool fault_at(bool level) const noexcept { return level != roles_.fault_active_low; }
+  bool stop_at(bool level) const noexcept { return level != roles_.stop_active_low; }
+
+  // What was pressed or faulty before this program came.
+  void take_levels() {
+    const std::int64_t now = drive::monotonic_ns();
+    if (roles_.fault >= 0) guard_.fault_line(now, fault_at(lines_->level(roles_.fault)));
+    if (roles_.stop >= 0) guard_.stop_line(now, stop_at(lines_->level(roles_.stop)));
+  }
+
+  // The line goes low first; only then are locks taken and reasons kept.
+  void edge(const Edge& edge) {
+    const bool fault = edge.line == roles_.fault;
+    const bool active = fault ? fault_at(edge.rising) : stop_at(edge.rising);
+    if (active) {
+      lines_->drive(roles_.enable, 0);
+      reaction_ns_.store(drive::monotonic_ns() - edge.time_ns);
+    }
+    const std::lock_guard lock(mutex_);
+    fault ? guard_.fault_line(edge.time_ns, active) : guard_.stop_line(edge.time_ns, active);
+    lines_->drive(roles_.enable, guard_.outputs().enable);
+  }
+
+  void beat() {
+    const std::lock_guard lock(mutex_);
+    take_signs();
+    guard_.tick(drive::monotonic_ns());
+    lines_->drive(roles_.enable, guard_.outputs().enable);
+    if (roles_.heartbeat >= 0) lines_->drive(roles_.heartbeat, guard_.outputs().heartbeat);
+  }
+
+  void run(const std::stop_token& stop) noexcept {
+    static_cast<void>(drive::become_realtime(guard_priority));
+    std::int64_t next = drive::monotonic_ns();
+    while (!stop.stop_requested()) {
+      try {
+        const std::int64_t now = drive::monotonic_ns();
+        const auto seen = lines_->wait(std::max<std::int64_t>(0, next - now));
+        if (seen) edge(*seen);
+        if (drive::monotonic_ns() >= next) {
+          beat();
+          const std::lock_guard lock(mutex_);
+          next = guard_.next_tick_ns();
+        }
+      } catch (const std::exception& error) {
+        const std::lock_guard lock(mutex_);
+        guard_.trip(drive::monotonic_ns(), error.what());
+        return;  // without its lines the guard cannot guard; the external heartbeat monitor acts
+      }
+    }
+  }
+
+  std::unique_ptr<Lines> lines_;
+  GuardLines roles_;
+  mutable std::mutex mutex_;
+  Guard guard_;
+  std::atomic<std::int64_t> audio_ns_{-1}, session_ns_{-1}, reaction_ns_{-1};
+  std::jthread thread_;
+};
+
+bool is_low(const std::string& value, const Uri& uri) {
+  if (value != "low" && value != "high")
+    throw std::invalid_argument("'" + uri.text + "': '" + value + "'; allowed low, high");
+  return value == "low";
+}
+
+}  // namespace
+
+std::unique_ptr<drive::Amplifier> guard_amplifier(std::unique_ptr<Lines> lines, const GuardLines& roles) {
+  return std::make_unique<GuardedAmplifier>(std::move(lines), roles);
+}
+
+std::unique_ptr<drive::Amplifier> open_amplifier(const std::string& text) {
+  Uri uri = parse_uri(text);
+  if (uri.scheme == "sim" && uri.name.empty() && uri.values.empty()) return drive::simulated_amplifier();
+  if (uri.scheme != "gpio" || !uri.name.empty())
+    throw std::invalid_argument("amplifier '" + text +
+                                "'; allowed sim: or gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE");
+  GuardLines roles;
+  std::vector<LineRequest> requests;
+  const auto want = [&](const char* key, const char* consumer, LineUse use) {
+    const std::string line = uri.take(key, "");
+    if (line.empty()) return -1;
+    requests.push_back({line, consumer, use});
+    return static_cast<int>(requests.size()) - 1;
+  };
+  roles.enable = want("enable", "turnpoint-amp-enable", LineUse::output_low);
+  roles.heartbeat = want("heartbeat", "turnpoint-amp-heartbeat", LineUse::output_low);
+  roles.fault = want("fault", "turnpoint-amp-fault", LineUse::input);
+  roles.stop = want("stop", "turnpoint-amp-stop", LineUse::input);
+  roles.fault_active_low = is_low(uri.take("fault_active", "high"), uri);
+  roles.stop_active_low = is_low(uri.take("stop_active", "high"), uri);
+  uri.check_empty("enable, heartbeat, fault, stop, fault_active, stop_active");
+  if (roles.enable < 0) throw std::invalid_argument("amplifier '" + text + "' has no enable line");
+  return guard_amplifier(open_gpio_lines(requests), roles);
+}
+
+}  // namespace turnpoint::panel

@@ -1,0 +1,37 @@
+#include "station/panel/gpio_common.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+
+namespace turnpoint::panel {
+
+std::vector<std::string> chip_paths() {
+  std::vector<std::string> paths;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator("/dev", ignored))
+    if (entry.path().filename().string().starts_with("gpiochip")) paths.push_back(entry.path().string());
+  std::sort(paths.begin(), paths.end(), [](const std::string& a, const std::string& b) {
+    return a.size() != b.size() ? a.size() < b.size() : a < b;
+  });
+  return paths;
+}
+
+std::optional<std::size_t> wait_readable(std::vector<pollfd>& descriptors, std::int64_t timeout_ns) {
+  const timespec timeout{timeout_ns / 1'000'000'000, timeout_ns % 1'000'000'000};
+  const int ready = ::ppoll(descriptors.data(), descriptors.size(), &timeout, nullptr);
+  if (ready < 0 && errno == EINTR) return std::nullopt;
+  if (ready < 0) throw std::system_error(errno, std::generic_category(), "gpio lines: poll");
+  for (std::size_t k = 0; ready > 0 && k < descriptors.size(); ++k) {
+    if (descriptors[k].revents & (POLLHUP | POLLERR | POLLNVAL))
+      throw std::system_error(ENODEV, std::generic_category(), "gpio lines: the chip is gone");
+    if (descriptors[k].revents & POLLIN) return k;
+  }
+  return std::nullopt;
+}
+
+void throw_line_error(int error, const std::string& name, const std::string& what) {
+  throw LineError(error, std::generic_category(), "gpio line " + name + ": " + what);
+}
+
+}  // namespace turnpoint::panel

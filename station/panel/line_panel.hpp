@@ -1,0 +1,25 @@
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "station/panel/buttons.hpp"
+#include "station/panel/edge_filter.hpp"
+#include "station/panel/lines.hpp"
+
+namespace turnpoint::panel {
+
+/// Which lines are watched: buttons first, in order, then perhaps the contact.
+struct LinePanel {
+  std::vector<LineRequest> requests;
+  int lines = 0;
+  int contact = -1;                               ///< index of the contact line
+  bool buttons_low = false, contact_low = false;  ///< active level
+  std::int64_t refractory_ns = 50'000'000;
+};
+
+/// A panel on given lines, kernel or simulated.
+std::unique_ptr<Panel> watch_lines(std::unique_ptr<Lines> lines, const LinePanel& plan,
+                                   std::vector<std::string> names, PanelHandlers handlers);
+
+}  // namespace turnpoint::panel

@@ -1,0 +1,39 @@
+#pragma once
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+
+#include "station/panel/lines.hpp"
+
+namespace turnpoint::panel {
+
+/// Lines without hardware, for development and tests: inputs are set by hand, outputs can be read back.
+/// All functions may be called from any thread.
+class SimulatedLines : public Lines {
+ public:
+  explicit SimulatedLines(int count)
+      : levels_(static_cast<std::size_t>(count), 0), sequences_(levels_.size(), 0) {}
+
+  std::optional<Edge> wait(std::int64_t timeout_ns) override;
+  bool level(int index) override;
+  void drive(int index, int level) override;
+
+  /// An input changes, at that time.
+  void set(int index, bool level, std::int64_t time_ns);
+  /// Edges that the kernel's buffer had no room for.
+  void lose_edges(int index, std::uint32_t count);
+  /// The chip is unplugged: every further call throws ENODEV.
+  void remove();
+
+ private:
+  void check() const;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Edge> edges_;
+  std::vector<int> levels_;
+  std::vector<std::uint32_t> sequences_;
+  bool gone_ = false;
+};
+
+}  // namespace turnpoint::panel

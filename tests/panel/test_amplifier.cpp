@@ -1,0 +1,110 @@
+#include <thread>
+
+#include "station/drive/monotonic.hpp"
+#include "station/panel/amplifier.hpp"
+#include "station/panel/guarded_amplifier.hpp"
+#include "station/panel/simulated_lines.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+using namespace turnpoint::panel;
+using drive::AmplifierState;
+
+namespace {
+
+constexpr GuardLines roles{0, 1, 2, 3, false, false};
+
+// Waits for what another thread is about to do; 5 s is a failure, not a measurement.
+template <typename Condition>
+bool eventually(Condition&& condition) {
+  const std::int64_t end = drive::monotonic_ns() + 5'000'000'000;
+  while (!condition()) {
+    if (drive::monotonic_ns() > end) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+struct Bench {
+  SimulatedLines* lines = new SimulatedLines(4);  // owned by the amplifier
+  std::unique_ptr<drive::Amplifier> amplifier = guard_amplifier(std::unique_ptr<Lines>(lines), roles);
+
+  void enable() {
+    amplifier->audio_alive();
+    amplifier->session_alive();
+    amplifier->arm();
+    amplifier->enable();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the guard thread drops the enable line on a fault edge and latches it",
+          "[panel][amplifier][threads]") {
+  Bench bench;
+  bench.enable();
+  CHECK(bench.lines->level(0));
+  bench.lines->set(2, true, drive::monotonic_ns());
+  CHECK(eventually([&] { return bench.amplifier->state() == AmplifierState::faulted; }));
+  CHECK_FALSE(bench.lines->level(0));
+  CHECK(bench.amplifier->reaction_ns() >= 0);
+  CHECK_THROWS_WITH(bench.amplifier->enable(),
+                    "amplifier: cannot be enabled: latched fault: the amplifier reports a fault");
+  CHECK_THROWS(bench.amplifier->clear());
+  bench.lines->set(2, false, drive::monotonic_ns());
+  CHECK(eventually([&] {
+    try {
+      bench.amplifier->clear();
+      return true;
+    } catch (const std::runtime_error&) {
+      return false;
+    }
+  }));
+  CHECK(bench.amplifier->state() == AmplifierState::disarmed);
+}
+
+TEST_CASE("a stop that was pressed before the start is seen, and silence of the audio thread trips",
+          "[panel][amplifier][threads]") {
+  auto* lines = new SimulatedLines(4);
+  lines->set(3, true, 0);
+  const auto amplifier = guard_amplifier(std::unique_ptr<Lines>(lines), roles);
+  amplifier->audio_alive();
+  amplifier->session_alive();
+  CHECK_THROWS_WITH(amplifier->arm(), "amplifier: cannot be armed: the stop is pressed");
+  Bench other;
+  other.enable();
+  CHECK(eventually([&] { return other.amplifier->state() == AmplifierState::faulted; }));
+  CHECK(other.amplifier->fault() == "the audio thread gives no sign");
+  CHECK_FALSE(other.lines->level(0));
+}
+
+TEST_CASE("a chip that vanishes is a fault", "[panel][amplifier][threads]") {
+  Bench bench;
+  bench.enable();
+  bench.lines->remove();
+  CHECK(eventually([&] { return bench.amplifier->state() == AmplifierState::faulted; }));
+  CHECK(bench.amplifier->fault().find("No such device") != std::string::npos);
+}
+
+TEST_CASE("an amplifier is opened from the rig's text, with every mistake named", "[panel][amplifier]") {
+  CHECK(open_amplifier("sim:")->state() == AmplifierState::disarmed);
+  CHECK_THROWS_WITH(open_amplifier("gpio:fault=F"), "amplifier 'gpio:fault=F' has no enable line");
+  CHECK_THROWS_WITH(open_amplifier("gpio:enable=A,foo=B"),
+                    "'gpio:enable=A,foo=B': unknown 'foo'; allowed enable, heartbeat, fault, stop, "
+                    "fault_active, stop_active");
+  CHECK_THROWS_AS(open_amplifier("gpio:enable=NO_SUCH_LINE"), LineError);
+  CHECK_THROWS_AS(open_amplifier("usb:1"), std::invalid_argument);
+  CHECK_THROWS_AS(open_amplifier("nothing"), std::invalid_argument);
+}
+
+TEST_CASE("the simulated amplifier keeps the same order of states", "[panel][amplifier]") {
+  const auto amplifier = open_amplifier("sim:");
+  CHECK_THROWS(amplifier->enable());
+  amplifier->arm();
+  amplifier->enable();
+  amplifier->trip("test");
+  CHECK(amplifier->state() == AmplifierState::faulted);
+  CHECK_THROWS(amplifier->arm());
+  amplifier->clear();
+  CHECK(amplifier->state() == AmplifierState::disarmed);
+}
