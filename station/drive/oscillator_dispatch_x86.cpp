@@ -1,8 +1,6 @@
-#include "station/drive/oscillator.hpp"
+#include "station/drive/oscillator_avx2.hpp"
 
 namespace turnpoint::drive {
-
-const Kernels& avx2_kernels() noexcept;
 
 const Kernels& best_kernels() noexcept {
   static const Kernels& chosen =

@@ -46,7 +46,7 @@ inline float kernel_sine_of(std::int32_t shifted) noexcept {
   return sum * r;
 }
 
-void steady(double* __restrict sum, int frames, Partial p) noexcept {
+[[maybe_unused]] void steady(double* __restrict sum, int frames, Partial p) noexcept {
   const double amplitude = p.amplitude;
   std::uint64_t phase = p.phase + kernel_quarter;
   const std::uint64_t increment = p.increment;
@@ -56,7 +56,8 @@ void steady(double* __restrict sum, int frames, Partial p) noexcept {
   }
 }
 
-void gliding(double* __restrict sum, int frames, Partial p, const double* __restrict shape) noexcept {
+[[maybe_unused]] void gliding(double* __restrict sum, int frames, Partial p,
+                              const double* __restrict shape) noexcept {
   constexpr int chunk = 64;
   std::uint64_t phases[chunk];
   std::uint64_t phase = p.phase + kernel_quarter, increment = p.increment;
@@ -68,17 +69,30 @@ void gliding(double* __restrict sum, int frames, Partial p, const double* __rest
   }
 }
 
-void steady_float(float* __restrict sum, int frames, Partial p) noexcept {
+// 32 frames at a time about an exact phase in their middle: there the upper half of the phase advances by the
+// upper half of the increment, at most 16 roundings of 2^-33 cycles away (-158 dB), which is below the
+// float's own noise.
+[[maybe_unused]] void steady_float(float* __restrict sum, int frames, Partial p) noexcept {
+  constexpr int chunk = 32;
   const auto amplitude = static_cast<float>(p.amplitude);
-  std::uint64_t phase = p.phase - kernel_quarter;
-  const std::uint64_t increment = p.increment;
-  for (int n = 0; n < frames; ++n) {
-    sum[n] += amplitude * kernel_sine_of(static_cast<std::int32_t>(phase >> 32));
-    phase += increment;
+  const auto step = static_cast<std::uint32_t>((p.increment + 0x80000000u) >> 32);
+  std::uint32_t offset[chunk];
+  for (int n = 0; n < chunk; ++n) offset[n] = step * static_cast<std::uint32_t>(n - chunk / 2);
+  std::uint64_t middle = p.phase - kernel_quarter + p.increment * (chunk / 2);
+  int start = 0;
+  for (; start + chunk <= frames; start += chunk, middle += p.increment * chunk) {
+    const auto upper = static_cast<std::uint32_t>(middle >> 32);
+    float* __restrict out = sum + start;
+    for (int n = 0; n < chunk; ++n)
+      out[n] += amplitude * kernel_sine_of(static_cast<std::int32_t>(upper + offset[n]));
   }
+  const auto upper = static_cast<std::uint32_t>(middle >> 32);
+  for (int n = 0; start + n < frames; ++n)
+    sum[start + n] += amplitude * kernel_sine_of(static_cast<std::int32_t>(upper + offset[n]));
 }
 
-void gliding_float(float* __restrict sum, int frames, Partial p, const double* __restrict shape) noexcept {
+[[maybe_unused]] void gliding_float(float* __restrict sum, int frames, Partial p,
+                                    const double* __restrict shape) noexcept {
   constexpr int chunk = 64;
   std::int32_t phases[chunk];
   std::uint64_t phase = p.phase - kernel_quarter, increment = p.increment;
