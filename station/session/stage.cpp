@@ -37,6 +37,10 @@ std::optional<Input> input_of(const drive::Event& event, std::int64_t time_ns) {
       input.kind = InputKind::fault;
       input.text = "the converter is gone; check its cable, then arm the amplifier again";
       return input;
+    case drive::EventKind::rate_wrong:
+      input.kind = InputKind::fault;
+      input.text = "the converter does not run at the rate that it reports: what is felt would be wrong";
+      return input;
     case drive::EventKind::burst_started:
     case drive::EventKind::burst_ended:
     case drive::EventKind::device_back:

@@ -1,5 +1,5 @@
-// disk_writer DATABASE FULL|NORMAL COUNT ACKNOWLEDGED: so many one-row transactions in WAL mode; after each commit its
-// number is appended to ACKNOWLEDGED, which lies on another, safe file system.
+// disk_writer DATABASE FULL|NORMAL COUNT ACKNOWLEDGED: so many one-row transactions in WAL mode; after each
+// commit its number is appended to ACKNOWLEDGED, which lies on another, safe file system.
 #include <sqlite3.h>
 
 #include <cstdio>

@@ -1,5 +1,6 @@
-// gpio_line hold NAME VALUE | watch NAME COUNT: holds a line as an output until killed, or prints the kernel's time
-// stamp (ns, CLOCK_MONOTONIC) and direction of edges. By the kernel's own interface, so that any libgpiod will do.
+// gpio_line hold NAME VALUE | watch NAME COUNT: holds a line as an output until killed, or prints the
+// kernel's time stamp (ns, CLOCK_MONOTONIC) and direction of edges. By the kernel's own interface, so that
+// any libgpiod will do.
 #include <fcntl.h>
 #include <linux/gpio.h>
 #include <sys/ioctl.h>
@@ -47,8 +48,9 @@ int request(const std::string& name, std::uint64_t flags, int value) {
 int main(int argc, char** argv) {
   if (argc != 4) return std::fprintf(stderr, "gpio_line hold NAME VALUE | watch NAME COUNT\n"), 2;
   const bool hold = std::string(argv[1]) == "hold";
-  const auto flags = hold ? std::uint64_t{GPIO_V2_LINE_FLAG_OUTPUT}
-                          : GPIO_V2_LINE_FLAG_INPUT | GPIO_V2_LINE_FLAG_EDGE_RISING | GPIO_V2_LINE_FLAG_EDGE_FALLING;
+  const auto flags =
+      hold ? std::uint64_t{GPIO_V2_LINE_FLAG_OUTPUT}
+           : GPIO_V2_LINE_FLAG_INPUT | GPIO_V2_LINE_FLAG_EDGE_RISING | GPIO_V2_LINE_FLAG_EDGE_FALLING;
   const int fd = request(argv[2], flags, std::atoi(argv[3]));
   if (fd < 0) return 1;
   std::printf("ready\n");

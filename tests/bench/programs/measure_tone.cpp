@@ -1,5 +1,6 @@
-// measure_tone FILE RATE CHANNELS CHANNEL: frequency (Hz) and level (dB re full scale, peak) of the strongest tone in a
-// raw S32_LE recording, by a windowed scan and a least-squares refinement. Prints "frequency level frames".
+// measure_tone FILE RATE CHANNELS CHANNEL: frequency (Hz) and level (dB re full scale, peak) of the strongest
+// tone in a raw S32_LE recording, by a windowed scan and a least-squares refinement. Prints "frequency level
+// frames".
 #include <cmath>
 #include <complex>
 #include <cstdint>
@@ -32,7 +33,8 @@ std::vector<double> steady_part(const std::vector<double>& samples, std::size_t 
     if (i >= length) energy -= samples[i - length] * samples[i - length];
     if (i + 1 >= length && energy > best) best = energy, at = i + 1 - length;
   }
-  return {samples.begin() + static_cast<std::ptrdiff_t>(at), samples.begin() + static_cast<std::ptrdiff_t>(at + length)};
+  return {samples.begin() + static_cast<std::ptrdiff_t>(at),
+          samples.begin() + static_cast<std::ptrdiff_t>(at + length)};
 }
 
 std::complex<double> component(const std::vector<double>& x, double cycles_per_frame) {
@@ -42,7 +44,8 @@ std::complex<double> component(const std::vector<double>& x, double cycles_per_f
   const auto step = std::polar(1.0, -2 * std::numbers::pi * cycles_per_frame);
   std::complex<double> phasor = 1;
   for (std::size_t i = 0; i < x.size(); ++i) {
-    if (i % 256 == 0) phasor = std::polar(1.0, -2 * std::numbers::pi * cycles_per_frame * static_cast<double>(i));
+    if (i % 256 == 0)
+      phasor = std::polar(1.0, -2 * std::numbers::pi * cycles_per_frame * static_cast<double>(i));
     const double w = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * static_cast<double>(i) / n);
     sum += w * x[i] * phasor;
     weights += w;
@@ -56,10 +59,12 @@ std::complex<double> component(const std::vector<double>& x, double cycles_per_f
 int main(int argc, char** argv) {
   if (argc != 5) return std::fprintf(stderr, "measure_tone FILE RATE CHANNELS CHANNEL\n"), 2;
   const double rate = std::atof(argv[2]);
-  const auto x = steady_part(read_channel(argv[1], std::atoi(argv[3]), std::atoi(argv[4])), static_cast<std::size_t>(rate / 4));
+  const auto x = steady_part(read_channel(argv[1], std::atoi(argv[3]), std::atoi(argv[4])),
+                             static_cast<std::size_t>(rate / 4));
   if (x.size() < 1000) return std::fprintf(stderr, "measure_tone: too short: %zu frames\n", x.size()), 1;
   // A coarse scan on a short piece, then ever finer around the maximum.
-  const std::vector<double> piece(x.begin(), x.begin() + 2048 * static_cast<std::ptrdiff_t>(x.size() >= 2048) +
+  const std::vector<double> piece(x.begin(), x.begin() +
+                                                 2048 * static_cast<std::ptrdiff_t>(x.size() >= 2048) +
                                                  static_cast<std::ptrdiff_t>(x.size() < 2048 ? x.size() : 0));
   double best = 0, at = 0;
   for (int k = 1; k < 2048; ++k) {

@@ -1,6 +1,7 @@
 // touch_panel WIDTH HEIGHT: a multitouch panel by uinput that does what standard input says, a line each:
 //   tap X Y | down SLOT X Y | move SLOT X Y | up SLOT | sleep MS | gone
-// Prints "device /dev/input/eventN" once, and "tapped NS" (CLOCK_MONOTONIC just before the touch is injected) for taps.
+// Prints "device /dev/input/eventN" once, and "tapped NS" (CLOCK_MONOTONIC just before the touch is injected)
+// for taps.
 #include <fcntl.h>
 #include <linux/uinput.h>
 #include <sys/ioctl.h>
@@ -62,8 +63,10 @@ long long now_ns() {
 std::string device_path() {
   char name[64] = {};
   ::ioctl(panel, UI_GET_SYSNAME(sizeof name), name);
-  for (const auto& entry : std::filesystem::directory_iterator(std::string("/sys/devices/virtual/input/") + name))
-    if (entry.path().filename().string().rfind("event", 0) == 0) return "/dev/input/" + entry.path().filename().string();
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string("/sys/devices/virtual/input/") + name))
+    if (entry.path().filename().string().rfind("event", 0) == 0)
+      return "/dev/input/" + entry.path().filename().string();
   return "";
 }
 

@@ -20,7 +20,8 @@ int main(int argc, char** argv) {
   std::fflush(stdout);
   for (int left = std::atoi(argv[2]); left > 0;) {
     input_event event{};
-    if (::read(fd, &event, sizeof event) != sizeof event) return std::printf("lost %s\n", std::strerror(errno)), 3;
+    if (::read(fd, &event, sizeof event) != sizeof event)
+      return std::printf("lost %s\n", std::strerror(errno)), 3;
     if (event.type != EV_KEY || event.code != BTN_TOUCH || event.value != 1) continue;
     std::printf("%lld\n", event.input_event_sec * 1'000'000'000LL + event.input_event_usec * 1000LL);
     std::fflush(stdout);

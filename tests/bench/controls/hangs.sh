@@ -1,0 +1,3 @@
+# proves: nothing; it hangs on purpose
+# timeout: 15
+sleep 1000
