@@ -37,6 +37,12 @@ void add_plan(CLI::App& app, Context& context);
 void add_synth(CLI::App& app, Context& context);
 void add_trace(CLI::App& app, Context& context);
 void add_run(CLI::App& app, Context& context);
+void add_export(CLI::App& app, Context& context);
+void add_sessions(CLI::App& app, Context& context);
+void add_backup(CLI::App& app, Context& context);
+void add_merge(CLI::App& app, Context& context);
+void add_withdraw(CLI::App& app, Context& context);
+void add_annotate(CLI::App& app, Context& context);
 
 /// Adds `--json` to a sub-command.
 void add_json(CLI::App& command, Context& context);

@@ -1,0 +1,77 @@
+#include "station/store/backup.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <memory>
+
+#include "station/cli/command.hpp"
+#include "station/cli/json.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+struct Options {
+  std::string database;
+  store::BackupOptions backup;
+  bool restore = false;
+};
+
+void back_up(const Options& options, Context& context) {
+  const auto report = store::backup(options.database, options.backup);
+  if (context.json) {
+    context.out << Json{{"path", report.path},         {"sha256", report.sha256}, {"bytes", report.bytes},
+                        {"sessions", report.sessions}, {"trials", report.trials}, {"removed", report.removed}}
+                       .dump(2)
+                << "\n";
+    return;
+  }
+  fmt::print(context.out, "{}: {} sessions, {} trials, {} bytes, read back and checked\n", report.path,
+             report.sessions, report.trials, report.bytes);
+  for (const auto& path : report.removed) fmt::print(context.out, "rotated out: {}\n", path);
+}
+
+void restore(const Options& options, Context& context) {
+  const auto restored = store::restore_backup(options.database, options.backup.directory);
+  if (context.json) {
+    context.out << Json{{"from", restored.from},
+                        {"quarantined", restored.quarantined},
+                        {"sessions", restored.sessions},
+                        {"trials", restored.trials},
+                        {"rejected", restored.rejected}}
+                       .dump(2)
+                << "\n";
+    return;
+  }
+  for (const auto& path : restored.rejected) fmt::print(context.out, "failed its check: {}\n", path);
+  fmt::print(context.out, "{} restored from {}: {} sessions, {} trials\n", options.database, restored.from,
+             restored.sessions, restored.trials);
+  if (!restored.quarantined.empty())
+    fmt::print(context.out, "the damaged file is kept as {}\n", restored.quarantined);
+}
+
+}  // namespace
+
+void add_backup(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command =
+      app.add_subcommand("backup", "Copy a database, also a running one, check the copy, keep the newest");
+  command->add_option("--db", options->database, "Database")->required();
+  command->add_option("--dir", options->backup.directory, "Folder of the backups")->required();
+  command->add_option("--keep", options->backup.keep, "How many stay; 0 keeps all")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_flag("--restore", options->restore,
+                    "Put the newest good backup in the place of a damaged, empty or missing database");
+  add_json(*command, context);
+  command->footer("Example: turnpoint backup --db lab.sqlite --dir /mnt/backup --keep 30");
+  command->callback([options, &context] {
+    if (options->restore)
+      restore(*options, context);
+    else
+      back_up(*options, context);
+  });
+}
+
+}  // namespace turnpoint::cli

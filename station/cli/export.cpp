@@ -1,0 +1,72 @@
+#include "station/store/export.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <memory>
+
+#include "station/cli/command.hpp"
+#include "station/cli/json.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+struct Options {
+  std::string database, out, format = "csv", separator = ",", decimal = ".";
+  store::ExportOptions selection;
+};
+
+char single(const std::string& option, const std::string& text) {
+  if (text == "tab" || text == "\\t") return '\t';
+  if (text.size() != 1) throw UsageError(fmt::format("{} \"{}\": one character, or \"tab\"", option, text));
+  return text.front();
+}
+
+/// Rows of the trial tables alone: what people count.
+std::size_t trial_rows(const std::vector<store::ExportedFile>& files) {
+  std::size_t rows = 0;
+  for (const auto& file : files)
+    if (file.path.ends_with("/trials.csv") || file.path.ends_with("_beh.tsv")) rows += file.rows;
+  return rows;
+}
+
+void export_data(Options options, Context& context) {
+  auto& selection = options.selection;
+  selection.format = options.format == "bids" ? store::ExportFormat::bids : store::ExportFormat::csv;
+  selection.separator = single("--separator", options.separator);
+  selection.decimal = single("--decimal", options.decimal);
+  const auto files = store::export_data(options.database, options.out, selection);
+  if (context.json) {
+    Json list = Json::array();
+    for (const auto& file : files) list.push_back({{"path", file.path}, {"rows", file.rows}});
+    context.out << Json{{"files", list}, {"rows", trial_rows(files)}}.dump(2) << "\n";
+    return;
+  }
+  for (const auto& file : files)
+    fmt::print(context.out, "{}{}\n", file.path, file.rows > 0 ? fmt::format(" ({} rows)", file.rows) : "");
+  fmt::print(context.out, "{} trials in {} files\n", trial_rows(files), files.size());
+}
+
+}  // namespace
+
+void add_export(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("export", "Write sessions as CSV or BIDS, one folder a protocol");
+  command->add_option("--db", options->database, "Database")->required();
+  command->add_option("--out", options->out, "Folder to write to")->required();
+  command->add_option("--session", options->selection.session_id, "Only this session");
+  command->add_option("--participant", options->selection.participant, "Only this participant code");
+  command->add_option("--protocol", options->selection.protocol_id, "Only this protocol");
+  command->add_option("--format", options->format, "csv | bids")
+      ->check(CLI::IsMember({"csv", "bids"}))
+      ->capture_default_str();
+  command->add_option("--separator", options->separator, "Between columns: , ; | or tab")
+      ->capture_default_str();
+  command->add_option("--decimal", options->decimal, "Decimal mark: . or ,")->capture_default_str();
+  add_json(*command, context);
+  command->footer("Example: turnpoint export --db lab.sqlite --out export --separator ';' --decimal ,");
+  command->callback([options, &context] { export_data(*options, context); });
+}
+
+}  // namespace turnpoint::cli

@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <memory>
+
+#include "station/cli/command.hpp"
+#include "station/cli/json.hpp"
+#include "station/store/read.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+struct Options {
+  std::string database;
+  store::SessionFilter filter;
+};
+
+Json to_json(const store::SessionRecord& session) {
+  const auto& start = session.start;
+  return {{"session_id", session.session_id},
+          {"participant", start.participant},
+          {"protocol_id", start.protocol_id},
+          {"protocol_version", start.protocol_version},
+          {"session_index", session.session_index},
+          {"sequence_index", session.sequence_index},
+          {"run_mode", store::name(start.run_mode)},
+          {"status", store::name(session.status)},
+          {"status_reason", session.status_reason},
+          {"started", start.started_local},
+          {"trials", session.trials},
+          {"segments", session.segments},
+          {"seed", start.seed},
+          {"rig", start.rig_name},
+          {"station_id", start.station_id},
+          {"software_version", start.software_version},
+          {"annotations", session.annotations}};
+}
+
+void print(std::ostream& out, const std::vector<store::SessionRecord>& sessions) {
+  fmt::print(out, "{:<36}  {:<12} {:<24} {:>3} {:<9} {:<11} {:>6}  {}\n", "session", "participant",
+             "protocol", "no", "mode", "status", "trials", "started");
+  for (const auto& s : sessions) {
+    fmt::print(out, "{:<36}  {:<12} {:<24} {:>3} {:<9} {:<11} {:>6}  {}{}\n", s.session_id,
+               s.start.participant, s.start.protocol_id, s.session_index, store::name(s.start.run_mode),
+               store::name(s.status), s.trials, s.start.started_local,
+               s.segments > 1 ? fmt::format(", resumed {} times", s.segments - 1) : "");
+    for (const auto& note : s.annotations) fmt::print(out, "{:>38}note: {}\n", "", note);
+  }
+  if (sessions.empty()) fmt::print(out, "none\n");
+}
+
+void sessions(const Options& options, Context& context) {
+  const auto list = store::list_sessions(options.database, options.filter);
+  if (!context.json) return print(context.out, list);
+  Json json = Json::array();
+  for (const auto& session : list) json.push_back(to_json(session));
+  context.out << json.dump(2) << "\n";
+}
+
+}  // namespace
+
+void add_sessions(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("sessions", "List the sessions of a database");
+  command->add_option("--db", options->database, "Database")->required();
+  command->add_option("--session", options->filter.session_id, "Only this session");
+  command->add_option("--participant", options->filter.participant, "Only this participant code");
+  command->add_option("--protocol", options->filter.protocol_id, "Only this protocol");
+  add_json(*command, context);
+  command->footer("Example: turnpoint sessions --db lab.sqlite --participant P07");
+  command->callback([options, &context] { sessions(*options, context); });
+}
+
+}  // namespace turnpoint::cli
