@@ -1,0 +1,114 @@
+#include "station/calibration/calibration.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <stdexcept>
+
+#include "station/rig/csv.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::calibration {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+std::optional<std::chrono::sys_days> parsed_date(const std::string& text) {
+  int year = 0, month = 0, day = 0;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%4d-%2d-%2d%c", &year, &month, &day, &rest) != 3) return std::nullopt;
+  const std::chrono::year_month_day date{std::chrono::year(year),
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  if (!date.ok()) return std::nullopt;
+  return std::chrono::sys_days(date);
+}
+
+}  // namespace
+
+Calibration fit_measurements(const Measurements& measurements) {
+  text::Findings findings;
+  const auto table = [&](const std::string& path, const std::vector<std::string>& columns) {
+    return path.empty() ? std::vector<std::vector<double>>{}
+                        : rig::read_table(path, columns, {path, 0, 0}, findings);
+  };
+  Calibration calibration;
+  std::vector<std::vector<ResponsePoint>> sweeps;
+  for (const auto& sweep : measurements.sweeps) {
+    if (!(sweep.full_scale > 0 && sweep.full_scale <= 1))
+      throw std::invalid_argument(
+          fmt::format("sweep at {} of full scale; allowed above 0 to 1", sweep.full_scale));
+    sweeps.emplace_back();
+    for (const auto& row : table(sweep.csv, {"frequency_Hz", "displacement_um", "phase_deg"}))
+      sweeps.back().push_back({row[0], row[1] * 1e-6 / sweep.full_scale, row[2] * degree});
+  }
+  std::vector<BoundaryPoint> boundaries;
+  for (const auto& row : table(measurements.boundaries_csv, {"frequency_Hz", "boundary_mm", "sd_mm"}))
+    boundaries.push_back({row[0], row[1] * 1e-3, row[2] * 1e-3});
+  std::vector<FrictionPoint> friction;
+  for (const auto& row : table(measurements.friction_csv, {"displacement_um", "relative_friction"}))
+    friction.push_back({row[0] * 1e-6, row[1]});
+  for (const auto& row : table(measurements.sound_csv, {"frequency_Hz", "level_dB"}))
+    calibration.sound.push_back({row[0], row[1]});
+  findings.throw_if_any();
+  std::vector<Resonance> resonances;
+  for (std::size_t k = 0; k < sweeps.size(); ++k) {
+    calibration.transducers.push_back({measurements.sweeps[k].transducer, fit_response(sweeps[k])});
+    for (const Resonance& resonance : find_resonances(sweeps[k])) resonances.push_back(resonance);
+  }
+  calibration.quality_factor = quality_of(resonances);
+  if (!measurements.boundaries_csv.empty())
+    calibration.boundary = fit_boundaries(boundaries, measurements.law);
+  if (!measurements.friction_csv.empty()) calibration.friction = fit_friction(friction);
+  std::sort(calibration.sound.begin(), calibration.sound.end(),
+            [](const SoundPoint& a, const SoundPoint& b) { return a.frequency_Hz < b.frequency_Hz; });
+  return calibration;
+}
+
+int days_left(const Calibration& calibration, const std::string& today) {
+  const auto made = parsed_date(calibration.made_on), now = parsed_date(today);
+  if (!made || !now)
+    throw std::invalid_argument("dates '" + calibration.made_on + "' and '" + today +
+                                "'; allowed YYYY-MM-DD");
+  return calibration.valid_days - static_cast<int>((*now - *made).count());
+}
+
+std::vector<std::string> problems(const Calibration& calibration, const std::string& rig_sha256,
+                                  const std::string& today) {
+  std::vector<std::string> found;
+  if (calibration.rig_sha256 != rig_sha256)
+    found.push_back(fmt::format("the calibration is of '{}' as it was then; the rig file is another",
+                                calibration.rig_name));
+  const int left = days_left(calibration, today);
+  if (left < 0)
+    found.push_back(fmt::format("the calibration of {} expired {} days ago", calibration.made_on, -left));
+  if (left > calibration.valid_days)
+    found.push_back(
+        fmt::format("the calibration of {} lies in the future of this clock", calibration.made_on));
+  if (calibration.transducers.empty()) found.push_back("the calibration holds no transducer's response");
+  return found;
+}
+
+std::optional<Drive> drive_for(const ResponseFit& response, double frequency_Hz, double displacement_m) {
+  if (!(frequency_Hz >= response.low_Hz && frequency_Hz <= response.high_Hz)) return std::nullopt;
+  const auto& points = response.points;
+  const auto above = std::find_if(points.begin(), points.end(), [=](const ResponsePoint& point) {
+    return point.frequency_Hz >= frequency_Hz;
+  });
+  double best = 0;
+  for (const ResponsePoint& point : points) best = std::max(best, point.m_per_full_scale);
+  double log = std::log(above->m_per_full_scale), phase = above->phase_rad;
+  if (above != points.begin() && above->frequency_Hz > frequency_Hz) {
+    const ResponsePoint& below = *(above - 1);
+    const double u = (frequency_Hz - below.frequency_Hz) / (above->frequency_Hz - below.frequency_Hz);
+    log = (1 - u) * std::log(below.m_per_full_scale) + u * log;
+    phase = (1 - u) * below.phase_rad + u * phase;
+  }
+  return Drive{displacement_m / std::exp(log), phase, 20 * std::log10(best / std::exp(log))};
+}
+
+}  // namespace turnpoint::calibration

@@ -1,0 +1,73 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/calibration/fits.hpp"
+
+namespace turnpoint::calibration {
+
+/// A measured sound pressure level at full scale.
+struct SoundPoint {
+  double frequency_Hz = 0;
+  double level_dB = 0;
+};
+
+/// What was measured on a rig on one day, fitted: the file that sessions refer to by its SHA-256.
+struct Calibration {
+  std::string rig_name;
+  std::string rig_sha256;  ///< of the rig file it belongs to
+  std::string made_on;     ///< YYYY-MM-DD
+  int valid_days = 90;
+  std::string note;
+  struct Transducer {
+    std::string name;
+    ResponseFit response;
+  };
+  std::vector<Transducer> transducers;
+  std::optional<BoundaryFit> boundary;
+  std::optional<double> quality_factor;
+  std::optional<FrictionFit> friction;
+  std::vector<SoundPoint> sound;
+};
+
+/// Files with measurements; "" where there is none. Columns: sweep `frequency_Hz,displacement_um,phase_deg`
+/// taken at `sweep_full_scale`; boundaries `frequency_Hz,boundary_mm,sd_mm`; friction
+/// `displacement_um,relative_friction`; sound `frequency_Hz,level_dB` at full scale.
+struct Measurements {
+  struct Sweep {
+    std::string transducer, csv;
+    double full_scale = 1;  ///< drive amplitude during the sweep, full scale
+  };
+  std::vector<Sweep> sweeps;
+  std::string boundaries_csv, friction_csv, sound_csv;
+  std::optional<BoundaryFit::Law> law;
+};
+
+/// Reads and fits. Throws text::BadInput with every problem of every file, std::invalid_argument for points
+/// that do not determine a fit.
+Calibration fit_measurements(const Measurements& measurements);
+
+/// The file's text (format "friction-calibration/1"), and back. load throws text::BadInput,
+/// std::system_error.
+std::string to_toml(const Calibration& calibration);
+Calibration load(const std::string& path);
+
+/// Days that it is still valid on a date (YYYY-MM-DD); negative once it has expired, the count of days since.
+int days_left(const Calibration& calibration, const std::string& today);
+
+/// Why sessions on that rig must not use it on that day: another rig, expired, no response; empty: nothing.
+std::vector<std::string> problems(const Calibration& calibration, const std::string& rig_sha256,
+                                  const std::string& today);
+
+/// The drive (full scale) for a displacement of the drive edge, by linear interpolation in the logarithm.
+/// None outside the band in which equalisation stays within 20 dB.
+struct Drive {
+  double full_scale = 0;
+  double phase_rad = 0;        ///< to be subtracted from the drive's phase
+  double equalisation_dB = 0;  ///< above the best frequency
+};
+std::optional<Drive> drive_for(const ResponseFit& response, double frequency_Hz, double displacement_m);
+
+}  // namespace turnpoint::calibration

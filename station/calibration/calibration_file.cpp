@@ -1,0 +1,178 @@
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "station/calibration/calibration.hpp"
+#include "station/text/number.hpp"
+#include "station/text/reader.hpp"
+
+namespace turnpoint::calibration {
+namespace {
+
+using text::exact;
+using text::Range;
+using Ends = text::Range::Ends;
+constexpr double degree = std::numbers::pi / 180;
+constexpr double large = 1e300;
+
+std::string quoted(const std::string& plain) {
+  std::string out = "\"";
+  for (const char c : plain) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c == '\n' ? ' ' : c;
+  }
+  return out + "\"";
+}
+
+// One array of numbers a key, from a member of each point.
+template <typename Points, typename Get>
+std::string numbers(const char* key, const Points& points, Get&& get) {
+  std::string out = fmt::format("{} = [", key);
+  for (std::size_t k = 0; k < points.size(); ++k) out += (k ? ", " : "") + exact(get(points[k]));
+  return out + "]\n";
+}
+
+std::string boundary_toml(const BoundaryFit& fit) {
+  std::string out = "\n[boundary]                    # x = apex - constant f^-exponent\n";
+  out += fmt::format("law = \"{}\"\n", fit.law == BoundaryFit::Law::plate ? "plate" : "membrane");
+  out += fmt::format("apex_mm = {}\napex_sd_mm = {}\n", exact(fit.apex_m * 1e3), exact(fit.apex_sd_m * 1e3));
+  out += fmt::format("constant = {}\nconstant_sd = {}\n", exact(fit.constant), exact(fit.constant_sd));
+  out += fmt::format("residual_mm = {}\nmembrane_residual_mm = {}\nplate_residual_mm = {}\n",
+                     exact(fit.residual_m * 1e3), exact(fit.membrane_residual_m * 1e3),
+                     exact(fit.plate_residual_m * 1e3));
+  if (fit.curvature_z) out += fmt::format("curvature_z = {}\n", exact(*fit.curvature_z));
+  return out + numbers("residuals_mm", fit.residuals_m, [](double r) { return r * 1e3; });
+}
+
+std::string transducer_toml(const Calibration::Transducer& transducer) {
+  const ResponseFit& fit = transducer.response;
+  std::string out =
+      fmt::format("\n[[transducer]]\nname = {}\nband_kHz = [{}, {}]\nresidual_dB = {}\nresidual_deg = {}\n",
+                  quoted(transducer.name), exact(fit.low_Hz * 1e-3), exact(fit.high_Hz * 1e-3),
+                  exact(fit.residual_dB), exact(fit.residual_rad / degree));
+  out += numbers("frequency_Hz", fit.points, [](const auto& p) { return p.frequency_Hz; });
+  out += numbers("um_per_full_scale", fit.points, [](const auto& p) { return p.m_per_full_scale * 1e6; });
+  return out + numbers("phase_deg", fit.points, [](const auto& p) { return p.phase_rad / degree; });
+}
+
+// Columns of equal length, or a problem.
+bool same_length(text::TableReader& reader, const char* key, std::size_t length, std::size_t wanted) {
+  if (length == wanted) return true;
+  reader.problem(key, fmt::format("{} values", length), fmt::format("{}, as in the other columns", wanted));
+  return false;
+}
+
+Calibration::Transducer read_transducer(const text::Value& table, text::Findings& findings) {
+  text::TableReader reader(table, text::titled("transducer", table), findings);
+  Calibration::Transducer transducer;
+  transducer.name = reader.string("name", "the transducer's name in the rig file");
+  if (const auto band = reader.maybe_interval("band_kHz", {0, 1000, Ends::open_low, "kHz"})) {
+    transducer.response.low_Hz = band->first * 1e3;
+    transducer.response.high_Hz = band->second * 1e3;
+  }
+  transducer.response.residual_dB = reader.number("residual_dB", {0, large}, 0);
+  transducer.response.residual_rad = reader.number("residual_deg", {0, large}, 0) * degree;
+  const auto frequency = reader.numbers("frequency_Hz", {0, 1e6, Ends::open_low, "Hz"}, 2);
+  const auto response = reader.numbers("um_per_full_scale", {0, 1e6, Ends::open_low, "um"}, 2);
+  const auto phase = reader.numbers("phase_deg", {-1e6, 1e6}, 2);
+  if (same_length(reader, "um_per_full_scale", response.size(), frequency.size()) &&
+      same_length(reader, "phase_deg", phase.size(), frequency.size()))
+    for (std::size_t k = 0; k < frequency.size(); ++k) {
+      if (k > 0 && frequency[k] <= frequency[k - 1]) reader.problem("frequency_Hz", "the values do not rise");
+      transducer.response.points.push_back({frequency[k], response[k] * 1e-6, phase[k] * degree});
+    }
+  reader.finish();
+  return transducer;
+}
+
+BoundaryFit read_boundary(const text::Value& table, text::Findings& findings) {
+  text::TableReader reader(table, "boundary", findings);
+  BoundaryFit fit;
+  fit.law = reader.word("law", {"membrane", "plate"}) == "plate" ? BoundaryFit::Law::plate
+                                                                 : BoundaryFit::Law::membrane;
+  fit.exponent = fit.law == BoundaryFit::Law::plate ? 0.5 : 1;
+  fit.apex_m = reader.number("apex_mm", {-1e6, 1e6, Ends::closed, "mm"}) * 1e-3;
+  fit.apex_sd_m = reader.number("apex_sd_mm", {0, 1e6, Ends::closed, "mm"}, 0) * 1e-3;
+  fit.constant = reader.number("constant", {0, large, Ends::open_low});
+  fit.constant_sd = reader.number("constant_sd", {0, large}, 0);
+  fit.residual_m = reader.number("residual_mm", {0, 1e6, Ends::closed, "mm"}, 0) * 1e-3;
+  fit.membrane_residual_m = reader.number("membrane_residual_mm", {0, 1e6, Ends::closed, "mm"}, 0) * 1e-3;
+  fit.plate_residual_m = reader.number("plate_residual_mm", {0, 1e6, Ends::closed, "mm"}, 0) * 1e-3;
+  fit.curvature_z = reader.maybe_number("curvature_z", {0, large});
+  for (const double r : reader.maybe_numbers("residuals_mm", {-1e6, 1e6}))
+    fit.residuals_m.push_back(r * 1e-3);
+  reader.finish();
+  return fit;
+}
+
+void read_tables(text::TableReader& reader, Calibration& calibration) {
+  text::Findings& findings = reader.findings();
+  for (const text::Value* table : reader.tables("transducer"))
+    calibration.transducers.push_back(read_transducer(*table, findings));
+  if (const text::Value* table = reader.maybe_table("boundary"))
+    calibration.boundary = read_boundary(*table, findings);
+  if (const text::Value* table = reader.maybe_table("friction")) {
+    text::TableReader inner(*table, "friction", findings);
+    const auto u = inner.numbers("displacement_um", {0, 1e6}, 2);
+    const auto mu = inner.numbers("relative_friction", {0, 1.5, Ends::open_low}, 2);
+    FrictionFit fit;
+    fit.residual = inner.number("residual", {0, 10}, 0);
+    if (same_length(inner, "relative_friction", mu.size(), u.size()))
+      for (std::size_t k = 0; k < u.size(); ++k) fit.points.push_back({u[k] * 1e-6, mu[k]});
+    inner.finish();
+    calibration.friction = fit;
+  }
+  if (const text::Value* table = reader.maybe_table("sound")) {
+    text::TableReader inner(*table, "sound", findings);
+    const auto f = inner.numbers("frequency_Hz", {0, 1e6, Ends::open_low}),
+               level = inner.numbers("level_dB", {-100, 200});
+    if (same_length(inner, "level_dB", level.size(), f.size()))
+      for (std::size_t k = 0; k < f.size(); ++k) calibration.sound.push_back({f[k], level[k]});
+    inner.finish();
+  }
+}
+
+}  // namespace
+
+std::string to_toml(const Calibration& c) {
+  std::string out = "format = \"friction-calibration/1\"\n";
+  out +=
+      fmt::format("rig = {}\nrig_sha256 = {}\nmade_on = {}\nvalid_days = {}\nnote = {}\n", quoted(c.rig_name),
+                  quoted(c.rig_sha256), quoted(c.made_on), c.valid_days, quoted(c.note));
+  if (c.quality_factor) out += fmt::format("quality_factor = {}\n", exact(*c.quality_factor));
+  if (c.boundary) out += boundary_toml(*c.boundary);
+  if (c.friction) {
+    out += "\n[friction]\n" + numbers("displacement_um", c.friction->points,
+                                      [](const auto& p) { return p.displacement_m * 1e6; });
+    out +=
+        numbers("relative_friction", c.friction->points, [](const auto& p) { return p.relative_friction; });
+    out += fmt::format("residual = {}\n", exact(c.friction->residual));
+  }
+  if (!c.sound.empty()) {
+    out += "\n[sound]                       # dB SPL at full scale\n";
+    out += numbers("frequency_Hz", c.sound, [](const auto& p) { return p.frequency_Hz; });
+    out += numbers("level_dB", c.sound, [](const auto& p) { return p.level_dB; });
+  }
+  for (const auto& transducer : c.transducers) out += transducer_toml(transducer);
+  return out;
+}
+
+Calibration load(const std::string& path) {
+  const text::Value document = text::parse_toml(text::read_file(path), path);
+  text::Findings findings;
+  text::TableReader reader(document, "", findings);
+  Calibration calibration;
+  reader.word("format", {"friction-calibration/1"});
+  calibration.rig_name = reader.string("rig", "the rig's name");
+  calibration.rig_sha256 = reader.string("rig_sha256", "the rig file's SHA-256");
+  calibration.made_on = reader.string("made_on", "the date, YYYY-MM-DD");
+  calibration.valid_days = reader.integer("valid_days", 1, 3650);
+  calibration.note = reader.maybe_string("note").value_or("");
+  calibration.quality_factor = reader.maybe_number("quality_factor", {0, 1e9, Ends::open_low});
+  read_tables(reader, calibration);
+  reader.finish();
+  findings.throw_if_any();
+  return calibration;
+}
+
+}  // namespace turnpoint::calibration

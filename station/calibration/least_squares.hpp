@@ -1,0 +1,18 @@
+#pragma once
+#include <vector>
+
+namespace turnpoint::calibration {
+
+/// A linear fit with few parameters.
+struct LeastSquares {
+  std::vector<double> value;
+  std::vector<double> sd;        ///< standard errors from the scatter; 0 without degrees of freedom
+  std::vector<double> known_sd;  ///< standard errors where the weights are 1 / variance
+};
+
+/// Minimises sum w (y - row . value)^2 by the normal equations (columns scaled to unit length), for up to
+/// about five parameters. Throws std::invalid_argument where the columns are not independent.
+LeastSquares least_squares(const std::vector<std::vector<double>>& rows, const std::vector<double>& values,
+                           const std::vector<double>& weights);
+
+}  // namespace turnpoint::calibration

@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "station/calibration/fits.hpp"
+#include "station/calibration/least_squares.hpp"
+
+namespace turnpoint::calibration {
+namespace {
+
+void check(const std::vector<ResponsePoint>& sweep, int window) {
+  if (sweep.size() < 5 || window < 3)
+    throw std::invalid_argument(
+        fmt::format("sweep of {} points, window {}; 5 points and a window of 3 or more are needed",
+                    sweep.size(), window));
+  for (std::size_t k = 0; k < sweep.size(); ++k) {
+    const bool rising = k == 0 || sweep[k].frequency_Hz > sweep[k - 1].frequency_Hz;
+    if (!rising || !(sweep[k].frequency_Hz > 0) || !(sweep[k].m_per_full_scale > 0) ||
+        !std::isfinite(sweep[k].phase_rad))
+      throw std::invalid_argument(fmt::format(
+          "sweep at {} Hz: frequencies must rise, displacements be above 0", sweep[k].frequency_Hz));
+  }
+}
+
+std::vector<double> unwrapped(const std::vector<ResponsePoint>& sweep) {
+  std::vector<double> phase;
+  for (const ResponsePoint& point : sweep) {
+    const double last = phase.empty() ? point.phase_rad : phase.back();
+    const double turns = std::round((last - point.phase_rad) / (2 * std::numbers::pi));
+    phase.push_back(point.phase_rad + turns * 2 * std::numbers::pi);
+  }
+  return phase;
+}
+
+// Local quadratic about point k, tricube weights over the nearest `window` points (Cleveland 1979).
+double smoothed(const std::vector<ResponsePoint>& sweep, const std::vector<double>& values, std::size_t k,
+                std::size_t window) {
+  const std::size_t first = std::min(k > window / 2 ? k - window / 2 : 0, sweep.size() - window);
+  const double centre = sweep[k].frequency_Hz;
+  const double reach =
+      1.0001 * std::max(centre - sweep[first].frequency_Hz, sweep[first + window - 1].frequency_Hz - centre);
+  std::vector<std::vector<double>> rows;
+  std::vector<double> some, weights;
+  for (std::size_t i = first; i < first + window; ++i) {
+    const double u = (sweep[i].frequency_Hz - centre) / reach;
+    rows.push_back({1, u, u * u});
+    some.push_back(values[i]);
+    weights.push_back(std::pow(1 - std::pow(std::abs(u), 3), 3));
+  }
+  return least_squares(rows, some, weights).value[0];
+}
+
+}  // namespace
+
+ResponseFit fit_response(const std::vector<ResponsePoint>& sweep, int window) {
+  check(sweep, window);
+  const std::size_t width = std::min(sweep.size(), static_cast<std::size_t>(std::max(window, 5)));
+  std::vector<double> logs;
+  for (const ResponsePoint& point : sweep) logs.push_back(std::log(point.m_per_full_scale));
+  const std::vector<double> phases = unwrapped(sweep);
+  ResponseFit fit;
+  const auto count = static_cast<double>(sweep.size());
+  double best = 0;
+  for (std::size_t k = 0; k < sweep.size(); ++k) {
+    const double log = smoothed(sweep, logs, k, width), phase = smoothed(sweep, phases, k, width);
+    fit.points.push_back({sweep[k].frequency_Hz, std::exp(log), phase});
+    fit.residual_dB += std::pow((logs[k] - log) * 20 / std::numbers::ln10, 2) / count;
+    fit.residual_rad += std::pow(phases[k] - phase, 2) / count;
+    best = std::max(best, std::exp(log));
+  }
+  fit.residual_dB = std::sqrt(fit.residual_dB);
+  fit.residual_rad = std::sqrt(fit.residual_rad);
+  const double least = best * std::pow(10, -equalisation_cap_dB / 20);
+  // The band about the best frequency in which no point falls below the cap.
+  std::size_t peak = 0;
+  for (std::size_t k = 0; k < fit.points.size(); ++k)
+    if (fit.points[k].m_per_full_scale == best) peak = k;
+  std::size_t low = peak, high = peak;
+  while (low > 0 && fit.points[low - 1].m_per_full_scale >= least) --low;
+  while (high + 1 < fit.points.size() && fit.points[high + 1].m_per_full_scale >= least) ++high;
+  fit.low_Hz = fit.points[low].frequency_Hz;
+  fit.high_Hz = fit.points[high].frequency_Hz;
+  return fit;
+}
+
+std::vector<Resonance> find_resonances(const std::vector<ResponsePoint>& sweep) {
+  check(sweep, 3);
+  std::vector<Resonance> found;
+  for (std::size_t k = 1; k + 1 < sweep.size(); ++k) {
+    const double peak = sweep[k].m_per_full_scale;
+    if (sweep[k - 1].m_per_full_scale >= peak || sweep[k + 1].m_per_full_scale > peak) continue;
+    std::size_t low = k, high = k;
+    while (low > 0 && sweep[low - 1].m_per_full_scale >= peak / std::numbers::sqrt2) --low;
+    while (high + 1 < sweep.size() && sweep[high + 1].m_per_full_scale >= peak / std::numbers::sqrt2) ++high;
+    if (high - low + 1 < 5) continue;
+    // With a line f = f_k + u f_k the parabola 1/|u|^2 ~ a + b u + c u^2 has its bottom at -b/2c, half
+    // width^2 a/c - (b/2c)^2.
+    std::vector<std::vector<double>> rows;
+    std::vector<double> values;
+    for (std::size_t i = low; i <= high; ++i) {
+      const double u = sweep[i].frequency_Hz / sweep[k].frequency_Hz - 1,
+                   r = peak / sweep[i].m_per_full_scale;
+      rows.push_back({1, u, u * u});
+      values.push_back(r * r);
+    }
+    const auto c = least_squares(rows, values, std::vector<double>(rows.size(), 1)).value;
+    const double offset = -c[1] / (2 * c[2]), square = c[0] / c[2] - offset * offset;
+    if (!(c[2] > 0 && square > 0)) continue;
+    found.push_back({sweep[k].frequency_Hz * (1 + offset), (1 + offset) / (2 * std::sqrt(square))});
+  }
+  return found;
+}
+
+std::optional<double> quality_of(const std::vector<Resonance>& resonances) {
+  if (resonances.empty()) return std::nullopt;
+  std::vector<double> values;
+  for (const Resonance& resonance : resonances) values.push_back(resonance.quality_factor);
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+FrictionFit fit_friction(std::vector<FrictionPoint> measured) {
+  std::sort(measured.begin(), measured.end(), [](const FrictionPoint& a, const FrictionPoint& b) {
+    return a.displacement_m < b.displacement_m;
+  });
+  struct Pool {
+    double sum, count;
+  };
+  std::vector<Pool> pools;
+  std::vector<std::size_t> pool_size;
+  for (const FrictionPoint& point : measured) {
+    if (!(point.displacement_m >= 0 && point.relative_friction > 0 && point.relative_friction <= 1.5))
+      throw std::invalid_argument(
+          fmt::format("friction {} at {} m; allowed above 0 to 1.5, displacement from 0",
+                      point.relative_friction, point.displacement_m));
+    pools.push_back({point.relative_friction, 1});
+    while (pools.size() > 1) {
+      const Pool last = pools.back(), before = pools[pools.size() - 2];
+      if (before.sum / before.count >= last.sum / last.count) break;
+      pools.pop_back();
+      pools.back() = {before.sum + last.sum, before.count + last.count};
+    }
+  }
+  FrictionFit fit;
+  std::size_t k = 0;
+  for (const Pool& pool : pools)
+    for (double i = 0; i < pool.count; i += 1, ++k) {
+      const double value = pool.sum / pool.count;
+      fit.residual +=
+          std::pow(measured[k].relative_friction - value, 2) / static_cast<double>(measured.size());
+      if (!fit.points.empty() && fit.points.back().displacement_m == measured[k].displacement_m) continue;
+      fit.points.push_back({measured[k].displacement_m, value});
+    }
+  fit.residual = std::sqrt(fit.residual);
+  if (fit.points.size() < 2)
+    throw std::invalid_argument("friction was measured at fewer than two displacements");
+  return fit;
+}
+
+}  // namespace turnpoint::calibration

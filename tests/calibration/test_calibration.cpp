@@ -1,0 +1,96 @@
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+
+#include "station/calibration/calibration.hpp"
+#include "station/text/problem.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+using namespace turnpoint::calibration;
+
+namespace {
+
+std::string written(const char* name, const std::string& content) {
+  const std::string path = std::string(TURNPOINT_BINARY_DIR) + "/" + name;
+  std::ofstream(path) << content;
+  return path;
+}
+
+Measurements measurements() {
+  std::string sweep = "frequency_Hz,displacement_um,phase_deg\n";
+  for (int k = 0; k <= 60; ++k) {
+    const double f = 20000 + 500 * k, u = (f - 35000) / 8000;
+    sweep +=
+        std::to_string(f) + "," + std::to_string(0.5 / (1 + u * u)) + "," + std::to_string(-60 * u) + "\n";
+  }
+  Measurements files;
+  files.sweeps = {{"main", written("sweep.csv", sweep), 0.25}};
+  files.boundaries_csv =
+      written("boundaries.csv",
+              "frequency_Hz,boundary_mm,sd_mm\n22400,97,1\n30000,147,1\n40000,190,1\n45000,206,1\n");
+  files.friction_csv = written("friction.csv", "displacement_um,relative_friction\n0,1\n1,0.4\n2,0.2\n");
+  files.sound_csv = written("sound.csv", "frequency_Hz,level_dB\n20000,71\n40000,95\n");
+  return files;
+}
+
+Calibration made() {
+  Calibration calibration = fit_measurements(measurements());
+  calibration.rig_name = "Plate \"A\"";
+  calibration.rig_sha256 = "abc";
+  calibration.made_on = "2026-02-27";
+  calibration.valid_days = 30;
+  return calibration;
+}
+
+}  // namespace
+
+TEST_CASE("measurements become a file that reads back as the same calibration", "[calibration]") {
+  const Calibration calibration = made();
+  const std::string path = written("calibration.toml", to_toml(calibration));
+  const Calibration back = load(path);
+  CHECK(to_toml(back) == to_toml(calibration));
+  CHECK(back.rig_name == "Plate \"A\"");
+  REQUIRE(back.boundary.has_value());
+  CHECK(back.boundary->law == BoundaryFit::Law::plate);
+  CHECK(boundary_at(*back.boundary, 30000) == Approx(0.147).margin(0.002));
+  CHECK(back.sound.size() == 2);
+}
+
+TEST_CASE("a drive level comes from the response, within the band only", "[calibration]") {
+  const ResponseFit response = made().transducers.at(0).response;
+  const auto drive = drive_for(response, 35000, 1e-6);
+  REQUIRE(drive.has_value());
+  CHECK(drive->full_scale == Approx(0.5).epsilon(0.01));  // 0.5 um at a quarter of full scale
+  CHECK(drive->equalisation_dB == Approx(0).margin(0.1));
+  CHECK(drive_for(response, 27000, 1e-6)->equalisation_dB == Approx(6.02).margin(0.1));
+  CHECK(drive_for(response, 27000, 1e-6)->phase_rad == Approx(M_PI / 3).margin(0.01));
+  CHECK_FALSE(drive_for(response, 19999, 1e-6).has_value());
+  CHECK_FALSE(drive_for(response, 50001, 1e-6).has_value());
+}
+
+TEST_CASE("a calibration expires, belongs to one rig file, and says so", "[calibration]") {
+  const Calibration calibration = made();
+  CHECK(days_left(calibration, "2026-02-27") == 30);
+  CHECK(days_left(calibration, "2026-03-29") == 0);
+  CHECK(problems(calibration, "abc", "2026-03-29").empty());
+  CHECK(problems(calibration, "abc", "2026-03-30").at(0) ==
+        "the calibration of 2026-02-27 expired 1 days ago");
+  CHECK(problems(calibration, "abd", "2026-03-01").size() == 1);
+  CHECK(problems(calibration, "abc", "2026-02-01").size() == 1);
+  CHECK_THROWS_AS(days_left(calibration, "2026-02-30"), std::invalid_argument);
+}
+
+TEST_CASE("every problem of every file is told at once, with its place", "[calibration]") {
+  Measurements files = measurements();
+  files.friction_csv = written("bad_friction.csv", "displacement_um,friction\n0,1\n");
+  files.sound_csv = written("bad_sound.csv", "frequency_Hz,level_dB\n20000,loud\n");
+  try {
+    fit_measurements(files);
+    FAIL("accepted");
+  } catch (const text::BadInput& error) {
+    CHECK(error.problems().size() >= 2);
+  }
+  CHECK_THROWS_AS(load(written("bad.toml", "format = \"friction-calibration/1\"\nrig = 3\n")),
+                  text::BadInput);
+}

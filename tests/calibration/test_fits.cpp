@@ -1,0 +1,128 @@
+#include <cmath>
+#include <complex>
+#include <random>
+
+#include "station/calibration/fits.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::calibration;
+using Law = BoundaryFit::Law;
+
+namespace {
+
+// Turning points of the 1998 brass membrane: apex at 300 mm, C = c / 4 d.
+std::vector<BoundaryPoint> brass(std::initializer_list<double> frequencies_Hz) {
+  std::vector<BoundaryPoint> points;
+  for (const double f : frequencies_Hz) points.push_back({f, 0.3 - 1986.39 / f, 0});
+  return points;
+}
+
+// |u| of a resonator behind a constant.
+std::vector<ResponsePoint> resonator(double f0_Hz, double q, double from_Hz, double to_Hz, int count) {
+  std::vector<ResponsePoint> sweep;
+  for (int k = 0; k < count; ++k) {
+    const double f = from_Hz + (to_Hz - from_Hz) * k / (count - 1);
+    const std::complex<double> h = 1e-8 / std::complex<double>(1 - f * f / (f0_Hz * f0_Hz), f / (f0_Hz * q));
+    sweep.push_back({f, std::abs(h), std::arg(h)});
+  }
+  return sweep;
+}
+
+}  // namespace
+
+TEST_CASE("two boundaries of a known law give apex and constant exactly", "[calibration]") {
+  const BoundaryFit fit = fit_boundaries(brass({19600, 40000}), Law::membrane);
+  CHECK(fit.apex_m == Approx(0.3).epsilon(1e-12));
+  CHECK(fit.constant == Approx(1986.39).epsilon(1e-12));
+  CHECK(boundary_at(fit, 45000) == Approx(0.3 - 1986.39 / 45000));
+  CHECK(fit.residual_m == 0);
+}
+
+TEST_CASE("three boundaries tell a membrane from a plate", "[calibration]") {
+  CHECK(fit_boundaries(brass({8000, 19600, 40000}), std::nullopt).law == Law::membrane);
+  std::vector<BoundaryPoint> plate;
+  for (const double f : {22400.0, 30000.0, 40000.0}) plate.push_back({f, 0.4667 - 55.3 / std::sqrt(f), 0});
+  const BoundaryFit fit = fit_boundaries(plate, std::nullopt);
+  CHECK(fit.law == Law::plate);
+  CHECK(fit.apex_m == Approx(0.4667));
+  CHECK(fit.membrane_residual_m > 100 * fit.plate_residual_m);
+}
+
+TEST_CASE("the stated uncertainty of the apex is that of repeated measurements", "[calibration]") {
+  std::mt19937_64 random(7);
+  std::normal_distribution<double> error(0, 0.5e-3);
+  double sum = 0, square = 0, stated = 0;
+  constexpr int repeats = 2000;
+  for (int k = 0; k < repeats; ++k) {
+    auto points = brass({8000, 15000, 25000, 45000});
+    for (auto& point : points) point.boundary_m += error(random), point.sd_m = 0.5e-3;
+    const BoundaryFit fit = fit_boundaries(points, Law::membrane);
+    sum += fit.apex_m - 0.3;
+    square += (fit.apex_m - 0.3) * (fit.apex_m - 0.3);
+    stated = fit.apex_sd_m;
+  }
+  CHECK(std::abs(sum / repeats) < 4 * stated / std::sqrt(repeats));
+  CHECK(std::sqrt(square / repeats) == Approx(stated).epsilon(0.06));
+}
+
+TEST_CASE("curvature against 1/f exposes bending, and stays quiet without it", "[calibration]") {
+  auto points = brass({8000, 12000, 18000, 27000, 40000});
+  double sign = 1;
+  for (auto& point : points) point.boundary_m += (sign = -sign) * 0.1e-3;
+  CHECK(fit_boundaries(points, Law::membrane).curvature_z.value() < 2);
+  for (auto& point : points) point.boundary_m += 3.0e5 / (point.frequency_Hz * point.frequency_Hz);
+  CHECK(fit_boundaries(points, Law::membrane).curvature_z.value() > 2);
+  CHECK_FALSE(fit_boundaries(brass({8000, 20000, 40000}), Law::membrane).curvature_z.has_value());
+}
+
+TEST_CASE("points that determine nothing are refused", "[calibration]") {
+  CHECK_THROWS_AS(fit_boundaries(brass({20000}), Law::membrane), std::invalid_argument);
+  CHECK_THROWS_AS(fit_boundaries(brass({20000, 40000}), std::nullopt), std::invalid_argument);
+  CHECK_THROWS_AS(fit_boundaries(brass({20000, 20000}), Law::plate), std::invalid_argument);
+  CHECK_THROWS_AS(fit_boundaries(brass({20000, 20000, 20000}), Law::plate), std::invalid_argument);
+  CHECK_THROWS_AS(fit_response({{1, 1, 0}}), std::invalid_argument);
+  CHECK_THROWS_AS(fit_friction({{0, 1}}), std::invalid_argument);
+}
+
+TEST_CASE("frequency and Q of a resonance come from its width", "[calibration]") {
+  for (const double q : {20.0, 60.0, 300.0}) {
+    const double f0 = 28000;
+    const auto found = find_resonances(resonator(f0, q, f0 * (1 - 3 / q), f0 * (1 + 3 / q), 61));
+    REQUIRE(found.size() == 1);
+    CHECK(found[0].frequency_Hz == Approx(f0).epsilon(0.3 / q));
+    CHECK(found[0].quality_factor == Approx(q).epsilon(0.05));
+  }
+  CHECK_FALSE(quality_of(find_resonances(resonator(28000, 500, 20000, 40000, 41)))
+                  .has_value());  // too coarse a sweep
+}
+
+TEST_CASE("a response is smoothed without bias, and its band ends where equalisation would exceed 20 dB",
+          "[calibration]") {
+  auto sweep = resonator(30000, 30, 15000, 60000, 181);
+  const ResponseFit clean = fit_response(sweep);
+  CHECK(clean.residual_dB < 0.1);
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> error(0, 0.02);
+  for (auto& point : sweep) point.m_per_full_scale *= std::exp(error(random));
+  const ResponseFit noisy = fit_response(sweep, 9);
+  CHECK(noisy.residual_dB < 0.25);
+  CHECK(noisy.residual_dB > 0.1);
+  double best = 0, at_low = 0;
+  for (const auto& point : clean.points) {
+    best = std::max(best, point.m_per_full_scale);
+    if (point.frequency_Hz == clean.low_Hz) at_low = point.m_per_full_scale;
+  }
+  CHECK(20 * std::log10(best / at_low) <= 20);
+  CHECK(clean.low_Hz > 15000);
+  CHECK(clean.high_Hz < 60000);
+}
+
+TEST_CASE("measured friction is made to fall with displacement by pooling what does not", "[calibration]") {
+  const FrictionFit fit = fit_friction({{0, 1.0}, {2e-6, 0.5}, {1e-6, 0.7}, {1.5e-6, 0.74}, {3e-6, 0.2}});
+  REQUIRE(fit.points.size() == 5);
+  CHECK(fit.points[1].relative_friction == Approx(0.72));
+  CHECK(fit.points[2].relative_friction == Approx(0.72));
+  for (std::size_t k = 1; k < fit.points.size(); ++k)
+    CHECK(fit.points[k].relative_friction <= fit.points[k - 1].relative_friction);
+  CHECK(fit.residual == Approx(std::sqrt(2 * 0.02 * 0.02 / 5)));
+}
