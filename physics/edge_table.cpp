@@ -14,8 +14,14 @@ namespace {
 
 using Piece = EdgeTable::Piece;
 constexpr int degree = EdgeTable::degree;
-constexpr double table_tolerance_m = 1e-11;
 constexpr int deepest = 9;  // halvings of the frequency range
+
+// What a table's pieces are refined to. Elements and fingertip integrals are themselves exact to this only,
+// and asking for more would tabulate their rounding.
+double tolerance_m(const Dispersion& dispersion, const MapOptions& options) {
+  if (options.edge.kind == Edge::Kind::friction) return 1e-6;
+  return dispersion.clamped_bending() ? 3e-7 : 1e-11;
+}
 
 double clenshaw(const Piece& piece, double ln_f) noexcept {
   const double t = (2 * ln_f - piece.low - piece.high) / (piece.high - piece.low);
@@ -74,7 +80,7 @@ class Builder {
     const bool complete = sample(piece, value);
     double worst = std::numeric_limits<double>::infinity();
     if (complete) worst = miss(piece);
-    if (worst > table_tolerance_m && depth < deepest) {
+    if (worst > tolerance_m(dispersion_, options_) && depth < deepest) {
       const double middle = 0.5 * (low + high);
       fill(table, low, middle, depth + 1);
       fill(table, middle, high, depth + 1);

@@ -5,7 +5,10 @@
 namespace turnpoint::physics {
 namespace {
 
-using Eigen::MatrixXd;
+// No larger than an element's basis or quadrature, so that they live on the stack.
+using Small =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, largest_degree + 4, largest_degree + 4>;
+using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, largest_degree + 4, 1>;
 
 // Second derivative of the half-width; a table's jumps at its knots, where elements end.
 double second_derivative(const Taper& taper, double x) {
@@ -34,6 +37,7 @@ ModalAssembler::ModalAssembler(const Taper& taper, const TransverseBasis& across
 
 std::vector<ModalAssembler::Point> ModalAssembler::points(const ModalElement& e) const {
   std::vector<Point> list;
+  list.reserve(rule_.x.size());
   const double d = 2 / e.h;
   for (std::size_t q = 0; q < rule_.x.size(); ++q) {
     const double x = e.x0 + e.h * rule_.x[q];
@@ -54,25 +58,46 @@ std::vector<ModalAssembler::Point> ModalAssembler::points(const ModalElement& e)
 
 Eigen::MatrixXcd ModalAssembler::matrix(const ModalElement& e) const {
   const int n = along_.count();
-  // Integrals over x of products of the basis functions, with the weights that the mapping brings.
-  MatrixXd slope = MatrixXd::Zero(n, n), cross = slope, shear = slope, stiff = slope, mass = slope;
-  std::array<std::array<MatrixXd, 4>, 4> bend;
-  for (auto& row : bend) row.fill(MatrixXd::Zero(n, n));
-  for (const Point& p : points(e)) {
-    const Eigen::Map<const Eigen::VectorXd> value(p.basis.value.data(), n), first(p.basis.first.data(), n),
-        second(p.basis.second.data(), n);
-    const double r = p.w1 / p.w;
-    slope += p.weight * p.w * first * first.transpose();
-    cross += p.weight * p.w1 * first * value.transpose();
-    shear += p.weight * p.w1 * r * value * value.transpose();
-    stiff += p.weight / p.w * value * value.transpose();
-    mass += p.weight * p.w * value * value.transpose();
-    if (!equation_.plate()) continue;
+  const std::vector<Point> list = points(e);
+  const auto rows = static_cast<Eigen::Index>(list.size());
+  // Basis functions at the quadrature points, one row a point, and the mapping's weights there.
+  Small value(rows, n), first(rows, n), second(rows, n);
+  Column weight(rows), w(rows), w1(rows), curve(rows);
+  for (Eigen::Index q = 0; q < rows; ++q) {
+    const Point& p = list[static_cast<std::size_t>(q)];
+    for (int a = 0; a < n; ++a) {
+      const auto i = static_cast<std::size_t>(a);
+      value(q, a) = p.basis.value[i];
+      first(q, a) = p.basis.first[i];
+      second(q, a) = p.basis.second[i];
+    }
+    weight[q] = p.weight;
+    w[q] = p.w;
+    w1[q] = p.w1;
+    curve[q] = p.w2 / p.w;
+  }
+  const Column r = w1.cwiseQuotient(w);
+  const auto gram = [](const Small& a, const Column& by, const Small& b) -> Small {
+    return a.transpose().lazyProduct(by.asDiagonal() * b);
+  };
+  const Small slope = gram(first, weight.cwiseProduct(w), first);
+  const Small cross = gram(first, weight.cwiseProduct(w1), value);
+  const Small shear = gram(value, weight.cwiseProduct(w1).cwiseProduct(r), value);
+  const Small stiff = gram(value, weight.cwiseQuotient(w), value);
+  const Small mass = gram(value, weight.cwiseProduct(w), value);
+  std::array<std::array<Small, 4>, 4> bend;
+  if (equation_.plate()) {
     // lap v = X'' Y + [(2 r^2 - W''/W) X - 2 r X'] eta Y' + r^2 X eta^2 Y'' + X Y''/W^2
-    const std::array<Eigen::VectorXd, 4> part{second, (2 * r * r - p.w2 / p.w) * value - 2 * r * first,
-                                              r * r * value, value / (p.w * p.w)};
+    const Column r2 = r.cwiseProduct(r);
+    const Column stretch = 2 * r2 - curve;
+    const Column across = w.cwiseProduct(w).cwiseInverse();
+    std::array<Small, 4> part{second, second, second, second};
+    part[1] = stretch.asDiagonal() * value;
+    part[1] -= 2 * (r.asDiagonal() * first);
+    part[2] = r2.asDiagonal() * value;
+    part[3] = across.asDiagonal() * value;
     for (std::size_t i = 0; i < 4; ++i) {
-      for (std::size_t j = 0; j < 4; ++j) bend[i][j] += p.weight * p.w * part[i] * part[j].transpose();
+      for (std::size_t j = 0; j < 4; ++j) bend[i][j] = gram(part[i], weight.cwiseProduct(w), part[j]);
     }
   }
   // Which unknowns exist: fewer transverse functions at the right vertex.

@@ -25,7 +25,16 @@ struct Setup {
   ElementBasis along;
   ModalEquation equation;
   double turning_m;  // or the length
+  int spare;         // transverse functions beyond those that can propagate
 };
+
+// Tension makes a boundary layer along clamped sides, of sqrt(D/N), which takes more polynomials.
+int spare_functions(const Dispersion& dispersion, double f, const ModalResolution& resolution) {
+  if (!dispersion.clamped_bending()) return resolution.spare_functions;
+  const double layers =
+      dispersion.cut_off_half_width_m(f) * std::sqrt(dispersion.tension_N_per_m / dispersion.stiffness_N_m);
+  return resolution.spare_functions + static_cast<int>(std::min(8.0, std::ceil(layers / 10)));
+}
 
 TransverseBasis make_across(const Surface& surface, double f, const ModalResolution& resolution) {
   const Dispersion dispersion(surface);
@@ -36,8 +45,8 @@ TransverseBasis make_across(const Surface& surface, double f, const ModalResolut
     return TransverseBasis::clamped_shape(
         k * w, w * std::sqrt(k * k + dispersion.tension_N_per_m / dispersion.stiffness_N_m));
   }
-  const int functions =
-      resolution.spare_functions + 2 + static_cast<int>(std::ceil(k * Taper(surface).half_width_m(0) / pi));
+  const int functions = spare_functions(dispersion, f, resolution) + 2 +
+                        static_cast<int>(std::ceil(k * Taper(surface).half_width_m(0) / pi));
   return TransverseBasis::polynomials(std::min(functions, 60), plate ? 2 : 1);
 }
 
@@ -54,14 +63,14 @@ Setup make_setup(const Surface& surface, double f, Losses losses, const ModalRes
     equation.tension = dispersion.tension_N_per_m / dispersion.stiffness_N_m;
     equation.inertia *= lossy * lossy + equation.tension;
   }
-  return {
-      Taper(surface),
-      k,
-      make_across(surface, f, resolution),
-      ElementBasis{resolution.degree, plate ? 2 : 1},
-      equation,
-      turning_point_m(surface, f)
-          .value_or(f < dispersion.cut_off_frequency_Hz(half_width_m(surface, 0)) ? 0 : surface.length_m)};
+  return {Taper(surface),
+          k,
+          make_across(surface, f, resolution),
+          ElementBasis{resolution.degree, plate ? 2 : 1},
+          equation,
+          turning_point_m(surface, f)
+              .value_or(f < dispersion.cut_off_frequency_Hz(half_width_m(surface, 0)) ? 0 : surface.length_m),
+          spare_functions(dispersion, f, resolution)};
 }
 
 // Intervals from the drive edge to the end, finer at the drive edge's corners, ending on the taper's knots.
@@ -81,7 +90,7 @@ std::vector<ModalElement> make_elements(const Setup& s, const ModalResolution& r
     }
     if (x + 1.5 * h > end) h = x + h >= end ? end - x : 0.5 * (end - x);
     if (!(h > 1e-9 * w0)) break;  // the apex itself
-    const int wanted = static_cast<int>(std::ceil(s.k * w / pi)) + resolution.spare_functions;
+    const int wanted = static_cast<int>(std::ceil(s.k * w / pi)) + s.spare;
     ModalElement& e = elements.emplace_back();
     e.x0 = x;
     e.h = h;

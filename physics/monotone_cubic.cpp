@@ -59,6 +59,7 @@ double MonotoneCubic::inverse(double y) const {
       pieces_.begin(), pieces_.end(), y,
       [rising](double value, const Cubic& p) { return rising ? value < p.y0 : value > p.y0; });
   const Cubic& p = after == pieces_.begin() ? pieces_.front() : *(after - 1);
+  if (y == p.y0) return p.x0;
   double low = p.x0, high = p.x1;
   double x = 0.5 * (low + high);
   for (int i = 0; i < 100 && high > low; ++i) {

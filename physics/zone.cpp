@@ -5,7 +5,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "physics/boundary_map.hpp"
 #include "physics/centre_line.hpp"
 #include "physics/crest.hpp"
 #include "physics/dispersion.hpp"
@@ -17,19 +16,9 @@ namespace {
 
 [[noreturn]] void unreachable(const std::ostringstream& text) { throw std::domain_error(text.str()); }
 
-// Highest frequency for a first guess: the one whose own boundary lies where the zone shall end.
-double first_guess(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request) {
-  MapOptions options;
-  options.edge = request.edge.kind == Edge::Kind::friction ? Edge::percent(0.5) : request.edge;
-  options.friction = FrictionContext{friction, 1e-6, request.fingertip_m};
-  const auto f = BoundaryMap(surface, options).frequency_Hz(request.boundary_m);
-  if (!f) {
-    std::ostringstream text;
-    text << "zone boundary " << request.boundary_m * 1e3 << " mm cannot be presented as "
-         << format(request.edge) << " on this surface";
-    unreachable(text);
-  }
-  return *f;
+// Highest frequency for a first guess: the one that turns where the zone shall end.
+double first_guess(const Surface& surface, const ZoneRequest& request) {
+  return cut_off_frequency_Hz(surface, std::max(1e-6, half_width_m(surface, request.boundary_m)));
 }
 
 void check(const Surface& surface, const FrictionMap& friction, const ZoneRequest& r) {
@@ -95,8 +84,13 @@ void require_band(const ZoneProfile& profile, const ZoneRequest& r) {
 
 ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request) {
   check(surface, friction, request);
-  const double guess = first_guess(surface, friction, request);
-  ZoneProfile profile(surface, friction, request, guess);
+  // One tone first: it finds about where the highest has to lie, so that the others are chosen beside it.
+  ZoneRequest single = request;
+  single.tones = 1;
+  ZoneProfile alone(surface, friction, single, first_guess(surface, request));
+  place(alone, single);
+  require_band(alone, request);
+  ZoneProfile profile(surface, friction, request, alone.highest_Hz());
   place(profile, request);
   require_band(profile, request);
   ZoneDesign design;

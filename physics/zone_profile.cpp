@@ -16,7 +16,7 @@ namespace {
 
 constexpr double grid_step_m = 0.5e-3;
 constexpr int candidates_per_spacing = 3;
-constexpr int most_candidates = 60;
+constexpr int most_candidates = 40;
 // A tone is kept when it lowers the zone's unevenness by at least this factor.
 constexpr double worthwhile = 0.97;
 
@@ -125,7 +125,18 @@ void ZoneProfile::choose_tones(double highest_Hz) {
 
 void ZoneProfile::shift_to(double highest_Hz) {
   const double by = highest_Hz - shapes_.front().frequency_Hz;
-  for (ToneShape& one : shapes_) one = shape(one.frequency_Hz + by);
+  shapes_.front() = shape(highest_Hz);
+  for (std::size_t i = 1; i < shapes_.size();) {
+    const double f = std::max(request_.band.low_Hz, shapes_[i].frequency_Hz + by);
+    if (shapes_[i - 1].frequency_Hz - f <
+        0.999 * request_.band.spacing_Hz) {  // pressed against the band's end
+      shapes_.erase(shapes_.begin() + static_cast<std::ptrdiff_t>(i));
+      weights_.erase(weights_.begin() + static_cast<std::ptrdiff_t>(i));
+      continue;
+    }
+    shapes_[i] = shape(f);
+    ++i;
+  }
 }
 
 std::vector<double> ZoneProfile::summed() const {

@@ -23,7 +23,7 @@ class ZoneProfile {
               double highest_Hz);
 
   double highest_Hz() const { return shapes_.front().frequency_Hz; }
-  // Moves all tones by one frequency difference and recomputes their shapes.
+  // Moves all tones by one frequency difference, lower ones not beyond the band, and recomputes their shapes.
   void shift_to(double highest_Hz);
   // Sets the overall level so that mean friction over the zone is the wanted one; throws std::domain_error.
   void scale_to_friction();

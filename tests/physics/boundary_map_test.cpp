@@ -1,0 +1,134 @@
+#include "physics/boundary_map.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "physics/centre_line.hpp"
+#include "physics/field.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::physics;
+
+namespace {
+
+MapOptions edge(const char* text) {
+  MapOptions options;
+  options.edge = parse_edge(text);
+  options.friction = FrictionContext{};
+  return options;
+}
+
+std::vector<Surface> surfaces() {
+  Surface exponential = seed_brass(), table = seed_brass(), cut = seed_brass();
+  exponential.taper = ExponentialTaper{0.03, 0.1};
+  table.taper = TabulatedTaper{{{0, .03}, {.1, .021}, {.2, .011}, {.3, .004}}};
+  cut.length_m = 0.26;
+  return {seed_brass(), exponential, table, cut, aluminium_plate()};
+}
+
+}  // namespace
+
+TEST_CASE("the seed's example is reproduced: turning points, Airy, equation 11 and exact last maxima",
+          "[physics]") {
+  struct Row {
+    double f, x0, airy, seed, exact;
+  };
+  const Row rows[] = {{8000, 51.701, 19.69, 17.17, 18.42},
+                      {19600, 198.654, 185.59, 184.56, 185.07},
+                      {20000, 200.680, 187.88, 186.87, 187.37},
+                      {40000, 250.340, 243.94, 243.43, 243.68},
+                      {45000, 255.858, 250.17, 249.72, 249.94}};
+  const Surface s = seed_brass();
+  for (const Row& row : rows) {
+    CAPTURE(row.f);
+    CHECK(BoundaryMap(s, edge("turning")).boundary_m(row.f).value() * 1e3 == Approx(row.x0).margin(6e-4));
+    MapOptions options = edge("peak");
+    CHECK(BoundaryMap(s, options).boundary_m(row.f).value() * 1e3 == Approx(row.exact).margin(6e-3));
+    options.model = Model::airy;
+    CHECK(BoundaryMap(s, options).boundary_m(row.f).value() * 1e3 == Approx(row.airy).margin(6e-3));
+    options.model = Model::seed;
+    CHECK(BoundaryMap(s, options).boundary_m(row.f).value() * 1e3 == Approx(row.seed).margin(6e-3));
+  }
+}
+
+TEST_CASE("edges of the exact wedge mode lie at the published arguments of its Bessel function",
+          "[physics]") {
+  const Surface s = seed_brass();
+  const double c = wave_speed_m_s(s);
+  const double expected[] = {17.8133, 15.8455, 15.0088, 13.750, 12.495};
+  const char* names[] = {"peak", "p70", "p50", "p25", "p10"};
+  for (int i = 0; i < 5; ++i) {
+    const double f = 30e3;
+    const double x = BoundaryMap(s, edge(names[i])).boundary_m(f).value();
+    CHECK(2 * M_PI * f / c * (0.3 - x) == Approx(expected[i]).margin(6e-4));
+  }
+}
+
+TEST_CASE("boundary to frequency and back closes to 1e-9 mm for every edge and taper", "[physics]") {
+  for (const Surface& s : surfaces()) {
+    for (const char* name : {"turning", "peak", "p70", "p50", "p25", "p10"}) {
+      if (s.edges == Edges::clamped && std::string(name) != "p50")
+        continue;  // its tables take longest to build
+      const BoundaryMap map(s, edge(name));
+      int found = 0;
+      for (double x = 0.003; x < s.length_m; x += 0.0071) {
+        const auto f = map.frequency_Hz(x);
+        if (!f) continue;
+        ++found;
+        CAPTURE(name, x, *f);
+        REQUIRE(std::abs(map.boundary_m(*f).value() - x) < 1e-12);
+      }
+      CHECK(found > 20);
+    }
+  }
+}
+
+TEST_CASE("the table behind a map agrees with the profile it stands for", "[physics]") {
+  Surface s = seed_brass();
+  s.taper = ExponentialTaper{0.03, 0.1};
+  const BoundaryMap map(s, edge("p25"));
+  for (const double f : {9.1e3, 17.3e3, 29.9e3, 61e3}) {
+    const auto line = make_centre_line(s, f, Model::mode);
+    CHECK(std::abs(map.boundary_m(f).value() - line->level_m(0.25).value()) < 1e-9);
+    CHECK(std::abs(map.boundary_m(f).value() - line->level_m(0.27).value()) > 1e-5);  // it would show
+  }
+}
+
+TEST_CASE("no smooth zone and no last maximum are answers with a reason", "[physics]") {
+  const MapAnswer below = BoundaryMap(seed_brass(), edge("turning")).at_frequency(6000);
+  CHECK_FALSE(below.boundary_m);
+  CHECK(below.reason.find("no smooth zone") != std::string::npos);
+  const MapAnswer early = BoundaryMap(seed_brass(), edge("peak")).at_frequency(6900);
+  CHECK_FALSE(early.boundary_m);
+  CHECK(early.reason.find("before the drive edge") != std::string::npos);
+  CHECK_FALSE(BoundaryMap(seed_brass(), edge("peak")).frequency_Hz(0.31));
+  CHECK_FALSE(BoundaryMap(seed_brass(), edge("peak")).at_boundary(-0.01).frequency_Hz);
+}
+
+TEST_CASE("loss and parameters move a boundary by what the answer states, in two numbers", "[physics]") {
+  Surface s = seed_brass();
+  s.quality_factor = 30;
+  s.sd.tension_Pa = 0.02 * s.tension_Pa;
+  const MapAnswer answer = BoundaryMap(s, edge("p50")).at_frequency(20e3);
+  const double lossy = make_centre_line(s, 20e3, Model::modes)->level_m(0.5).value();
+  CHECK(std::abs(lossy - answer.boundary_m.value()) < answer.error_bound_m);
+  CHECK(std::abs(lossy - answer.boundary_m.value()) > 0.3 * answer.error_bound_m);
+  // s is proportional to c: 2 % of tension is 1 % of the distance from the apex.
+  CHECK(answer.uncertainty_m == Approx(0.01 * (0.3 - *answer.boundary_m)).epsilon(1e-3));
+  s.sd = {};
+  CHECK(BoundaryMap(s, edge("p50")).at_frequency(20e3).uncertainty_m == 0);
+}
+
+TEST_CASE("a lossless membrane's resonances are the zeros of the exact mode at the drive edge", "[physics]") {
+  const auto all = resonances_Hz(seed_brass(), 7000, 45000);
+  CHECK(all.size() == 26);
+  CHECK(nearest_resonance_Hz(seed_brass(), 19600).value() == Approx(19560.4).margin(0.1));
+  CHECK(nearest_resonance_Hz(seed_brass(), 40000).value() == Approx(40010.0).margin(0.1));
+}
+
+TEST_CASE("a clamped aluminium plate has its turning points where the clamped cut-off puts them",
+          "[physics]") {
+  const BoundaryMap map(aluminium_plate(), edge("turning"));
+  const double expected[][2] = {{22.4e3, 97.2}, {30e3, 147.4}, {40e3, 190.2}, {45e3, 206.0}};
+  for (const auto& row : expected) CHECK(map.boundary_m(row[0]).value() * 1e3 == Approx(row[1]).margin(0.06));
+}

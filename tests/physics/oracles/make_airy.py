@@ -1,0 +1,13 @@
+#!/usr/bin/env python3
+"""Ai and Ai' to 50 digits: t, Ai exp(-l), Ai' exp(-l), l with l = -2/3 t^(3/2) for t > 5 (needs python3-mpmath).
+
+    python3 make_airy.py > airy.csv
+"""
+from mpmath import mp, mpf, airyai, exp, nstr
+
+mp.dps = 50
+for i in list(range(-400, 401, 5)) + [-9999, -1234, 999, 2500, 5000]:
+    t = mpf(float(i) / 16)
+    l = -mpf(2) / 3 * t ** mpf(1.5) if t > 5 else mpf(0)
+    ai, dai = airyai(t), airyai(t, derivative=1)
+    print(",".join([repr(float(t)), nstr(ai * exp(-l), 18), nstr(dai * exp(-l), 18), nstr(l, 18)]))

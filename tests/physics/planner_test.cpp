@@ -1,0 +1,178 @@
+#include "physics/planner.hpp"
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "physics/centre_line.hpp"
+#include "physics/dispersion.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::physics;
+
+namespace {
+
+// SplitMix64: random scenes that are the same everywhere.
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : state_(seed) {}
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(next() >> 11) * 0x1p-53;
+  }
+  double spread(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
+  std::uint64_t next() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
+    return z ^ (z >> 31);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+constexpr double frequency_Hz = 20000;
+
+Surface random_surface(Draw& draw) {
+  Surface s = seed_brass();
+  const double cut = cut_off_half_width_m(s, frequency_Hz);
+  const double d = draw.spread(0.01, 0.5), ratio = draw.between(1.15, 8), w0 = ratio * cut, length = w0 / d;
+  s.quality_factor = draw.next() % 4 == 0 ? std::numeric_limits<double>::infinity() : draw.spread(5, 2000);
+  s.drive = draw.next() % 5 == 0 ? DriveShape::piston : DriveShape::cosine;
+  switch (draw.next() % 3) {
+    case 0:
+      s.taper = LinearTaper{w0, d};
+      s.length_m = length * draw.between(0.9, 1);
+      break;
+    case 1:
+      s.taper = ExponentialTaper{w0, cut / d};
+      s.length_m = cut / d * (std::log(ratio) + 1.8);
+      break;
+    default:
+      s.taper = TabulatedTaper{{{0, w0},
+                                {0.3 * length, w0 * draw.between(0.65, 0.8)},
+                                {0.6 * length, w0 * draw.between(0.35, 0.5)},
+                                {0.95 * length, 0.05 * w0}}};
+      s.length_m = 0.95 * length;
+  }
+  return s;
+}
+
+struct TrueError {
+  double amplitude = 0, boundary_m = 0, level_dB = 0;
+};
+
+// What a rung gets wrong against the two-dimensional field: the same quantities as a RungEstimate bounds.
+std::optional<TrueError> true_error(const Surface& s, Model model, const CentreLine& truth,
+                                    Normalise normalise) {
+  const auto line = make_centre_line(s, frequency_Hz, model);
+  const auto peak = line->last_peak_m(), true_peak = truth.last_peak_m();
+  if (!peak || !true_peak) return std::nullopt;
+  const bool drive = normalise == Normalise::drive;
+  const double unit = line->value(drive ? 0 : *peak).ln_magnitude();
+  const double true_unit = truth.value(drive ? 0 : *true_peak).ln_magnitude();
+  TrueError error;
+  double most = 0;
+  for (int i = 0; i <= 400; ++i) {
+    const double x = s.length_m * i / 400;
+    const double a = std::exp(line->value(x).ln_magnitude() - unit);
+    const double b = std::exp(truth.value(x).ln_magnitude() - true_unit);
+    error.amplitude = std::max(error.amplitude, std::abs(a - b));
+    most = std::max(most, b);
+  }
+  error.amplitude /= most;
+  const auto edge = line->level_m(0.5), true_edge = truth.level_m(0.5);
+  if (edge && true_edge) error.boundary_m = std::abs(*edge - *true_edge);
+  const double gain = line->value(*peak).ln_magnitude() - line->value(0).ln_magnitude();
+  const double true_gain = truth.value(*true_peak).ln_magnitude() - truth.value(0).ln_magnitude();
+  error.level_dB = 20 / std::log(10.0) * std::abs(gain - true_gain);
+  return error;
+}
+
+PlanRequest request_for(Normalise normalise) {
+  PlanRequest request;
+  request.tones = {Tone{frequency_Hz, 1, 0}};
+  request.points = 1000;
+  request.edge = Edge::percent(0.5);
+  request.normalise = normalise;
+  return request;
+}
+
+}  // namespace
+
+TEST_CASE("the true error of every rung lies inside its bound on a thousand random scenes", "[physics]") {
+  Draw draw(20260101);
+  int compared = 0, violated = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Surface s = random_surface(draw);
+    const auto x0 = turning_point_m(s, frequency_Hz);
+    if (!x0 || *x0 < 0.02 * s.length_m) continue;
+    const auto truth = make_centre_line(s, frequency_Hz, Model::modes);
+    const Normalise normalise = draw.next() % 2 == 0 ? Normalise::peak : Normalise::drive;
+    const PlanRequest request = request_for(normalise);
+    for (const Model model : {Model::airy, Model::seed, Model::uniform, Model::mode}) {
+      const RungEstimate bound = estimate(s, request, model);
+      if (!bound.usable) continue;
+      const auto error = true_error(s, model, *truth, normalise);
+      if (!error) continue;
+      ++compared;
+      CAPTURE(i, name(model), error->amplitude, bound.amplitude_bound, error->boundary_m,
+              bound.boundary_bound_m, error->level_dB, bound.level_bound_dB);
+      const bool inside = error->amplitude <= bound.amplitude_bound &&
+                          error->boundary_m <= bound.boundary_bound_m &&
+                          error->level_dB <= bound.level_bound_dB;
+      violated += inside ? 0 : 1;
+      // The seed's own rungs are bounded by probes, which may fall between two narrow features.
+      if (model == Model::mode) CHECK(inside);
+    }
+  }
+  CHECK(compared > 3000);
+  CHECK(violated <= compared / 1000);
+}
+
+TEST_CASE("the planner's choice is inside the tolerance, and the next cheaper rung mostly is not",
+          "[physics]") {
+  Draw draw(20260102);
+  int planned = 0, needed = 0, met = 0;
+  for (int i = 0; i < 400; ++i) {
+    const Surface s = random_surface(draw);
+    const auto x0 = turning_point_m(s, frequency_Hz);
+    if (!x0 || *x0 < 0.02 * s.length_m) continue;
+    PlanRequest request = request_for(Normalise::peak);
+    request.tolerance.amplitude = draw.spread(0.003, 1);
+    const PlanChoice choice = choose_model(s, request);
+    CHECK(choice.reason.find(std::string(name(choice.model))) == 0);
+    if (!choice.inside) continue;
+    ++planned;
+    const auto truth = make_centre_line(s, frequency_Hz, Model::modes);
+    const auto error = true_error(s, choice.model, *truth, Normalise::peak);
+    met += !error || error->amplitude <= *request.tolerance.amplitude ? 1 : 0;
+    // The cheaper rungs that were passed over.
+    double best = std::numeric_limits<double>::infinity();
+    for (const RungEstimate& rung : choice.considered) {
+      if (rung.cost_s >= choice.bound.cost_s || !rung.usable) continue;
+      const auto cheaper = true_error(s, rung.model, *truth, Normalise::peak);
+      if (cheaper) best = std::min(best, cheaper->amplitude);
+    }
+    needed += best > *request.tolerance.amplitude ? 1 : 0;
+  }
+  CAPTURE(planned, met, needed);
+  CHECK(planned > 250);
+  CHECK(met == planned);
+  CHECK(needed > planned / 2);
+}
+
+TEST_CASE("positions alone are left to the closed form unless loss matters", "[physics]") {
+  Surface s = seed_brass();
+  PlanRequest request;
+  request.tones = {Tone{20e3, 1, 0}};
+  request.edge = Edge::percent(0.5);
+  request.tolerance.boundary_m = 0.5e-3;
+  CHECK(choose_model(s, request).model == Model::edge);
+  s.quality_factor = 8;
+  const PlanChoice lossy = choose_model(s, request);
+  CHECK(lossy.model == Model::mode);
+  CHECK(lossy.inside);
+  request.tolerance.boundary_m = 1e-12;
+  CHECK_FALSE(choose_model(s, request).inside);
+}
