@@ -136,9 +136,9 @@ void read_tables(text::TableReader& reader, Calibration& calibration) {
 
 std::string to_toml(const Calibration& c) {
   std::string out = "format = \"friction-calibration/1\"\n";
-  out +=
-      fmt::format("rig = {}\nrig_sha256 = {}\nmade_on = {}\nvalid_days = {}\nnote = {}\n", quoted(c.rig_name),
-                  quoted(c.rig_sha256), quoted(c.made_on), c.valid_days, quoted(c.note));
+  out += fmt::format("rig = {}\nrig_sha256 = {}\nmade_on = {}\nvalid_days = {}\n", quoted(c.rig_name),
+                     quoted(c.rig_sha256), quoted(c.made_on), c.valid_days);
+  if (!c.note.empty()) out += fmt::format("note = {}\n", quoted(c.note));
   if (c.quality_factor) out += fmt::format("quality_factor = {}\n", exact(*c.quality_factor));
   if (c.boundary) out += boundary_toml(*c.boundary);
   if (c.friction) {
