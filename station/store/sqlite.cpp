@@ -169,10 +169,28 @@ Database::Database(const std::string& path, Access access) : path_(path) {
                          system != 0 ? fmt::format(" ({})", std::strerror(system)) : "", advice(fault)));
 }
 
+// The statements stay behind: they know the object that made them, and are made again at need.
 Database::Database(Database&& other) noexcept
-    : path_(std::move(other.path_)), handle_(std::exchange(other.handle_, nullptr)) {}
+    : path_(std::move(other.path_)), handle_(std::exchange(other.handle_, nullptr)) {
+  other.begin_.reset();
+  other.commit_.reset();
+}
 
-Database::~Database() { sqlite3_close_v2(handle_); }
+Database::~Database() {
+  begin_.reset();
+  commit_.reset();
+  sqlite3_close_v2(handle_);
+}
+
+Statement& Database::begin_statement() {
+  if (!begin_) begin_ = std::make_unique<Statement>(*this, "BEGIN IMMEDIATE");
+  return *begin_;
+}
+
+Statement& Database::commit_statement() {
+  if (!commit_) commit_ = std::make_unique<Statement>(*this, "COMMIT");
+  return *commit_;
+}
 
 void Database::execute(const std::string& sql) {
   const int code = sqlite3_exec(handle_, sql.c_str(), nullptr, nullptr, nullptr);
@@ -197,7 +215,7 @@ void Database::fail(int code, const std::string& what) const {
       fault, fmt::format("database {}: {}: {}; {}", path_, what, sqlite3_errmsg(handle_), advice(fault)));
 }
 
-Transaction::Transaction(Database& database) : database_(database) { database_.execute("BEGIN IMMEDIATE"); }
+Transaction::Transaction(Database& database) : database_(database) { database_.begin_statement().run(); }
 
 Transaction::~Transaction() {
   // Where SQLite has rolled back by itself there is nothing left to do, and nothing to tell.
@@ -206,7 +224,7 @@ Transaction::~Transaction() {
 }
 
 void Transaction::commit() {
-  database_.execute("COMMIT");
+  database_.commit_statement().run();
   open_ = false;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -93,12 +94,17 @@ class Database {
   const std::string& path() const { return path_; }
   sqlite3* handle() { return handle_; }
 
+  /// Statements that every transaction needs, prepared at first use.
+  Statement& begin_statement();
+  Statement& commit_statement();
+
   /// Throws the StoreError that SQLite's last result on this connection stands for.
   [[noreturn]] void fail(int code, const std::string& what) const;
 
  private:
   std::string path_;
   sqlite3* handle_ = nullptr;
+  std::unique_ptr<Statement> begin_, commit_;
 };
 
 /// BEGIN IMMEDIATE ... COMMIT; rolls back when destroyed without commit().

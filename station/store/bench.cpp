@@ -1,0 +1,162 @@
+#include "station/store/bench.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "station/store/identity.hpp"
+#include "station/store/rows.hpp"
+#include "station/store/session_log.hpp"
+#include "station/store/sqlite.hpp"
+
+namespace turnpoint::store {
+
+namespace {
+
+constexpr int kEvents = 4;  // touches and answers of a usual trial
+
+SessionStart bench_session() {
+  SessionStart start;
+  start.participant = "bench";
+  start.run_mode = RunMode::simulated;
+  start.observer = "bench";
+  start.protocol_id = "bench";
+  start.factor_columns = {"contrast"};
+  return start;
+}
+
+/// A two-interval trial of three tones each.
+TrialRow bench_trial(int index) {
+  TrialRow row;
+  row.trial_index = row.trial_in_block = index;
+  row.procedure = "staircase";
+  row.level = -12.5;
+  row.factors = {{"contrast", 0.125}};
+  row.boundary_mm = 150.0;
+  row.frequency_Hz = 30123.4;
+  row.amplitude = 2.5;
+  row.correct_response = row.response = "first";
+  row.correct = true;
+  row.onset_ns = 1'000'000'000LL * index;
+  row.duration_s = 3.5;
+  row.response_time_s = 0.4375;
+  row.response_zero = "interval_off";
+  row.response_time_quality = "simulated";
+  row.state_hash = 0x0123456789abcdefULL;
+  for (int i = 0; i < 6; ++i) {
+    ToneRow tone;
+    tone.interval_index = i / 3;
+    tone.tone_index = i % 3;
+    tone.scene = "reference";
+    tone.frequency_Hz = 30000.0 + i;
+    tone.amplitude_um = 0.75;
+    tone.model = "mode";
+    tone.reason = "cheapest inside the tolerance";
+    row.tones.push_back(tone);
+  }
+  return row;
+}
+
+EventRow bench_event(int trial) { return {1, "touch", "0", trial, 1}; }
+
+std::function<void(int)> through_the_log(const std::string& path) {
+  auto log =
+      std::make_shared<SessionLog>(SessionLog::begin(path, bench_session(), {"boot", "start", 0, 0, 0}));
+  log->begin_block({0, 0, "main", "", false});
+  return [log](int trial) {
+    log->presented(trial, 1);
+    for (int i = 0; i < kEvents; ++i) log->event(bench_event(trial));
+    log->append(bench_trial(trial));
+  };
+}
+
+/// The tables of the schema without anything that guards them.
+struct Bare {
+  Bare(const std::string& path, const char* synchronous) : database(path, Database::Access::create) {
+    database.execute(std::string("PRAGMA journal_mode = WAL; PRAGMA synchronous = ") + synchronous);
+    database.execute(
+        "CREATE TABLE trial (trial_id INTEGER PRIMARY KEY, session_id, segment_index, block_index, attempt,"
+        " trial_index, trial_in_block, trial_type, procedure, level, factors, boundary_mm, frequency_Hz, "
+        "amplitude,"
+        " correct_response, response, correct, outcome, onset_ns, onset_s, duration_s, response_time_s,"
+        " decision_time_s, movement_time_s, response_zero, response_time_quality, response_offset_s, "
+        "deadline_s,"
+        " xruns, extra_touches, threshold_est, threshold_sd, clock_slope_ns_per_frame, clock_residual_ns, "
+        "state_hash,"
+        " recorded_realtime_ns);"
+        "CREATE TABLE tone (session_id, trial_index, interval_index, scene_index, tone_index, scene, "
+        "boundary_mm,"
+        " frequency_Hz, amplitude_um, displacement_um, friction, rove_dB, model, error_bound_mm, "
+        "uncertainty_mm,"
+        " reason, onset_frame, length_frames);"
+        "CREATE TABLE event (session_id, event_index, segment_index, time_ns, kind, value, trial_index)");
+    rows = std::make_unique<RowWriter>(database);
+    begin = std::make_unique<Statement>(database, "BEGIN IMMEDIATE");
+    commit = std::make_unique<Statement>(database, "COMMIT");
+  }
+
+  void write(int trial) {
+    begin->run();
+    rows->event(place, next_event++, {1, "presented", "", trial, 1});
+    commit->run();
+    begin->run();
+    rows->trial(place, bench_trial(trial), 1);
+    for (int i = 0; i < kEvents; ++i) rows->event(place, next_event++, bench_event(trial));
+    commit->run();
+  }
+
+  Database database;
+  std::unique_ptr<RowWriter> rows;
+  std::unique_ptr<Statement> begin, commit;
+  TrialPlace place{new_uuid(), 1, 0, 0};
+  std::int64_t next_event = 0;
+};
+
+std::function<void(int)> bare(const std::string& path, const char* synchronous) {
+  return [writer = std::make_shared<Bare>(path, synchronous)](int trial) { writer->write(trial); };
+}
+
+double at_quantile(std::vector<double> values, double q) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
+}
+
+/// Removes its folder at the end, whatever happens.
+struct Folder {
+  std::string path;
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+};
+
+}  // namespace
+
+std::vector<BenchRow> bench(const std::string& directory, int trials) {
+  if (trials < 1) throw std::invalid_argument("bench store: at least one trial");
+  const Folder folder{directory + "/turnpoint-bench-" + new_uuid()};
+  std::filesystem::create_directories(folder.path);
+  std::vector<std::pair<std::string, std::function<void(int)>>> ways;
+  ways.emplace_back("bare SQLite, FULL", bare(folder.path + "/bare.sqlite", "FULL"));
+  ways.emplace_back("session log", through_the_log(folder.path + "/log.sqlite"));
+  ways.emplace_back("bare SQLite, OFF (not durable)", bare(folder.path + "/off.sqlite", "OFF"));
+  std::vector<std::vector<double>> times_ms(ways.size());
+  // By turns, so that whatever else the disk does falls on all of them alike.
+  for (int trial = 0; trial < trials; ++trial)
+    for (std::size_t way = 0; way < ways.size(); ++way) {
+      const auto start = std::chrono::steady_clock::now();
+      ways[way].second(trial);
+      const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+      times_ms[way].push_back(took.count());
+    }
+  std::vector<BenchRow> table;
+  for (std::size_t way = 0; way < ways.size(); ++way)
+    table.push_back(
+        {ways[way].first, trials, at_quantile(times_ms[way], 0.5), at_quantile(times_ms[way], 0.99), 0});
+  for (auto& row : table) row.ratio = row.median_ms / table.front().median_ms;
+  return table;
+}
+
+}  // namespace turnpoint::store

@@ -1,0 +1,80 @@
+#!/usr/bin/env python3
+"""check_export.py pandas|bids MAKE_SAMPLE README: exports read by the programs that they are made for.
+
+pandas runs the snippet of the README; bids runs bids-validator-deno. Ends with 77 (skipped) where that program
+is not installed: pip install pandas bids-validator-deno==3.0.2
+"""
+import csv
+import io
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+SKIPPED = 77
+
+
+def skip(what):
+    print(f"skipped: {what} is not installed; pip install pandas bids-validator-deno==3.0.2")
+    sys.exit(SKIPPED)
+
+
+def check_pandas(folder, readme):
+    try:
+        import pandas  # noqa: F401
+    except ImportError:
+        skip("pandas")
+    with open(readme, encoding="utf-8") as file:
+        snippet = re.search(r"```python\n(.*?)```", file.read(), re.S).group(1)
+    os.chdir(os.path.join(folder, "csv", "two-boundaries"))
+    names = {}
+    exec(snippet, names)  # the documented way to read an export
+    trials, by_level = names["trials"], names["by_level"]
+    with open("trials.csv", newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(trials) == len(rows) == 53, len(trials)
+    for column in ("level", "response_time", "correct", "boundary_mm", "onset"):
+        assert trials[column].dtype.kind in "if", (column, trials[column].dtype)
+    answered = [r for r in rows if r["outcome"] == "answered"]
+    assert by_level.n.sum() == len(answered)
+    assert abs(trials.response_time.sum() - sum(float(r["response_time"]) for r in answered)) < 1e-12
+    assert trials.response_time.isna().sum() == len(rows) - len(answered) > 0
+    sessions = names["pd"].read_csv("sessions.csv", na_values=["n/a"])
+    assert sessions.annotations.iloc[1] == "'=a note, with a comma and \"quotes\"", sessions.annotations
+    # Negative control: without na_values the column would be text, and the check above would see it.
+    with open("trials.csv", encoding="utf-8") as file:
+        text = names["pd"].read_csv(io.StringIO(file.read()), keep_default_na=False)
+    assert text.response_time.dtype.kind not in "if"
+    os.chdir("/")
+
+
+def errors_of(validator, dataset):
+    done = subprocess.run([validator, "--json", dataset], capture_output=True, text=True, check=False)
+    issues = json.loads(done.stdout)["issues"]["issues"]
+    return [issue for issue in issues if issue["severity"] == "error"]
+
+
+def check_bids(folder, _readme):
+    validator = shutil.which("bids-validator-deno")
+    if validator is None:
+        skip("bids-validator-deno")
+    dataset = os.path.join(folder, "bids", "two-boundaries")
+    errors = errors_of(validator, dataset)
+    assert not errors, json.dumps(errors, indent=2)
+    # Negative control: the validator does look.
+    os.remove(os.path.join(dataset, "dataset_description.json"))
+    assert errors_of(validator, dataset)
+
+
+def main():
+    kind, make_sample, readme = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([make_sample, folder], check=True)
+        {"pandas": check_pandas, "bids": check_bids}[kind](folder, readme)
+    print("passed")
+
+
+main()
