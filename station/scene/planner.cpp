@@ -39,30 +39,25 @@ struct Planner::State {
 
   explicit State(const rig::Rig& r) : rig(r), surface(surface_of(r)), friction(friction_of(r)) {}
 
-  const physics::BoundaryMap& map_for(const physics::Edge& edge, std::optional<Model> model,
-                                      double displacement_m);
-  double frequency_for(double boundary_m, const physics::Edge& edge, std::optional<Model> model,
-                       double displacement_m);
+  const physics::BoundaryMap& map_for(const physics::Edge& edge, double displacement_m);
+  double frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m);
   double target_displacement(const Scene& scene) const;
-  std::vector<Tone> single(const Scene& scene, std::optional<Model> model);
-  std::vector<Tone> explicit_tones(const Scene& scene, std::optional<Model> model);
+  std::vector<Tone> single(const Scene& scene);
+  std::vector<Tone> explicit_tones(const Scene& scene);
   std::vector<Tone> zone(const Scene& scene, DrivePlan& plan);
-  std::vector<Tone> tones_for(const Scene& scene, std::optional<Model> model, DrivePlan& plan);
+  std::vector<Tone> tones_for(const Scene& scene, DrivePlan& plan);
   physics::PlanChoice choose(const Scene& scene, const std::vector<Tone>& tones) const;
   void drive(DrivePlan& plan, const std::vector<Tone>& tones) const;
   void refuse_beyond_limits(const DrivePlan& plan) const;
 };
 
-const physics::BoundaryMap& Planner::State::map_for(const physics::Edge& edge, std::optional<Model> model,
-                                                    double displacement_m) {
+const physics::BoundaryMap& Planner::State::map_for(const physics::Edge& edge, double displacement_m) {
   const bool by_friction = edge.kind == physics::Edge::Kind::friction;
-  const auto key = fmt::format("{}|{}|{}", physics::format(edge), model ? physics::name(*model) : "",
-                               by_friction ? displacement_m : 0.0);
+  const auto key = fmt::format("{} {}", physics::format(edge), by_friction ? displacement_m : 0.0);
   auto found = maps.find(key);
   if (found == maps.end()) {
     physics::MapOptions options;
     options.edge = edge;
-    options.model = model;
     if (by_friction)
       options.friction = physics::FrictionContext{friction, displacement_m, rig.friction.fingertip_m};
     found = maps.emplace(key, physics::BoundaryMap(surface, options)).first;
@@ -70,9 +65,8 @@ const physics::BoundaryMap& Planner::State::map_for(const physics::Edge& edge, s
   return found->second;
 }
 
-double Planner::State::frequency_for(double boundary_m, const physics::Edge& edge, std::optional<Model> model,
-                                     double displacement_m) {
-  const auto& map = map_for(edge, model, displacement_m);
+double Planner::State::frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m) {
+  const auto& map = map_for(edge, displacement_m);
   if (const auto frequency = map.frequency_Hz(boundary_m)) return *frequency;
   const auto answer = map.at_boundary(boundary_m);
   throw Unreachable(fmt::format("no frequency puts the {} edge at {} mm: {}", physics::format(edge),
@@ -87,19 +81,19 @@ double Planner::State::target_displacement(const Scene& scene) const {
                                 number(wanted), number(friction.lowest_friction())));
 }
 
-std::vector<Tone> Planner::State::single(const Scene& scene, std::optional<Model> model) {
+std::vector<Tone> Planner::State::single(const Scene& scene) {
   const double displacement = target_displacement(scene) * std::pow(10.0, scene.rove_dB / 20);
-  const double frequency = frequency_for(*scene.boundary_m, scene.edge, model, displacement);
+  const double frequency = frequency_for(*scene.boundary_m, scene.edge, displacement);
   return {{frequency, physics::drive_amplitude_m(surface, frequency, displacement), 0}};
 }
 
-std::vector<Tone> Planner::State::explicit_tones(const Scene& scene, std::optional<Model> model) {
+std::vector<Tone> Planner::State::explicit_tones(const Scene& scene) {
   std::vector<Tone> tones;
   for (const auto& target : scene.tones) {
     const double displacement = target.displacement_m * std::pow(10.0, scene.rove_dB / 20);
     const double frequency = target.frequency_Hz
                                  ? *target.frequency_Hz
-                                 : frequency_for(*target.boundary_m, target.edge, model, displacement);
+                                 : frequency_for(*target.boundary_m, target.edge, displacement);
     tones.push_back(
         {frequency, physics::drive_amplitude_m(surface, frequency, displacement), target.phase_rad});
   }
@@ -133,11 +127,11 @@ std::vector<Tone> Planner::State::zone(const Scene& scene, DrivePlan& plan) {
   return tones;
 }
 
-std::vector<Tone> Planner::State::tones_for(const Scene& scene, std::optional<Model> model, DrivePlan& plan) {
+std::vector<Tone> Planner::State::tones_for(const Scene& scene, DrivePlan& plan) {
   try {
     if (scene.zone) return zone(scene, plan);
-    if (!scene.tones.empty()) return explicit_tones(scene, model);
-    return single(scene, model);
+    if (!scene.tones.empty()) return explicit_tones(scene);
+    return single(scene);
   } catch (const Unreachable&) {
     throw;
   } catch (const std::domain_error& error) {
@@ -203,10 +197,10 @@ const physics::FrictionMap& Planner::friction() const { return state_->friction;
 DrivePlan Planner::plan(const Scene& scene) {
   DrivePlan plan;
   plan.scene = scene;
-  // The most exact positions first: they tell which model is enough, and that model then places the tones.
-  auto tones = state_->tones_for(scene, std::nullopt, plan);
+  // Positions come from the validated table, which is both the cheapest and the most exact there is; the
+  // choice of a model is about the profile.
+  auto tones = state_->tones_for(scene, plan);
   const auto choice = state_->choose(scene, tones);
-  if (!scene.zone && choice.model != Model::modes) tones = state_->tones_for(scene, choice.model, plan);
   plan.model = choice.model;
   plan.inside_tolerance = choice.inside;
   plan.error_bound_m = choice.bound.boundary_bound_m;
@@ -216,7 +210,7 @@ DrivePlan Planner::plan(const Scene& scene) {
   if (scene.boundary_m && !plan.boundary_m) plan.boundary_m = scene.boundary_m;
   if (!tones.empty() && scene.edge.kind != physics::Edge::Kind::friction)
     plan.uncertainty_m =
-        state_->map_for(scene.edge, std::nullopt, 0).at_frequency(tones.front().frequency_Hz).uncertainty_m;
+        state_->map_for(scene.edge, 0).at_frequency(tones.front().frequency_Hz).uncertainty_m;
   physics::assign_phases(tones);
   plan.crest_factor = physics::crest_factor(tones);
   plan.audible_products = physics::audible_products(tones);
