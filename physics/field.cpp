@@ -194,9 +194,9 @@ ToneInfo tone_info(const Surface& surface, double frequency_Hz, Model model) {
   return info;
 }
 
-double drive_amplitude_m(const Surface& surface, double frequency_Hz, double displacement_m) {
+double drive_amplitude_m(const Surface& surface, double frequency_Hz, double displacement_m, Model model) {
   validate(surface);
-  const ToneInfo info = solve(surface, frequency_Hz, Model::mode).info;
+  const ToneInfo info = solve(surface, frequency_Hz, model).info;
   if (!info.last_peak_m) throw std::domain_error(info.no_peak_reason);
   return displacement_m / info.gain;
 }

@@ -63,9 +63,10 @@ Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<co
 // Where and how strongly one frequency acts, without a profile.
 ToneInfo tone_info(const Surface& surface, double frequency_Hz, Model model = Model::mode);
 
-// Amplitude of the drive edge that gives `displacement_m` (peak) at the last maximum, by `mode`; the means by
-// which levels are equal across boundaries. Throws std::domain_error when there is no last maximum.
-double drive_amplitude_m(const Surface& surface, double frequency_Hz, double displacement_m);
+// Amplitude of the drive edge that gives `displacement_m` (peak) at the last maximum; the means by which
+// levels are equal across boundaries. Throws std::domain_error when there is no last maximum.
+double drive_amplitude_m(const Surface& surface, double frequency_Hz, double displacement_m,
+                         Model model = Model::mode);
 
 // n points from 0 to length_m inclusive (n >= 2).
 std::vector<double> linspace_points(const Surface& surface, int n);

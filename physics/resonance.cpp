@@ -66,9 +66,71 @@ std::optional<double> resonance(const Phase& phase, int n, double from_Hz, doubl
   return std::nullopt;
 }
 
+// A clamped plate's v(0) over its last maximum, with sign, by the lossless mode: zero at a resonance.
+class PlateResponse {
+ public:
+  explicit PlateResponse(const Surface& surface) : surface_(surface) {}
+
+  std::optional<double> operator()(double f) const {
+    const auto line = make_centre_line(surface_, f, Model::mode, Losses::left_out);
+    const auto peak = line->last_peak_m();
+    if (!peak) return std::nullopt;
+    const Scaled top = line->value(*peak), drive = line->value(0);
+    return drive.mantissa.real() / top.mantissa.real() *
+           std::exp(std::min(300.0, drive.ln_scale - top.ln_scale));
+  }
+
+  // About the distance of two resonances: half a wave more between drive edge and turning point.
+  double spacing_Hz(double f) const {
+    const double reach = turning_point_m(surface_, f).value_or(surface_.length_m);
+    return 2 * f * pi / (0.8 * wavenumber_per_m(surface_, f) * std::max(reach, 0.05 * surface_.length_m));
+  }
+
+  // First zero from f on, in the direction of `step_Hz`, within `most` steps.
+  std::optional<double> search(double f, double step_Hz, int most) const {
+    auto at_f = (*this)(f);
+    for (int i = 0; i < most; ++i) {
+      const double next = f + step_Hz;
+      if (!(next > 0)) return std::nullopt;
+      const auto at_next = (*this)(next);
+      if (at_f && at_next && (*at_f > 0) != (*at_next > 0)) return refine(f, *at_f, next, *at_next);
+      f = next;
+      at_f = at_next;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  double refine(double a, double fa, double b, double fb) const {
+    for (int i = 0; i < 40 && std::abs(b - a) > 1e-9 * a; ++i) {
+      double x = i % 3 == 2 ? 0.5 * (a + b) : a + (b - a) * fa / (fa - fb);
+      if (!(x > std::min(a, b) && x < std::max(a, b))) x = 0.5 * (a + b);
+      const double f = (*this)(x).value_or(fa);
+      if (f == 0) return x;
+      ((f > 0) == (fa > 0) ? a : b) = x;
+      ((f > 0) == (fa > 0) ? fa : fb) = f;
+    }
+    return 0.5 * (a + b);
+  }
+
+  Surface surface_;
+};
+
+constexpr int steps_per_spacing = 8;
+
+std::optional<double> nearest_plate_resonance(const Surface& surface, double f) {
+  const PlateResponse response(surface);
+  const double step = response.spacing_Hz(f) / steps_per_spacing;
+  const auto above = response.search(f, step, 2 * steps_per_spacing);
+  const auto below = response.search(f, -step, 2 * steps_per_spacing);
+  if (!above || !below) return above ? above : below;
+  return *above - f < f - *below ? above : below;
+}
+
 }  // namespace
 
 std::optional<double> nearest_resonance_Hz(const Surface& surface, double frequency_Hz) {
+  if (Dispersion(surface).clamped_bending()) return nearest_plate_resonance(surface, frequency_Hz);
   const Phase phase(surface);
   const double here = phase(frequency_Hz);
   const int below = static_cast<int>(std::floor(here / pi));
@@ -80,8 +142,18 @@ std::optional<double> nearest_resonance_Hz(const Surface& surface, double freque
 }
 
 std::vector<double> resonances_Hz(const Surface& surface, double low_Hz, double high_Hz) {
-  const Phase phase(surface);
   std::vector<double> found;
+  if (Dispersion(surface).clamped_bending()) {
+    const PlateResponse response(surface);
+    for (double f = low_Hz; f < high_Hz;) {
+      const double step = response.spacing_Hz(f) / steps_per_spacing;
+      const auto next = response.search(f, step, 1);
+      if (next && *next <= high_Hz) found.push_back(*next);
+      f += step;
+    }
+    return found;
+  }
+  const Phase phase(surface);
   double from = low_Hz, at_from = phase(low_Hz);
   const double last = phase(high_Hz);
   for (int n = static_cast<int>(std::ceil(at_from / pi)); n * pi <= last; ++n) {

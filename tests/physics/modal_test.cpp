@@ -194,3 +194,16 @@ TEST_CASE("a tensioned clamped plate is a membrane that is narrower by its bound
     CHECK(std::abs(found - narrow) < 0.1 * (wide - narrow));
   }
 }
+
+TEST_CASE("a lossless plate answers without bound at its resonances", "[physics]") {
+  Surface s = aluminium_plate();
+  s.quality_factor = std::numeric_limits<double>::infinity();
+  const double f = nearest_resonance_Hz(s, 30e3).value();
+  CHECK(std::abs(f - 30e3) < 1500);
+  const auto gain = [&](double at) {
+    const auto line = make_centre_line(s, at, Model::mode);
+    return std::exp(line->value(*line->last_peak_m()).ln_magnitude() - line->value(0).ln_magnitude());
+  };
+  CHECK(gain(f) > 1e4);
+  CHECK(gain(f + 300) < 20);
+}
