@@ -1,0 +1,178 @@
+#include "station/analysis/likelihood.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace turnpoint::analysis {
+
+namespace {
+
+// Keeps logarithms finite where a model probability reaches 0 or 1 in rounding; far below any count's reach.
+constexpr double kFloor = 1e-12;
+
+/// Solves the damped system for the free parameters by Cholesky; false where it is not positive definite.
+bool solve(std::array<std::array<double, 4>, 4> a, std::array<double, 4> b, const std::array<bool, 4>& free,
+           std::array<double, 4>& x) {
+  std::array<int, 4> index{};
+  int n = 0;
+  for (int i = 0; i < 4; ++i)
+    if (free[i]) index[n++] = i;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j <= i; ++j) {
+      double sum = a[index[i]][index[j]];
+      for (int k = 0; k < j; ++k) sum -= a[index[i]][index[k]] * a[index[j]][index[k]];
+      if (i == j && !(sum > 0)) return false;
+      a[index[i]][index[j]] = i == j ? std::sqrt(sum) : sum / a[index[j]][index[j]];
+    }
+  for (int i = 0; i < n; ++i) {
+    for (int k = 0; k < i; ++k) b[index[i]] -= a[index[i]][index[k]] * b[index[k]];
+    b[index[i]] /= a[index[i]][index[i]];
+  }
+  x = {};
+  for (int i = n - 1; i >= 0; --i) {
+    double sum = b[index[i]];
+    for (int k = i + 1; k < n; ++k) sum -= a[index[k]][index[i]] * x[index[k]];
+    x[index[i]] = sum / a[index[i]][index[i]];
+  }
+  return true;
+}
+
+}  // namespace
+
+Theta Likelihood::project(Theta theta) const {
+  for (int i = 0; i < 4; ++i) theta[i] = std::clamp(theta[i], bounds_.low[i], bounds_.high[i]);
+  if (guess_ == Guess::tied_to_lapse) theta[3] = theta[2];
+  return theta;
+}
+
+Likelihood::Anchor Likelihood::anchor(const Theta& theta) const {
+  if (!anchor_) return {};
+  const double height = 1 - theta[3] - theta[2];
+  const double inside = std::clamp((*anchor_ - theta[3]) / height, kFloor, 1 - kFloor);
+  const double z = core_inverse(function_, inside), slope = core_derivative(function_, z);
+  return {z, inside / height / slope, (inside - 1) / height / slope};
+}
+
+double Likelihood::probability(const Theta& theta, const Anchor& at, double u) const {
+  const double z = std::exp(theta[1]) * (u - theta[0]) + at.z;
+  return std::clamp(theta[3] + (1 - theta[3] - theta[2]) * core(function_, z), kFloor, 1 - kFloor);
+}
+
+double Likelihood::negative_log(const Theta& theta) const {
+  double sum = 0;
+  const auto at = anchor(theta);
+  for (std::size_t i = 0; i < counts_.u.size(); ++i) {
+    const double p = probability(theta, at, counts_.u[i]);
+    sum -= counts_.positive[i] * std::log(p) + (counts_.trials[i] - counts_.positive[i]) * std::log1p(-p);
+  }
+  return sum;
+}
+
+std::array<double, 4> Likelihood::gradient_of_probability(const Theta& theta, const Anchor& at,
+                                                          double u) const {
+  const double rate = std::exp(theta[1]), height = 1 - theta[3] - theta[2], from = rate * (u - theta[0]);
+  const double f = core(function_, from + at.z), df = core_derivative(function_, from + at.z);
+  std::array<double, 4> dp{-height * df * rate, height * df * from, -f + height * df * at.dz_dlapse,
+                           1 - f + height * df * at.dz_dguess};
+  if (guess_ == Guess::tied_to_lapse) dp[2] += dp[3], dp[3] = 0;
+  return dp;
+}
+
+Likelihood::Local Likelihood::local(const Theta& theta) const {
+  Local result{};
+  const auto at = anchor(theta);
+  for (std::size_t i = 0; i < counts_.u.size(); ++i) {
+    const double p = probability(theta, at, counts_.u[i]);
+    const double k = counts_.positive[i], n = counts_.trials[i], weight = n / (p * (1 - p));
+    result.negative_log -= k * std::log(p) + (n - k) * std::log1p(-p);
+    const auto dp = gradient_of_probability(theta, at, counts_.u[i]);
+    for (int a = 0; a < 4; ++a) {
+      result.gradient[a] -= (k / n - p) * weight * dp[a];
+      for (int b = 0; b <= a; ++b) result.information[a][b] += weight * dp[a] * dp[b];
+    }
+  }
+  return result;
+}
+
+Likelihood::Maximum Likelihood::climb(Theta start) const {
+  Theta theta = project(start);
+  Local here = local(theta);
+  double damping = 1e-3;
+  for (int iteration = 0; iteration < 200 && damping < 1e12; ++iteration) {
+    std::array<bool, 4> free{};
+    for (int i = 0; i < 4; ++i)
+      free[i] = bounds_.low[i] < bounds_.high[i] && !(guess_ == Guess::tied_to_lapse && i == 3) &&
+                !(theta[i] <= bounds_.low[i] && here.gradient[i] >= 0) &&
+                !(theta[i] >= bounds_.high[i] && here.gradient[i] <= 0);
+    auto system = here.information;
+    std::array<double, 4> right{}, step{};
+    for (int i = 0; i < 4; ++i) {
+      system[i][i] += damping * system[i][i] + 1e-12;
+      right[i] = -here.gradient[i];
+    }
+    if (!solve(system, right, free, step)) {
+      damping *= 10;
+      continue;
+    }
+    Theta next = theta;
+    // One standard deviation of the function, and a factor e in rate, are as far as a step is trusted.
+    step[0] = std::clamp(step[0], -2 / std::exp(theta[1]), 2 / std::exp(theta[1]));
+    step[1] = std::clamp(step[1], -1.0, 1.0);
+    for (int i = 0; i < 4; ++i) next[i] += step[i];
+    next = project(next);
+    Local there = local(next);
+    const double gain = here.negative_log - there.negative_log;
+    if (gain < 0) {
+      damping = std::max(damping * 10, 1e-6);
+      continue;
+    }
+    double moved = 0;
+    for (int i = 0; i < 4; ++i)
+      moved = std::max(moved, std::abs(next[i] - theta[i]) * (i ? 1 : std::exp(theta[1])));
+    theta = next;
+    here = there;
+    damping *= 0.1;
+    if (moved < 1e-9) break;
+  }
+  return steepest({theta, here.negative_log});
+}
+
+Likelihood::Maximum Likelihood::steepest(const Maximum& found) const {
+  // Where the answers jump between two levels the likelihood is flat towards infinite slope, and the climb
+  // ends anywhere on that plateau: the bound says so.
+  std::vector<double> thresholds{found.theta[0]};
+  for (std::size_t i = 1; i < counts_.u.size(); ++i)
+    if (counts_.u[i - 1] <= found.theta[0] && found.theta[0] <= counts_.u[i])
+      thresholds.push_back((counts_.u[i - 1] + counts_.u[i]) / 2);
+  for (const double threshold : thresholds) {
+    Theta theta = found.theta;
+    theta[0] = threshold;
+    theta[1] = bounds_.high[1];
+    const double cost = negative_log(theta);
+    if (cost <= found.negative_log + 1e-4) return {theta, cost};
+  }
+  return found;
+}
+
+Likelihood::Maximum Likelihood::search() const {
+  std::vector<Maximum> starts;
+  for (const double t : {0.3, 0.42, 0.5, 0.58, 0.7})
+    for (const double b : {0.35, 0.5, 0.65, 0.8})
+      for (const double side : {0.1, 0.9}) {
+        Theta theta;
+        const Theta share{t, b, side, side};
+        for (int i = 0; i < 4; ++i) theta[i] = bounds_.low[i] + share[i] * (bounds_.high[i] - bounds_.low[i]);
+        theta = project(theta);
+        starts.push_back({theta, negative_log(theta)});
+      }
+  std::stable_sort(starts.begin(), starts.end(),
+                   [](const Maximum& a, const Maximum& b) { return a.negative_log < b.negative_log; });
+  Maximum best = climb(starts[0].theta);
+  for (int i = 1; i < 4; ++i) {
+    const Maximum other = climb(starts[i].theta);
+    if (other.negative_log < best.negative_log) best = other;
+  }
+  return best;
+}
+
+}  // namespace turnpoint::analysis

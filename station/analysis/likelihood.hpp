@@ -1,0 +1,68 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "station/analysis/psychometric_fit.hpp"
+
+namespace turnpoint::analysis {
+
+/// Threshold on the axis, ln rate, lapse, guess: the optimiser's parameters. A parameter with equal bounds is
+/// fixed; a tied guess follows the lapse.
+using Theta = std::array<double, 4>;
+struct ThetaBounds {
+  Theta low{}, high{};
+};
+
+/// The levels on their axis with their counts: what every replicate of a bootstrap shares but for `positive`.
+struct AxisCounts {
+  std::vector<double> u, trials, positive;
+};
+
+/// The likelihood of one set of counts and its maximum.
+class Likelihood {
+ public:
+  /// With an anchor theta[0] is the level at which the probability is `anchor`, not the threshold. Counts and
+  /// bounds must outlive the object.
+  Likelihood(Function function, Guess guess, const AxisCounts& counts, const ThetaBounds& bounds,
+             std::optional<double> anchor = std::nullopt)
+      : function_(function), guess_(guess), counts_(counts), bounds_(bounds), anchor_(anchor) {}
+
+  double probability(const Theta& theta, double u) const { return probability(theta, anchor(theta), u); }
+  double negative_log(const Theta& theta) const;
+
+  struct Maximum {
+    Theta theta{};
+    double negative_log = 0;
+  };
+  /// Fisher scoring with Levenberg damping from one start, projected on the bounds: an active bound keeps its
+  /// parameter as long as the gradient points outside.
+  Maximum climb(Theta start) const;
+  /// The best of a grid of starts, each climbed a little, the leaders to the end.
+  Maximum search() const;
+
+ private:
+  struct Local {
+    double negative_log;
+    std::array<double, 4> gradient;
+    std::array<std::array<double, 4>, 4> information;
+  };
+  Local local(const Theta& theta) const;
+  /// The standard variable at theta[0], and how it moves with lapse and guess.
+  struct Anchor {
+    double z = 0, dz_dlapse = 0, dz_dguess = 0;
+  };
+  Anchor anchor(const Theta& theta) const;
+  double probability(const Theta& theta, const Anchor& at, double u) const;
+  std::array<double, 4> gradient_of_probability(const Theta& theta, const Anchor& at, double u) const;
+  Maximum steepest(const Maximum& found) const;
+  Theta project(Theta theta) const;
+
+  Function function_;
+  Guess guess_;
+  const AxisCounts& counts_;
+  const ThetaBounds& bounds_;
+  std::optional<double> anchor_;
+};
+
+}  // namespace turnpoint::analysis

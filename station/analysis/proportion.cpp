@@ -1,0 +1,54 @@
+#include "station/analysis/proportion.hpp"
+
+#include <boost/math/special_functions/beta.hpp>
+#include <boost/math/special_functions/erf.hpp>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "station/text/number.hpp"
+
+namespace turnpoint::analysis {
+
+namespace {
+
+void check(int successes, int trials, double confidence) {
+  if (trials < 1 || successes < 0 || successes > trials)
+    throw std::invalid_argument("proportion " + std::to_string(successes) + " of " + std::to_string(trials) +
+                                ": needs at least one trial and 0 to all successes");
+  if (!(confidence > 0 && confidence < 1))
+    throw std::invalid_argument("confidence " + text::number(confidence) + ": above 0 and below 1");
+}
+
+}  // namespace
+
+double normal_cdf(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }
+
+double normal_density(double z) {
+  return std::exp(-0.5 * z * z) * std::numbers::inv_sqrtpi / std::numbers::sqrt2;
+}
+
+double normal_quantile(double p) {
+  if (!(p > 0 && p < 1))
+    throw std::invalid_argument("normal quantile of " + text::number(p) + ": above 0 and below 1");
+  return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * p);
+}
+
+Interval wilson(int successes, int trials, double confidence) {
+  check(successes, trials, confidence);
+  const double n = trials, p = successes / n;
+  const double z = normal_quantile(0.5 + confidence / 2), z2 = z * z;
+  const double centre = (p + z2 / (2 * n)) / (1 + z2 / n);
+  const double half = z / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
+  // At 0 and at n the limit is exact; rounding must not step outside.
+  return {successes == 0 ? 0 : centre - half, successes == trials ? 1 : centre + half, confidence};
+}
+
+Interval clopper_pearson(int successes, int trials, double confidence) {
+  check(successes, trials, confidence);
+  const double tail = (1 - confidence) / 2, k = successes, n = trials;
+  return {successes == 0 ? 0 : boost::math::ibeta_inv(k, n - k + 1, tail),
+          successes == trials ? 1 : boost::math::ibetac_inv(k + 1, n - k, tail), confidence};
+}
+
+}  // namespace turnpoint::analysis

@@ -1,0 +1,247 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "station/analysis/fit_bounds.hpp"
+#include "station/analysis/proportion.hpp"
+#include "station/analysis/psychometric_fit.hpp"
+#include "station/analysis/quantile.hpp"
+#include "station/random/draws.hpp"
+
+namespace turnpoint::analysis {
+
+namespace {
+
+/// A quantity with an interval: which entry of theta, and what theta[0] stands for.
+struct Quantity {
+  int parameter;
+  std::optional<double> anchor;
+};
+
+/// What a fit needs to be repeated on drawn counts.
+struct Replicator {
+  FitOptions options;
+  AxisCounts counts;
+  ThetaBounds bounds;
+  Theta best{};
+  std::vector<double> model;  ///< probability at each level
+
+  Likelihood likelihood(const AxisCounts& of, const ThetaBounds& within,
+                        std::optional<double> anchor = std::nullopt) const {
+    return {options.function, options.guess, of, within, anchor};
+  }
+
+  AxisCounts draw(const random::Key& key) const {
+    random::Draws draws(key);
+    AxisCounts drawn = counts;
+    for (std::size_t i = 0; i < drawn.u.size(); ++i) {
+      drawn.positive[i] = 0;
+      for (int n = 0; n < static_cast<int>(drawn.trials[i]); ++n)
+        drawn.positive[i] += draws.uniform() < model[i] ? 1 : 0;
+    }
+    return drawn;
+  }
+
+  Likelihood::Maximum fit(const AxisCounts& drawn) const {
+    const auto of = likelihood(drawn, bounds);
+    const auto first = of.climb(best);
+    // A second start from the middle of the box guards against a local maximum on the lapse bound.
+    Theta other = best;
+    other[0] = (bounds.low[0] + bounds.high[0]) / 2;
+    other[2] = (bounds.low[2] + bounds.high[2]) / 2;
+    const auto second = of.climb(other);
+    return second.negative_log < first.negative_log - 1e-9 ? second : first;
+  }
+
+  /// The smallest negative log-likelihood with one quantity held at a value, climbing from `start`.
+  Likelihood::Maximum held(const AxisCounts& of, const Quantity& quantity, double value, Theta start) const {
+    ThetaBounds narrowed = bounds;
+    narrowed.low[quantity.parameter] = narrowed.high[quantity.parameter] = value;
+    start[quantity.parameter] = value;
+    return likelihood(of, narrowed, quantity.anchor).climb(start);
+  }
+};
+
+double saturated(const AxisCounts& counts) {
+  double sum = 0;
+  for (std::size_t i = 0; i < counts.u.size(); ++i) {
+    const double k = counts.positive[i], n = counts.trials[i];
+    if (k > 0) sum -= k * std::log(k / n);
+    if (k < n) sum -= (n - k) * std::log((n - k) / n);
+  }
+  return sum;
+}
+
+Replicator replicator(const PsychometricFit& fit) {
+  Replicator result;
+  result.options = fit.options;
+  result.counts = axis_counts(fit.data, fit.options.function, fit.options.scale);
+  result.bounds = theta_bounds(result.counts, fit.options);
+  const auto& p = *fit.parameters;
+  result.best = {axis_position(fit.options.function, fit.options.scale, p.threshold),
+                 std::log(rate_from_slope(fit.options.function, p.slope)), p.lapse, p.guess};
+  for (const auto& point : fit.data)
+    result.model.push_back(probability(fit.options.function, fit.options.scale, p, point.level));
+  return result;
+}
+
+/// Where the profile reaches `critical` on one side of the estimate, or the bound where it does not.
+double profile_end(const Replicator& base, const Quantity& quantity, Theta start, double bound,
+                   double best_cost, double critical) {
+  double inside = start[quantity.parameter], outside = bound;
+  auto at_bound = base.held(base.counts, quantity, bound, start);
+  if (2 * (at_bound.negative_log - best_cost) <= critical) return bound;
+  for (int i = 0; i < 40 && std::abs(outside - inside) > 1e-5 * (1 + std::abs(inside)); ++i) {
+    // Most of the box is far away: the first steps approach the estimate faster than by halves.
+    const double middle = i < 3 ? inside + (outside - inside) / 4 : (inside + outside) / 2;
+    const auto found = base.held(base.counts, quantity, middle, start);
+    if (2 * (found.negative_log - best_cost) <= critical) {
+      inside = middle;
+      start = found.theta;
+    } else {
+      outside = middle;
+    }
+  }
+  return (inside + outside) / 2;
+}
+
+ParameterInterval profile(const Replicator& base, const Quantity& quantity, const Theta& start,
+                          double best_cost, std::vector<double> ratios, double confidence) {
+  // Replicates of a fit whose slope came out too steep hardly vary: chi-square's value is the floor.
+  const double z = normal_quantile(0.5 + confidence / 2);
+  const double critical = std::max(quantile(std::move(ratios), confidence), z * z);
+  const double low = base.bounds.low[quantity.parameter], high = base.bounds.high[quantity.parameter];
+  ParameterInterval result;
+  result.interval = {profile_end(base, quantity, start, low, best_cost, critical),
+                     profile_end(base, quantity, start, high, best_cost, critical), confidence};
+  result.touches_low = result.interval.low <= low;
+  result.touches_high = result.interval.high >= high;
+  return result;
+}
+
+ParameterInterval percentile(std::vector<double> values, double confidence, double low, double high) {
+  ParameterInterval result{percentile_interval(std::move(values), confidence), false, false};
+  const double margin = 1e-6 * (high - low);
+  result.touches_low = result.interval.low <= low + margin;
+  result.touches_high = result.interval.high >= high - margin;
+  return result;
+}
+
+/// A monotone map of both ends; a falling one swaps them.
+template <class Map>
+ParameterInterval mapped(const ParameterInterval& from, Map map) {
+  auto result = from;
+  result.interval.low = map(from.interval.low);
+  result.interval.high = map(from.interval.high);
+  if (result.interval.low > result.interval.high) {
+    std::swap(result.interval.low, result.interval.high);
+    std::swap(result.touches_low, result.touches_high);
+  }
+  return result;
+}
+
+void add_band(PsychometricBootstrap& result, const Replicator& base, const std::vector<Theta>& thetas,
+              int points) {
+  const double first = base.counts.u.front(), last = base.counts.u.back(), margin = 0.04 * (last - first);
+  const Likelihood likelihood(base.options.function, base.options.guess, base.counts, base.bounds);
+  for (int i = 0; i < points; ++i) {
+    const double u = first - margin + i * (last - first + 2 * margin) / (points - 1);
+    std::vector<double> values;
+    for (const auto& theta : thetas) values.push_back(likelihood.probability(theta, u));
+    const auto range = percentile_interval(std::move(values), result.confidence);
+    result.band_level.push_back(level_from_axis(base.options.function, base.options.scale, u));
+    result.band_low.push_back(range.low);
+    result.band_high.push_back(range.high);
+  }
+}
+
+void say_what_touches(PsychometricBootstrap& result) {
+  const auto say = [&result](const std::optional<ParameterInterval>& of, const char* what) {
+    if (!of || !(of->touches_low || of->touches_high)) return;
+    const char* end = of->touches_low && of->touches_high ? "both ends"
+                      : of->touches_low                   ? "its lower end"
+                                                          : "its upper end";
+    result.statements.push_back({std::string("interval-") + what, std::string("The interval of the ") + what +
+                                                                      " touches a bound at " + end +
+                                                                      ": there the data do not limit it."});
+  };
+  say(result.threshold, "threshold");
+  say(result.slope, "slope");
+  say(result.interval_75, "75 % point");
+}
+
+/// The replicates of one fit: their estimates, deviances beyond the fit's, and likelihood ratios of the
+/// fit's own values of each quantity.
+struct Replicates {
+  std::vector<Theta> thetas;
+  std::vector<std::vector<double>> ratios;
+  int beyond = 0;
+};
+
+Replicates replicate(const Replicator& base, const BootstrapOptions& options, double deviance,
+                     const std::vector<Quantity>& quantities, const std::vector<Theta>& values) {
+  Replicates result;
+  result.ratios.resize(quantities.size());
+  for (int i = 0; i < options.replicates; ++i) {
+    const auto drawn = base.draw({options.seed, random::Stream::bootstrap, options.stream, 0, i});
+    const auto fitted = base.fit(drawn);
+    result.thetas.push_back(fitted.theta);
+    result.beyond += 2 * (fitted.negative_log - saturated(drawn)) >= deviance - 1e-9 ? 1 : 0;
+    for (std::size_t q = 0; q < quantities.size(); ++q) {
+      const auto held = base.held(drawn, quantities[q], values[q][quantities[q].parameter], values[q]);
+      result.ratios[q].push_back(std::max(0.0, 2 * (held.negative_log - fitted.negative_log)));
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+PsychometricBootstrap bootstrap(const PsychometricFit& fit, const BootstrapOptions& options) {
+  if (options.replicates < 40 || !(options.confidence > 0 && options.confidence < 1))
+    throw std::invalid_argument("bootstrap: at least 40 replicates and a confidence inside (0, 1)");
+  PsychometricBootstrap result;
+  result.confidence = options.confidence;
+  if (!fit.parameters) {
+    result.statements.push_back({"no-fit", "No fit, so no interval."});
+    return result;
+  }
+  const auto function = fit.options.function;
+  const auto scale = fit.options.scale;
+  const auto base = replicator(fit);
+  std::vector<Quantity> quantities{{0, std::nullopt}, {1, std::nullopt}};
+  std::vector<Theta> values{base.best, base.best};
+  result.level_75 = level_at(function, scale, *fit.parameters, 0.75);
+  if (result.level_75) {
+    quantities.push_back({0, 0.75});
+    values.push_back(base.best);
+    values[2][0] = axis_position(function, scale, *result.level_75);
+  }
+  const auto drawn = replicate(base, options, fit.deviance, quantities, values);
+  result.replicates = options.replicates;
+  const auto of = [&](int q) {
+    return profile(base, quantities[q], values[q], fit.negative_log_likelihood, drawn.ratios[q],
+                   options.confidence);
+  };
+  const auto to_level = [&](double u) { return level_from_axis(function, scale, u); };
+  const auto to_slope = [&](double r) { return slope_from_rate(function, std::exp(r)); };
+  result.threshold = mapped(of(0), to_level);
+  if (base.bounds.low[1] < base.bounds.high[1]) result.slope = mapped(of(1), to_slope);
+  if (result.level_75) result.interval_75 = mapped(of(2), to_level);
+  const auto share = [&](int parameter) {
+    std::vector<double> column;
+    for (const auto& theta : drawn.thetas) column.push_back(theta[parameter]);
+    return percentile(std::move(column), options.confidence, base.bounds.low[parameter],
+                      base.bounds.high[parameter]);
+  };
+  if (base.bounds.low[2] < base.bounds.high[2]) result.lapse = share(2);
+  if (fit.options.guess == Guess::fitted) result.guess = share(3);
+  if (static_cast<int>(fit.data.size()) > fit.free_parameters)
+    result.deviance_p = (drawn.beyond + 1.0) / (options.replicates + 1.0);
+  if (options.band_points > 1) add_band(result, base, drawn.thetas, options.band_points);
+  say_what_touches(result);
+  return result;
+}
+
+}  // namespace turnpoint::analysis

@@ -1,0 +1,228 @@
+#include "station/analysis/psychometric_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "station/analysis/fit_bounds.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::analysis {
+
+namespace {
+
+void check(const std::vector<LevelCount>& data, const FitOptions& options) {
+  for (const auto& point : data)
+    if (!std::isfinite(point.level) || point.trials < 0 || point.positive < 0 ||
+        point.positive > point.trials)
+      throw std::invalid_argument("level " + text::number(point.level) + ": " +
+                                  std::to_string(point.positive) + " of " + std::to_string(point.trials) +
+                                  " trials; needs a finite level and 0 to all positive");
+  const auto inside = [](double low, double high) { return low >= 0 && low <= high && high < 0.5 + 1e-12; };
+  if (!inside(options.lapse_low, options.lapse_high) || !inside(options.guess_low, options.guess_high))
+    throw std::invalid_argument("bounds of lapse and guess: 0 <= low <= high <= 0.5");
+  if (options.guess == Guess::fixed && !(options.guess_value >= 0 && options.guess_value < 1))
+    throw std::invalid_argument("guess " + text::number(options.guess_value) + ": from 0 to below 1");
+}
+
+/// Levels in order, one entry each, those without trials dropped.
+std::vector<LevelCount> merged(const std::vector<LevelCount>& data) {
+  std::map<double, LevelCount> by_level;
+  for (const auto& point : data) {
+    if (point.trials == 0) continue;
+    auto& entry = by_level[point.level];
+    entry.level = point.level;
+    entry.trials += point.trials;
+    entry.positive += point.positive;
+  }
+  std::vector<LevelCount> result;
+  for (const auto& [level, point] : by_level) result.push_back(point);
+  return result;
+}
+
+/// The z statistic of a linear trend of positive answers over the axis (Cochran-Armitage).
+double trend(const AxisCounts& counts) {
+  double n = 0, k = 0, sum_u = 0;
+  for (std::size_t i = 0; i < counts.u.size(); ++i) {
+    n += counts.trials[i];
+    k += counts.positive[i];
+    sum_u += counts.trials[i] * counts.u[i];
+  }
+  double covariance = 0, spread = 0;
+  for (std::size_t i = 0; i < counts.u.size(); ++i) {
+    const double du = counts.u[i] - sum_u / n;
+    covariance += counts.positive[i] * du;
+    spread += counts.trials[i] * du * du;
+  }
+  return covariance / std::sqrt(k / n * (1 - k / n) * spread);
+}
+
+/// Why no function can be fitted, or none.
+std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitOptions& options) {
+  int trials = 0, positive = 0;
+  for (const auto& point : data) {
+    trials += point.trials;
+    positive += point.positive;
+  }
+  const auto levels = static_cast<int>(data.size());
+  if (trials == 0) return Statement{"no-trials", "No answered trial: nothing to fit."};
+  if (levels < options.minimum_levels)
+    return Statement{"too-few-levels", std::to_string(levels) + (levels == 1 ? " level" : " levels") +
+                                           " with answers: a psychometric function needs at least " +
+                                           std::to_string(options.minimum_levels) + "."};
+  if (trials < options.minimum_trials)
+    return Statement{"too-few-trials", std::to_string(trials) + " answered trials: a fit needs at least " +
+                                           std::to_string(options.minimum_trials) + "."};
+  if (positive == trials)
+    return Statement{"all-positive",
+                     "The answer was the same (or right) at every level: the threshold lies below the levels "
+                     "shown, and cannot be estimated."};
+  if (positive == 0)
+    return Statement{"none-positive",
+                     "The answer was never right (or never the tracked one): the threshold lies above the "
+                     "levels shown, and cannot be estimated."};
+  const double z = trend(axis_counts(data, options.function, options.scale));
+  if (z < -1.645)
+    return Statement{
+        "reversed", "Data are reversed: the answer becomes rarer as the level rises (trend z = " +
+                        text::number(z, 3) + "). Check the sign of the level and the labels of the answers."};
+  if (z <= 0)
+    return Statement{"flat", "The answers do not change with the level: no threshold can be estimated."};
+  return std::nullopt;
+}
+
+double deviance(const PsychometricFit& fit, const Likelihood& likelihood, const Theta& theta,
+                const AxisCounts& counts) {
+  double saturated = 0;
+  for (const auto& point : fit.data) {
+    const double k = point.positive, n = point.trials;
+    if (k > 0) saturated -= k * std::log(k / n);
+    if (k < n) saturated -= (n - k) * std::log((n - k) / n);
+  }
+  static_cast<void>(counts);
+  return std::max(0.0, 2 * (likelihood.negative_log(theta) - saturated));
+}
+
+void note_bounds(PsychometricFit& fit, const Theta& theta, const ThetaBounds& bounds) {
+  const auto at = [](double value, double bound) { return std::abs(value - bound) < 1e-6; };
+  const bool rate_low = at(theta[1], bounds.low[1]), rate_high = at(theta[1], bounds.high[1]);
+  const bool falling = fit.options.function == Function::normal;  // its slope is a spread
+  fit.at_bound.slope_low = falling ? rate_high : rate_low;
+  fit.at_bound.slope_high = falling ? rate_low : rate_high;
+  if (bounds.low[2] < bounds.high[2]) {
+    fit.at_bound.lapse_low = at(theta[2], bounds.low[2]);
+    fit.at_bound.lapse_high = at(theta[2], bounds.high[2]);
+  }
+  fit.at_bound.guess = fit.options.guess == Guess::fitted && bounds.low[3] < bounds.high[3] &&
+                       (at(theta[3], bounds.low[3]) || at(theta[3], bounds.high[3]));
+  if (rate_high)
+    fit.statements.push_back({"step",
+                              "The answers change between two neighbouring levels: the function is a "
+                              "step, and its slope only limited, not estimated."});
+  if (rate_low)
+    fit.statements.push_back({"slope-bound", "The function is so shallow that its slope is only limited."});
+  if (fit.at_bound.lapse_high)
+    fit.statements.push_back({"lapse-bound", "The lapse rate stands on its upper bound, " +
+                                                 text::number(bounds.high[2]) +
+                                                 ": attention or the response mapping may be the reason."});
+}
+
+}  // namespace
+
+AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, Scale scale) {
+  AxisCounts counts;
+  for (const auto& point : data) {
+    counts.u.push_back(axis_position(function, scale, point.level));
+    counts.trials.push_back(point.trials);
+    counts.positive.push_back(point.positive);
+  }
+  return counts;
+}
+
+ThetaBounds theta_bounds(const AxisCounts& counts, const FitOptions& options) {
+  const double range = counts.u.back() - counts.u.front();
+  double rate_low = 0.1 / range, rate_high = 80 / range;
+  const bool falling = options.function == Function::normal;
+  const auto& for_low = falling ? options.slope_high : options.slope_low;
+  const auto& for_high = falling ? options.slope_low : options.slope_high;
+  if (for_low) rate_low = rate_from_slope(options.function, *for_low);
+  if (for_high) rate_high = rate_from_slope(options.function, *for_high);
+  if (!(rate_low > 0 && rate_low <= rate_high))
+    throw std::invalid_argument("bounds of the slope: 0 < low <= high");
+  ThetaBounds bounds;
+  bounds.low = {counts.u.front() - range, std::log(rate_low), options.lapse_low, options.guess_low};
+  bounds.high = {counts.u.back() + range, std::log(rate_high), options.lapse_high, options.guess_high};
+  if (options.guess == Guess::fixed) bounds.low[3] = bounds.high[3] = options.guess_value;
+  if (options.guess == Guess::tied_to_lapse) {
+    bounds.low[3] = bounds.low[2];
+    bounds.high[3] = bounds.high[2];
+  }
+  return bounds;
+}
+
+Psychometric from_theta(const Theta& theta, const FitOptions& options) {
+  return {level_from_axis(options.function, options.scale, theta[0]),
+          slope_from_rate(options.function, std::exp(theta[1])), theta[3], theta[2]};
+}
+
+PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitOptions& options) {
+  check(data, options);
+  PsychometricFit fit;
+  fit.options = options;
+  fit.data = merged(data);
+  if (auto reason = refusal(fit.data, options)) {
+    fit.statements.push_back(*reason);
+    return fit;
+  }
+  const auto counts = axis_counts(fit.data, options.function, options.scale);
+  const auto bounds = theta_bounds(counts, options);
+  const Likelihood likelihood(options.function, options.guess, counts, bounds);
+  const auto best = likelihood.search();
+  const double range = bounds.high[0] - bounds.low[0];
+  if (best.theta[0] < bounds.low[0] + 1e-6 * range || best.theta[0] > bounds.high[0] - 1e-6 * range) {
+    fit.statements.push_back({"threshold-outside",
+                              "The threshold lies far outside the levels shown: it "
+                              "cannot be estimated from them."});
+    return fit;
+  }
+  fit.parameters = from_theta(best.theta, options);
+  fit.negative_log_likelihood = best.negative_log;
+  fit.deviance = deviance(fit, likelihood, best.theta, counts);
+  for (int i = 0; i < 4; ++i)
+    if (bounds.low[i] < bounds.high[i] && !(i == 3 && options.guess == Guess::tied_to_lapse))
+      ++fit.free_parameters;
+  note_bounds(fit, best.theta, bounds);
+  if (best.theta[0] < counts.u.front() || best.theta[0] > counts.u.back())
+    fit.statements.push_back(
+        {"extrapolated", "The threshold lies outside the levels shown: it is extrapolated."});
+  return fit;
+}
+
+namespace {
+
+template <class Positive>
+std::vector<LevelCount> count(const std::vector<TrialRecord>& trials, Positive positive) {
+  std::vector<LevelCount> result;
+  for (const auto& trial : trials) {
+    if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.level) continue;
+    const std::optional<bool> value = positive(trial);
+    if (value) result.push_back({*trial.level, 1, *value ? 1 : 0});
+  }
+  return merged(result);
+}
+
+}  // namespace
+
+std::vector<LevelCount> count_correct(const std::vector<TrialRecord>& trials) {
+  return count(trials, [](const TrialRecord& trial) { return trial.correct; });
+}
+
+std::vector<LevelCount> count_choice(const std::vector<TrialRecord>& trials, int positive_choice) {
+  return count(trials, [positive_choice](const TrialRecord& trial) -> std::optional<bool> {
+    if (!trial.response) return std::nullopt;
+    return *trial.response == positive_choice;
+  });
+}
+
+}  // namespace turnpoint::analysis

@@ -1,0 +1,95 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "station/analysis/psychometric_function.hpp"
+#include "station/analysis/trial_record.hpp"
+
+namespace turnpoint::analysis {
+
+/// Answers at one level: how many, and how many of them were the one that the function predicts (correct, or
+/// the tracked answer).
+struct LevelCount {
+  double level = 0;
+  int trials = 0;
+  int positive = 0;
+};
+
+/// What the lower asymptote is: given (1/alternatives), estimated within bounds, or equal to the lapse rate
+/// (two answers on a signed level, where a slip may go either way).
+enum class Guess { fixed, fitted, tied_to_lapse };
+
+struct FitOptions {
+  Function function = Function::weibull;
+  Scale scale = Scale::linear;
+  Guess guess = Guess::fixed;
+  double guess_value = 0.5;                     ///< for Guess::fixed
+  double guess_low = 0, guess_high = 0.5;       ///< for Guess::fitted
+  double lapse_low = 0, lapse_high = 0.06;      ///< equal: fixed
+  std::optional<double> slope_low, slope_high;  ///< else from the range of the levels
+  int minimum_levels = 3, minimum_trials = 15;  ///< below: no fit, but a statement
+};
+
+/// Which estimates stand on a bound, where the number is not an estimate but a limit.
+struct AtBound {
+  bool slope_low = false, slope_high = false, lapse_low = false, lapse_high = false, guess = false;
+};
+
+/// A maximum-likelihood fit. Where nothing can be estimated `parameters` is none and `statements` say why.
+struct PsychometricFit {
+  FitOptions options;
+  std::vector<LevelCount> data;  ///< one entry a level, ascending, levels without trials removed
+  std::optional<Psychometric> parameters;
+  AtBound at_bound;
+  double negative_log_likelihood = 0;  ///< of the single answers, nats; without binomial coefficients
+  double deviance = 0;                 ///< against the saturated model (one proportion a level)
+  int free_parameters = 0;
+  std::vector<Statement> statements;
+};
+
+/// Fits by Fisher scoring within bounds from several starts. Threshold: within one range of the levels around
+/// them. Refuses with a statement: too few levels or trials, all or none positive, answers that do not rise
+/// with the level (reversed), a threshold beyond its bounds. Says so where an estimate stands on a bound, the
+/// threshold is extrapolated, or the function is a step. Throws std::invalid_argument for counts or options
+/// that make no sense.
+PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitOptions& options);
+
+struct ParameterInterval {
+  Interval interval;
+  bool touches_low = false, touches_high = false;  ///< an end stands on a bound: the data do not limit it
+};
+
+/// Parametric bootstrap (Wichmann & Hill 2001b) of a fit. Intervals of threshold, slope and 75 % point are
+/// those of the profile likelihood, with the critical value of the likelihood ratio that the replicates show
+/// instead of chi-square's: plain percentile intervals of a slope miss one time in seven with ten trials a
+/// level, since its estimate is biased, and BCa intervals of a Weibull's threshold likewise. Lapse and guess
+/// have percentile intervals. Conditional on the levels presented, also where a procedure chose them.
+struct PsychometricBootstrap {
+  int replicates = 0;
+  double confidence = 0.95;
+  std::optional<ParameterInterval> threshold, slope, lapse, guess;
+  std::optional<double> level_75;                ///< where the fitted probability is 0.75, if it is anywhere
+  std::optional<ParameterInterval> interval_75;  ///< of that level
+  std::optional<double> deviance_p;
+  std::vector<double> band_level, band_low, band_high;  ///< probability at `band_level`
+  std::vector<Statement> statements;
+};
+
+struct BootstrapOptions {
+  int replicates = 1000;
+  double confidence = 0.95;
+  std::uint64_t seed = 1;
+  int stream = 0;        ///< tells fits of one session apart
+  int band_points = 61;  ///< 0: no band
+};
+
+/// Deterministic for a seed and stream. An empty result with a statement where the fit has no parameters.
+PsychometricBootstrap bootstrap(const PsychometricFit& fit, const BootstrapOptions& options);
+
+/// Counts by level of answered trials that have a level and a score (`correct`), or of those with a response,
+/// counting `positive_choice`. Practice, catch and warm-up trials are left out.
+std::vector<LevelCount> count_correct(const std::vector<TrialRecord>& trials);
+std::vector<LevelCount> count_choice(const std::vector<TrialRecord>& trials, int positive_choice);
+
+}  // namespace turnpoint::analysis

@@ -1,0 +1,41 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace turnpoint::analysis {
+
+enum class TrialType { experimental, catch_trial, practice, warmup };
+enum class Outcome { answered, timeout, anticipation, aborted, fault };
+
+/// One presented trial as an analysis sees it; times in seconds. What was not there is std::nullopt: a
+/// timeout has neither response nor response time nor score.
+struct TrialRecord {
+  int trial_index = 0;  ///< order of presentation within the session, from 0
+  int block_index = 0;
+  std::string block;
+  TrialType type = TrialType::experimental;
+  std::string procedure;
+  std::optional<double> level;      ///< in the unit of the protocol's factor; signed where it has two sides
+  std::optional<int> right_choice;  ///< index of the choice that is right; none where no choice is
+  std::optional<int> response;      ///< index of the choice that was made
+  std::optional<bool> correct;
+  Outcome outcome = Outcome::answered;
+  std::optional<double> response_time_s;
+  std::string instruction;           ///< "" where the design has none
+  std::optional<double> difficulty;  ///< equal for trials of equal difficulty, |level| as a rule
+};
+
+/// Something that must be said beside, or instead of, a number: a stable code and a sentence for people.
+struct Statement {
+  std::string code;
+  std::string text;
+};
+
+/// Both ends of an interval at a stated confidence.
+struct Interval {
+  double low = 0, high = 0;
+  double confidence = 0.95;
+};
+
+}  // namespace turnpoint::analysis

@@ -1,0 +1,261 @@
+#include <algorithm>
+#include <cmath>
+
+#include "station/analysis/psychometric_fit.hpp"
+#include "station/random/draws.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::analysis;
+namespace rnd = turnpoint::random;
+
+namespace {
+
+const std::vector<LevelCount> kReference = {{-30, 40, 20}, {-26, 40, 22}, {-22, 40, 27},
+                                            {-18, 40, 34}, {-14, 40, 38}, {-10, 40, 39}};
+
+bool says(const std::vector<Statement>& statements, const std::string& code) {
+  for (const auto& statement : statements)
+    if (statement.code == code) return true;
+  return false;
+}
+
+std::vector<LevelCount> simulate(const FitOptions& o, const Psychometric& truth, std::vector<double> levels,
+                                 int n, int run) {
+  rnd::Draws draws({99, rnd::Stream::observer, run, 0, 0});
+  std::vector<LevelCount> data;
+  for (const double level : levels) {
+    LevelCount point{level, n, 0};
+    for (int i = 0; i < n; ++i)
+      point.positive += draws.uniform() < probability(o.function, o.scale, truth, level);
+    data.push_back(point);
+  }
+  return data;
+}
+
+}  // namespace
+
+TEST_CASE("The maximum-likelihood fit of the reference data is the known one", "[analysis]") {
+  const auto fit = fit_psychometric(kReference, {});
+  REQUIRE(fit.parameters);
+  CHECK(fit.parameters->threshold == Approx(-18.9716).margin(5e-5));
+  CHECK(fit.parameters->slope == Approx(2.3483).margin(5e-5));
+  CHECK(fit.parameters->lapse == Approx(0.0306).margin(5e-5));
+  CHECK(fit.negative_log_likelihood == Approx(110.14156).margin(5e-6));
+  CHECK(fit.deviance == Approx(0.2833).margin(5e-5));
+  CHECK(fit.free_parameters == 3);
+  CHECK(fit.statements.empty());
+}
+
+TEST_CASE("Degenerate data give a statement and no number", "[analysis]") {
+  const auto refused = [](std::vector<LevelCount> data, const std::string& code) {
+    const auto fit = fit_psychometric(data, {});
+    CHECK_FALSE(fit.parameters.has_value());
+    CHECK(says(fit.statements, code));
+    const auto drawn = bootstrap(fit, {});
+    CHECK_FALSE(drawn.threshold.has_value());
+    CHECK(drawn.replicates == 0);
+    CHECK(says(drawn.statements, "no-fit"));
+  };
+  SECTION("nothing answered") { refused({{-10, 0, 0}}, "no-trials"); }
+  SECTION("one level") { refused({{-10, 40, 30}, {-10, 40, 35}}, "too-few-levels"); }
+  SECTION("five trials") { refused({{-20, 1, 0}, {-15, 1, 1}, {-10, 1, 1}, {-5, 2, 2}}, "too-few-trials"); }
+  SECTION("all right") { refused({{-20, 40, 40}, {-15, 40, 40}, {-10, 40, 40}}, "all-positive"); }
+  SECTION("all wrong") { refused({{-20, 40, 0}, {-15, 40, 0}, {-10, 40, 0}}, "none-positive"); }
+  SECTION("reversed") { refused({{-20, 40, 38}, {-15, 40, 30}, {-10, 40, 21}}, "reversed"); }
+  SECTION("flat") { refused({{-20, 40, 21}, {-15, 40, 20}, {-10, 40, 21}}, "flat"); }
+}
+
+TEST_CASE("A step leaves the slope limited, not estimated", "[analysis]") {
+  FitOptions options;
+  options.function = Function::normal;
+  options.guess = Guess::tied_to_lapse;
+  const auto fit = fit_psychometric({{-20, 20, 0}, {-10, 20, 0}, {10, 20, 20}, {20, 20, 20}}, options);
+  REQUIRE(fit.parameters);
+  CHECK(says(fit.statements, "step"));
+  CHECK(fit.at_bound.slope_low);  // the spread of a normal: its lower bound
+  CHECK(fit.parameters->threshold > -10);
+  CHECK(fit.parameters->threshold < 10);
+  const auto drawn = bootstrap(fit, {});
+  CHECK(drawn.slope->touches_low);
+  CHECK(says(drawn.statements, "interval-slope"));
+}
+
+TEST_CASE("A lapse rate on its bound and an extrapolated threshold are said", "[analysis]") {
+  const auto sleepy = fit_psychometric({{-30, 40, 20}, {-20, 40, 33}, {-10, 40, 34}, {-5, 40, 34}}, {});
+  CHECK(sleepy.at_bound.lapse_high);
+  CHECK(says(sleepy.statements, "lapse-bound"));
+  const auto hard = fit_psychometric({{-30, 60, 31}, {-26, 60, 33}, {-22, 60, 36}, {-18, 60, 41}}, {});
+  REQUIRE(hard.parameters);
+  CHECK(hard.parameters->threshold > -18);
+  CHECK(says(hard.statements, "extrapolated"));
+}
+
+TEST_CASE("Every small table gives finite numbers or none", "[analysis]") {
+  for (const auto function : {Function::weibull, Function::normal, Function::logistic})
+    for (const auto guess : {Guess::fixed, Guess::fitted, Guess::tied_to_lapse})
+      for (int code = 0; code < 216; ++code) {
+        FitOptions options;
+        options.function = function;
+        options.guess = guess;
+        const auto fit =
+            fit_psychometric({{1, 5, code % 6}, {2, 5, code / 6 % 6}, {4, 5, code / 36}}, options);
+        CHECK(fit.parameters.has_value() + !fit.statements.empty() >= 1);
+        if (!fit.parameters) continue;
+        CHECK(std::isfinite(fit.parameters->threshold));
+        CHECK(fit.parameters->slope > 0);
+        CHECK(std::isfinite(fit.parameters->slope));
+        CHECK(fit.deviance >= 0);
+        CHECK(fit.negative_log_likelihood < 30);
+      }
+}
+
+TEST_CASE("The fit is the maximum: no neighbour is more likely", "[analysis]") {
+  for (const auto function : {Function::weibull, Function::normal, Function::logistic}) {
+    FitOptions options;
+    options.function = function;
+    const auto fit = fit_psychometric(kReference, options);
+    REQUIRE(fit.parameters);
+    const auto cost = [&](const Psychometric& at) {
+      double sum = 0;
+      for (const auto& d : kReference) {
+        const double p = probability(function, Scale::linear, at, d.level);
+        sum -= d.positive * std::log(p) + (d.trials - d.positive) * std::log(1 - p);
+      }
+      return sum;
+    };
+    const double best = cost(*fit.parameters);
+    CHECK(best == Approx(fit.negative_log_likelihood).epsilon(1e-12));
+    for (const double step : {-1e-2, -1e-3, 1e-3, 1e-2}) {
+      auto moved = *fit.parameters;
+      moved.threshold += step;
+      CHECK(cost(moved) >= best);
+      moved = *fit.parameters;
+      moved.slope *= 1 + step;
+      CHECK(cost(moved) >= best);
+      moved = *fit.parameters;
+      moved.lapse = std::clamp(moved.lapse + step, 0.0, 0.06);
+      CHECK(cost(moved) >= best);
+    }
+  }
+}
+
+TEST_CASE("A Weibull on a log10 scale is the Weibull in dB of the same levels", "[analysis]") {
+  auto ratio = kReference;
+  for (auto& point : ratio) point.level = std::pow(10.0, point.level / 20);
+  FitOptions options;
+  options.scale = Scale::log10;
+  const auto in_dB = fit_psychometric(kReference, {}), in_ratio = fit_psychometric(ratio, options);
+  REQUIRE(in_ratio.parameters);
+  CHECK(20 * std::log10(in_ratio.parameters->threshold) == Approx(in_dB.parameters->threshold).epsilon(1e-7));
+  CHECK(in_ratio.parameters->slope == Approx(in_dB.parameters->slope).epsilon(1e-6));
+  CHECK(probability(Function::weibull, Scale::log10, {2, 3, 0.5, 0}, 4) ==
+        Approx(1 - 0.5 * std::exp(-8.0)).epsilon(1e-14));
+  CHECK_THROWS_AS(fit_psychometric({{0, 20, 9}, {1, 20, 15}, {2, 20, 19}}, options), std::invalid_argument);
+}
+
+TEST_CASE("The 75 % point takes guess and lapse into account", "[analysis]") {
+  const Psychometric p{-19, 2.3, 0.5, 0.02};
+  const auto level = level_at(Function::weibull, Scale::linear, p, 0.75);
+  REQUIRE(level);
+  CHECK(probability(Function::weibull, Scale::linear, p, *level) == Approx(0.75).epsilon(1e-12));
+  CHECK_FALSE(level_at(Function::weibull, Scale::linear, p, 0.99).has_value());
+  CHECK_FALSE(level_at(Function::weibull, Scale::linear, p, 0.5).has_value());
+}
+
+TEST_CASE("PSE and spread of a biased observer are recovered, and reversed sides are refused", "[analysis]") {
+  FitOptions options;
+  options.function = Function::normal;
+  options.guess = Guess::tied_to_lapse;
+  const std::vector<double> levels{-30, -18, -9, -3, 3, 9, 18, 30};
+  const auto data = simulate(options, {4, 8, 0.01, 0.01}, levels, 400, 1);
+  const auto fit = fit_psychometric(data, options);
+  REQUIRE(fit.parameters);
+  CHECK(fit.parameters->threshold == Approx(4).margin(0.7));
+  CHECK(fit.parameters->slope == Approx(8).margin(1));
+  CHECK(fit.parameters->guess == fit.parameters->lapse);
+  auto swapped = data;
+  for (auto& point : swapped) point.positive = point.trials - point.positive;
+  CHECK(says(fit_psychometric(swapped, options).statements, "reversed"));
+}
+
+TEST_CASE("A bootstrap depends on its seed and stream alone", "[analysis]") {
+  const auto fit = fit_psychometric(kReference, {});
+  const auto one = bootstrap(fit, {}), again = bootstrap(fit, {}),
+             other = bootstrap(fit, {1000, 0.95, 2, 0, 0});
+  CHECK(one.threshold->interval.low == again.threshold->interval.low);
+  CHECK(one.slope->interval.high == again.slope->interval.high);
+  CHECK(one.threshold->interval.low != other.threshold->interval.low);
+  CHECK(one.threshold->interval.low == Approx(other.threshold->interval.low).margin(0.5));
+  REQUIRE(one.band_level.size() == 61);
+  for (std::size_t i = 0; i < one.band_level.size(); ++i) {
+    const double p = probability(Function::weibull, Scale::linear, *fit.parameters, one.band_level[i]);
+    CHECK(one.band_low[i] <= p);
+    CHECK(one.band_high[i] >= p);
+  }
+  CHECK(*one.deviance_p > 0.5);
+  CHECK_THROWS_AS(bootstrap(fit, {10, 0.95, 1, 0, 0}), std::invalid_argument);
+}
+
+TEST_CASE("The fit agrees with psignifit 4.3 on the same data", "[analysis]") {
+  // psignifit 4.3 (Python), 2AFC, sigmoids weibull and norm, its default priors, maximum a posteriori; its
+  // threshold is the 50 % point and its width the 5-95 % range of the core. 95 % intervals below.
+  struct Row {
+    Function function;
+    double threshold, width, low, high;
+  };
+  for (const auto& row : {Row{Function::weibull, -20.2060, 15.8910, -23.757, -18.151},
+                          Row{Function::normal, -20.4433, 14.9262, -23.919, -18.466},
+                          Row{Function::logistic, -20.3786, 16.0479, -23.824, -18.447}}) {
+    FitOptions options;
+    options.function = row.function;
+    options.lapse_high = 0.1;
+    const auto fit = fit_psychometric(kReference, options);
+    REQUIRE(fit.parameters);
+    const double rate = rate_from_slope(row.function, fit.parameters->slope);
+    const double half = fit.parameters->threshold + core_inverse(row.function, 0.5) / rate;
+    const double width = (core_inverse(row.function, 0.95) - core_inverse(row.function, 0.05)) / rate;
+    CHECK(half == Approx(row.threshold).margin(0.25));
+    CHECK(width == Approx(row.width).epsilon(0.1));  // its prior on the width pulls outwards
+    const auto drawn = bootstrap(fit, {});
+    const double shift = half - fit.parameters->threshold;
+    CHECK(drawn.threshold->interval.low + shift == Approx(row.low).margin(1.2));
+    CHECK(drawn.threshold->interval.high + shift == Approx(row.high).margin(1.2));
+  }
+}
+
+TEST_CASE("Bootstrap intervals cover the truth about as often as they say", "[analysis]") {
+  // A longer run, 400 sessions of 300 replicates, covered: Weibull, 6 levels x 40: threshold .95, slope .93,
+  // 75 % point .94; normal with tied lapse, 8 levels x 20: .95, .94, .94; without lapse, x 10: .97, .94, .94.
+  // Here the same with fewer sessions: two standard errors are .04.
+  struct Design {
+    FitOptions options;
+    Psychometric truth;
+    std::vector<double> levels;
+    int trials;
+  };
+  FitOptions signed_sides;
+  signed_sides.function = Function::normal;
+  signed_sides.guess = Guess::tied_to_lapse;
+  signed_sides.lapse_high = 0.04;
+  const int sessions = 120;
+  for (const auto& design :
+       {Design{{}, {-19, 2.3, 0.5, 0.02}, {-30, -26, -22, -18, -14, -10}, 40},
+        Design{signed_sides, {2, 8, 0.01, 0.01}, {-30, -18, -9, -3, 3, 9, 18, 30}, 10}}) {
+    int threshold = 0, slope = 0, narrow = 0;
+    for (int run = 0; run < sessions; ++run) {
+      const auto data = simulate(design.options, design.truth, design.levels, design.trials, run);
+      const auto fit = fit_psychometric(data, design.options);
+      REQUIRE(fit.parameters);
+      const auto drawn = bootstrap(fit, {100, 0.95, 7, run, 0});
+      const auto inside = [](double low, double high, double value) { return low <= value && value <= high; };
+      const auto t = drawn.threshold->interval, s = drawn.slope->interval;
+      threshold += inside(t.low, t.high, design.truth.threshold);
+      slope += inside(s.low, s.high, design.truth.slope);
+      const double quarter = (t.high - t.low) / 4, middle = (t.high + t.low) / 2;
+      narrow += inside(middle - quarter, middle + quarter, design.truth.threshold);
+    }
+    CHECK(threshold >= 0.91 * sessions);
+    CHECK(slope >= 0.90 * sessions);
+    CHECK(narrow < 0.85 * sessions);  // an interval of half the width would be seen
+  }
+}
