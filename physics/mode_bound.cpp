@@ -19,6 +19,14 @@ constexpr double piston_coupling = 0.55;    // of a stiff bar, at any slope
 constexpr double phase_uncertainty = 0.12;  // of a higher mode's standing wave at the drive edge
 constexpr double curvature_shift = 0.2;     // edge position per W'' W, in cut-off half-widths
 constexpr double slope_shift = 0.1;         // per W'^3
+// Of a clamped plate's one-shape mode: its shape is exact at the cut-off only, so that its phase drifts on
+// the way.
+constexpr double plate_drift = 1.5e-3;  // radians per radian of k x0
+constexpr double plate_piston = 0.9;
+constexpr double plate_second_mode =
+    2.3246;                             // cut-off half-width of the second symmetric mode over the first's
+constexpr double plate_shift = 1.2e-3;  // edge position, in cut-off half-widths
+constexpr double plate_slope_shift = 0.15;  // per W'^2
 constexpr double end_shift = 0.15;          // of a clamped end just beyond the turning point, per W'^2
 constexpr double shallow = 6;               // edge shift per share of higher modes, in cut-off half-widths
 constexpr double largest = 2;               // nothing is known beyond this
@@ -50,6 +58,13 @@ double amplification(const Surface& surface, const Taper& taper, double f, int n
   // Near its resonance the standing wave at the drive edge is known to a phase only.
   const double standing = std::exp(ln_drive - most);
   return 1 / std::max({standing - phase_uncertainty, loss, 1e-3});
+}
+
+// The same for a clamped plate, whose higher modes are not solved for: bounded by loss alone.
+double plate_amplification(const Surface& surface, const Taper& taper, double f) {
+  const auto turning = taper.position_continued_m(plate_second_mode * cut_off_half_width_m(surface, f));
+  const double reach = std::clamp(turning.value_or(0), 0.0, taper.length_m());
+  return 1 / std::max(std::tanh(0.5 * wavenumber_per_m(surface, f) * reach / surface.quality_factor), 0.01);
 }
 
 double curvature_times_width(const Taper& taper, double x) {
@@ -89,17 +104,21 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning) {
     bend =
         std::max(bend, curvature_times_width(taper, std::clamp(x0 + 0.5 * i * cut, 0.0, taper.length_m())));
   }
-  const bool piston = surface.drive == DriveShape::piston;
-  const double coupled =
-      coupling * std::max(slope0, steepest) * ratio + coupling * bend + (piston ? piston_coupling : 0);
-  double modes = coupled;
   const bool membrane = !dispersion.clamped_bending();
+  const bool piston = surface.drive == DriveShape::piston;
+  const double coupled = coupling * std::max(slope0, steepest) * ratio + coupling * bend +
+                         (!piston    ? 0
+                          : membrane ? piston_coupling
+                                     : plate_piston);
+  double modes = coupled;
   for (int n = 2; membrane && 2 * n - 1 < ratio; ++n) {
     modes = std::max(modes, coupled / (n - 1) * amplification(surface, taper, f, n));
   }
+  const double drift = membrane ? 0 : plate_drift * dispersion.wavenumber_per_m(f) * x0;
+  if (!membrane && ratio > plate_second_mode) modes *= plate_amplification(surface, taper, f);
   bound.higher_modes = std::min(largest, modes);
-  bound.shape = std::min(largest, modes + 0.3 * bend + slope_shift * steepest * steepest);
-  const double phase = coupled + bend;  // of the first mode at the drive edge
+  bound.shape = std::min(largest, modes + drift + 0.3 * bend + slope_shift * steepest * steepest);
+  const double phase = coupled + bend + 1.5 * drift;  // of the first mode at the drive edge
   bound.drive = std::min(1e6, bound.shape + 2 * (phase + modes) * conditioning);
   // A share of the wave at the drive edge may add to the first mode or cancel it.
   bound.level_dB = -20 * std::log10(std::max(1e-6, 1 - (phase + modes) * conditioning));
@@ -112,6 +131,7 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning) {
   const double end = taper.half_width_m(taper.length_m()) > 0.5 * cut ? end_shift * steepest * steepest : 0;
   bound.position_m =
       cut * (curvature_shift * bend + slope_shift * std::pow(steepest, 3) + end + std::min(1.0, polluted));
+  if (!membrane) bound.position_m += cut * (plate_shift + plate_slope_shift * steepest * steepest);
   return bound;
 }
 

@@ -130,6 +130,33 @@ TEST_CASE("the true error of every rung lies inside its bound on a thousand rand
   CHECK(violated <= compared / 1000);
 }
 
+TEST_CASE("the one-shape mode of a clamped plate is bounded on random plates", "[physics]") {
+  Draw draw(20260103);
+  int compared = 0;
+  for (int i = 0; i < 150; ++i) {
+    Surface s = aluminium_plate();
+    if (draw.next() % 3 == 0) s.tension_Pa = draw.between(0, 1e8);
+    s.quality_factor = draw.next() % 4 == 0 ? std::numeric_limits<double>::infinity() : draw.spread(10, 2000);
+    s.drive = draw.next() % 5 == 0 ? DriveShape::piston : DriveShape::cosine;
+    const double cut = cut_off_half_width_m(s, frequency_Hz), d = draw.spread(0.01, 0.3);
+    const double ratio = draw.between(1.1, 3.5);
+    s.taper = LinearTaper{ratio * cut, d};
+    s.length_m = (ratio - draw.between(0.2, 0.8)) * cut / d;
+    const auto truth = make_centre_line(s, frequency_Hz, Model::modes);
+    for (const Normalise normalise : {Normalise::peak, Normalise::drive}) {
+      const auto error = true_error(s, Model::mode, *truth, normalise);
+      if (!error) continue;
+      const RungEstimate bound = estimate(s, request_for(normalise), Model::mode);
+      CAPTURE(i, d, ratio, s.quality_factor, s.tension_Pa);
+      CHECK(error->amplitude <= bound.amplitude_bound);
+      CHECK(error->boundary_m <= bound.boundary_bound_m);
+      CHECK(error->level_dB <= bound.level_bound_dB);
+      ++compared;
+    }
+  }
+  CHECK(compared > 200);
+}
+
 TEST_CASE("the planner's choice is inside the tolerance, and the next cheaper rung mostly is not",
           "[physics]") {
   Draw draw(20260102);
