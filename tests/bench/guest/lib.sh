@@ -1,10 +1,32 @@
-# What scenarios share. A scenario is sourced after this with `set -e`: the first command that fails fails it.
+# What scenarios share. A scenario is sourced after this with `set -eu`: the first command that fails, fails it.
 set -eu
+PATH=$BENCH_DIR/bin:$BIN:$PATH
 say() { echo "# $*"; }
 fail() { echo "FAILED: $*"; exit 1; }
 
-# gpio_sim NAME...: a simulated chip with these line names, in order; afterwards `pull NAME up|down` drives an
-# input and `level NAME` reads what the line carries.
+# near WHAT VALUE EXPECTED TOLERANCE: passes when the value is that close.
+near() {
+  awk -v v="$2" -v e="$3" -v t="$4" 'BEGIN { d = v - e; exit !(v ~ /^[-+0-9.e]+$/ && d <= t && d >= -t) }' ||
+    fail "$1 is $2, expected $3 within $4"
+  say "$1: $2 (expected $3 within $4)"
+}
+# fails STATUS COMMAND...: passes when the command exits with this status; what it said is in refusal.txt.
+fails() {
+  local expected=$1 status=0; shift
+  "$@" >refusal.txt 2>&1 || status=$?
+  cat refusal.txt
+  [ $status -eq "$expected" ] || fail "exit status $status, expected $expected: $*"
+}
+# eventually SECONDS COMMAND...: waits until the command succeeds, or fails the scenario.
+eventually() {
+  local end=$((SECONDS + $1)); shift
+  until "$@"; do [ $SECONDS -lt $end ] || fail "did not happen in time: $*"; sleep 0.02; done
+}
+has() { grep -q "$2" "$1"; }   # has FILE PATTERN
+equals() { [ "$($1 $2)" = "$3" ]; }
+
+# gpio_sim NAME...: a simulated chip with these line names, in order. Afterwards `pull NAME up|down` drives an
+# input, `level NAME` reads what the line carries, `pull_file NAME` is for gpio_line press.
 gpio_sim() {
   local n=0 name chip=/sys/kernel/config/gpio-sim/bench
   if [ -s "$BENCH_DIR/gpio-sim.ko" ]; then insmod "$BENCH_DIR/gpio-sim.ko"; else modprobe gpio-sim; fi
@@ -24,11 +46,40 @@ line_of() {
   for name in $GPIO_NAMES; do [ "$name" = "$1" ] && { echo "$GPIO_DEVICE/sim_gpio$n"; return; }; n=$((n + 1)); done
   fail "no line named $1"
 }
-pull() { echo "pull-$2" >"$(line_of "$1")/pull"; }
+pull_file() { echo "$(line_of "$1")/pull"; }
+pull() { echo "pull-$2" >"$(pull_file "$1")"; }
 level() { cat "$(line_of "$1")/value"; }
 
-# eventually SECONDS COMMAND...: waits until the command succeeds, or fails the scenario.
-eventually() {
-  local end=$((SECONDS + $1)); shift
-  until "$@"; do [ $SECONDS -lt $end ] || fail "did not happen in time: $*"; sleep 0.02; done
+# loopback: a sound card whose playback side (hw:Loopback,0) is recorded from hw:Loopback,1, bit by bit.
+loopback() { modprobe snd-aloop pcm_substreams=1; eventually 5 test -e /dev/snd/pcmC0D1c; }
+# record SECONDS FILE [RATE]: in the background, raw S32_LE stereo; its process is $!.
+record() { arecord -q -D hw:Loopback,1 -t raw -f S32_LE -c 2 -r "${3:-192000}" --period-size=1920 --buffer-size=7680 -d "$1" "$2" & }
+
+# disk_begin: the `disk`, empty, on /run/disk. What is written there is judged by NAME.after with power_cuts.py.
+disk_begin() {
+  modprobe virtio_blk; eventually 5 test -b /dev/vda
+  mkdir -p /run/disk
+  mount -t ext4 -o noatime /dev/vda /run/disk
 }
+
+# panel_begin: a touch panel of 800 x 480 at $PANEL; `touch_do COMMAND...` makes it do something (touch_panel.cpp).
+panel_begin() {
+  modprobe uinput; modprobe evdev
+  mkfifo panel.in
+  touch_panel 800 480 <panel.in >panel.out &
+  exec 9>panel.in
+  eventually 10 has panel.out ^device
+  PANEL=$(awk '$1 == "device" { print $2 }' panel.out)
+  eventually 5 test -e "$PANEL"
+}
+touch_do() { echo "$*" >&9; }
+
+# screen_begin: the frame buffer of the `screen`, and what Qt needs to draw on it and read the panel.
+screen_begin() {
+  modprobe bochs; eventually 10 test -e /dev/fb0
+  export QT_QPA_PLATFORM=linuxfb QT_QUICK_BACKEND=software QT_QPA_FB_DISABLE_INPUT=1
+  export QT_QPA_GENERIC_PLUGINS=evdevtouch:$PANEL
+}
+# pixel X Y: colour there, as bbggrr00 in hexadecimal; screenshot NAME: keeps what is on the screen in $OUT/NAME.png.
+pixel() { dd if=/dev/fb0 bs=4 skip=$(($2 * 800 + $1)) count=1 status=none | od -An -tx1 | tr -d ' '; }
+screenshot() { python3 "$BENCH_SOURCE/guest/screenshot.py" "$OUT/$1.png"; }

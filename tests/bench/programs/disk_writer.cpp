@@ -1,13 +1,13 @@
-// disk_writer DATABASE FULL|NORMAL COUNT ACKNOWLEDGED: so many one-row transactions in WAL mode; after each
-// commit its number is appended to ACKNOWLEDGED, which lies on another, safe file system.
+// disk_writer DATABASE FULL|NORMAL COUNT DEVICE: so many one-row transactions in WAL mode; after each commit
+// a mark "FULL 17" goes to the disk's record, as a promise to whoever asked for the row.
 #include <sqlite3.h>
 
-#include <cstdio>
-#include <cstdlib>
-#include <string>
+#include <algorithm>
+
+#include "tests/bench/programs/disk_marker.hpp"
 
 int main(int argc, char** argv) {
-  if (argc != 5) return std::fprintf(stderr, "disk_writer DATABASE FULL|NORMAL COUNT ACKNOWLEDGED\n"), 2;
+  if (argc != 5) return std::fprintf(stderr, "disk_writer DATABASE FULL|NORMAL COUNT DEVICE\n"), 2;
   sqlite3* db = nullptr;
   const auto run = [&db](const std::string& sql) {
     char* message = nullptr;
@@ -16,17 +16,13 @@ int main(int argc, char** argv) {
     std::exit(1);
   };
   if (sqlite3_open(argv[1], &db) != SQLITE_OK) return std::fprintf(stderr, "%s\n", sqlite3_errmsg(db)), 1;
-  run("PRAGMA journal_mode=WAL");
-  run(std::string("PRAGMA synchronous=") + argv[2]);
-  run("CREATE TABLE IF NOT EXISTS row (number INTEGER PRIMARY KEY, text TEXT)");
-  std::FILE* acknowledged = std::fopen(argv[4], "w");
+  const std::string mode = argv[2];
+  run("PRAGMA journal_mode=WAL; PRAGMA synchronous=" + mode);
+  run("CREATE TABLE row (number INTEGER PRIMARY KEY, text TEXT)");
+  DiskMarker marker(argv[4]);
   for (int i = 1; i <= std::atoi(argv[3]); ++i) {
-    run("BEGIN IMMEDIATE");
     run("INSERT INTO row VALUES (" + std::to_string(i) + ", hex(randomblob(200)))");
-    run("COMMIT");
-    std::fprintf(acknowledged, "%d\n", i);
-    std::fflush(acknowledged);
+    marker.mark(mode + " " + std::to_string(i));
   }
-  // No orderly close: the file stays as a running station would leave it.
-  std::_Exit(0);
+  std::_Exit(0);  // no orderly close: the files stay as a running station would leave them
 }

@@ -1,11 +1,16 @@
-// gpio_line hold NAME VALUE | watch NAME COUNT: holds a line as an output until killed, or prints the
-// kernel's time stamp (ns, CLOCK_MONOTONIC) and direction of edges. By the kernel's own interface, so that
-// any libgpiod will do.
+// gpio_line hold NAME VALUE   holds a line as an output until killed
+//           watch NAME COUNT  prints the kernel's stamp (ns, CLOCK_MONOTONIC) and the direction of so many
+//           edges press FILE MS     pulls a simulated input (its sysfs file) up for so long; prints, for
+//           either edge,
+//                             "BEFORE AFTER" (ns): the edge happened between these two
+// By the kernel's own interface, so that the bench does not depend on a version of libgpiod.
 #include <fcntl.h>
 #include <linux/gpio.h>
 #include <sys/ioctl.h>
+#include <time.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -43,24 +48,49 @@ int request(const std::string& name, std::uint64_t flags, int value) {
   return std::fprintf(stderr, "gpio_line: no line named %s\n", name.c_str()), -1;
 }
 
-}  // namespace
+long long now_ns() {
+  timespec now{};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
+}
 
-int main(int argc, char** argv) {
-  if (argc != 4) return std::fprintf(stderr, "gpio_line hold NAME VALUE | watch NAME COUNT\n"), 2;
-  const bool hold = std::string(argv[1]) == "hold";
-  const auto flags =
-      hold ? std::uint64_t{GPIO_V2_LINE_FLAG_OUTPUT}
-           : GPIO_V2_LINE_FLAG_INPUT | GPIO_V2_LINE_FLAG_EDGE_RISING | GPIO_V2_LINE_FLAG_EDGE_FALLING;
-  const int fd = request(argv[2], flags, std::atoi(argv[3]));
-  if (fd < 0) return 1;
-  std::printf("ready\n");
-  std::fflush(stdout);
-  if (hold) return ::pause();
-  for (int left = std::atoi(argv[3]); left > 0; --left) {
+int press(const char* file, int ms) {
+  for (const std::string pull : {"pull-up", "pull-down"}) {
+    const int fd = ::open(file, O_WRONLY | O_CLOEXEC);
+    const auto before = now_ns();
+    if (::write(fd, pull.data(), pull.size()) < 0) return std::perror(file), 1;
+    std::printf("%lld %lld\n", before, now_ns());
+    ::close(fd);
+    ::usleep(static_cast<useconds_t>(ms) * 1000);
+  }
+  return 0;
+}
+
+int watch(int fd, int count) {
+  while (count-- > 0) {
     gpio_v2_line_event event{};
     if (::read(fd, &event, sizeof event) != sizeof event) return std::perror("read"), 1;
     std::printf("%llu %s\n", static_cast<unsigned long long>(event.timestamp_ns),
                 event.id == GPIO_V2_LINE_EVENT_RISING_EDGE ? "rising" : "falling");
     std::fflush(stdout);
   }
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string what = argc == 4 ? argv[1] : "";
+  if (what != "hold" && what != "watch" && what != "press")
+    return std::fprintf(stderr, "gpio_line hold NAME VALUE | watch NAME COUNT | press FILE MS\n"), 2;
+  const int number = std::atoi(argv[3]);
+  if (what == "press") return press(argv[2], number);
+  const auto flags = what == "hold" ? std::uint64_t{GPIO_V2_LINE_FLAG_OUTPUT}
+                                    : GPIO_V2_LINE_FLAG_INPUT | GPIO_V2_LINE_FLAG_EDGE_RISING |
+                                          GPIO_V2_LINE_FLAG_EDGE_FALLING;
+  const int fd = request(argv[2], flags, number);
+  if (fd < 0) return 1;
+  std::puts("ready");
+  std::fflush(stdout);
+  return what == "hold" ? ::pause() : watch(fd, number);
 }

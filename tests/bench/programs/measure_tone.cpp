@@ -1,6 +1,8 @@
-// measure_tone FILE RATE CHANNELS CHANNEL: frequency (Hz) and level (dB re full scale, peak) of the strongest
-// tone in a raw S32_LE recording, by a windowed scan and a least-squares refinement. Prints "frequency level
-// frames".
+// measure_tone FILE RATE CHANNELS CHANNEL: of a raw S32_LE recording, over its loudest quarter second, prints
+// "FREQUENCY LEVEL RESIDUAL": of the strongest tone in Hz and dB (peak, re full scale), and what is left once
+// it is subtracted, in dB re the tone. A gap or jump of one frame shows as residual. "0 -inf 0" where all is
+// silence.
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstdint>
@@ -8,50 +10,82 @@
 #include <cstdlib>
 #include <fstream>
 #include <numbers>
-#include <string>
+#include <span>
 #include <vector>
 
 namespace {
 
-std::vector<double> read_channel(const char* path, int channels, int channel) {
+using Samples = std::span<const double>;
+
+std::vector<double> read_channel(const char* path, std::size_t channels, std::size_t channel) {
   std::ifstream file(path, std::ios::binary);
   std::vector<double> samples;
-  std::vector<std::int32_t> frame(static_cast<std::size_t>(channels));
-  const auto bytes = static_cast<std::streamsize>(frame.size() * sizeof(std::int32_t));
+  std::vector<std::int32_t> frame(channels);
+  const auto bytes = static_cast<std::streamsize>(channels * sizeof(std::int32_t));
   while (file.read(reinterpret_cast<char*>(frame.data()), bytes))
-    samples.push_back(frame[static_cast<std::size_t>(channel)] / 2147483648.0);
+    samples.push_back(frame[channel] / 2147483648.0);
   return samples;
 }
 
-/// The loudest stretch of one second, without its ends: silence around a burst says nothing about its tone.
-std::vector<double> steady_part(const std::vector<double>& samples, std::size_t length) {
-  if (samples.size() <= length) return samples;
+/// The loudest stretch of this length: the silence around a burst says nothing about its tone.
+Samples loudest(Samples x, std::size_t length) {
+  if (x.size() <= length) return x;
   double energy = 0, best = -1;
-  std::size_t at = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    energy += samples[i] * samples[i];
-    if (i >= length) energy -= samples[i - length] * samples[i - length];
-    if (i + 1 >= length && energy > best) best = energy, at = i + 1 - length;
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    energy += x[i] * x[i] - (i >= length ? x[i - length] * x[i - length] : 0.0);
+    if (i + 1 >= length && energy > best) best = energy, begin = i + 1 - length;
   }
-  return {samples.begin() + static_cast<std::ptrdiff_t>(at),
-          samples.begin() + static_cast<std::ptrdiff_t>(at + length)};
+  return x.subspan(begin, length);
 }
 
-std::complex<double> component(const std::vector<double>& x, double cycles_per_frame) {
-  std::complex<double> sum = 0;
-  double weights = 0;
-  const auto n = static_cast<double>(x.size());
-  const auto step = std::polar(1.0, -2 * std::numbers::pi * cycles_per_frame);
-  std::complex<double> phasor = 1;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    if (i % 256 == 0)
-      phasor = std::polar(1.0, -2 * std::numbers::pi * cycles_per_frame * static_cast<double>(i));
-    const double w = 0.5 - 0.5 * std::cos(2 * std::numbers::pi * static_cast<double>(i) / n);
-    sum += w * x[i] * phasor;
-    weights += w;
+/// Hann-weighted Fourier component at so many cycles a frame: peak amplitude and phase of a tone there.
+std::complex<double> component(Samples x, double cycles_per_frame) {
+  const double turn = 2 * std::numbers::pi, n = static_cast<double>(x.size());
+  const auto step = std::polar(1.0, -turn * cycles_per_frame), window_step = std::polar(1.0, turn / n);
+  std::complex<double> sum = 0, phasor = 1, window = 1;
+  for (const double sample : x) {
+    sum += (0.5 - 0.5 * window.real()) * sample * phasor;
     phasor *= step;
+    window *= window_step;
   }
-  return 2.0 * sum / weights;
+  return 4.0 * sum / n;
+}
+
+/// In cycles a frame: a coarse scan over a short piece, a fine one and a golden-section search on the whole.
+double strongest_frequency(Samples x) {
+  const Samples piece = x.first(std::min<std::size_t>(x.size(), 1024));
+  double best = 0, at = 0;
+  for (int k = 2; k < 1023; ++k)
+    if (const double level = std::abs(component(piece, k / 2048.0)); level > best)
+      best = level, at = k / 2048.0;
+  // The main lobe of the whole is far narrower than that of the piece.
+  const double lobe = 1.0 / static_cast<double>(x.size());
+  double start = at;
+  best = 0;
+  for (double f = at - 1.0 / 1024; f < at + 1.0 / 1024; f += lobe)
+    if (const double level = std::abs(component(x, f)); level > best) best = level, start = f;
+  double low = start - lobe, high = start + lobe;
+  const double golden = 1 / std::numbers::phi;
+  while (high - low > 1e-12) {
+    const double a = high - golden * (high - low), b = low + golden * (high - low);
+    if (std::abs(component(x, a)) > std::abs(component(x, b))) {
+      high = b;
+    } else {
+      low = a;
+    }
+  }
+  return (low + high) / 2;
+}
+
+double residual_rms(Samples x, double cycles_per_frame, std::complex<double> tone) {
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double phase = 2 * std::numbers::pi * cycles_per_frame * static_cast<double>(i) + std::arg(tone);
+    const double left = x[i] - std::abs(tone) * std::cos(phase);
+    sum += left * left;
+  }
+  return std::sqrt(sum / static_cast<double>(x.size()));
 }
 
 }  // namespace
@@ -59,23 +93,14 @@ std::complex<double> component(const std::vector<double>& x, double cycles_per_f
 int main(int argc, char** argv) {
   if (argc != 5) return std::fprintf(stderr, "measure_tone FILE RATE CHANNELS CHANNEL\n"), 2;
   const double rate = std::atof(argv[2]);
-  const auto x = steady_part(read_channel(argv[1], std::atoi(argv[3]), std::atoi(argv[4])),
-                             static_cast<std::size_t>(rate / 4));
-  if (x.size() < 1000) return std::fprintf(stderr, "measure_tone: too short: %zu frames\n", x.size()), 1;
-  // A coarse scan on a short piece, then ever finer around the maximum.
-  const std::vector<double> piece(x.begin(), x.begin() +
-                                                 2048 * static_cast<std::ptrdiff_t>(x.size() >= 2048) +
-                                                 static_cast<std::ptrdiff_t>(x.size() < 2048 ? x.size() : 0));
-  double best = 0, at = 0;
-  for (int k = 1; k < 2048; ++k) {
-    const double f = 0.5 * k / 2048, level = std::abs(component(piece, f));
-    if (level > best) best = level, at = f;
-  }
-  for (double span = 0.5 / 2048; span > 1e-11; span *= 0.6) {
-    const double low = std::abs(component(x, at - span)), middle = std::abs(component(x, at)),
-                 high = std::abs(component(x, at + span));
-    if (low > middle && low > high) at -= span;
-    if (high > middle && high > low) at += span;
-  }
-  std::printf("%.6f %.4f %zu\n", at * rate, 20 * std::log10(std::abs(component(x, at)) + 1e-300), x.size());
+  const auto all =
+      read_channel(argv[1], std::strtoul(argv[3], nullptr, 10), std::strtoul(argv[4], nullptr, 10));
+  const Samples x = loudest(all, static_cast<std::size_t>(rate / 4));
+  if (x.size() < 1024) return std::fprintf(stderr, "measure_tone: too short: %zu frames\n", x.size()), 1;
+  if (std::all_of(x.begin(), x.end(), [](double s) { return s == 0; })) return std::puts("0 -inf 0"), 0;
+  const double f = strongest_frequency(x);
+  const auto tone = component(x, f);
+  const double residual_dB =
+      20 * std::log10(residual_rms(x, f, tone) / (std::abs(tone) / std::numbers::sqrt2) + 1e-15);
+  std::printf("%.5f %.4f %.1f\n", f * rate, 20 * std::log10(std::abs(tone)), residual_dB);
 }

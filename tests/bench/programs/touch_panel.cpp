@@ -35,8 +35,11 @@ void axis(int code, int maximum) {
   ::ioctl(panel, UI_ABS_SETUP, &setup);
 }
 
+int fingers = 0;
+
 void down(int slot, int x, int y) {
   static int id = 1;
+  ++fingers;
   emit(EV_ABS, ABS_MT_SLOT, slot);
   emit(EV_ABS, ABS_MT_TRACKING_ID, id++);
   emit(EV_ABS, ABS_MT_POSITION_X, x);
@@ -48,7 +51,7 @@ void down(int slot, int x, int y) {
 void up(int slot) {
   emit(EV_ABS, ABS_MT_SLOT, slot);
   emit(EV_ABS, ABS_MT_TRACKING_ID, -1);
-  emit(EV_KEY, BTN_TOUCH, 0);
+  if (--fingers == 0) emit(EV_KEY, BTN_TOUCH, 0);
   emit(EV_SYN, SYN_REPORT, 0);
 }
 
@@ -65,9 +68,32 @@ std::string device_path() {
   ::ioctl(panel, UI_GET_SYSNAME(sizeof name), name);
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string("/sys/devices/virtual/input/") + name))
-    if (entry.path().filename().string().rfind("event", 0) == 0)
-      return "/dev/input/" + entry.path().filename().string();
+    if (const auto file = entry.path().filename().string(); file.rfind("event", 0) == 0)
+      return "/dev/input/" + file;
   return "";
+}
+
+void obey(std::istringstream words) {
+  std::string what;
+  int a = 0, b = 0, c = 0;
+  words >> what >> a >> b >> c;
+  if (what == "tap") {
+    std::cout << "tapped " << now_ns() << std::endl;
+    down(0, a, b);
+    sleep_ms(60);
+    up(0);
+  } else if (what == "down") {
+    down(a, b, c);
+  } else if (what == "move") {
+    emit(EV_ABS, ABS_MT_SLOT, a);
+    emit(EV_ABS, ABS_MT_POSITION_X, b);
+    emit(EV_ABS, ABS_MT_POSITION_Y, c);
+    emit(EV_SYN, SYN_REPORT, 0);
+  } else if (what == "up") {
+    up(a);
+  } else if (what == "sleep") {
+    sleep_ms(a);
+  }
 }
 
 }  // namespace
@@ -90,31 +116,6 @@ int main(int argc, char** argv) {
   if (::ioctl(panel, UI_DEV_CREATE) < 0) return std::perror("uinput"), 1;
   sleep_ms(100);
   std::cout << "device " << device_path() << std::endl;
-  for (std::string line; std::getline(std::cin, line);) {
-    std::istringstream words(line);
-    std::string what;
-    int a = 0, b = 0, c = 0;
-    words >> what >> a >> b >> c;
-    if (what == "tap") {
-      const auto at = now_ns();
-      down(0, a, b);
-      std::cout << "tapped " << at << std::endl;
-      sleep_ms(60);
-      up(0);
-    } else if (what == "down") {
-      down(a, b, c);
-    } else if (what == "move") {
-      emit(EV_ABS, ABS_MT_SLOT, a);
-      emit(EV_ABS, ABS_MT_POSITION_X, b);
-      emit(EV_ABS, ABS_MT_POSITION_Y, c);
-      emit(EV_SYN, SYN_REPORT, 0);
-    } else if (what == "up") {
-      up(a);
-    } else if (what == "sleep") {
-      sleep_ms(a);
-    } else if (what == "gone") {
-      break;
-    }
-  }
+  for (std::string line; std::getline(std::cin, line) && line != "gone";) obey(std::istringstream(line));
   ::ioctl(panel, UI_DEV_DESTROY);
 }

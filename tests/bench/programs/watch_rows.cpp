@@ -1,0 +1,35 @@
+// watch_rows DATABASE TABLE DEVICE: marks in the disk's record how many rows of a table another process has
+// committed so far ("rows 17"), until killed. What a reader sees in WAL mode with synchronous FULL is already
+// promised.
+#include <sqlite3.h>
+
+#include <algorithm>
+
+#include "tests/bench/programs/disk_marker.hpp"
+
+namespace {
+
+int rows(sqlite3* db, const char* table) {
+  sqlite3_stmt* query = nullptr;
+  int count = -1;
+  if (sqlite3_prepare_v2(db, (std::string("SELECT count(*) FROM ") + table).c_str(), -1, &query, nullptr) ==
+          SQLITE_OK &&
+      sqlite3_step(query) == SQLITE_ROW)
+    count = sqlite3_column_int(query, 0);
+  sqlite3_finalize(query);
+  return count;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 4) return std::fprintf(stderr, "watch_rows DATABASE TABLE DEVICE\n"), 2;
+  DiskMarker marker(argv[3]);
+  sqlite3* db = nullptr;
+  for (int known = -1;; ::usleep(2000)) {
+    if (!db && sqlite3_open_v2(argv[1], &db, SQLITE_OPEN_READONLY, nullptr) != SQLITE_OK)
+      sqlite3_close(db), db = nullptr;
+    const int now = db ? rows(db, argv[2]) : -1;
+    if (now > known) marker.mark("rows " + std::to_string(known = now));
+  }
+}

@@ -1,0 +1,30 @@
+# proves: a 192 kHz S32 tone goes through ALSA bit by bit: frequency, level and channel are measured on the other side
+# suite: core
+# timeout: 90
+loopback
+make_tone 192000 19600.123 -6 0.8 >played.raw
+record 2 tone.raw; recorder=$!
+aplay -q -D hw:Loopback,0 -t raw -f S32_LE -c 2 -r 192000 --period-size=1920 --buffer-size=7680 played.raw
+wait $recorder
+read -r frequency level residual <<<"$(measure_tone tone.raw 192000 2 0)"
+near "frequency (Hz)" "$frequency" 19600.123 0.001
+near "level (dB)" "$level" -6 0.001
+near "residual (dB re tone)" "$residual" -150 50
+[ "$(measure_tone tone.raw 192000 2 1)" = "0 -inf 0" ] || fail "the other channel is not silent"
+
+same_bits() {  # both begin with silence, of different length
+  python3 - played.raw "$1" <<'PYTHON'
+import sys
+played, recorded = ((lambda d: d[(len(d) - len(d.lstrip(b"\0"))) // 8 * 8:])(open(f, "rb").read()) for f in sys.argv[1:])
+length = min(len(played), len(recorded))
+print(f"# {length // 8} frames compared")
+sys.exit(length < 8 * 48000 or played[:length] != recorded[:length])
+PYTHON
+}
+same_bits tone.raw || fail "the recording differs from what was played"
+
+# The measures can fail: one frame is taken out.
+{ head -c $((8 * 60000)) played.raw; tail -c +$((8 * 60001 + 1)) played.raw; } >cut.raw
+! same_bits cut.raw || fail "a missing frame was not noticed"
+read -r _ _ residual <<<"$(tail -c +$((8 * 36001)) cut.raw | head -c $((8 * 48000)) >middle.raw; measure_tone middle.raw 192000 2 0)"
+near "residual with a frame missing (dB re tone)" "$residual" 0 30

@@ -1,0 +1,8 @@
+# proves: SQLite in WAL mode with FULL keeps every acknowledged row through power cuts; with NORMAL it is seen to lose
+# needs: disk
+# timeout: 120
+disk_begin
+mkdir /run/disk/full /run/disk/normal
+sync
+disk_writer /run/disk/full/rows.sqlite FULL 200 /dev/vda
+disk_writer /run/disk/normal/rows.sqlite NORMAL 200 /dev/vda
