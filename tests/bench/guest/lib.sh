@@ -80,6 +80,6 @@ screen_begin() {
   export QT_QPA_PLATFORM=linuxfb QT_QUICK_BACKEND=software QT_QPA_FB_DISABLE_INPUT=1
   export QT_QPA_GENERIC_PLUGINS=evdevtouch:$PANEL
 }
-# pixel X Y: colour there, as bbggrr00 in hexadecimal; screenshot NAME: keeps what is on the screen in $OUT/NAME.png.
-pixel() { dd if=/dev/fb0 bs=4 skip=$(($2 * 800 + $1)) count=1 status=none | od -An -tx1 | tr -d ' '; }
+# pixel X Y: colour there, as bbggrr in hexadecimal; screenshot NAME: keeps what is on the screen in $OUT/NAME.png.
+pixel() { dd if=/dev/fb0 bs=4 skip=$(($2 * 800 + $1)) count=1 status=none | od -An -tx1 | tr -d ' ' | cut -c1-6; }
 screenshot() { python3 "$BENCH_SOURCE/guest/screenshot.py" "$OUT/$1.png"; }
