@@ -1,0 +1,146 @@
+#include "station/analysis/course.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "station/analysis/proportion.hpp"
+#include "station/analysis/signal_detection.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::analysis {
+
+std::vector<Trace> traces(const std::vector<TrialRecord>& trials) {
+  std::vector<Trace> result;
+  for (const auto& trial : trials) {
+    if (trial.type != TrialType::experimental || !trial.level) continue;
+    auto found = std::find_if(result.begin(), result.end(),
+                              [&](const Trace& trace) { return trace.procedure == trial.procedure; });
+    if (found == result.end()) found = result.insert(result.end(), Trace{trial.procedure, {}});
+    found->points.push_back({trial.trial_index, *trial.level, trial.correct, trial.response});
+  }
+  return result;
+}
+
+std::optional<Bias> choice_bias(const std::vector<TrialRecord>& trials) {
+  Bias bias;
+  YesNoCounts counts;
+  int known = 0, second_right = 0;
+  for (const auto& trial : trials) {
+    if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered) continue;
+    if (!trial.response || *trial.response < 0 || *trial.response > 1) continue;
+    const bool second = *trial.response == 1;
+    ++bias.answered;
+    bias.second_choice += second;
+    if (!trial.right_choice) continue;
+    ++known;
+    second_right += *trial.right_choice == 1;
+    auto& count = *trial.right_choice == 1 ? (second ? counts.hits : counts.misses)
+                                           : (second ? counts.false_alarms : counts.correct_rejections);
+    ++count;
+  }
+  if (bias.answered == 0) return std::nullopt;
+  bias.share_second = static_cast<double>(bias.second_choice) / bias.answered;
+  bias.interval = wilson(bias.second_choice, bias.answered);
+  if (const auto detection = yes_no(counts)) bias.criterion = detection->criterion;
+  const double fair = known > 0 ? static_cast<double>(second_right) / known : 0.5;
+  if (fair < bias.interval.low || fair > bias.interval.high)
+    bias.statements.push_back(
+        {"bias", "The second choice was made in " + text::number(100 * bias.share_second, 3) +
+                     " % of the trials; it was right in " + text::number(100 * fair, 3) + " %."});
+  return bias;
+}
+
+std::optional<Proportion> catch_accuracy(const std::vector<TrialRecord>& trials) {
+  Proportion result;
+  for (const auto& trial : trials) {
+    if (trial.type != TrialType::catch_trial || trial.outcome != Outcome::answered || !trial.correct)
+      continue;
+    ++result.trials;
+    result.right += *trial.correct;
+  }
+  if (result.trials == 0) return std::nullopt;
+  result.value = static_cast<double>(result.right) / result.trials;
+  result.interval = clopper_pearson(result.right, result.trials);
+  return result;
+}
+
+namespace {
+
+struct Sample {
+  std::pair<double, std::string> group;
+  double trial, value;
+};
+
+/// Slope of the deviations from group means over the deviations of trial number from its group means.
+std::optional<Trend> within_groups(const std::vector<Sample>& samples) {
+  std::map<std::pair<double, std::string>, std::array<double, 3>> sums;
+  for (const auto& sample : samples) {
+    auto& sum = sums[sample.group];
+    sum[0] += 1;
+    sum[1] += sample.trial;
+    sum[2] += sample.value;
+  }
+  double xx = 0, xy = 0, yy = 0;
+  for (const auto& sample : samples) {
+    const auto& sum = sums[sample.group];
+    const double x = sample.trial - sum[1] / sum[0], y = sample.value - sum[2] / sum[0];
+    xx += x * x;
+    xy += x * y;
+    yy += y * y;
+  }
+  const double freedom = static_cast<double>(samples.size()) - static_cast<double>(sums.size()) - 1;
+  if (samples.size() < 20 || freedom < 10 || !(xx > 0)) return std::nullopt;
+  const double slope = xy / xx, error = std::sqrt(std::max(0.0, yy - slope * xy) / freedom / xx);
+  const double z = normal_quantile(0.975);
+  return Trend{100 * slope, {100 * (slope - z * error), 100 * (slope + z * error), 0.95}};
+}
+
+}  // namespace
+
+Fatigue fatigue(const std::vector<TrialRecord>& trials) {
+  std::vector<Sample> times, scores;
+  for (const auto& trial : trials) {
+    if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered) continue;
+    const std::pair group{trial.level.value_or(0), trial.instruction};
+    const double index = trial.trial_index;
+    if (trial.response_time_s) times.push_back({group, index, *trial.response_time_s});
+    if (trial.correct) scores.push_back({group, index, *trial.correct ? 1.0 : 0.0});
+  }
+  Fatigue result{within_groups(times), within_groups(scores), {}};
+  if (result.proportion_correct && result.proportion_correct->interval.high < 0)
+    result.statements.push_back({"fatigue", "Accuracy falls over the session."});
+  if (result.response_time_s && result.response_time_s->interval.low > 0)
+    result.statements.push_back({"slowing", "Responses become slower over the session."});
+  return result;
+}
+
+OutcomeCounts count_outcomes(const std::vector<TrialRecord>& trials) {
+  OutcomeCounts counts;
+  for (const auto& trial : trials) {
+    if (trial.type == TrialType::practice) continue;
+    ++counts.presented;
+    switch (trial.outcome) {
+      case Outcome::answered:
+        ++counts.answered;
+        break;
+      case Outcome::timeout:
+        ++counts.timeouts;
+        break;
+      case Outcome::anticipation:
+        ++counts.anticipations;
+        break;
+      case Outcome::aborted:
+        ++counts.aborted;
+        break;
+      case Outcome::fault:
+        ++counts.faults;
+        break;
+    }
+  }
+  return counts;
+}
+
+}  // namespace turnpoint::analysis

@@ -1,0 +1,151 @@
+#include "station/analysis/diffusion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "station/text/number.hpp"
+
+namespace turnpoint::analysis {
+
+namespace {
+
+constexpr double s = kDiffusionScale;
+constexpr double kNearChance = 1e-3;  ///< of Pc from 1/2: there L^3 loses its digits
+
+/// Variance of the decision time is (a / s)^4 h(L).
+double h(double L) {
+  L = std::abs(L);
+  if (L < 0.02) return (1 - L * L / 10) / 24;  // its series; the closed form cancels
+  const double e = std::exp(-L);
+  return (1 - 2 * L * e - e * e) / (2 * L * L * L * (1 + e) * (1 + e));
+}
+
+/// Mean of the decision time is (a / s)^2 m(L).
+double m(double L) { return std::abs(L) < 1e-4 ? 0.25 : std::tanh(L / 2) / (2 * L); }
+
+double corrected(const EzMoments& moments) {
+  if (moments.proportion_correct >= 1 && moments.trials > 0) return 1 - 0.5 / moments.trials;
+  return moments.proportion_correct;
+}
+
+/// Why no diffusion can be fitted to these moments, or none.
+std::optional<Statement> refusal(const EzMoments& moments) {
+  const double p = corrected(moments);
+  if (!(p > 0 && p < 1) || moments.proportion_correct > 1)
+    return Statement{"ez-proportion", "EZ-diffusion not identifiable: proportion correct " +
+                                          text::number(moments.proportion_correct) + " is outside (0, 1)."};
+  if (!(moments.variance_s2 > 0) || !std::isfinite(moments.variance_s2) || !std::isfinite(moments.mean_s))
+    return Statement{"ez-variance", "EZ-diffusion not identifiable: the response times do not vary."};
+  return std::nullopt;
+}
+
+Statement negative_nondecision(double nondecision_s) {
+  return {"ez-nondecision", "EZ-diffusion not identifiable: the time outside the decision comes out as " +
+                                text::number(nondecision_s, 3) +
+                                " s; the spread of response times is too large for the model."};
+}
+
+double logit(double p) { return std::log(p / (1 - p)); }
+
+}  // namespace
+
+EzResult ez_diffusion(const EzMoments& moments) {
+  if (auto reason = refusal(moments)) return {std::nullopt, {*reason}};
+  const double p = corrected(moments), e = p - 0.5, variance = moments.variance_s2;
+  EzDiffusion result;
+  if (std::abs(e) < kNearChance) {
+    result.drift = s * e * std::pow(32 / (3 * variance), 0.25);
+    result.boundary = s * std::pow(24 * variance, 0.25);
+    result.nondecision_s = moments.mean_s - std::sqrt(24 * variance) / 4;
+  } else {
+    const double L = logit(p), x = L * (L * p * p - L * p + p - 0.5) / variance;
+    result.drift = std::copysign(s * std::pow(x, 0.25), e);
+    result.boundary = s * s * L / result.drift;
+    const double y = -result.drift * result.boundary / (s * s);
+    const double decision_s = result.boundary / (2 * result.drift) * (1 - std::exp(y)) / (1 + std::exp(y));
+    result.nondecision_s = moments.mean_s - decision_s;
+  }
+  if (result.nondecision_s < 0) return {std::nullopt, {negative_nondecision(result.nondecision_s)}};
+  return {result, {}};
+}
+
+SharedEzResult shared_ez_diffusion(const std::vector<EzMoments>& conditions) {
+  SharedEzResult result;
+  std::vector<double> L, weight;
+  double sum_weight = 0, sum_power = 0;
+  for (const auto& moments : conditions) {
+    const double p = corrected(moments), correct = moments.proportion_correct * moments.trials;
+    const bool usable = !refusal(moments) && correct >= 10;
+    L.push_back(!refusal(moments) ? logit(p) : 0);
+    weight.push_back(0);
+    if (!usable) continue;
+    // Relative variance of VRT: kurtosis of the exit time (about 9 cv^2 above a normal's); of ln h: from L's.
+    const double l = L.back(), cv2 = h(l) / (m(l) * m(l)), step = 1e-3;
+    const double dlnh = (std::log(h(l + step)) - std::log(h(l - step))) / (2 * step);
+    const double spread = (2 + 9 * cv2) / correct + dlnh * dlnh / (moments.trials * p * (1 - p));
+    weight.back() = 1 / spread;
+    sum_weight += weight.back();
+    sum_power += weight.back() * moments.variance_s2 / h(l);
+  }
+  if (sum_weight == 0) {
+    result.statements.push_back({"ez-too-few",
+                                 "EZ-diffusion not identifiable: no difficulty has 10 correct "
+                                 "answers with a response time that varies."});
+    return result;
+  }
+  SharedEz shared;
+  shared.boundary = s * std::pow(sum_power / sum_weight, 0.25);
+  const double unit = shared.boundary * shared.boundary / (s * s);
+  double sum = 0, total = 0;
+  for (std::size_t i = 0; i < conditions.size(); ++i) {
+    shared.drift.push_back(s * s * L[i] / shared.boundary);
+    if (weight[i] == 0) continue;
+    const double w = conditions[i].proportion_correct * conditions[i].trials / conditions[i].variance_s2;
+    sum += w * (conditions[i].mean_s - unit * m(L[i]));
+    total += w;
+  }
+  shared.nondecision_s = sum / total;
+  if (shared.nondecision_s < 0)
+    result.statements.push_back(negative_nondecision(shared.nondecision_s));
+  else
+    result.parameters = shared;
+  return result;
+}
+
+namespace {
+
+/// Distribution of the exit time of standard Brownian motion from (-1, 1); each series where it converges in
+/// a few terms.
+double exit_distribution(double t) {
+  double sum = 0;
+  if (t < 0.6) {
+    for (int k = 0; k < 4; ++k) sum += (k % 2 ? -2 : 2) * std::erfc((2 * k + 1) / std::sqrt(2 * t));
+    return sum;
+  }
+  constexpr double pi = std::numbers::pi;
+  for (int k = 0; k < 4; ++k) {
+    const double n = 2 * k + 1;
+    sum += (k % 2 ? -1 : 1) / n * std::exp(-n * n * pi * pi * t / 8);
+  }
+  return 1 - 4 / pi * sum;
+}
+
+double exit_time(double share) {
+  double low = 0, high = 1;
+  while (exit_distribution(high) < share && high < 64) high *= 2;
+  for (int i = 0; i < 45; ++i) (exit_distribution((low + high) / 2) < share ? low : high) = (low + high) / 2;
+  return (low + high) / 2;
+}
+
+}  // namespace
+
+Decision sample_decision(const EzDiffusion& parameters, random::Draws& draws) {
+  const double half = parameters.boundary / 2, drift = parameters.drift * half / (s * s);
+  double time = exit_time(draws.uniform());
+  while (draws.uniform() >= std::exp(-drift * drift * time / 2)) time = exit_time(draws.uniform());
+  const bool correct = draws.uniform() < 1 / (1 + std::exp(-2 * drift));
+  return {correct, time * half * half / (s * s) + parameters.nondecision_s};
+}
+
+}  // namespace turnpoint::analysis

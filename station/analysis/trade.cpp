@@ -1,0 +1,267 @@
+#include "station/analysis/trade.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "station/analysis/proportion.hpp"
+#include "station/analysis/quantile.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::analysis {
+
+namespace {
+
+struct Scored {
+  double time_s;
+  bool correct;
+};
+using Cell = std::vector<Scored>;
+
+/// The trials that count, by instruction and difficulty.
+struct Group {
+  std::vector<double> difficulty;
+  std::vector<Cell> cells;
+};
+
+enum Measure { accuracy, median, boundary, nondecision, lisas_score, efficiency, balanced, measures };
+using Measures = std::array<std::optional<double>, measures>;
+
+std::vector<double> correct_times(const Cell& cell) {
+  std::vector<double> times;
+  for (const auto& trial : cell)
+    if (trial.correct) times.push_back(trial.time_s);
+  return times;
+}
+
+EzMoments moments(const Cell& cell) {
+  const auto times = correct_times(cell);
+  EzMoments result;
+  result.trials = static_cast<int>(cell.size());
+  if (cell.empty()) return result;
+  result.proportion_correct = static_cast<double>(times.size()) / static_cast<double>(cell.size());
+  if (times.size() > 1) {
+    result.mean_s = mean(times);
+    result.variance_s2 = variance(times);
+  }
+  return result;
+}
+
+SharedEzResult diffusion(const Group& group) {
+  std::vector<EzMoments> conditions;
+  for (const auto& cell : group.cells) conditions.push_back(moments(cell));
+  return shared_ez_diffusion(conditions);
+}
+
+Cell pooled(const Group& group) {
+  Cell all;
+  for (const auto& cell : group.cells) all.insert(all.end(), cell.begin(), cell.end());
+  return all;
+}
+
+/// BIS of each group: the mean over its cells of the scores over all cells.
+void add_balanced(const std::vector<Group>& groups, std::vector<Measures>& result) {
+  std::vector<double> proportion, time;
+  for (const auto& group : groups)
+    for (const auto& cell : group.cells) {
+      const auto times = correct_times(cell);
+      if (times.empty()) return;
+      proportion.push_back(static_cast<double>(times.size()) / static_cast<double>(cell.size()));
+      time.push_back(mean(times));
+    }
+  const auto scores = balanced_integration(proportion, time);
+  if (!scores) return;
+  std::size_t next = 0;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    double sum = 0;
+    for (std::size_t i = 0; i < groups[g].cells.size(); ++i) sum += (*scores)[next++];
+    result[g][balanced] = sum / static_cast<double>(groups[g].cells.size());
+  }
+}
+
+std::vector<Measures> measure(const std::vector<Group>& groups) {
+  std::vector<Measures> result(groups.size());
+  Cell session;
+  for (const auto& group : groups) {
+    const auto all = pooled(group);
+    session.insert(session.end(), all.begin(), all.end());
+  }
+  const auto session_times = correct_times(session);
+  if (session_times.size() < 2) return result;
+  const double error = 1 - static_cast<double>(session_times.size()) / static_cast<double>(session.size());
+  const double sd_time = std::sqrt(variance(session_times)), sd_error = std::sqrt(error * (1 - error));
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const auto all = pooled(groups[g]);
+    const auto right = correct_times(all);
+    if (all.empty()) continue;
+    const double p = static_cast<double>(right.size()) / static_cast<double>(all.size());
+    std::vector<double> times;
+    for (const auto& trial : all) times.push_back(trial.time_s);
+    result[g][accuracy] = p;
+    result[g][median] = quantile(std::move(times), 0.5);
+    if (right.empty()) continue;
+    result[g][lisas_score] = lisas(mean(right), 1 - p, sd_time, sd_error);
+    result[g][efficiency] = inverse_efficiency(mean(right), p);
+    if (const auto fitted = diffusion(groups[g]).parameters) {
+      result[g][boundary] = fitted->boundary;
+      result[g][nondecision] = fitted->nondecision_s;
+    }
+  }
+  add_balanced(groups, result);
+  return result;
+}
+
+std::vector<Group> drawn(const std::vector<Group>& groups, const random::Key& key) {
+  random::Draws draws(key);
+  auto result = groups;
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    for (std::size_t c = 0; c < groups[g].cells.size(); ++c)
+      for (auto& trial : result[g].cells[c])
+        trial = groups[g].cells[c][draws.below(groups[g].cells[c].size())];
+  return result;
+}
+
+std::optional<Estimate> estimate(const std::optional<double>& value, std::vector<double> replicates,
+                                 const TradeOptions& options) {
+  if (!value || static_cast<double>(replicates.size()) < 0.95 * options.replicates) return std::nullopt;
+  return Estimate{*value, percentile_interval(std::move(replicates), options.confidence)};
+}
+
+/// Fills what the trials of one instruction say without a bootstrap, and its cells.
+Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& options,
+              InstructionResult& result) {
+  std::vector<const TrialRecord*> scored;
+  std::vector<double> times;
+  for (const auto& trial : trials) {
+    if (trial.type != TrialType::experimental || trial.instruction != result.instruction) continue;
+    ++result.presented;
+    result.timeouts += trial.outcome == Outcome::timeout;
+    result.anticipations += trial.outcome == Outcome::anticipation;
+    if (trial.outcome != Outcome::answered || !trial.correct || !trial.response_time_s) continue;
+    ++result.answered;
+    scored.push_back(&trial);
+    times.push_back(*trial.response_time_s);
+  }
+  const auto kept = keep_times(times, options.exclusion);
+  std::map<double, Cell> cells;
+  std::vector<bool> correct;
+  std::vector<double> right;
+  for (std::size_t i = 0; i < scored.size(); ++i) {
+    if (!kept[i]) {
+      ++result.excluded;
+      continue;
+    }
+    const Scored entry{times[i], *scored[i]->correct};
+    const double level = scored[i]->level ? std::abs(*scored[i]->level) : 0;
+    cells[scored[i]->difficulty.value_or(level)].push_back(entry);
+    result.times_s.push_back(entry.time_s);
+    correct.push_back(entry.correct);
+    if (entry.correct) right.push_back(entry.time_s);
+  }
+  result.correct = static_cast<int>(right.size());
+  result.times = describe_times(result.times_s);
+  result.correct_times = describe_times(right);
+  result.caf = conditional_accuracy(result.times_s, correct, options.caf_bins);
+  Group group;
+  for (auto& [difficulty, cell] : cells) {
+    group.difficulty.push_back(difficulty);
+    group.cells.push_back(std::move(cell));
+  }
+  return group;
+}
+
+void fill_cells(const Group& group, InstructionResult& result, double confidence) {
+  const auto fitted = diffusion(group);
+  result.statements = fitted.statements;
+  for (std::size_t i = 0; i < group.cells.size(); ++i) {
+    DifficultyCell cell;
+    cell.difficulty = group.difficulty[i];
+    const auto times = correct_times(group.cells[i]);
+    cell.answered = static_cast<int>(group.cells[i].size());
+    cell.correct = static_cast<int>(times.size());
+    cell.proportion_correct = static_cast<double>(cell.correct) / cell.answered;
+    cell.accuracy = wilson(cell.correct, cell.answered, confidence);
+    if (!times.empty()) cell.mean_correct_s = mean(times);
+    if (fitted.parameters && cell.correct > 0) cell.drift = fitted.parameters->drift[i];
+    result.cells.push_back(cell);
+  }
+  const int n = static_cast<int>(result.times_s.size());
+  if (n > 0)
+    result.proportion_correct =
+        Estimate{static_cast<double>(result.correct) / n, wilson(result.correct, n, confidence)};
+  if (result.timeouts > 0.05 * result.presented)
+    result.statements.push_back(
+        {"timeouts", text::number(100.0 * result.timeouts / result.presented, 3) +
+                         " % of the trials timed out: the slow end of the response times is cut off, and the "
+                         "diffusion's boundary comes out too small."});
+  if (result.caf.empty())
+    result.statements.push_back(
+        {"caf-too-few", "Too few scored trials for a conditional accuracy function."});
+}
+
+void set_estimates(InstructionResult& result, const Measures& values,
+                   const std::vector<std::vector<double>>& replicates, const TradeOptions& options) {
+  const auto of = [&](Measure which) { return estimate(values[which], replicates[which], options); };
+  result.median_s = of(median);
+  result.boundary = of(boundary);
+  result.nondecision_s = of(nondecision);
+  result.lisas_s = of(lisas_score);
+  result.inverse_efficiency_s = of(efficiency);
+  result.balanced = of(balanced);
+  if (values[boundary] && !result.boundary) {
+    for (auto& cell : result.cells) cell.drift.reset();
+    result.statements.push_back(
+        {"ez-unstable", "EZ-diffusion not identifiable: too many resampled sessions cannot be fitted."});
+  }
+}
+
+}  // namespace
+
+Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options) {
+  Trade result;
+  std::vector<Group> groups;
+  for (const auto& trial : trials) {
+    if (trial.type != TrialType::experimental) continue;
+    const auto known = std::any_of(result.instructions.begin(), result.instructions.end(),
+                                   [&](const auto& entry) { return entry.instruction == trial.instruction; });
+    if (known) continue;
+    result.instructions.emplace_back().instruction = trial.instruction;
+  }
+  for (auto& entry : result.instructions) {
+    groups.push_back(collect(trials, options, entry));
+    fill_cells(groups.back(), entry, options.confidence);
+  }
+  const auto values = measure(groups);
+  std::vector<std::vector<std::vector<double>>> replicates(groups.size(),
+                                                           std::vector<std::vector<double>>(measures));
+  std::vector<std::vector<double>> gaps(measures);
+  for (int i = 0; i < options.replicates; ++i) {
+    const auto again = measure(drawn(groups, {options.seed, random::Stream::bootstrap, 1000, 0, i}));
+    for (int which = 0; which < measures; ++which) {
+      for (std::size_t g = 0; g < groups.size(); ++g)
+        if (again[g][which]) replicates[g][which].push_back(*again[g][which]);
+      if (groups.size() > 1 && again[0][which] && again[1][which])
+        gaps[which].push_back(*again[1][which] - *again[0][which]);
+    }
+  }
+  for (std::size_t g = 0; g < groups.size(); ++g)
+    set_estimates(result.instructions[g], values[g], replicates[g], options);
+  if (groups.size() < 2) return result;
+  const char* names[] = {"proportion correct",
+                         "median response time",
+                         "boundary",
+                         "time outside the decision",
+                         "LISAS",
+                         "inverse efficiency",
+                         "BIS"};
+  const char* units[] = {"", "s", "", "s", "s", "s", ""};
+  for (int which = 0; which < measures; ++which) {
+    std::optional<double> gap;
+    if (values[0][which] && values[1][which]) gap = *values[1][which] - *values[0][which];
+    result.differences.push_back({names[which], units[which], estimate(gap, gaps[which], options)});
+  }
+  return result;
+}
+
+}  // namespace turnpoint::analysis

@@ -1,0 +1,83 @@
+#include "station/analysis/course.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::analysis;
+
+namespace {
+
+TrialRecord answered(int index, int right, int response, double time_s) {
+  TrialRecord trial;
+  trial.trial_index = index;
+  trial.level = right ? 10 : -10;
+  trial.right_choice = right;
+  trial.response = response;
+  trial.correct = right == response;
+  trial.response_time_s = time_s;
+  return trial;
+}
+
+}  // namespace
+
+TEST_CASE("A preference for one answer is found, guessing without one is not", "[analysis]") {
+  std::vector<TrialRecord> fair, always;
+  for (int i = 0; i < 60; ++i) {
+    fair.push_back(answered(i, i % 2, i / 2 % 2, 0.5));
+    always.push_back(answered(i, i % 2, 1, 0.5));
+  }
+  const auto none = choice_bias(fair), strong = choice_bias(always);
+  CHECK(none->share_second == 0.5);
+  CHECK(*none->criterion == Approx(0).margin(1e-12));
+  CHECK(none->statements.empty());
+  CHECK(strong->share_second == 1);
+  CHECK(*strong->criterion < -1);
+  REQUIRE(strong->statements.size() == 1);
+  CHECK(strong->statements[0].code == "bias");
+  CHECK_FALSE(choice_bias({}).has_value());
+}
+
+TEST_CASE("Catch accuracy counts answered catch trials only", "[analysis]") {
+  std::vector<TrialRecord> trials{answered(0, 1, 1, 0.5), answered(1, 0, 0, 0.5), answered(2, 1, 0, 0.5),
+                                  answered(3, 1, 1, 0.5)};
+  CHECK_FALSE(catch_accuracy(trials).has_value());
+  for (auto& trial : trials) trial.type = TrialType::catch_trial;
+  trials[3].outcome = Outcome::timeout;
+  trials[3].correct.reset();
+  const auto result = catch_accuracy(trials);
+  CHECK(result->trials == 3);
+  CHECK(result->right == 2);
+  CHECK(result->interval.low < 0.12);
+}
+
+TEST_CASE("A trend over trials is found with level taken out, and is none for few trials", "[analysis]") {
+  std::vector<TrialRecord> slowing, steady;
+  for (int i = 0; i < 80; ++i) {
+    const double jitter = 0.02 * ((i * 7) % 5 - 2);
+    slowing.push_back(answered(i, i % 2, i % 2, 0.5 + 0.002 * i + jitter));
+    // All hard (slow) trials late: a trend only where level is not taken out.
+    steady.push_back(answered(i, i >= 40, i >= 40, (i >= 40 ? 0.9 : 0.5) + jitter));
+  }
+  const auto found = fatigue(slowing);
+  CHECK(found.response_time_s->per_100_trials == Approx(0.2).margin(0.02));
+  CHECK(found.statements.size() == 1);
+  CHECK(fatigue(steady).statements.empty());
+  slowing.resize(15);
+  CHECK_FALSE(fatigue(slowing).response_time_s.has_value());
+}
+
+TEST_CASE("Traces follow each procedure in the order presented, practice left out", "[analysis]") {
+  std::vector<TrialRecord> trials;
+  for (int i = 0; i < 6; ++i) {
+    trials.push_back(answered(i, 1, 1, 0.5));
+    trials.back().procedure = i % 2 ? "up" : "down";
+    trials.back().level = i;
+  }
+  trials[0].type = TrialType::practice;
+  const auto result = traces(trials);
+  REQUIRE(result.size() == 2);
+  CHECK(result[0].procedure == "up");
+  CHECK(result[1].points.size() == 2);
+  CHECK(result[1].points[0].trial_index == 2);
+  const auto counts = count_outcomes(trials);
+  CHECK(counts.presented == 5);
+  CHECK(counts.answered == 5);
+}
