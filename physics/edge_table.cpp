@@ -14,12 +14,13 @@ namespace {
 
 using Piece = EdgeTable::Piece;
 constexpr int degree = EdgeTable::degree;
-constexpr int deepest = 9;  // halvings of the frequency range
+// Most halvings of the frequency range; positions found by integrals and searches are dear.
+int deepest(const MapOptions& options) { return options.edge.kind == Edge::Kind::friction ? 5 : 9; }
 
 // What a table's pieces are refined to. Elements and fingertip integrals are themselves exact to this only,
 // and asking for more would tabulate their rounding.
 double tolerance_m(const Dispersion& dispersion, const MapOptions& options) {
-  if (options.edge.kind == Edge::Kind::friction) return 1e-6;
+  if (options.edge.kind == Edge::Kind::friction) return 2e-6;
   return dispersion.clamped_bending() ? 3e-7 : 1e-11;
 }
 
@@ -80,7 +81,7 @@ class Builder {
     const bool complete = sample(piece, value);
     double worst = std::numeric_limits<double>::infinity();
     if (complete) worst = miss(piece);
-    if (worst > tolerance_m(dispersion_, options_) && depth < deepest) {
+    if (worst > tolerance_m(dispersion_, options_) && depth < deepest(options_)) {
       const double middle = 0.5 * (low + high);
       fill(table, low, middle, depth + 1);
       fill(table, middle, high, depth + 1);
