@@ -1,0 +1,299 @@
+#include "station/plot/chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "station/plot/palette.hpp"
+#include "station/plot/svg.hpp"
+
+namespace turnpoint::plot {
+
+namespace {
+
+constexpr double kText = 12, kTitle = 13.5, kPad = 10, kTick = 5;
+const std::string kInk = "#222222", kSoft = "#666666", kGrid = "#e6e6e6";
+
+void check(bool good, const std::string& what) {
+  if (!good) throw std::invalid_argument("plot: " + what);
+}
+
+/// Where a panel's data rectangle lies, and what its axes show.
+struct Frame {
+  double x = 0, y = 0, width = 0, height = 0;
+  const Axis *across, *up;
+
+  Svg::Point at(double value_x, double value_y) const {
+    return {x + std::clamp(position(*across, value_x), -4.0, 5.0) * width,
+            y + (1 - std::clamp(position(*up, value_y), -4.0, 5.0)) * height};
+  }
+};
+
+bool drawable(const Axis& axis, double value) {
+  return std::isfinite(value) && (axis.scale == AxisScale::linear || value > 0);
+}
+
+void marker(Svg& svg, Svg::Point at, double r, const Style& style, bool open) {
+  const Paint paint{style.colour, open ? "#ffffff" : style.colour, 1.6, "", 1};
+  const auto [x, y] = at;
+  switch (style.marker) {
+    case Marker::circle:
+      svg.circle(at, r, paint);
+      break;
+    case Marker::square:
+      svg.rectangle({x - 0.89 * r, y - 0.89 * r}, 1.78 * r, 1.78 * r, paint);
+      break;
+    case Marker::triangle:
+      svg.polygon({{x, y - 1.25 * r}, {x + 1.15 * r, y + 0.8 * r}, {x - 1.15 * r, y + 0.8 * r}}, paint);
+      break;
+    case Marker::diamond:
+      svg.polygon({{x, y - 1.3 * r}, {x + 1.3 * r, y}, {x, y + 1.3 * r}, {x - 1.3 * r, y}}, paint);
+      break;
+    case Marker::down:
+      svg.polygon({{x, y + 1.25 * r}, {x + 1.15 * r, y - 0.8 * r}, {x - 1.15 * r, y - 0.8 * r}}, paint);
+      break;
+    case Marker::cross:
+      svg.line({x - r, y - r}, {x + r, y + r}, {style.colour, "", 2, "", 1});
+      svg.line({x - r, y + r}, {x + r, y - r}, {style.colour, "", 2, "", 1});
+      break;
+  }
+}
+
+struct Draw {
+  Svg& svg;
+  const Frame& frame;
+
+  void operator()(const Band& band) const {
+    check(band.x.size() == band.low.size() && band.x.size() == band.high.size(),
+          "band lists differ in length");
+    std::vector<Svg::Point> outline;
+    for (std::size_t i = 0; i < band.x.size(); ++i) outline.push_back(frame.at(band.x[i], band.low[i]));
+    for (std::size_t i = band.x.size(); i-- > 0;) outline.push_back(frame.at(band.x[i], band.high[i]));
+    if (!outline.empty()) svg.polygon(outline, {"", style(band.series).colour, 0, "", 0.18});
+  }
+
+  void operator()(const Histogram& bars) const {
+    check(bars.edges.size() == bars.heights.size() + 1, "a histogram needs one edge more than heights");
+    for (std::size_t i = 0; i < bars.heights.size(); ++i) {
+      if (bars.heights[i] == 0) continue;
+      const auto from = frame.at(bars.edges[i], bars.heights[i]), to = frame.at(bars.edges[i + 1], 0);
+      svg.rectangle(from, to.first - from.first, to.second - from.second,
+                    {"#ffffff", style(bars.series).colour, 0.8, "", 0.85});
+    }
+  }
+
+  void operator()(const HeatMap& map) const {
+    const std::size_t columns = map.x_edges.size() - 1, rows = map.y_edges.size() - 1;
+    check(!map.x_edges.empty() && !map.y_edges.empty() && map.values.size() == columns * rows,
+          "a heat map needs columns x rows values");
+    check(map.low < map.high, "a heat map needs a range of values");
+    for (std::size_t row = 0; row < rows; ++row)
+      for (std::size_t column = 0; column < columns; ++column) {
+        const double value = map.values[row * columns + column];
+        if (!std::isfinite(value)) continue;
+        const auto from = frame.at(map.x_edges[column], map.y_edges[row + 1]);
+        const auto to = frame.at(map.x_edges[column + 1], map.y_edges[row]);
+        const auto colour = shade((value - map.low) / (map.high - map.low));
+        svg.rectangle(from, to.first - from.first, to.second - from.second, {colour, colour, 0.4, "", 1});
+      }
+  }
+
+  void operator()(const Rule& rule) const {
+    const bool flat = rule.direction == Rule::Direction::horizontal;
+    if (!drawable(flat ? *frame.up : *frame.across, rule.at)) return;
+    const auto at = flat ? frame.at(frame.across->low, rule.at) : frame.at(rule.at, frame.up->low);
+    const double right = frame.x + frame.width;
+    const Paint paint{kSoft, "", 1, "3 3", 1};
+    if (flat) {
+      svg.line({frame.x, at.second}, {right, at.second}, paint);
+      svg.text({right - 4, at.second - 4}, rule.label, kText - 1, Anchor::end, kSoft);
+    } else {
+      svg.line({at.first, frame.y}, {at.first, frame.y + frame.height}, paint);
+      const bool room = at.first + 4 + text_width(rule.label, kText - 1) < right;
+      svg.text({at.first + (room ? 4 : -4), frame.y + 12}, rule.label, kText - 1,
+               room ? Anchor::start : Anchor::end, kSoft);
+    }
+  }
+
+  void operator()(const Line& curve) const {
+    check(curve.x.size() == curve.y.size(), "line \"" + curve.name + "\": lists differ in length");
+    const auto look = style(curve.series);
+    std::vector<Svg::Point> run;
+    const auto flush = [&] {
+      if (run.size() > 1) svg.polyline(run, {look.colour, "", 2, look.dash, 1});
+      run.clear();
+    };
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+      if (drawable(*frame.across, curve.x[i]) && drawable(*frame.up, curve.y[i]))
+        run.push_back(frame.at(curve.x[i], curve.y[i]));
+      else
+        flush();
+    }
+    flush();
+  }
+
+  void operator()(const Points& dots) const {
+    const std::size_t n = dots.x.size();
+    const auto fits = [n](std::size_t size) { return size == 0 || size == n; };
+    check(dots.y.size() == n && fits(dots.low.size()) && dots.low.size() == dots.high.size() &&
+              fits(dots.weight.size()) && fits(dots.open.size()),
+          "points \"" + dots.name + "\": lists differ in length");
+    const auto look = style(dots.series);
+    const double heaviest =
+        dots.weight.empty() ? 1 : *std::max_element(dots.weight.begin(), dots.weight.end());
+    for (std::size_t i = 0; i < dots.low.size(); ++i)
+      if (drawable(*frame.up, dots.low[i]) && drawable(*frame.up, dots.high[i]))
+        svg.line(frame.at(dots.x[i], dots.low[i]), frame.at(dots.x[i], dots.high[i]),
+                 {look.colour, "", 1.3, "", 1});
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!drawable(*frame.across, dots.x[i]) || !drawable(*frame.up, dots.y[i])) continue;
+      const double share = dots.weight.empty() ? 0.5 : std::sqrt(dots.weight[i] / heaviest);
+      marker(svg, frame.at(dots.x[i], dots.y[i]), 2.4 + 2.4 * share, look,
+             !dots.open.empty() && dots.open[i]);
+    }
+  }
+};
+
+/// What the legend shows of one series: the layers of equal name and series make one entry.
+struct Entry {
+  std::string name;
+  int series = 0;
+  bool line = false, points = false, area = false;
+};
+
+std::vector<Entry> legend_of(const Panel& panel) {
+  std::vector<Entry> entries;
+  const auto add = [&](const std::string& name, int series, bool Entry::*what) {
+    if (name.empty()) return;
+    for (auto& entry : entries)
+      if (entry.name == name && entry.series == series) {
+        entry.*what = true;
+        return;
+      }
+    entries.push_back({name, series, false, false, false});
+    entries.back().*what = true;
+  };
+  for (const auto& layer : panel.layers) {
+    if (const auto* line = std::get_if<Line>(&layer)) add(line->name, line->series, &Entry::line);
+    if (const auto* dots = std::get_if<Points>(&layer)) add(dots->name, dots->series, &Entry::points);
+    if (const auto* band = std::get_if<Band>(&layer)) add(band->name, band->series, &Entry::area);
+    if (const auto* bars = std::get_if<Histogram>(&layer)) add(bars->name, bars->series, &Entry::area);
+  }
+  return entries;
+}
+
+/// Rows of entries that fit the width; the legend stands between title and data.
+double draw_legend(Svg* svg, const std::vector<Entry>& entries, double left, double top, double width) {
+  constexpr double sample = 24, gap = 18, row = 18;
+  double x = left, y = top;
+  for (const auto& entry : entries) {
+    const double need = sample + 6 + text_width(entry.name, kText);
+    if (x > left && x + need > left + width) x = left, y += row;
+    if (svg) {
+      const auto look = style(entry.series);
+      if (entry.area)
+        svg->rectangle({x, y + 3}, sample, 10, {"", look.colour, 0, "", entry.line ? 0.18 : 0.85});
+      if (entry.line) svg->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 2, look.dash, 1});
+      if (entry.points) marker(*svg, {x + sample / 2, y + 8}, 4, look, false);
+      svg->text({x + sample + 6, y + 12}, entry.name, kText, Anchor::start, kInk);
+    }
+    x += need + gap;
+  }
+  return entries.empty() ? 0 : y - top + row + 6;
+}
+
+const HeatMap* heat_map(const Panel& panel) {
+  for (const auto& layer : panel.layers)
+    if (const auto* map = std::get_if<HeatMap>(&layer)) return map;
+  return nullptr;
+}
+
+void draw_colour_bar(Svg& svg, const Frame& frame, const HeatMap& map) {
+  const double left = frame.x + frame.width + 12, width = 12;
+  constexpr int steps = 32;
+  for (int i = 0; i < steps; ++i) {
+    const auto colour = shade((i + 0.5) / steps);
+    svg.rectangle({left, frame.y + frame.height * (steps - 1 - i) / steps}, width, frame.height / steps + 0.5,
+                  {"", colour, 0, "", 1});
+  }
+  const Axis axis{map.name, map.low, map.high, AxisScale::linear};
+  for (const auto& tick : ticks(axis, 4))
+    svg.text({left + width + 5, frame.y + (1 - position(axis, tick.value)) * frame.height + 4}, tick.label,
+             kText - 1, Anchor::start, kSoft);
+  svg.text({left + width + 46, frame.y + frame.height / 2}, map.name, kText, Anchor::middle, kInk, 400, 90);
+}
+
+void draw_axes(Svg& svg, const Frame& frame, const std::vector<Tick>& across, const std::vector<Tick>& up) {
+  const double bottom = frame.y + frame.height;
+  for (const auto& tick : up) {
+    const double y = frame.at(frame.across->low, tick.value).second;
+    svg.line({frame.x, y}, {frame.x + frame.width, y}, {kGrid, "", 1, "", 1});
+    svg.text({frame.x - kTick - 3, y + 4}, tick.label, kText, Anchor::end, kInk);
+  }
+  double free_from = -1e9;
+  for (const auto& tick : across) {
+    const double x = frame.at(tick.value, frame.up->low).first;
+    svg.line({x, bottom}, {x, bottom + kTick}, {kInk, "", 1, "", 1});
+    const double half = text_width(tick.label, kText) / 2;
+    if (x - half < free_from) continue;  // labels never run into each other
+    svg.text({x, bottom + kTick + 13}, tick.label, kText, Anchor::middle, kInk);
+    free_from = x + half + 6;
+  }
+  svg.line({frame.x, bottom}, {frame.x + frame.width, bottom}, {kInk, "", 1, "", 1});
+  svg.text({frame.x + frame.width / 2, bottom + 37}, frame.across->label, kText, Anchor::middle, kInk);
+}
+
+void draw_panel(Svg& svg, const Panel& panel, double left, double top, double width, double height) {
+  const auto up = ticks(panel.y, 5), across = ticks(panel.x, 7);
+  double labels = 0;
+  for (const auto& tick : up) labels = std::max(labels, text_width(tick.label, kText));
+  const double title = panel.title.empty() ? 4 : 26;
+  const double inner_left = left + kPad + 18 + labels + kTick + 3;
+  const auto entries = legend_of(panel);
+  const auto* map = heat_map(panel);
+  const double inner_width = left + width - kPad - 6 - (map ? 72 : 0) - inner_left;
+  const double legend = draw_legend(nullptr, entries, inner_left, 0, inner_width);
+  Frame frame{inner_left, top + kPad + title + legend, inner_width, 0, &panel.x, &panel.y};
+  frame.height = top + height - kPad - 38 - frame.y;
+  check(frame.width > 40 && frame.height > 40, "panel \"" + panel.title + "\" leaves no room for its data");
+  svg.text({inner_left, top + kPad + 14}, panel.title, kTitle, Anchor::start, kInk, 600);
+  draw_legend(&svg, entries, inner_left, top + kPad + title, inner_width);
+  draw_axes(svg, frame, across, up);
+  svg.text({left + kPad + 10, frame.y + frame.height / 2}, panel.y.label, kText, Anchor::middle, kInk, 400,
+           90);
+  svg.begin_clip({frame.x - 1, frame.y - 6}, frame.width + 7, frame.height + 7);
+  for (const auto& layer : panel.layers) std::visit(Draw{svg, frame}, layer);
+  svg.end_clip();
+  if (map) draw_colour_bar(svg, frame, *map);
+}
+
+}  // namespace
+
+std::string render(const Figure& figure) {
+  check(!figure.panels.empty(), "a figure needs a panel");
+  check(figure.columns > 0, "columns: at least 1");
+  const int count = static_cast<int>(figure.panels.size());
+  const int columns = std::min(figure.columns, count), rows = (count + columns - 1) / columns;
+  const double width = columns * figure.panel_width_px, height = rows * figure.panel_height_px;
+  Svg svg(width, height, figure.title);
+  svg.rectangle({0, 0}, width, height, {"", "#ffffff", 0, "", 1});
+  for (int i = 0; i < count; ++i)
+    draw_panel(svg, figure.panels[static_cast<std::size_t>(i)], i % columns * figure.panel_width_px,
+               i / columns * figure.panel_height_px, figure.panel_width_px, figure.panel_height_px);
+  return svg.finish();
+}
+
+Histogram histogram(const std::vector<double>& values, double low, double high, int bins) {
+  check(low < high && bins > 0, "a histogram needs low < high and at least one bin");
+  Histogram result;
+  for (int i = 0; i <= bins; ++i) result.edges.push_back(low + (high - low) * i / bins);
+  result.heights.assign(static_cast<std::size_t>(bins), 0);
+  for (const double value : values) {
+    if (!(value >= low && value <= high)) continue;
+    const auto bin = std::min(static_cast<int>((value - low) / (high - low) * bins), bins - 1);
+    result.heights[static_cast<std::size_t>(bin)] += 1;
+  }
+  return result;
+}
+
+}  // namespace turnpoint::plot

@@ -1,0 +1,117 @@
+#include <cmath>
+#include <set>
+
+#include "station/plot/chart.hpp"
+#include "station/plot/palette.hpp"
+#include "station/plot/svg.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::plot;
+
+namespace {
+
+Figure example() {
+  Figure figure;
+  figure.title = "Example <1>";
+  Panel panel{
+      "A & B", {"Level (dB)", -32, -8, AxisScale::linear}, {"Proportion", 0.4, 1, AxisScale::linear}, {}};
+  panel.layers.push_back(Band{{-30, -20, -10}, {0.45, 0.6, 0.9}, {0.6, 0.8, 1}, 0, ""});
+  panel.layers.push_back(Rule{Rule::Direction::horizontal, 0.5, "chance"});
+  panel.layers.push_back(Line{{-30, -20, NAN, -15, -10}, {0.5, 0.7, 0.8, 0.8, 0.95}, 0, "fit"});
+  panel.layers.push_back(
+      Points{{-30, -20, -10}, {0.5, 0.7, 0.95}, {0.4, 0.6, 0.9}, {0.6, 0.8, 1}, {10, 20, 40}, {}, 1, "data"});
+  figure.panels = {panel};
+  return figure;
+}
+
+std::size_t count(const std::string& text, const std::string& what) {
+  std::size_t n = 0;
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+  return n;
+}
+
+}  // namespace
+
+TEST_CASE("Ticks are 1, 2 or 5 times a power of ten, inside the axis, with a true minus", "[plot]") {
+  std::vector<std::string> labels;
+  for (const auto& tick : ticks({"", -30, -10, AxisScale::linear}, 5)) labels.push_back(tick.label);
+  CHECK(labels == std::vector<std::string>{"\u221230", "\u221225", "\u221220", "\u221215", "\u221210"});
+  for (const double high : {0.003, 0.7, 1.0, 13.0, 9e4})
+    for (const int wanted : {3, 6, 10}) {
+      const auto list = ticks({"", 0, high, AxisScale::linear}, wanted);
+      CHECK(list.size() >= 2);
+      CHECK(static_cast<int>(list.size()) <= 2 * wanted + 1);
+      CHECK(list.front().value == 0);
+      CHECK(list.back().value <= high * (1 + 1e-9));
+    }
+}
+
+TEST_CASE("A log axis has ticks in each decade and equal ratios equal lengths", "[plot]") {
+  const Axis axis{"", 1, 100, AxisScale::log10};
+  std::vector<double> values;
+  for (const auto& tick : ticks(axis, 7)) values.push_back(tick.value);
+  CHECK(values == std::vector<double>{1, 2, 5, 10, 20, 50, 100});
+  CHECK(position(axis, 10) == Approx(0.5));
+  CHECK(ticks({"", 1e-6, 1e6, AxisScale::log10}, 6).size() == 13);
+}
+
+TEST_CASE("Axes without a range, or a log axis from 0, are refused", "[plot]") {
+  CHECK_THROWS_AS(ticks({"", 1, 1, AxisScale::linear}), std::invalid_argument);
+  CHECK_THROWS_AS(ticks({"", 0, 1, AxisScale::log10}), std::invalid_argument);
+  CHECK_THROWS_AS(ticks({"", 0, NAN, AxisScale::linear}), std::invalid_argument);
+  const auto lonely = fitted("", {3}), empty = fitted("", {}), wide = fitted("", {0, NAN, 10}, 0.1);
+  CHECK(lonely.low < 3);
+  CHECK(lonely.high > 3);
+  CHECK(empty.low < empty.high);
+  CHECK(wide.low == Approx(-1));
+  CHECK(wide.high == Approx(11));
+}
+
+TEST_CASE("A figure is the same bytes each time, escaped and without NaN", "[plot]") {
+  const auto svg = render(example());
+  CHECK(svg == render(example()));
+  CHECK(svg.find("nan") == std::string::npos);
+  CHECK(svg.find("A &amp; B") != std::string::npos);
+  CHECK(svg.find("Example &lt;1&gt;") != std::string::npos);
+  CHECK(count(svg, "<polyline") == 2);  // the curve is broken where it is not finite
+  CHECK(count(svg, "<svg") == 1);
+  CHECK(count(svg, "<g ") == count(svg, "</g>"));
+}
+
+TEST_CASE("Each series differs from every other by colour, by marker, and lines by dash", "[plot]") {
+  std::set<std::string> colours, dashes;
+  std::set<int> markers;
+  for (int i = 0; i < 6; ++i) {
+    colours.insert(style(i).colour);
+    dashes.insert(style(i).dash);
+    markers.insert(static_cast<int>(style(i).marker));
+  }
+  CHECK(colours.size() == 6);
+  CHECK(dashes.size() == 6);
+  CHECK(markers.size() == 6);
+  CHECK(style(6).colour == style(0).colour);
+}
+
+TEST_CASE("Lists whose lengths differ are refused", "[plot]") {
+  auto figure = example();
+  figure.panels[0].layers = {Line{{1, 2}, {1}, 0, ""}};
+  CHECK_THROWS_AS(render(figure), std::invalid_argument);
+  figure.panels[0].layers = {Points{{1}, {1}, {0.5, 0.6}, {0.5, 0.6}, {}, {}, 0, ""}};
+  CHECK_THROWS_AS(render(figure), std::invalid_argument);
+  figure.panels[0].layers = {HeatMap{{0, 1}, {0, 1, 2}, {0.5}, 0, 1, ""}};
+  CHECK_THROWS_AS(render(figure), std::invalid_argument);
+  figure.panels.clear();
+  CHECK_THROWS_AS(render(figure), std::invalid_argument);
+}
+
+TEST_CASE("A histogram counts every value in range once", "[plot]") {
+  const auto bars = histogram({0, 0.1, 0.5, 0.99, 1, 2, NAN}, 0, 1, 4);
+  CHECK(bars.heights == std::vector<double>{2, 0, 1, 2});
+  CHECK(bars.edges.size() == 5);
+}
+
+TEST_CASE("Text is measured with room to spare, wide characters as one em", "[plot]") {
+  CHECK(text_width("abc", 10) == Approx(18.6));
+  CHECK(text_width("\u5de6\u53f3", 10) == Approx(20));
+  CHECK(text_width("\u2212", 10) == Approx(6.2));
+}
