@@ -1,0 +1,129 @@
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <random>
+
+#include "station/app/prepare.hpp"
+#include "station/store/read.hpp"
+#include "tests/store/sample.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+/// TURNPOINT_KILLS=1000 makes a long run: that many kills, and an adaptive protocol as well.
+const char* const kLong = std::getenv("TURNPOINT_KILLS");
+
+int kills_wanted() { return kLong != nullptr ? std::atoi(kLong) : 10; }
+
+session::Setup setup_for(const std::string& protocol, const std::string& db) {
+  app::RunRequest request;
+  request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol;
+  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
+  request.participant = "P01";
+  request.database = db;
+  request.observer = "sim";
+  request.seed = 42;
+  request.headless = true;
+  return app::prepare(request);
+}
+
+/// Begins a session, or goes on with the interrupted one, to its end.
+void run_to_end(session::Setup setup) {
+  if (std::filesystem::exists(setup.database))
+    if (const auto interrupted = store::interrupted_session(setup.database))
+      setup.resume_session = interrupted->session.session_id;
+  session::Inputs inputs;
+  session::run(setup, nullptr, inputs);
+}
+
+/// True where a child that runs the session to its end was killed on the way.
+bool killed_on_the_way(const session::Setup& setup, useconds_t after_us) {
+  const auto child = ::fork();
+  if (child == 0) {
+    int status = 0;
+    try {
+      run_to_end(setup);
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "%s\n", error.what());
+      status = 1;
+    }
+    ::_exit(status);
+  }
+  ::usleep(after_us);
+  ::kill(child, SIGKILL);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  REQUIRE((WIFSIGNALED(status) || WEXITSTATUS(status) == 0));
+  return WIFSIGNALED(status);
+}
+
+std::vector<store::TrialRow> trials_of(const std::string& db, const std::string& id) {
+  std::vector<store::TrialRow> trials;
+  for (const auto& block : store::read_session(db, id).blocks)
+    for (const auto& trial : block.trials)
+      if (trial.type != store::TrialType::warmup) trials.push_back(trial);
+  return trials;
+}
+
+/// What a trial was and what came of it; not when.
+void check_equal(const store::TrialRow& a, const store::TrialRow& b) {
+  CHECK(a.trial_in_block == b.trial_in_block);
+  CHECK(a.type == b.type);
+  CHECK(a.procedure == b.procedure);
+  CHECK(a.level == b.level);
+  CHECK(a.factors == b.factors);
+  CHECK(a.correct_response == b.correct_response);
+  CHECK(a.response == b.response);
+  CHECK(a.outcome == b.outcome);
+  REQUIRE(a.response_time_s.has_value() == b.response_time_s.has_value());
+  if (a.response_time_s) CHECK(*a.response_time_s == Approx(*b.response_time_s).margin(1e-5));  // a frame
+  CHECK(a.state_hash == b.state_hash);
+  REQUIRE(a.tones.size() == b.tones.size());
+  for (std::size_t i = 0; i < a.tones.size(); ++i) {
+    CHECK(a.tones[i].frequency_Hz == b.tones[i].frequency_Hz);
+    CHECK(a.tones[i].amplitude_um == b.tones[i].amplitude_um);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("sessions killed at random moments and gone on with equal the unbroken one, trial by trial",
+          "[resume]") {
+  const std::string protocol = GENERATE("demo.toml", "boundary-adaptive.toml");
+  if (kLong == nullptr && protocol != "demo.toml") return;
+  TemporaryFolder folder;
+  const auto whole = folder / "whole.sqlite";
+  const auto start = std::chrono::steady_clock::now();
+  run_to_end(setup_for(protocol, whole));
+  const std::chrono::duration<double, std::micro> whole_us = std::chrono::steady_clock::now() - start;
+  const auto expected = trials_of(whole, store::list_sessions(whole).front().session_id);
+  REQUIRE(!expected.empty());
+  std::mt19937 random(3);
+  // Over the whole length of a session, so that beginning, trials and ending are all hit.
+  std::uniform_int_distribution<useconds_t> moment(0, static_cast<useconds_t>(1.2 * whole_us.count()));
+  int kills = 0, finished = 0, resumed = 0;
+  while (kills < kills_wanted() || finished == 0) {
+    const auto db = folder / ("broken" + std::to_string(finished) + ".sqlite");
+    const auto setup = setup_for(protocol, db);
+    while (killed_on_the_way(setup, moment(random))) ++kills;
+    ++finished;
+    auto raw = sample::raw(db);
+    CHECK(raw.text("PRAGMA integrity_check") == "ok");
+    for (const auto& session : store::list_sessions(db)) {
+      if (session.status == store::SessionStatus::abandoned) continue;
+      CHECK(session.status == store::SessionStatus::completed);
+      resumed += session.segments > 1 ? 1 : 0;
+      const auto trials = trials_of(db, session.session_id);
+      REQUIRE(trials.size() == expected.size());
+      for (std::size_t i = 0; i < trials.size(); ++i) check_equal(trials[i], expected[i]);
+    }
+    std::filesystem::remove(db);
+  }
+  INFO(kills << " kills, " << finished << " sessions finished, " << resumed << " of them resumed");
+  CHECK(resumed > 0);
+}
