@@ -93,8 +93,9 @@ store::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::
   return start;
 }
 
-store::SegmentStart segment(const std::string& reason) {
-  return {boot_id(), reason, clock_ns(CLOCK_MONOTONIC), clock_ns(CLOCK_BOOTTIME), clock_ns(CLOCK_REALTIME)};
+/// `now_ns` is the stage's own time: a simulated session has its virtual clock's origin.
+store::SegmentStart segment(const std::string& reason, std::int64_t now_ns) {
+  return {boot_id(), reason, now_ns, clock_ns(CLOCK_BOOTTIME), clock_ns(CLOCK_REALTIME)};
 }
 
 drive::StreamConfig stream_of(const rig::Rig& rig) {
@@ -120,9 +121,10 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs) {
   const auto seed = setup.seed ? *setup.seed : setup.protocol.seed.value_or(fresh_seed());
   const bool resuming = !setup.resume_session.empty();
   auto log = resuming
-                 ? store::SessionLog::resume(setup.database, setup.resume_session, segment("resume"))
+                 ? store::SessionLog::resume(setup.database, setup.resume_session,
+                                             segment("resume", stage->now_ns()))
                  : store::SessionLog::begin(setup.database, start_of(setup, seed, stage->realtime_rights()),
-                                            segment("start"));
+                                            segment("start", stage->now_ns()));
   const auto kept_seed = resuming ? log.session().start.seed : seed;
   Sitting sitting(setup, kept_seed, std::move(log), std::move(stage), display);
   return sitting.run();
