@@ -18,8 +18,8 @@ double excursion(double overpressure) {
 }
 
 double with_floor(double share, double floor) {
-  const double f4 = std::pow(floor, 4);
-  return std::pow(f4 + (1 - f4) * std::pow(share, 4), 0.25);
+  const double f4 = floor * floor * floor * floor;
+  return std::sqrt(std::sqrt(f4 + (1 - f4) * share * share * share * share));
 }
 
 std::optional<double> without_floor(double friction, double floor) {
@@ -37,24 +37,33 @@ double displacement_for_share(const LoadSharing& m, double share) {
   return gap * excursion(m.pressure_Pa * (1 - share) / m.ambient_Pa);
 }
 
-// The share at a displacement: the closed form's inverse, by safeguarded secant steps in ln(share).
+// The share at a displacement: the film's overpressure must be what the contacts leave, (1 - share) of the
+// load. The difference rises with L = ln(share), so Newton steps inside a bracket find it.
 double share_at(const LoadSharing& m, double displacement_m) {
   if (displacement_m <= 0) return 1;
-  double low = std::log(smallest_share), high = 0;
   if (displacement_m >= displacement_for_share(m, smallest_share)) return smallest_share;
-  double f_low = displacement_for_share(m, smallest_share) - displacement_m;
-  double f_high = -displacement_m;
-  for (int i = 0; i < 200 && high - low > 1e-16; ++i) {
-    // Near share = 1 the displacement rises like a square root, where halving beats secants.
-    double middle = i % 3 == 2 ? 0.5 * (low + high) : low + (high - low) * f_low / (f_low - f_high);
-    if (!(middle > low && middle < high)) middle = 0.5 * (low + high);
-    if (middle == low || middle == high) break;
-    const double f = displacement_for_share(m, std::exp(middle)) - displacement_m;
-    if (f == 0) return std::exp(middle);
-    (f > 0 ? low : high) = middle;
-    (f > 0 ? f_low : f_high) = f;
+  double low = std::log(smallest_share), high = 0;
+  double x = std::max(low, -0.5);
+  for (int i = 0; i < 100; ++i) {
+    const double share = std::exp(x);
+    const double gap = m.rest_gap_m - m.decay_length_m * x;
+    const double e = displacement_m / gap;
+    double miss = 1, slope = 0;
+    if (e < 1) {
+      const double r = 2.5 * e * e / ((1 - e) * (1 + e));
+      const double root = std::sqrt(1 + r);
+      miss = m.ambient_Pa / m.pressure_Pa * r / (1 + root) - (1 - share);
+      slope = m.ambient_Pa / m.pressure_Pa * (r + 2.5) * e / ((1 - e) * (1 + e) * root) * e *
+                  m.decay_length_m / gap +
+              share;
+    }
+    (miss > 0 ? high : low) = x;
+    double next = slope > 0 ? x - miss / slope : 0.5 * (low + high);
+    if (!(next > low && next < high)) next = 0.5 * (low + high);
+    if (std::abs(next - x) < 1e-16 + 1e-15 * std::abs(x)) return std::exp(next);
+    x = next;
   }
-  return std::exp(0.5 * (low + high));
+  return std::exp(x);
 }
 
 void require(bool holds, const char* quantity, double value, const char* allowed) {

@@ -24,12 +24,13 @@ class Solver {
   Solver(std::span<const double> columns, std::size_t rows, std::span<const double> b)
       : columns_(columns), rows_(rows), b_(b), x_(columns.size() / rows, 0.0), r_(b.begin(), b.end()) {
     blocked_.assign(x_.size(), false);
+    gram_.assign(x_.size() * x_.size(), -1);
   }
 
-  NnlsResult run() {
+  NnlsResult run(double relative) {
     double scale = 0;
     for (std::size_t j = 0; j < x_.size(); ++j) scale = std::max(scale, std::abs(dot(column(j), b_)));
-    const double tolerance = 1e-13 * scale;
+    const double tolerance = relative * scale;
     const int most = 3 * static_cast<int>(x_.size()) + 10;
     int iterations = 0;
     while (iterations < most) {
@@ -115,12 +116,21 @@ class Solver {
     return z;
   }
 
+  // Products of columns, computed when first needed: the passive set changes by one or two a turn.
+  double gram(std::size_t i, std::size_t j) {
+    if (i < j) std::swap(i, j);
+    double& product = gram_[i * x_.size() + j];
+    if (product < 0) product = dot(column(i), column(j));
+    if (product < 0) return dot(column(i), column(j));  // columns of mixed sign: not worth a second table
+    return product;
+  }
+
   void factorise() {
     const std::size_t n = passive_.size();
     factor_.assign(n * n, 0);
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j <= i; ++j) {
-        double sum = dot(column(passive_[i]), column(passive_[j]));
+        double sum = gram(passive_[i], passive_[j]);
         const double diagonal = sum;
         for (std::size_t k = 0; k < j; ++k) sum -= factor_[i * n + k] * factor_[j * n + k];
         if (i == j) sum = std::sqrt(std::max(sum, 1e-15 * diagonal));
@@ -144,19 +154,20 @@ class Solver {
   std::span<const double> columns_;
   std::size_t rows_;
   std::span<const double> b_;
-  std::vector<double> x_, r_, factor_;
+  std::vector<double> x_, r_, factor_, gram_;
   std::vector<std::size_t> passive_;
   std::vector<bool> blocked_;
 };
 
 }  // namespace
 
-NnlsResult nnls(std::span<const double> columns, std::size_t rows, std::span<const double> b) {
+NnlsResult nnls(std::span<const double> columns, std::size_t rows, std::span<const double> b,
+                double tolerance) {
   if (rows == 0 || b.size() != rows || columns.size() % rows != 0) {
     throw std::invalid_argument(
         "non-negative least squares: sizes of the matrix and the right side do not fit");
   }
-  return Solver(columns, rows, b).run();
+  return Solver(columns, rows, b).run(tolerance);
 }
 
 }  // namespace turnpoint::physics

@@ -15,6 +15,7 @@ struct NnlsResult {
 // matrix column by column, `rows` numbers each; throws std::invalid_argument when the sizes do not fit. The
 // passive set's normal equations are factorised by Cholesky and refined once, which is enough for columns
 // that are distinct.
-NnlsResult nnls(std::span<const double> columns, std::size_t rows, std::span<const double> b);
+NnlsResult nnls(std::span<const double> columns, std::size_t rows, std::span<const double> b,
+                double tolerance = 1e-13);
 
 }  // namespace turnpoint::physics

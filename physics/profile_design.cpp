@@ -12,6 +12,7 @@ namespace turnpoint::physics {
 namespace {
 
 constexpr double reachable_residual = 0.25;
+constexpr double fit_tolerance = 1e-4;  // further tones would change the residual in its third digit
 
 // Squared amplitude at the target's points, last maximum set to one; |v(0)| of that in `drive_gain`.
 bool shape(const Surface& surface, double f, std::span<const double> x, std::vector<double>& columns,
@@ -60,7 +61,7 @@ ProfileDesign design_profile(const Surface& surface, std::span<const ProfilePoin
   }
   if (frequencies.empty())
     throw std::domain_error("no frequency of the band has a smooth zone on this surface");
-  const NnlsResult fit = nnls(columns, x.size(), wanted);
+  const NnlsResult fit = nnls(columns, x.size(), wanted, fit_tolerance);
   ProfileDesign design;
   for (std::size_t i = frequencies.size(); i-- > 0;) {
     if (fit.x[i] > 0) design.tones.push_back({frequencies[i], std::sqrt(fit.x[i]) * gains[i], 0});

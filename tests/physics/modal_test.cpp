@@ -207,3 +207,32 @@ TEST_CASE("a lossless plate answers without bound at its resonances", "[physics]
   CHECK(gain(f) > 1e4);
   CHECK(gain(f + 300) < 20);
 }
+
+TEST_CASE("modes of curved tapers, membrane and clamped plate, match collocation of the strong form",
+          "[physics][oracle]") {
+  const auto rows = turnpoint::physics_test::oracle("collocation.csv");
+  REQUIRE(rows.size() == 4);
+  for (const auto& row : rows) {
+    const auto number = [&](std::size_t i) { return std::stod(row[i]); };
+    Surface s = row[0] == "plate" ? aluminium_plate() : seed_brass();
+    s.taper = ExponentialTaper{number(1), number(2)};
+    s.length_m = number(3);
+    s.quality_factor = number(5);
+    REQUIRE(number(48) < 1e-5);  // the table's own convergence
+    for (const Model model : {Model::mode, Model::modes}) {
+      const auto line = make_centre_line(s, number(4), model);
+      const Scaled unit = line->value(0);
+      double worst = 0, most = 0;
+      for (std::size_t i = 0; i <= 20; ++i) {
+        const std::complex<double> exact(number(6 + 2 * i), number(7 + 2 * i));
+        const Scaled v = line->value(s.length_m * static_cast<double>(i) / 20);
+        const auto found = v.mantissa / unit.mantissa * std::exp(v.ln_scale - unit.ln_scale);
+        worst = std::max(worst, std::abs(found - exact));
+        most = std::max(most, std::abs(exact));
+      }
+      CAPTURE(row[0], row[2], name(model), worst / most);
+      if (model == Model::modes) CHECK(worst < 1e-4 * most);
+      if (model == Model::mode) CHECK(worst > 1e-4 * most);  // the one-mode rungs are told apart
+    }
+  }
+}
