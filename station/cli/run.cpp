@@ -14,9 +14,6 @@
 
 namespace turnpoint::cli {
 
-namespace {
-
-/// Hands the whole command line to turnpoint-ui beside this program; comes back only by an exception.
 void become_ui(const Context& context) {
   const auto self = std::filesystem::read_symlink("/proc/self/exe");
   const auto ui = (self.parent_path() / "turnpoint-ui").string();
@@ -25,6 +22,8 @@ void become_ui(const Context& context) {
   throw std::system_error(errno, std::generic_category(),
                           "cannot start " + ui + " (without a screen use --headless --observer sim)");
 }
+
+namespace {
 
 Json to_json(const session::Summary& summary) {
   Json estimates = Json::array();
@@ -81,7 +80,8 @@ std::shared_ptr<app::RunRequest> add_run_options(CLI::App& command) {
   auto request = std::make_shared<app::RunRequest>();
   command.add_option("protocol", request->protocol, "Protocol file")->required();
   command.add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
-  command.add_option("--participant", request->participant, "Participant code (never a name); the screen asks for it where it is left out");
+  command.add_option("--participant", request->participant,
+                     "Participant code (never a name); the screen asks for it where it is left out");
   command.add_option("--db", request->database, "Database file; made if it does not exist")->required();
   command.add_option("--mode", request->mode, "live | pilot")
       ->capture_default_str()

@@ -21,6 +21,14 @@ double strength(const Parameters& p, const Question& q) {
   return ratio > 0 ? random::exp(p.slope * random::log(ratio)) : 0;
 }
 
+/// The bound that leaves time: with nothing felt the decision takes bound^2 s on the mean, which shall be 60
+/// % of what the deadline leaves.
+double bound_for(const Parameters& p, double deadline_s) {
+  if (deadline_s <= 0) return p.bound;
+  const double left_s = std::max(0.02, 0.6 * (deadline_s - p.residual_s - p.travel_s));
+  return std::min(p.bound, std::sqrt(left_s));
+}
+
 }  // namespace
 
 double accuracy(double bound, double kx) {
@@ -40,7 +48,8 @@ Reply Observer::answer(const Question& q) const {
   key.stream = random::Stream::observer;
   random::Draws draws(key);
   const double kx = strength(parameters_, q) * kLn3 / (2 * parameters_.bound);
-  const double p2 = accuracy(parameters_.bound, kx);
+  const double bound = bound_for(parameters_, q.deadline_s);
+  const double p2 = accuracy(bound, kx);
   const bool lapses = draws.uniform() < parameters_.lapse;
   const bool anticipates = draws.uniform() < parameters_.anticipation;
   const double u = draws.uniform();
@@ -59,9 +68,9 @@ Reply Observer::answer(const Question& q) const {
     reply.choice = u < p ? right : wrong;
   }
   if (lapses || anticipates) reply.choice = any;
-  reply.response_time_s = anticipates ? 0.05
-                                      : mean_decision_s(parameters_.bound, kx) * spread +
-                                            parameters_.residual_s + parameters_.travel_s;
+  reply.response_time_s =
+      anticipates ? 0.05
+                  : mean_decision_s(bound, kx) * spread + parameters_.residual_s + parameters_.travel_s;
   return reply;
 }
 

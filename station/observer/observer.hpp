@@ -33,7 +33,8 @@ struct Question {
   std::optional<int> correct;  ///< otherwise: the right answer
   int answers = 2;
   double default_threshold = 1;  ///< where the parameters have none
-  random::Key key;               ///< of the trial; the stream is the observer's
+  double deadline_s = 0;  ///< 0: none; an observer decides sooner, and worse, when there is little time
+  random::Key key;        ///< of the trial; the stream is the observer's
 };
 
 struct Reply {

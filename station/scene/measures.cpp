@@ -128,9 +128,18 @@ double scale_to_friction(const physics::Surface& surface, const physics::Frictio
                       text::number(scene.zone->friction, 4), text::number(mean_at(high), 4)));
     low = high, high *= 2;
   }
-  for (int i = 0; i < 50; ++i) {
-    const double middle = 0.5 * (low + high);
-    (mean_at(middle) > scene.zone->friction ? low : high) = middle;
+  // Regula falsi (Illinois): the mean falls smoothly with the scale, so a few steps are enough.
+  double at_low = low == 0 ? 1 - scene.zone->friction : mean_at(low) - scene.zone->friction;
+  double at_high = mean_at(high) - scene.zone->friction;
+  for (int i = 0; i < 60 && high - low > 1e-10 * high; ++i) {
+    const double middle = (low * at_high - high * at_low) / (at_high - at_low);
+    const double at_middle = mean_at(middle) - scene.zone->friction;
+    if (std::fabs(at_middle) < 1e-10) return middle;
+    if (at_middle > 0) {
+      low = middle, at_low = at_middle, at_high *= 0.5;
+    } else {
+      high = middle, at_high = at_middle, at_low *= 0.5;
+    }
   }
   return 0.5 * (low + high);
 }

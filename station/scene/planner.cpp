@@ -26,7 +26,27 @@ namespace {
 constexpr double kInaudible_Hz = 22400;
 constexpr double kHighestShareOfRate = 0.45;
 
+constexpr std::size_t kRemembered = 512;
+
 double mm(double m) { return m * 1e3; }
+
+/// Everything in a scene that its plan depends on.
+std::string key_of(const Scene& scene) {
+  const auto maybe = [](const std::optional<double>& value) {
+    return value ? fmt::format("{}", *value) : "-";
+  };
+  auto key = fmt::format("{} {} {} {} {} {} {} {} {} {}", scene.name, maybe(scene.boundary_m),
+                         physics::format(scene.edge), maybe(scene.displacement_m), maybe(scene.friction),
+                         scene.rove_dB, scene.ramp_s, maybe(scene.tolerance.boundary_m),
+                         maybe(scene.tolerance.level_dB), maybe(scene.tolerance.friction));
+  for (const auto& tone : scene.tones)
+    key += fmt::format(" / {} {} {} {} {}", maybe(tone.boundary_m), maybe(tone.frequency_Hz),
+                       physics::format(tone.edge), tone.displacement_m, tone.phase_rad);
+  if (scene.zone)
+    key += fmt::format(" zone {} {} {} {}", scene.zone->from_m, scene.zone->friction, scene.zone->tones,
+                       maybe(scene.zone->design_friction));
+  return key;
+}
 
 }  // namespace
 
@@ -36,6 +56,7 @@ struct Planner::State {
   physics::FrictionMap friction;
   std::map<std::string, physics::BoundaryMap> maps;
   std::map<std::string, physics::ZoneDesign> designs;
+  std::map<std::string, DrivePlan> plans;
 
   explicit State(const rig::Rig& r) : rig(r), surface(surface_of(r)), friction(friction_of(r)) {}
 
@@ -195,6 +216,15 @@ const physics::Surface& Planner::surface() const { return state_->surface; }
 const physics::FrictionMap& Planner::friction() const { return state_->friction; }
 
 DrivePlan Planner::plan(const Scene& scene) {
+  auto& plans = state_->plans;
+  const auto key = key_of(scene);
+  if (const auto found = plans.find(key); found != plans.end()) return found->second;
+  // Roving makes nearly every scene new: what is remembered must not grow with the session.
+  if (plans.size() >= kRemembered) plans.clear();
+  return plans.emplace(key, make(scene)).first->second;
+}
+
+DrivePlan Planner::make(const Scene& scene) {
   DrivePlan plan;
   plan.scene = scene;
   // Positions come from the validated table, which is both the cheapest and the most exact there is; the

@@ -86,6 +86,7 @@ class Planner {
 
  private:
   struct State;
+  DrivePlan make(const Scene& scene);
   std::unique_ptr<State> state_;
 };
 

@@ -33,8 +33,8 @@ struct Director::State {
   std::uint64_t seed;
   std::vector<Block> blocks;
   std::size_t block = 0;
-  int attempt = 0;
-  int trial = 0;  ///< trials of the block that counted: the key of the next one's draws
+  int attempt = 0, first_attempt = 0;  ///< of this block; of a block that is entered
+  int trial = 0;                       ///< trials of the block that counted: the key of the next one's draws
   int shown = 0, right = 0;
   int warmups = 0, warmups_given = 0;
   int done = 0, expected_before = 0;
@@ -320,20 +320,27 @@ void Director::finish_block() {
   const auto* b = s.now();
   if (b == nullptr) return;
   const bool failed = b->pass && s.trial > 0 && s.right < b->pass->accuracy * s.trial;
-  if (failed && s.attempt < b->pass->retries) {
+  if (failed && s.attempt - s.first_attempt < b->pass->retries) {
     ++s.attempt;
   } else if (failed) {
     s.ended = "practice \"" + b->name + "\" was not passed in " + std::to_string(s.attempt + 1) + " attempts";
   } else {
     s.expected_before += s.trial - s.block_expected(*b);
     ++s.block;
-    s.attempt = 0;
+    s.attempt = s.first_attempt;
   }
   s.enter_block();
 }
 
 void Director::restart_block() {
   ++state_->attempt;
+  state_->enter_block();
+}
+
+void Director::restart_session() {
+  state_->first_attempt = state_->attempt = std::max(state_->first_attempt, state_->attempt) + 1;
+  state_->block = 0;
+  state_->ended.clear();
   state_->enter_block();
 }
 

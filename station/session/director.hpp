@@ -62,6 +62,8 @@ class Director {
   void finish_block();
   /// Leaves the block and starts it afresh as another attempt.
   void restart_block();
+  /// Starts from the first block again, as another attempt at every block.
+  void restart_session();
   /// So many warm-up trials before the next one, with rows and draws of their own.
   void warm_up(int trials);
 

@@ -210,6 +210,7 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
   observer::Question question;
   question.level = spec.level.value_or(0);
   question.correct = spec.correct;
+  question.deadline_s = spec.deadline_s;
   question.answers = static_cast<int>(protocol.task.choices.size());
   question.key = {seed, random::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   const auto& levels = protocol.procedures;
@@ -240,7 +241,6 @@ void replay(Director& director, const store::TrialRow& trial, const protocol::Pr
                     "program has changed",
                     trial.trial_index, what));
   };
-  if (director.block() != nullptr && !director.next()) director.finish_block();
   const auto spec = director.next();
   if (!spec) mismatch("the session would have been over");
   if (spec->level != trial.level)

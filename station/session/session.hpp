@@ -13,6 +13,9 @@
 
 namespace turnpoint::session {
 
+/// Where an interrupted session goes on. What was done stays in the log, whatever is chosen.
+enum class ResumeAt { next_trial, block_start, session_start };
+
 /// Everything a sitting needs, already loaded and checked.
 struct Setup {
   rig::Rig rig;
@@ -24,6 +27,7 @@ struct Setup {
   std::string observer;  ///< "" for a person; else the text after `sim` ("sim", "sim:threshold=...")
   std::optional<std::uint64_t> seed;
   std::string resume_session;  ///< session to go on with; "" begins a new one
+  ResumeAt resume_at = ResumeAt::next_trial;
 };
 
 /// How a sitting ended, for people and for --json.

@@ -35,6 +35,7 @@ class Sitting {
   void finish_row(const TrialSpec& spec, const trial::Machine& machine, store::TrialRow& row);
   void count(const TrialSpec& spec, const store::TrialRow& row);
   void replay_stored_blocks();
+  void enter_stored(const store::BlockStart& block);
   Flow show_and_wait(Page page, double at_least_s);
   Flow rest_if_due(int trials_in_block);
   void show(const Page& page);

@@ -1,0 +1,34 @@
+#include <memory>
+
+#include "station/app/resume.hpp"
+#include "station/cli/command.hpp"
+#include "station/cli/run.hpp"
+
+namespace turnpoint::cli {
+
+void add_resume(CLI::App& app, Context& context) {
+  auto request = std::make_shared<app::ResumeRequest>();
+  auto* command = app.add_subcommand("resume", "Go on with the newest interrupted session");
+  command->add_option("--db", request->database, "Database file")->required()->check(CLI::ExistingFile);
+  command->add_option("--session", request->session_id, "Session; otherwise the newest interrupted one");
+  command->add_option("--policy", request->policy, "resume | restart | block; otherwise the protocol's")
+      ->check(CLI::IsMember({"resume", "restart", "block"}));
+  command->add_flag("--headless", request->headless, "No screen");
+  add_json(*command, context);
+  command->footer("Example: turnpoint resume --db lab.sqlite --policy resume");
+  command->callback([request, &context] {
+    const auto setup = app::prepare_resume(*request, context.err);
+    if (!setup) {
+      if (context.json)
+        context.out << "null\n";
+      else
+        context.out << "Nothing to resume: no session in " << request->database << " was interrupted\n";
+      return;
+    }
+    if (setup->observer.empty() && !request->headless) return become_ui(context);
+    session::Inputs inputs;
+    show_summary(context, session::run(*setup, nullptr, inputs));
+  });
+}
+
+}  // namespace turnpoint::cli

@@ -1,0 +1,168 @@
+#include <unistd.h>
+#include <filesystem>
+#include <fstream>
+
+#include <sstream>
+#include <stdexcept>
+
+#include "station/app/prepare.hpp"
+#include "station/app/resume.hpp"
+#include "station/session/session.hpp"
+#include "station/store/read.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string kSource = TURNPOINT_SOURCE_DIR;
+
+/// A folder of its own for each test, gone afterwards.
+struct Folder {
+  fs::path path;
+  Folder() : path(fs::temp_directory_path() / ("turnpoint-session-" + std::to_string(::getpid()))) {
+    fs::remove_all(path);
+    fs::create_directories(path);
+  }
+  ~Folder() { fs::remove_all(path); }
+  std::string operator/(const std::string& name) const { return (path / name).string(); }
+};
+
+app::RunRequest request_for(const std::string& protocol, const std::string& database) {
+  app::RunRequest request;
+  request.protocol = kSource + "/protocols/" + protocol + ".toml";
+  request.rig = kSource + "/deploy/rigs/simulated.toml";
+  request.participant = "P01";
+  request.database = database;
+  request.observer = "sim";
+  request.seed = 20261121;
+  return request;
+}
+
+session::Summary run(const app::RunRequest& request) {
+  session::Inputs inputs;
+  return session::run(app::prepare(request), nullptr, inputs);
+}
+
+std::vector<store::TrialRow> trials_of(const std::string& database, const std::string& session) {
+  std::vector<store::TrialRow> all;
+  for (const auto& block : store::read_session(database, session).blocks)
+    for (const auto& trial : block.trials) all.push_back(trial);
+  return all;
+}
+
+/// Pulls the plug: throws after so many pages.
+struct Cut : session::Display {
+  int pages;
+  explicit Cut(int n) : pages(n) {}
+  void show(const session::Page&) override {
+    if (--pages == 0) throw std::runtime_error("the plug was pulled");
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the demo runs from its file to rows in SQLite", "[session]") {
+  const Folder folder;
+  const auto summary = run(request_for("demo", folder / "a.sqlite"));
+  CHECK(summary.status == store::SessionStatus::completed);
+  const auto trials = trials_of(folder / "a.sqlite", summary.session_id);
+  REQUIRE(static_cast<int>(trials.size()) == summary.trials);
+  for (const auto& trial : trials) {
+    CHECK(trial.outcome == store::TrialOutcome::answered);
+    CHECK(*trial.response_time_s > 0);
+    CHECK(trial.response_time_quality == "simulated");
+    CHECK(trial.frequency_Hz.has_value());
+    REQUIRE(trial.tones.size() == 1);
+    CHECK(trial.tones[0].model.size() > 0);
+  }
+  const auto sessions = store::list_sessions(folder / "a.sqlite");
+  REQUIRE(sessions.size() == 1);
+  CHECK(sessions[0].start.run_mode == store::RunMode::simulated);
+}
+
+TEST_CASE("every shipped protocol runs to its end on the simulated rig", "[session]") {
+  const Folder folder;
+  for (const auto* name :
+       {"boundary-adaptive", "boundary-constant", "friction-2ifc", "friction-same-different",
+        "friction-staircase", "no-touch-control", "speed-accuracy", "two-spots-oddity"}) {
+    INFO(name);
+    const auto summary = run(request_for(name, folder / "b.sqlite"));
+    CHECK(summary.status == store::SessionStatus::completed);
+    CHECK(summary.trials > 20);
+  }
+}
+
+TEST_CASE("the same seed gives the same trials and answers", "[session]") {
+  const Folder folder;
+  const auto first = run(request_for("demo", folder / "a.sqlite")),
+             second = run(request_for("demo", folder / "b.sqlite"));
+  const auto a = trials_of(folder / "a.sqlite", first.session_id),
+             b = trials_of(folder / "b.sqlite", second.session_id);
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    CHECK(a[i].level == b[i].level);
+    CHECK(a[i].response == b[i].response);
+    CHECK(a[i].response_time_s == b[i].response_time_s);
+    CHECK(a[i].state_hash == b[i].state_hash);
+  }
+}
+
+TEST_CASE("a session cut at any page goes on with the very trial that the unbroken one would have shown",
+          "[session]") {
+  const Folder folder;
+  const auto whole = run(request_for("demo", folder / "whole.sqlite"));
+  const auto expected = trials_of(folder / "whole.sqlite", whole.session_id);
+  for (int page = 8; page < 50; page += 7) {
+    INFO("cut at page " << page);
+    const auto database = folder / ("cut" + std::to_string(page) + ".sqlite");
+    Cut cut(page);
+    session::Inputs inputs;
+    auto setup = app::prepare(request_for("demo", database));
+    setup.protocol.resume.warmup = 0;
+    CHECK_THROWS_AS(session::run(setup, &cut, inputs), std::runtime_error);
+    std::ostringstream messages;
+    auto resumed = app::prepare_resume({database, "", "resume", true}, messages);
+    REQUIRE(resumed.has_value());
+    resumed->protocol.resume.warmup = 0;
+    const auto summary = session::run(*resumed, nullptr, inputs);
+    CHECK(summary.status == store::SessionStatus::completed);
+    const auto trials = trials_of(database, summary.session_id);
+    REQUIRE(trials.size() == expected.size());
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      CHECK(trials[i].level == expected[i].level);
+      CHECK(trials[i].factors == expected[i].factors);
+      CHECK(trials[i].response == expected[i].response);
+      CHECK(trials[i].state_hash == expected[i].state_hash);
+    }
+  }
+}
+
+TEST_CASE("a log that belongs to another protocol text is not continued", "[session]") {
+  const Folder folder;
+  Cut cut(30);
+  session::Inputs inputs;
+  auto setup = app::prepare(request_for("demo", folder / "a.sqlite"));
+  CHECK_THROWS(session::run(setup, &cut, inputs));
+  std::ostringstream messages;
+  auto resumed = app::prepare_resume({folder / "a.sqlite", "", "resume", true}, messages);
+  REQUIRE(resumed.has_value());
+  for (auto& value : resumed->protocol.procedures.front().values) value *= 0.5;
+  CHECK_THROWS_AS(session::run(*resumed, nullptr, inputs), std::runtime_error);
+}
+
+TEST_CASE("bad requests are refused all at once, and nothing is written", "[session]") {
+  const Folder folder;
+  auto request = request_for("demo", folder / "a.sqlite");
+  request.participant = "Jane Doe";
+  request.language = "xx";
+  CHECK_THROWS_AS(app::prepare(request), text::BadInput);
+  request.participant = "P01";
+  CHECK_THROWS_AS(app::prepare(request), text::BadInput);
+  request.language.clear();
+  request.observer.clear();
+  request.mode = "live";
+  CHECK_THROWS_AS(app::prepare(request), text::BadInput);
+  CHECK_FALSE(fs::exists(folder / "a.sqlite"));
+}
