@@ -3,6 +3,10 @@
 //           edges press FILE MS     pulls a simulated input (its sysfs file) up for so long; prints, for
 //           either edge,
 //                             "BEFORE AFTER" (ns): the edge happened between these two
+//           bounce FILE MS    the same, with a contact that bounces at either end
+//           until-low FILE VALUE  pulls a simulated input up and prints how long (ns) until the line of the
+//           other
+//                             sysfs file was low
 // By the kernel's own interface, so that the bench does not depend on a version of libgpiod.
 #include <fcntl.h>
 #include <linux/gpio.h>
@@ -16,6 +20,7 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 namespace {
 
@@ -54,15 +59,36 @@ long long now_ns() {
   return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
 }
 
-int press(const char* file, int ms) {
-  for (const std::string pull : {"pull-up", "pull-down"}) {
-    const int fd = ::open(file, O_WRONLY | O_CLOEXEC);
+/// One press; at either end the contact bounces so many times, 1 ms each.
+int press(const char* file, int ms, int bounces) {
+  const int fd = ::open(file, O_WRONLY | O_CLOEXEC);
+  const auto drive = [fd](const std::string& pull) { return ::write(fd, pull.data(), pull.size()) > 0; };
+  std::string now = "pull-up", other = "pull-down";
+  for (int end = 0; end < 2; ++end, std::swap(now, other)) {
     const auto before = now_ns();
-    if (::write(fd, pull.data(), pull.size()) < 0) return std::perror(file), 1;
+    if (!drive(now)) return std::perror(file), 1;
     std::printf("%lld %lld\n", before, now_ns());
-    ::close(fd);
+    for (int i = 0; i < bounces; ++i) {
+      ::usleep(1000);
+      drive(other);
+      ::usleep(1000);
+      drive(now);
+    }
     ::usleep(static_cast<useconds_t>(ms) * 1000);
   }
+  return 0;
+}
+
+/// Time from driving an input until another line is low, as a bystander sees it.
+int until_low(const char* pull_file, const char* value_file) {
+  const int pull = ::open(pull_file, O_WRONLY | O_CLOEXEC), value = ::open(value_file, O_RDONLY | O_CLOEXEC);
+  const auto start = now_ns();
+  if (pull < 0 || value < 0 || ::write(pull, "pull-up", 7) < 0) return std::perror("until-low"), 1;
+  for (char level = '1'; level != '0';) {
+    if (::pread(value, &level, 1, 0) != 1) return std::perror(value_file), 1;
+    if (now_ns() - start > 1'000'000'000) return std::printf("never\n"), 1;
+  }
+  std::printf("%lld\n", now_ns() - start);
   return 0;
 }
 
@@ -81,10 +107,11 @@ int watch(int fd, int count) {
 
 int main(int argc, char** argv) {
   const std::string what = argc == 4 ? argv[1] : "";
-  if (what != "hold" && what != "watch" && what != "press")
-    return std::fprintf(stderr, "gpio_line hold NAME VALUE | watch NAME COUNT | press FILE MS\n"), 2;
+  if (what != "hold" && what != "watch" && what != "press" && what != "bounce" && what != "until-low")
+    return std::fprintf(stderr, "gpio_line hold|watch|press|bounce|until-low A B\n"), 2;
+  if (what == "until-low") return until_low(argv[2], argv[3]);
   const int number = std::atoi(argv[3]);
-  if (what == "press") return press(argv[2], number);
+  if (what == "press" || what == "bounce") return press(argv[2], number, what == "press" ? 0 : 3);
   const auto flags = what == "hold" ? std::uint64_t{GPIO_V2_LINE_FLAG_OUTPUT}
                                     : GPIO_V2_LINE_FLAG_INPUT | GPIO_V2_LINE_FLAG_EDGE_RISING |
                                           GPIO_V2_LINE_FLAG_EDGE_FALLING;

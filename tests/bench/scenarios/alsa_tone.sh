@@ -1,6 +1,6 @@
 # proves: a 192 kHz S32 tone goes through ALSA bit by bit: frequency, level and channel are measured on the other side
 # suite: core
-# timeout: 90
+# timeout: 240
 loopback
 make_tone 192000 19600.123 -6 0.8 >played.raw
 record 2 tone.raw; recorder=$!

@@ -1,6 +1,6 @@
 # proves: an output follows its holder and falls back to its pull when the holder is killed; edges carry the kernel's time
 # suite: core
-# timeout: 60
+# timeout: 240
 gpio_sim SPARE AMP_EN BTN_LEFT
 pull AMP_EN down
 [ "$(level AMP_EN)" = 0 ] || fail "the line does not rest at its pull"

@@ -1,6 +1,6 @@
 # proves: SQLite in WAL mode with FULL keeps every acknowledged row through power cuts; with NORMAL it is seen to lose
 # needs: disk
-# timeout: 120
+# timeout: 240
 disk_begin
 mkdir /run/disk/full /run/disk/normal
 sync

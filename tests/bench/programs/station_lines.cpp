@@ -1,0 +1,80 @@
+// station_lines amplifier URI   the station's amplifier on real lines: armed and enabled, kept alive; a fault
+// is printed
+//                               as "fault STATE REACTION_NS REASON", then cleared, armed and enabled anew
+//                               when it is gone
+//               buttons URI     the station's buttons: "press NAME NS" each
+// Both until killed; "ready" once they are open.
+#include <unistd.h>
+
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include "station/panel/amplifier.hpp"
+#include "station/panel/buttons.hpp"
+
+namespace {
+
+using turnpoint::drive::AmplifierState;
+
+void say(const std::string& line) {
+  std::puts(line.c_str());
+  std::fflush(stdout);
+}
+
+bool begin(turnpoint::drive::Amplifier& amplifier) {
+  try {
+    amplifier.audio_alive();
+    amplifier.session_alive();
+    if (amplifier.state() == AmplifierState::faulted) amplifier.clear();
+    amplifier.arm();
+    amplifier.enable();
+    return true;
+  } catch (const std::runtime_error& refused) {
+    say(std::string("refused ") + refused.what());
+    return false;
+  }
+}
+
+void run_amplifier(const std::string& uri) {
+  const auto amplifier = turnpoint::panel::open_amplifier(uri);
+  bool running = begin(*amplifier);
+  for (say("ready");; ::usleep(10'000)) {
+    amplifier->audio_alive();
+    amplifier->session_alive();
+    if (running && amplifier->state() == AmplifierState::faulted) {
+      say(std::string("fault ") + name(amplifier->state()) + " " + std::to_string(amplifier->reaction_ns()) +
+          " " + amplifier->fault());
+      running = false;
+    } else if (!running) {
+      ::usleep(200'000);
+      running = begin(*amplifier);
+      if (running) say("enabled again");
+    }
+  }
+}
+
+void run_buttons(const std::string& uri) {
+  std::vector<std::string> names;
+  turnpoint::panel::PanelHandlers handlers;
+  handlers.press = [&names](const auto& press) {
+    say("press " + names.at(static_cast<std::size_t>(press.button)) + " " + std::to_string(press.time_ns));
+  };
+  handlers.fault = [](const auto& fault) { say("fault " + fault.what); };
+  const auto panel =
+      turnpoint::panel::open_panel(turnpoint::panel::ButtonsConfig{uri}, std::nullopt, std::move(handlers));
+  names = panel->buttons();
+  say("ready");
+  ::pause();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  const std::string what = argc == 3 ? argv[1] : "";
+  if (what == "amplifier") run_amplifier(argv[2]);
+  if (what == "buttons") run_buttons(argv[2]);
+  return std::fprintf(stderr, "station_lines amplifier|buttons URI\n"), 2;
+} catch (const std::exception& error) {
+  return std::fprintf(stderr, "station_lines: %s\n", error.what()), 1;
+}

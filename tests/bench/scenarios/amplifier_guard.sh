@@ -1,0 +1,30 @@
+# proves: a fault or stop edge takes the amplifier's enable line low within 1 ms, and so does a crash of the station
+# suite: core
+# timeout: 240
+gpio_sim AMP_EN AMP_FAULT STOP AMP_HB
+for line in AMP_EN AMP_FAULT STOP AMP_HB; do pull $line down; done
+station_lines amplifier gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB >station.txt & station=$!
+eventually 10 has station.txt ready
+cat station.txt
+eventually 2 equals level AMP_EN 1
+beats() {  # changes of a line that a quick look sees
+  local file; file=$(line_of "$1")/value
+  local last= now n=0
+  for _ in {1..1500}; do read -r now <"$file"; [ "$now" = "$last" ] || n=$((n + 1)); last=$now; done
+  echo $n
+}
+[ "$(beats AMP_HB)" -ge 4 ] || fail "no heartbeat: $(beats AMP_HB) changes"
+
+trips=0
+for line in AMP_FAULT STOP AMP_FAULT STOP; do
+  trips=$((trips + 1))
+  near "$line to enable low (us)" "$(($(gpio_line until-low "$(pull_file $line)" "$(line_of AMP_EN)/value") / 1000))" 0 1000
+  eventually 2 equals "grep -c ^fault" station.txt $trips
+  sleep 0.3; [ "$(level AMP_EN)" = 0 ] || fail "enabled again while $line is active"
+  pull $line down
+  eventually 3 equals level AMP_EN 1     # the operator has cleared and armed again
+done
+awk '$1 == "fault" && ($3 < 0 || $3 > 1e6) { bad++ } END { exit bad > 0 }' station.txt || fail "its own reaction times: $(cat station.txt)"
+grep ^fault station.txt
+kill -KILL $station
+eventually 1 equals level AMP_EN 0
