@@ -44,6 +44,9 @@ void add_backup(CLI::App& app, Context& context);
 void add_merge(CLI::App& app, Context& context);
 void add_withdraw(CLI::App& app, Context& context);
 void add_annotate(CLI::App& app, Context& context);
+void add_check(CLI::App& app, Context& context);
+void add_new(CLI::App& app, Context& context);
+void add_protocols(CLI::App& app, Context& context);
 
 /// Adds `--json` to a sub-command.
 void add_json(CLI::App& command, Context& context);

@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "station/app/check.hpp"
+#include "station/app/places.hpp"
+#include "station/cli/command.hpp"
+#include "station/cli/json.hpp"
+#include "station/protocol/combinations.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+using text::number;
+
+struct Options {
+  std::string protocol, rig;
+  int sessions = 21;
+};
+
+// Above chance by this much, a cue is named: what 20 trials could just show.
+constexpr double noticeable = 0.1;
+
+Json problems_json(const std::vector<text::Problem>& problems) {
+  Json list = Json::array();
+  for (const auto& problem : problems)
+    list.push_back({{"file", problem.place.file},
+                    {"line", problem.place.line > 0 ? Json(problem.place.line) : Json(nullptr)},
+                    {"column", problem.place.line > 0 ? Json(problem.place.column) : Json(nullptr)},
+                    {"what", problem.what},
+                    {"allowed", problem.allowed}});
+  return list;
+}
+
+Json spread_json(const app::Spread& spread) {
+  return {{"low", json_number(spread.low)},
+          {"median", json_number(spread.median)},
+          {"high", json_number(spread.high)}};
+}
+
+Json scenes_json(const protocol::Survey& survey) {
+  Json list = Json::array();
+  for (const auto& sight : survey.sights) {
+    Json factors = Json::object();
+    for (const auto& [name, value] : sight.factors)
+      std::visit([&factors, &name = name](const auto& v) { factors[name] = v; }, value);
+    list.push_back({{"scene", sight.scene},
+                    {"block", sight.block},
+                    {"factors", factors},
+                    {"lowest_Hz", json_number(sight.lowest_Hz)},
+                    {"highest_Hz", json_number(sight.highest_Hz)},
+                    {"boundary_mm", json_number(sight.boundary_mm)},
+                    {"displacement_um", json_number(sight.displacement_um)},
+                    {"lowest_friction", json_number(sight.lowest_friction)},
+                    {"model", sight.model},
+                    {"error_bound_mm", json_number(sight.error_bound_mm)},
+                    {"inside_tolerance", sight.inside_tolerance}});
+  }
+  return list;
+}
+
+struct Extremes {
+  double lowest_Hz = 0, highest_Hz = 0, displacement_um = 0;
+};
+
+Extremes extremes_of(const protocol::Survey& survey) {
+  Extremes found;
+  for (const auto& sight : survey.sights) {
+    found.lowest_Hz = found.lowest_Hz == 0 ? sight.lowest_Hz : std::min(found.lowest_Hz, sight.lowest_Hz);
+    found.highest_Hz = std::max(found.highest_Hz, sight.highest_Hz);
+    found.displacement_um = std::max(found.displacement_um, sight.displacement_um);
+  }
+  return found;
+}
+
+Json to_json(const app::Check& check) {
+  Json blocks = Json::array(), cues = Json::array();
+  for (const auto& block : check.blocks)
+    blocks.push_back({{"name", block.name},
+                      {"instruction", block.instruction.empty() ? Json(nullptr) : Json(block.instruction)},
+                      {"practice", block.practice},
+                      {"trials", spread_json(block.trials)}});
+  for (const auto& cue : check.cues)
+    cues.push_back({{"cue", cue.cue},
+                    {"low", json_number(cue.low)},
+                    {"high", json_number(cue.high)},
+                    {"unit", cue.unit},
+                    {"accuracy", json_number(cue.accuracy)},
+                    {"chance", json_number(cue.chance)},
+                    {"above_chance", cue.accuracy > cue.chance + noticeable}});
+  const auto extremes = extremes_of(check.survey);
+  const bool planned = !check.survey.sights.empty();
+  return {{"problems", problems_json(check.problems)},
+          {"warnings", problems_json(check.warnings)},
+          {"id", check.id},
+          {"rig", check.rig_name},
+          {"trials", json_number(check.trials.median)},
+          {"trials_range", {json_number(check.trials.low), json_number(check.trials.high)}},
+          {"duration_s", json_number(check.duration_s.median)},
+          {"duration_range_s", {json_number(check.duration_s.low), json_number(check.duration_s.high)}},
+          {"blocks", blocks},
+          {"frequencies",
+           {{"lowest_Hz", planned ? json_number(extremes.lowest_Hz) : Json(nullptr)},
+            {"highest_Hz", planned ? json_number(extremes.highest_Hz) : Json(nullptr)}}},
+          {"displacement_um", planned ? json_number(extremes.displacement_um) : Json(nullptr)},
+          {"models", check.survey.models},
+          {"combinations", check.survey.combinations},
+          {"scenes", scenes_json(check.survey)},
+          {"cues", cues},
+          {"defaults", {{"protocol", check.protocol_defaults}, {"rig", check.rig_defaults}}}};
+}
+
+std::string range(const app::Spread& spread, double unit) {
+  const auto shown = [&](double value) { return number(std::round(value / unit * 10) / 10, 4); };
+  const auto low = shown(spread.low), median = shown(spread.median), high = shown(spread.high);
+  return low == high ? median : median + " (" + low + " to " + high + ")";
+}
+
+void print_cues(std::ostream& out, const app::Check& check) {
+  std::string named;
+  for (const auto& cue : check.cues)
+    if (cue.accuracy > cue.chance + noticeable)
+      named += fmt::format("\n  {}: {} % right, {} to {} {}", cue.cue, std::lround(100 * cue.accuracy),
+                           number(cue.low, 3), number(cue.high, 3), cue.unit);
+  if (check.cues.empty()) return;
+  if (named.empty())
+    fmt::print(out, "Cues: an observer with one cue alone stays near chance, for each of the {} cues\n",
+               check.cues.size());
+  else
+    fmt::print(out,
+               "Cues: with one of these alone an observer who knows the best criterion does better than "
+               "chance ({} %):{}\n",
+               std::lround(100 * check.cues.front().chance), named);
+}
+
+void print(std::ostream& out, const app::Check& check, const std::string& path) {
+  fmt::print(out, "{} is good on \"{}\": {}\n", path, check.rig_name, check.title);
+  for (const auto& block : check.blocks)
+    fmt::print(out, "  {}{}{}: {} trials\n", block.practice ? "practice block " : "block ", block.name,
+               block.instruction.empty() ? "" : " (" + block.instruction + ")", range(block.trials, 1));
+  fmt::print(out, "Trials: {}. Duration: {} minutes, by {} simulated sessions\n", range(check.trials, 1),
+             range(check.duration_s, 60), check.simulated_sessions);
+  const auto extremes = extremes_of(check.survey);
+  std::string models;
+  for (const auto& model : check.survey.models) models += (models.empty() ? "" : ", ") + model;
+  fmt::print(
+      out,
+      "Tones: {} to {} kHz; the surface moves at most {} um; models: {} ({} of {} combinations planned)\n",
+      number(1e-3 * extremes.lowest_Hz, 4), number(1e-3 * extremes.highest_Hz, 4),
+      number(extremes.displacement_um, 3), models, check.survey.sights.size(), check.survey.combinations);
+  print_cues(out, check);
+  if (!check.protocol_defaults.empty()) fmt::print(out, "Defaults that stood in:\n");
+  for (const auto& line : check.protocol_defaults) fmt::print(out, "  {}\n", line);
+  for (const auto& line : check.rig_defaults) fmt::print(out, "  rig: {}\n", line);
+}
+
+void check(const Options& options, Context& context) {
+  const auto rig = app::rig_or_default(options.rig, context.err);
+  const auto result = app::check(options.protocol, rig, {options.sessions});
+  if (!result.problems.empty()) context.exit_code = 2;
+  for (const auto& problem : result.problems) fmt::print(context.err, "{}\n", format(problem));
+  for (const auto& warning : result.warnings) fmt::print(context.err, "warning: {}\n", format(warning));
+  if (context.json)
+    context.out << to_json(result).dump(2) << "\n";
+  else if (result.problems.empty())
+    print(context.out, result, options.protocol);
+}
+
+}  // namespace
+
+void add_check(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command =
+      app.add_subcommand("check", "All mistakes in a protocol file at once, or what the session will be");
+  command->add_option("protocol", options->protocol, "Protocol file")->required();
+  command->add_option("--rig", options->rig, "Rig file");
+  command
+      ->add_option("--sessions", options->sessions, "Simulated sessions for trials and duration; 0 for none")
+      ->check(CLI::Range(0, 1000));
+  add_json(*command, context);
+  command->footer("Example: turnpoint check protocols/demo.toml --rig deploy/rigs/simulated.toml");
+  command->callback([options, &context] { check(*options, context); });
+}
+
+}  // namespace turnpoint::cli

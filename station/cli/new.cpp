@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <system_error>
+
+#include "station/app/places.hpp"
+#include "station/cli/command.hpp"
+#include "station/protocol/protocol.hpp"
+#include "station/text/toml.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// What a researcher wants to know, in words, and the shipped protocol that measures it.
+struct Goal {
+  const char* word;
+  const char* what;
+  const char* file;
+};
+constexpr Goal goals[] = {
+    {"boundary", "where people feel the end of the smooth part, and how sharply", "boundary-constant"},
+    {"boundary-quick", "the same with an even zone and fewer trials (adaptive)", "boundary-adaptive"},
+    {"setting", "where people set the boundary themselves with a slider", "boundary-adjustment"},
+    {"contrast", "the smallest friction difference, two intervals, QUEST+", "friction-2ifc"},
+    {"contrast-staircase", "the same by 3-down-1-up staircases", "friction-staircase"},
+    {"same-different", "friction differences without naming a direction", "friction-same-different"},
+    {"pattern", "how far apart two slippery spots must be", "two-spots-oddity"},
+    {"speed-accuracy", "a change under the finger, fast against careful", "speed-accuracy"},
+    {"control", "whether the task can be done without touching", "no-touch-control"},
+    {"demo", "ten trials to try out a station", "demo"},
+};
+
+struct Options {
+  std::string file, goal, id;
+};
+
+const Goal* find_goal(const std::string& answer) {
+  int number = 1;
+  for (const auto& goal : goals) {
+    if (answer == goal.word || answer == std::to_string(number)) return &goal;
+    ++number;
+  }
+  return nullptr;
+}
+
+std::string goal_words() {
+  std::string all;
+  for (const auto& goal : goals) all += (all.empty() ? "" : ", ") + std::string(goal.word);
+  return all;
+}
+
+// Asks on standard error, so that standard output stays the command's result.
+const Goal& ask(Context& context) {
+  fmt::print(context.err, "What is to be measured?\n");
+  int number = 1;
+  for (const auto& goal : goals)
+    fmt::print(context.err, "  {:>2}  {} ({})\n", number++, goal.what, goal.word);
+  for (;;) {
+    fmt::print(context.err, "Number or word: ");
+    context.err.flush();
+    std::string answer;
+    if (!std::getline(std::cin, answer))
+      throw UsageError("new: no answer; give --measure with one of " + goal_words());
+    if (const auto* goal = find_goal(answer)) return *goal;
+    fmt::print(context.err, "\"{}\" is not one of them.\n", answer);
+  }
+}
+
+// The study's own id in place of the shipped one, and version 0.1.0: nothing was measured with it yet.
+std::string own(std::string source, const std::string& shipped_id, const std::string& id) {
+  const auto replace = [&source](const std::string& from, const std::string& to) {
+    const auto at = source.find(from);
+    if (at == std::string::npos) throw std::runtime_error("the shipped protocol has no line " + from);
+    source.replace(at, from.size(), to);
+  };
+  replace("id = \"" + shipped_id + "\"", "id = \"" + id + "\"");
+  replace("version = \"1.0.0\"", "version = \"0.1.0\"");
+  return source;
+}
+
+void make(const Options& options, Context& context) {
+  if (fs::exists(options.file)) throw UsageError(options.file + " exists already; choose another name");
+  const auto* goal = options.goal.empty() ? &ask(context) : find_goal(options.goal);
+  if (!goal) throw UsageError(fmt::format("--measure {}: allowed are {}", options.goal, goal_words()));
+  const auto from = fs::path(app::shipped("protocols")) / (std::string(goal->file) + ".toml");
+  const auto id = options.id.empty() ? fs::path(options.file).stem().string() : options.id;
+  const auto source = own(text::read_file(from.string()), goal->file, id);
+  protocol::parse(source, options.file);  // an id that is no name is refused before anything is written
+  std::ofstream out(options.file, std::ios::binary);
+  out << source;
+  out.close();
+  if (!out) throw std::system_error(errno, std::generic_category(), options.file);
+  fmt::print(context.out, "{}\n", options.file);
+  fmt::print(context.err, "It begins as a copy of {}. Change levels and texts, then: turnpoint check {}\n",
+             goal->file, options.file);
+}
+
+}  // namespace
+
+void add_new(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("new", "Starts a protocol file by asking what is to be measured");
+  command->add_option("file", options->file, "The file to write, such as my-study.toml")->required();
+  command->add_option("--measure", options->goal, "The answer in advance: " + goal_words());
+  command->add_option("--id", options->id, "The protocol's id; otherwise the file's name");
+  command->footer("Example: turnpoint new my-study.toml --measure contrast");
+  command->callback([options, &context] { make(*options, context); });
+}
+
+}  // namespace turnpoint::cli

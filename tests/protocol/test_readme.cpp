@@ -1,0 +1,104 @@
+// protocols/README.md is the manual: every key that the reader knows must stand there, and its examples must
+// read.
+#include <cctype>
+#include <set>
+#include <sstream>
+
+#include "station/protocol/protocol.hpp"
+#include "station/text/toml.hpp"
+#include "tests/protocol/known_keys.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+const std::string readme_path = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/README.md";
+
+std::vector<std::string> snippets() {
+  std::istringstream lines(text::read_file(readme_path));
+  std::vector<std::string> all;
+  bool inside = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (line == "```toml") {
+      inside = true;
+      all.emplace_back();
+    } else if (line == "```") {
+      inside = false;
+    } else if (inside) {
+      all.back() += line + "\n";
+    }
+  }
+  return all;
+}
+
+// The words of everything that the manual's running text sets in backticks.
+std::set<std::string> words_in_backticks() {
+  std::istringstream lines(text::read_file(readme_path));
+  std::set<std::string> words;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("```", 0) == 0) continue;
+    bool inside = false;
+    std::string word;
+    for (const char c : line + "`") {
+      if (std::isalnum(static_cast<unsigned char>(c)) || c == '_') {
+        word += c;
+        continue;
+      }
+      if (inside && !word.empty()) words.insert(word);
+      word.clear();
+      if (c == '`') inside = !inside;
+    }
+  }
+  return words;
+}
+
+std::vector<text::Problem> problems_of(const std::string& source) {
+  try {
+    protocol::parse(source, "readme.toml");
+    return {};
+  } catch (const text::BadInput& error) {
+    return error.problems();
+  }
+}
+
+// A part of a file lacks what stands elsewhere; anything else that is wrong with it is a mistake of the
+// manual.
+bool lacks_the_rest(const text::Problem& problem) {
+  for (const auto* part :
+       {"the file needs", "the file has no", "unknown factor", "unknown scene", "unknown procedure",
+        "not declared", "has no value", "there is no [instructions", "has no deadline", "without a second",
+        "nothing ends the interval", "unknown key \"offset_mm\""})
+    if (problem.what.find(part) != std::string::npos) return true;
+  return false;
+}
+
+}  // namespace
+
+TEST_CASE("the manual's whole example is a good protocol file", "[protocol]") {
+  const auto all = snippets();
+  REQUIRE(all.size() >= 10);
+  CHECK(problems_of(all.front()).empty());
+}
+
+TEST_CASE("every example of the manual reads, apart from what stands elsewhere in a file", "[protocol]") {
+  for (const auto& snippet : snippets()) {
+    INFO(snippet);
+    for (const auto& problem : problems_of(snippet)) {
+      INFO(format(problem));
+      CHECK(lacks_the_rest(problem));
+    }
+  }
+}
+
+TEST_CASE("the manual documents every key that the reader knows", "[protocol]") {
+  const auto documented = words_in_backticks();
+  auto known = tests::known_keys();
+  for (const auto* factor : {"contrast_dB", "offset_mm", "spread_mm", "mark_mm", "change", "instruction"})
+    known.erase(factor);  // [[block]] catch takes the names of factors as keys
+  CHECK(known.size() > 80);
+  for (const auto& key : known) {
+    INFO(key);
+    CHECK(documented.count(key) == 1);
+  }
+}
