@@ -66,7 +66,7 @@ TEST_CASE("every shipped protocol can be run on the simulated rig, without a war
   check_shipped(simulated());
 }
 
-TEST_CASE("the demo can be run on the simulated rig, without a warning", "[protocol]") {
+TEST_CASE("the demo can be run on the simulated rig, without a warning", "[.slow]") {
   const auto survey = protocol::survey(protocol::parse(source("demo.toml"), "p.toml"), simulated());
   CHECK(all_of(survey.problems) == "");
   CHECK(all_of(survey.warnings) == "");
