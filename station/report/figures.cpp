@@ -1,0 +1,205 @@
+#include "station/report/figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "station/analysis/proportion.hpp"
+#include "station/analysis/quantile.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::report {
+
+namespace {
+
+plot::Points observed(const NamedFit& named, int series, const std::string& name) {
+  plot::Points points;
+  points.series = series;
+  points.name = name;
+  for (const auto& point : named.fit.data) {
+    const auto interval = analysis::wilson(point.positive, point.trials);
+    points.x.push_back(point.level);
+    points.y.push_back(static_cast<double>(point.positive) / point.trials);
+    points.low.push_back(interval.low);
+    points.high.push_back(interval.high);
+    points.weight.push_back(point.trials);
+  }
+  return points;
+}
+
+plot::Line curve(const NamedFit& named, int series, const plot::Axis& axis, const std::string& name) {
+  plot::Line line;
+  line.series = series;
+  line.name = name;
+  const auto& options = named.fit.options;
+  const bool logarithmic = axis.scale == plot::AxisScale::log10;
+  for (int i = 0; i <= 120; ++i) {
+    const double share = i / 120.0;
+    const double x = logarithmic ? axis.low * std::pow(axis.high / axis.low, share)
+                                 : axis.low + share * (axis.high - axis.low);
+    line.x.push_back(x);
+    line.y.push_back(analysis::probability(options.function, options.scale, *named.fit.parameters, x));
+  }
+  return line;
+}
+
+std::string or_default(const std::string& name, const char* fallback) {
+  return name.empty() ? fallback : name;
+}
+
+}  // namespace
+
+std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
+  std::vector<double> levels;
+  for (const auto& named : summary.fits)
+    for (const auto& point : named.fit.data) levels.push_back(point.level);
+  if (levels.empty()) return std::nullopt;
+  const bool logarithmic = summary.data.scale == analysis::Scale::log10;
+  plot::Panel panel;
+  panel.x = plot::fitted(summary.data.level_label, levels, 0.05,
+                         logarithmic ? plot::AxisScale::log10 : plot::AxisScale::linear);
+  const bool forced = summary.data.design == Design::forced_choice;
+  panel.y = {"Proportion " + summary.fits.front().positive, forced ? 0.3 : -0.03, 1.03};
+  if (forced)
+    for (const auto& named : summary.fits)
+      for (const auto& point : named.fit.data)
+        panel.y.low = std::min(panel.y.low, analysis::wilson(point.positive, point.trials).low - 0.03);
+  for (std::size_t i = 0; i < summary.fits.size(); ++i)
+    if (summary.fits[i].bootstrap.replicates > 0)
+      panel.layers.push_back(plot::Band{summary.fits[i].bootstrap.band_level,
+                                        summary.fits[i].bootstrap.band_low,
+                                        summary.fits[i].bootstrap.band_high, static_cast<int>(i), ""});
+  if (forced)
+    panel.layers.push_back(
+        plot::Rule{plot::Rule::Direction::horizontal, 1.0 / summary.data.alternatives, "chance"});
+  for (std::size_t i = 0; i < summary.fits.size(); ++i) {
+    const auto& named = summary.fits[i];
+    const int series = static_cast<int>(i);
+    const auto name = summary.fits.size() > 1 ? named.name : std::string();
+    if (named.fit.parameters) panel.layers.push_back(curve(named, series, panel.x, name));
+    panel.layers.push_back(observed(named, series, name));
+  }
+  plot::Figure figure;
+  figure.title = "Psychometric function";
+  figure.panel_width_px = 620;
+  figure.panel_height_px = 380;
+  figure.panels.push_back(std::move(panel));
+  return figure;
+}
+
+std::optional<plot::Figure> trace_figure(const Summary& summary) {
+  plot::Figure figure;
+  figure.title = "Levels in the order presented";
+  figure.panel_width_px = 620;
+  figure.panel_height_px = 240;
+  for (const auto& trace : summary.traces) {
+    plot::Points points;
+    points.series = static_cast<int>(figure.panels.size());
+    plot::Line line;
+    line.series = plot::kNeutral;
+    for (const auto& point : trace.points) {
+      points.x.push_back(point.trial_index + 1);
+      points.y.push_back(point.level);
+      points.open.push_back(point.correct && !*point.correct);
+    }
+    line.x = points.x;
+    line.y = points.y;
+    plot::Panel panel;
+    panel.title = or_default(trace.procedure, "all trials");
+    panel.x = plot::fitted("Trial", points.x, 0.03);
+    panel.y = plot::fitted(summary.data.level_label, points.y, 0.1);
+    // Shuffled levels joined by a line would only cross: lines are for procedures that move step by step.
+    double steps = 0;
+    for (std::size_t i = 1; i < line.y.size(); ++i) steps += std::abs(line.y[i] - line.y[i - 1]);
+    const bool smooth = line.y.size() > 1 &&
+                        steps / static_cast<double>(line.y.size() - 1) < 0.2 * (panel.y.high - panel.y.low);
+    if (smooth) panel.layers.push_back(line);
+    panel.layers.push_back(points);
+    figure.panels.push_back(std::move(panel));
+  }
+  if (figure.panels.empty()) return std::nullopt;
+  return figure;
+}
+
+std::optional<plot::Figure> response_time_figure(const Summary& summary) {
+  std::vector<double> all;
+  for (const auto& entry : summary.trade.instructions)
+    all.insert(all.end(), entry.times_s.begin(), entry.times_s.end());
+  if (all.size() < 5) return std::nullopt;
+  const double width = std::pow(10.0, std::floor(std::log10(analysis::quantile(all, 0.98)))) / 4;
+  const double high = std::ceil(analysis::quantile(all, 1) / width) * width;
+  const int bins = std::clamp(static_cast<int>(std::lround(high / width)) * 2, 10, 60);
+  plot::Figure figure;
+  figure.title = "Response times";
+  figure.panel_width_px = 620;
+  figure.panel_height_px = 200;
+  double tallest = 1;
+  std::vector<plot::Histogram> bars;
+  for (const auto& entry : summary.trade.instructions) {
+    bars.push_back(plot::histogram(entry.times_s, 0, high, bins));
+    for (const double count : bars.back().heights) tallest = std::max(tallest, count);
+  }
+  for (std::size_t i = 0; i < bars.size(); ++i) {
+    const auto& entry = summary.trade.instructions[i];
+    bars[i].series = static_cast<int>(i);
+    plot::Panel panel;
+    panel.title = or_default(entry.instruction, "all trials");
+    panel.x = {"Response time (s)", 0, high};
+    panel.y = {"Trials", 0, tallest * 1.12};
+    panel.layers.push_back(bars[i]);
+    if (entry.times)
+      panel.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, entry.times->median_s,
+                                        "median " + text::number(entry.times->median_s, 3) + " s"});
+    figure.panels.push_back(std::move(panel));
+  }
+  return figure;
+}
+
+std::optional<plot::Figure> trade_figure(const Summary& summary) {
+  plot::Panel caf{"Conditional accuracy", {}, {}, {}}, cells{"Within equal difficulty", {}, {}, {}};
+  std::vector<double> caf_times, cell_times, accuracies;
+  int series = 0;
+  for (const auto& entry : summary.trade.instructions) {
+    plot::Points bins, by_difficulty;
+    plot::Line bin_line, cell_line;
+    for (const auto& bin : entry.caf) {
+      const auto interval = analysis::wilson(bin.correct, bin.trials);
+      bins.x.push_back(bin.mean_time_s);
+      bins.y.push_back(static_cast<double>(bin.correct) / bin.trials);
+      bins.low.push_back(interval.low);
+      bins.high.push_back(interval.high);
+      accuracies.push_back(interval.low);
+    }
+    for (const auto& cell : entry.cells) {
+      if (!cell.mean_correct_s) continue;
+      by_difficulty.x.push_back(*cell.mean_correct_s);
+      by_difficulty.y.push_back(cell.proportion_correct);
+      by_difficulty.low.push_back(cell.accuracy.low);
+      by_difficulty.high.push_back(cell.accuracy.high);
+      accuracies.push_back(cell.accuracy.low);
+    }
+    caf_times.insert(caf_times.end(), bins.x.begin(), bins.x.end());
+    cell_times.insert(cell_times.end(), by_difficulty.x.begin(), by_difficulty.x.end());
+    const auto name = or_default(entry.instruction, "all trials");
+    bins.series = bin_line.series = by_difficulty.series = cell_line.series = series++;
+    bins.name = bin_line.name = by_difficulty.name = cell_line.name = name;
+    bin_line.x = bins.x, bin_line.y = bins.y;
+    cell_line.x = by_difficulty.x, cell_line.y = by_difficulty.y;
+    caf.layers.insert(caf.layers.end(), {bin_line, bins});
+    cells.layers.insert(cells.layers.end(), {cell_line, by_difficulty});
+  }
+  if (cell_times.empty()) return std::nullopt;
+  const double lowest = std::min(0.45, *std::min_element(accuracies.begin(), accuracies.end()) - 0.03);
+  caf.x = plot::fitted("Response time, mean of bin (s)", caf_times, 0.12);
+  cells.x = plot::fitted("Mean correct response time (s)", cell_times, 0.12);
+  caf.y = cells.y = {"Proportion correct", lowest, 1.03};
+  plot::Figure figure;
+  figure.title = "Speed and accuracy";
+  figure.columns = 2;
+  figure.panel_width_px = 400;
+  figure.panel_height_px = 330;
+  if (!caf_times.empty()) figure.panels.push_back(std::move(caf));
+  figure.panels.push_back(std::move(cells));
+  return figure;
+}
+
+}  // namespace turnpoint::report

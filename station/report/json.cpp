@@ -1,0 +1,142 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "station/report/html.hpp"
+
+namespace turnpoint::report {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json value(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+Json value(const std::optional<double>& number) { return number ? value(*number) : Json(nullptr); }
+Json value(const analysis::Interval& i) { return {{"low", value(i.low)}, {"high", value(i.high)}}; }
+
+Json value(const std::optional<analysis::Estimate>& estimate) {
+  if (!estimate) return nullptr;
+  return {{"value", value(estimate->value)}, {"interval", value(estimate->interval)}};
+}
+
+Json value(const std::optional<analysis::ParameterInterval>& interval) {
+  if (!interval) return nullptr;
+  return {{"low", value(interval->interval.low)},
+          {"high", value(interval->interval.high)},
+          {"touches_low", interval->touches_low},
+          {"touches_high", interval->touches_high}};
+}
+
+Json value(const std::vector<analysis::Statement>& statements) {
+  Json list = Json::array();
+  for (const auto& statement : statements)
+    list.push_back({{"code", statement.code}, {"text", statement.text}});
+  return list;
+}
+
+Json fit_json(const NamedFit& named) {
+  const auto& p = named.fit.parameters;
+  const bool limited = named.fit.at_bound.slope_low || named.fit.at_bound.slope_high;
+  Json json{{"name", named.name}, {"positive", named.positive}};
+  json["threshold"] = p ? value(p->threshold) : Json(nullptr);
+  json["threshold_interval"] = value(named.bootstrap.threshold);
+  json["slope"] = p && !limited ? value(p->slope) : Json(nullptr);
+  json["slope_interval"] = value(named.bootstrap.slope);
+  json["guess"] = p ? value(p->guess) : Json(nullptr);
+  json["lapse"] = p ? value(p->lapse) : Json(nullptr);
+  json["level_75"] = value(named.bootstrap.level_75);
+  json["level_75_interval"] = value(named.bootstrap.interval_75);
+  json["negative_log_likelihood"] = p ? value(named.fit.negative_log_likelihood) : Json(nullptr);
+  json["deviance"] = p ? value(named.fit.deviance) : Json(nullptr);
+  json["deviance_p"] = value(named.bootstrap.deviance_p);
+  json["replicates"] = named.bootstrap.replicates;
+  json["levels"] = Json::array();
+  for (const auto& point : named.fit.data)
+    json["levels"].push_back(
+        {{"level", value(point.level)}, {"trials", point.trials}, {"positive", point.positive}});
+  auto statements = named.fit.statements;
+  statements.insert(statements.end(), named.bootstrap.statements.begin(), named.bootstrap.statements.end());
+  json["statements"] = value(statements);
+  return json;
+}
+
+Json instruction_json(const analysis::InstructionResult& entry) {
+  Json json{{"instruction", entry.instruction},     {"presented", entry.presented},
+            {"answered", entry.answered},           {"timeouts", entry.timeouts},
+            {"anticipations", entry.anticipations}, {"excluded", entry.excluded}};
+  json["proportion_correct"] = value(entry.proportion_correct);
+  json["median_response_time_s"] = value(entry.median_s);
+  json["ez_boundary"] = value(entry.boundary);
+  json["ez_nondecision_s"] = value(entry.nondecision_s);
+  json["lisas_s"] = value(entry.lisas_s);
+  json["inverse_efficiency_s"] = value(entry.inverse_efficiency_s);
+  json["bis"] = value(entry.balanced);
+  json["deciles_s"] = entry.times ? Json(entry.times->deciles_s) : Json(nullptr);
+  json["difficulties"] = Json::array();
+  for (const auto& cell : entry.cells)
+    json["difficulties"].push_back({{"difficulty", value(cell.difficulty)},
+                                    {"answered", cell.answered},
+                                    {"correct", cell.correct},
+                                    {"interval", value(cell.accuracy)},
+                                    {"mean_correct_s", value(cell.mean_correct_s)},
+                                    {"drift", value(cell.drift)}});
+  json["caf"] = Json::array();
+  for (const auto& bin : entry.caf)
+    json["caf"].push_back(
+        {{"mean_time_s", value(bin.mean_time_s)}, {"trials", bin.trials}, {"correct", bin.correct}});
+  json["statements"] = value(entry.statements);
+  return json;
+}
+
+Json trend_json(const std::optional<analysis::Trend>& trend) {
+  if (!trend) return nullptr;
+  return {{"per_100_trials", value(trend->per_100_trials)}, {"interval", value(trend->interval)}};
+}
+
+Json facts_json(const std::vector<Fact>& facts) {
+  Json json = Json::object();
+  for (const auto& [name, text] : facts) json[name] = text;
+  return json;
+}
+
+}  // namespace
+
+std::string to_json(const Summary& summary) {
+  const auto& data = summary.data;
+  Json json{{"session_id", data.session_id},
+            {"participant", data.participant},
+            {"title", data.title},
+            {"run_mode", data.run_mode},
+            {"status", data.status}};
+  json["facts"] = facts_json(data.facts);
+  json["station"] = facts_json(data.health);
+  const auto& n = summary.outcomes;
+  json["trials"] = {{"presented", n.presented},         {"answered", n.answered}, {"timeouts", n.timeouts},
+                    {"anticipations", n.anticipations}, {"aborted", n.aborted},   {"faults", n.faults}};
+  json["fits"] = Json::array();
+  for (const auto& named : summary.fits) json["fits"].push_back(fit_json(named));
+  json["instructions"] = Json::array();
+  for (const auto& entry : summary.trade.instructions)
+    json["instructions"].push_back(instruction_json(entry));
+  json["differences"] = Json::array();
+  for (const auto& difference : summary.trade.differences)
+    json["differences"].push_back({{"measure", difference.measure},
+                                   {"unit", difference.unit},
+                                   {"estimate", value(difference.estimate)}});
+  json["bias"] = nullptr;
+  if (summary.bias)
+    json["bias"] = {{"share_second", value(summary.bias->share_second)},
+                    {"interval", value(summary.bias->interval)},
+                    {"criterion", value(summary.bias->criterion)},
+                    {"statements", value(summary.bias->statements)}};
+  json["catch"] = nullptr;
+  if (summary.catch_trials)
+    json["catch"] = {{"right", summary.catch_trials->right},
+                     {"trials", summary.catch_trials->trials},
+                     {"interval", value(summary.catch_trials->interval)}};
+  json["trend_response_time_s"] = trend_json(summary.fatigue.response_time_s);
+  json["trend_proportion_correct"] = trend_json(summary.fatigue.proportion_correct);
+  json["statements"] = value(summary.fatigue.statements);
+  return json.dump(2);
+}
+
+}  // namespace turnpoint::report

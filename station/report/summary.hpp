@@ -1,0 +1,35 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/analysis/course.hpp"
+#include "station/analysis/trade.hpp"
+#include "station/report/session_data.hpp"
+
+namespace turnpoint::report {
+
+/// One psychometric fit: of all trials, or of an instruction's.
+struct NamedFit {
+  std::string name;      ///< "" for all
+  std::string positive;  ///< what the curve is the probability of
+  analysis::PsychometricFit fit;
+  analysis::PsychometricBootstrap bootstrap;
+};
+
+/// What a report says; whatever could not be had is none, and a statement stands in its place.
+struct Summary {
+  SessionData data;
+  analysis::OutcomeCounts outcomes;
+  std::vector<NamedFit> fits;
+  std::vector<analysis::Trace> traces;
+  std::optional<analysis::Bias> bias;
+  std::optional<analysis::Proportion> catch_trials;
+  analysis::Fatigue fatigue;
+  analysis::Trade trade;
+};
+
+/// Analyses one session: deterministic for its seed, about 0.3 s with 1000 replicates.
+Summary summarise(const SessionData& data);
+
+}  // namespace turnpoint::report

@@ -1,0 +1,147 @@
+#include <cstdlib>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "station/analysis/diffusion.hpp"
+#include "station/plot/chart.hpp"
+#include "station/report/figures.hpp"
+#include "station/report/html.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+using namespace turnpoint::report;
+
+namespace {
+
+SessionData head() {
+  SessionData data;
+  data.title = "A change of friction <under> the finger";
+  data.participant = "P01";
+  data.session_id = "s1";
+  data.run_mode = "simulated";
+  data.status = "completed";
+  data.facts = {{"Protocol", "speed-accuracy-change 1.0.0"}};
+  data.health = {{"Underruns", "0"}};
+  data.level_label = "Change of friction";
+  data.choices = {"Smoother", "Rougher"};
+  data.replicates = 200;
+  return data;
+}
+
+SessionData speed_accuracy(int per_level) {
+  auto data = head();
+  data.design = Design::two_sided;
+  data.function = analysis::Function::normal;
+  random::Draws draws({3, random::Stream::observer, 0, 0, 0});
+  for (const auto& [name, boundary] : {std::pair{"speed", 0.08}, {"accuracy", 0.14}})
+    for (int i = 0; i < per_level; ++i)
+      for (const double level : {-0.4, -0.2, -0.1, 0.1, 0.2, 0.4}) {
+        analysis::TrialRecord trial;
+        trial.trial_index = static_cast<int>(data.trials.size());
+        trial.instruction = name;
+        trial.procedure = "levels";
+        trial.level = level;
+        trial.difficulty = std::abs(level);
+        trial.right_choice = level > 0;
+        const auto decision = analysis::sample_decision({0.6 * std::abs(level), boundary, 0.3}, draws);
+        trial.correct = decision.correct;
+        trial.response = decision.correct ? *trial.right_choice : 1 - *trial.right_choice;
+        trial.response_time_s = decision.time_s;
+        data.trials.push_back(trial);
+      }
+  return data;
+}
+
+void keep(const std::string& name, const std::string& text) {
+  if (const char* folder = std::getenv("TURNPOINT_KEEP_PLOTS"))
+    std::ofstream(std::string(folder) + "/" + name) << text;
+}
+
+std::string shown(const std::optional<plot::Figure>& figure) {
+  REQUIRE(figure);
+  const auto svg = plot::render(*figure);
+  CHECK(svg.find("nan") == std::string::npos);
+  return svg;
+}
+
+}  // namespace
+
+TEST_CASE("A speed-accuracy session gives fits, the trade with intervals, and all pictures", "[report]") {
+  const auto summary = summarise(speed_accuracy(28));
+  REQUIRE(summary.fits.size() == 2);
+  CHECK(summary.fits[0].fit.parameters.has_value());
+  CHECK(summary.fits[0].positive == "\u201cRougher\u201d");
+  REQUIRE(summary.trade.differences.size() == 7);
+  CHECK(summary.trade.differences[2].estimate->interval.low > 0);
+  keep("psychometric.svg", shown(psychometric_figure(summary)));
+  keep("trace.svg", shown(trace_figure(summary)));
+  keep("times.svg", shown(response_time_figure(summary)));
+  keep("trade.svg", shown(trade_figure(summary)));
+  const auto html = to_html(summary);
+  keep("report.html", html);
+  CHECK(html == to_html(summarise(speed_accuracy(28))));
+  CHECK(html.find("&lt;under&gt;") != std::string::npos);
+  CHECK(html.find("<script") == std::string::npos);
+  CHECK(html.find("accuracy \u2212 speed") != std::string::npos);
+  CHECK(html.find("class=\"mode\">simulated") != std::string::npos);
+  const auto json = nlohmann::json::parse(to_json(summary));
+  CHECK(json["instructions"].size() == 2);
+  CHECK(json["differences"][2]["estimate"]["value"].get<double>() > 0.03);
+}
+
+TEST_CASE("Degenerate sessions give statements instead of numbers", "[report]") {
+  auto data = head();
+  SECTION("nothing at all") {}
+  SECTION("five trials, all right at one level") {
+    for (int i = 0; i < 5; ++i) {
+      analysis::TrialRecord trial;
+      trial.trial_index = i;
+      trial.level = -10;
+      trial.response = trial.right_choice = i % 2;
+      trial.correct = true;
+      trial.response_time_s = 0.5;
+      data.trials.push_back(trial);
+    }
+  }
+  SECTION("timeouts only") {
+    data.trials.resize(30);
+    for (auto& trial : data.trials) trial.outcome = analysis::Outcome::timeout;
+  }
+  const auto summary = summarise(data);
+  REQUIRE(summary.fits.size() == 1);
+  CHECK_FALSE(summary.fits[0].fit.parameters.has_value());
+  const auto html = to_html(summary), json = to_json(summary);
+  CHECK(html.find("class=\"note\"") != std::string::npos);
+  for (const auto* word : {"nan", "inf<", "NaN", ">none<"}) CHECK(html.find(word) == std::string::npos);
+  const auto parsed = nlohmann::json::parse(json);
+  CHECK(parsed["fits"][0]["threshold"].is_null());
+  CHECK(parsed["fits"][0]["statements"].size() > 0);
+}
+
+TEST_CASE("A forced-choice session in dB has its threshold and 75 % point in the page", "[report]") {
+  auto data = head();
+  data.level_label = "Friction contrast (dB)";
+  data.choices = {"First", "Second"};
+  random::Draws draws({4, random::Stream::observer, 0, 0, 0});
+  double level = -10;
+  for (int i = 0; i < 120; ++i) {
+    analysis::TrialRecord trial;
+    trial.trial_index = i;
+    trial.procedure = "staircase";
+    trial.level = level;
+    trial.right_choice = static_cast<int>(draws.below(2));
+    const double p = analysis::probability(data.function, data.scale, {-19, 1.5, 0.5, 0.02}, level);
+    trial.correct = draws.uniform() < p;
+    trial.response = *trial.correct ? *trial.right_choice : 1 - *trial.right_choice;
+    trial.response_time_s = 0.4 + 0.3 * draws.uniform();
+    level += *trial.correct ? -1 : 3;
+    data.trials.push_back(trial);
+  }
+  const auto summary = summarise(data);
+  REQUIRE(summary.fits[0].fit.parameters);
+  CHECK(summary.fits[0].fit.parameters->threshold == Approx(-19).margin(3));
+  const auto html = to_html(summary);
+  CHECK(html.find("75 % point") != std::string::npos);
+  keep("forced.svg", shown(psychometric_figure(summary)));
+  keep("staircase.svg", shown(trace_figure(summary)));
+}
