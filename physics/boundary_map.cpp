@@ -87,6 +87,10 @@ void check(const Surface& surface, const MapOptions& options) {
     throw std::invalid_argument("tolerance is " + std::to_string(*options.tolerance_m) +
                                 " m; allowed: above 0");
   }
+  if (options.model == Model::uniform && Dispersion(surface).clamped_bending()) {
+    throw std::domain_error(
+        "model uniform is not available for clamped plates; allowed: edge, airy, seed, mode, modes");
+  }
   if (const auto* taper = std::get_if<LinearTaper>(&surface.taper); taper != nullptr && taper->slope == 0) {
     throw std::domain_error("a strip of constant width has no boundary that follows the frequency");
   }

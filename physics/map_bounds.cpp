@@ -7,6 +7,7 @@
 
 #include "physics/dispersion.hpp"
 #include "physics/edge_feature.hpp"
+#include "physics/mode_bound.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -89,6 +90,12 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
   const auto exact = position(surface, options, f, Model::edge, Wave::exact, Losses::left_out);
   if (exact) bounds.equation_m = std::abs(*exact - x);
   if (bounds.equation_m < 1e-10) bounds.equation_m = 0;
+  // The exact mode of a wedge needs no allowance for its equation; every other taper's best equation does.
+  const ModeBound mode = mode_bound(surface, f, 1);
+  const bool wedge =
+      std::holds_alternative<LinearTaper>(surface.taper) && !Dispersion(surface).clamped_bending();
+  if (!wedge) bounds.equation_m += mode.equation_m;
+  bounds.drive_modes_m = mode.drive_m;
   if (std::isfinite(surface.quality_factor)) {
     const auto lossy = position(surface, options, f, Model::edge, Wave::exact, Losses::kept);
     if (lossy && exact) {

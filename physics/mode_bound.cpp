@@ -129,9 +129,9 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning) {
   const double polluted = shallow * bound.higher_modes * higher_mode_decay(surface, f, near);
   // A straight clamped end close beyond the turning point cuts the curved wave fronts.
   const double end = taper.half_width_m(taper.length_m()) > 0.5 * cut ? end_shift * steepest * steepest : 0;
-  bound.position_m =
-      cut * (curvature_shift * bend + slope_shift * std::pow(steepest, 3) + end + std::min(1.0, polluted));
-  if (!membrane) bound.position_m += cut * (plate_shift + plate_slope_shift * steepest * steepest);
+  bound.drive_m = cut * (end + std::min(1.0, polluted));
+  bound.equation_m = cut * (curvature_shift * bend + slope_shift * std::pow(steepest, 3));
+  if (!membrane) bound.equation_m += cut * (plate_shift + plate_slope_shift * steepest * steepest);
   return bound;
 }
 

@@ -119,7 +119,7 @@ RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, d
       request.edge.kind == Edge::Kind::friction ? Edge::peak() : request.edge, {}, {}, {}};
   const auto x = edge_position_m(surface, f, *line, options);
   const double bound =
-      mode_bound(surface, f, lossy.line->drive_conditioning(wavenumber_per_m(surface, f))).position_m;
+      mode_bound(surface, f, lossy.line->drive_conditioning(wavenumber_per_m(surface, f))).position_m();
   e.boundary_bound_m = bound + (x && lossy.edge ? 1.05 * std::abs(*x - *lossy.edge)
                                 : x             ? surface.length_m
                                                 : 0);
@@ -143,7 +143,7 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
   const ModeBound bound = mode_bound(surface, f, conditioning);
   e.amplitude_bound = drive ? bound.drive : bound.shape;
   e.level_bound_dB = bound.level_dB;
-  e.boundary_bound_m = request.edge.kind == Edge::Kind::turning ? 0 : bound.position_m;
+  e.boundary_bound_m = request.edge.kind == Edge::Kind::turning ? 0 : bound.position_m();
   if (!mode.peak) {  // the two-dimensional field may have a maximum where the mode has none
     e.amplitude_bound += unknown;
     e.level_bound_dB += unknown_dB;

@@ -132,3 +132,21 @@ TEST_CASE("a clamped aluminium plate has its turning points where the clamped cu
   const double expected[][2] = {{22.4e3, 97.2}, {30e3, 147.4}, {40e3, 190.2}, {45e3, 206.0}};
   for (const auto& row : expected) CHECK(map.boundary_m(row[0]).value() * 1e3 == Approx(row[1]).margin(0.06));
 }
+
+TEST_CASE("the stated bound holds the two-dimensional field's edge on curved tapers and plates",
+          "[physics]") {
+  for (Surface s : surfaces()) {
+    s.quality_factor = 60;
+    const BoundaryMap map(s, edge("p50"));
+    for (const double x : {0.09, 0.15, 0.19}) {
+      const auto f = map.frequency_Hz(x);
+      if (!f) continue;
+      const MapAnswer answer = map.at_boundary(x);
+      const auto truth = make_centre_line(s, *f, Model::modes)->level_m(0.5);
+      REQUIRE(truth);
+      CAPTURE(x, *f, *truth, answer.error_bound_m);
+      CHECK(std::abs(*truth - x) <= answer.error_bound_m);
+      CHECK(answer.error_bound_m < 3e-3);
+    }
+  }
+}
