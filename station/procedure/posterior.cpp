@@ -114,6 +114,11 @@ double Posterior::kept_entropy(std::size_t stimulus, std::vector<double>& scratc
   return sum;
 }
 
+std::size_t Posterior::memory_bytes() const {
+  return sizeof(double) * (weights_.size() + p_.size() + entropy_.size()) +
+         sizeof(std::size_t) * kept_.size();
+}
+
 double Posterior::predictive(std::size_t stimulus) const {
   return dot(weights_.data(), &p_[stimulus * size()], size());
 }
@@ -152,8 +157,8 @@ Estimate Posterior::estimate(Parameter parameter) const {
   const auto weights = marginal(parameter);
   const auto& values = values_[parameter];
   Estimate estimate;
-  estimate.mode =
-      values[static_cast<std::size_t>(std::max_element(weights.begin(), weights.end()) - weights.begin())];
+  const auto peak = std::max_element(weights_.begin(), weights_.end()) - weights_.begin();
+  estimate.mode = values[index_of(static_cast<std::size_t>(peak), parameter)];
   for (std::size_t i = 0; i < values.size(); ++i) estimate.mean += weights[i] * values[i];
   double variance = 0;
   for (std::size_t i = 0; i < values.size(); ++i)

@@ -26,12 +26,16 @@ class Posterior {
   /// Learns from an answer at a stimulus.
   void update(std::size_t stimulus, bool one);
 
+  /// Mean and sd of the parameter's marginal; mode: its value at the largest weight of the whole grid, as in
+  /// Watson (2017), which need not be where the marginal is largest.
   Estimate estimate(Parameter parameter) const;
   /// Has more than one value on the grid and is not tied.
   bool varies(Parameter parameter) const { return values_[parameter].size() > 1; }
   double entropy_nats() const;
   const std::vector<double>& stimuli() const { return stimuli_; }
   std::size_t size() const { return weights_.size(); }
+  /// Of the tables and the weights.
+  std::size_t memory_bytes() const;
 
  private:
   std::vector<double> marginal(Parameter parameter) const;

@@ -14,6 +14,7 @@ std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& conte
                                 faults.front().what + "; " + faults.front().allowed);
   switch (spec.kind) {
     case Kind::constant_stimuli:
+    case Kind::adjustment:  // its starting levels are presented as constant stimuli are
       return std::make_unique<ConstantStimuli>(spec, context, key);
     case Kind::up_down:
     case Kind::weighted_up_down:
@@ -22,10 +23,9 @@ std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& conte
     case Kind::psi:
     case Kind::psi_marginal:
       return std::make_unique<QuestPlus>(spec);
-    case Kind::adjustment:
-      break;
   }
-  throw std::invalid_argument("procedure " + spec.name + ": " + name(spec.kind) + " is not there yet");
+  throw std::invalid_argument("procedure " + spec.name + ": " + name(spec.kind) +
+                              " is not a kind of procedure");
 }
 
 }  // namespace turnpoint::procedure

@@ -82,6 +82,8 @@ std::vector<Fault> validate(const Spec& spec) {
       if (spec.slope.values.empty()) faults.push_back({"grid.slope", "missing", "its values"});
       break;
     case Kind::adjustment:
+      if (spec.values.empty()) faults.push_back({"start", "missing", "one or more levels to start from"});
+      if (spec.repeats < 1) faults.push_back({"repeats", "below 1", "a whole number of 1 or more"});
       break;
   }
   return faults;

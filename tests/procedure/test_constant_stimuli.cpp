@@ -69,3 +69,25 @@ TEST_CASE("the same key gives the same order, another attempt another", "[proced
   CHECK(order(0) == order(0));
   CHECK(order(0) != order(1));
 }
+
+TEST_CASE("adjustment starts from every level equally often, and again where nothing was set",
+          "[procedure]") {
+  Spec spec;
+  spec.name = "settings";
+  spec.level = "offset_mm";
+  spec.kind = Kind::adjustment;
+  CHECK(validate(spec).size() == 1);  // no level to start from
+  spec.values = {-20, 20};
+  spec.repeats = 3;
+  const auto procedure = make_procedure(spec, {}, {});
+  CHECK(procedure->expected() == 6);
+  procedure->record(Answer::none);
+  double sum = 0;
+  int trials = 0;
+  for (; const auto proposal = procedure->next(); ++trials) {
+    sum += proposal->level;
+    procedure->record(Answer::one);
+  }
+  CHECK(trials == 6);
+  CHECK(sum == 0);
+}
