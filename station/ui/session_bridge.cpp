@@ -2,6 +2,7 @@
 
 #include <QMouseEvent>
 #include <QTouchEvent>
+#include <QWindow>
 #include <algorithm>
 #include <utility>
 
@@ -38,30 +39,42 @@ std::int64_t SessionBridge::began_ns(int touch_id) const {
 }
 
 void SessionBridge::answer(int index, std::int64_t time_ns) {
-  session::Input input;
-  input.time_ns = time_ns;
-  input.kind = session::InputKind::answer;
-  input.value = index;
-  std::erase_if(pending_, [&](const Pending& p) { return p.time_ns == time_ns; });
-  sink_(std::move(input));
+  const auto found =
+      std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) { return p.time_ns == time_ns; });
+  Pending touch{kMouse, time_ns, -1, -1};
+  if (found != pending_.end()) {
+    touch = *found;
+    pending_.erase(found);
+  }
+  push_touch(session::InputKind::answer, index, touch);
 }
 
-void SessionBridge::note_touch(int id) {
-  pending_.push_back({id, clock_()});
+void SessionBridge::note_touch(int id, QPointF position, const QObject* window) {
+  const auto* area = qobject_cast<const QWindow*>(window);
+  const double width = area != nullptr ? area->width() : 1, height = area != nullptr ? area->height() : 1;
+  pending_.push_back({id, clock_(), position.x() / width, position.y() / height});
   if (!flush_.isActive()) flush_.start();
 }
 
 void SessionBridge::flush() {
   const auto due_ns = clock_() - kClaim_ns;
-  for (const auto& touch : pending_) {
-    if (touch.time_ns > due_ns) continue;
-    session::Input input;
-    input.time_ns = touch.time_ns;
-    input.kind = session::InputKind::touch_down;
-    sink_(std::move(input));
-  }
+  for (const auto& touch : pending_)
+    if (touch.time_ns <= due_ns) push_touch(session::InputKind::touch_down, 0, touch);
   std::erase_if(pending_, [&](const Pending& p) { return p.time_ns <= due_ns; });
   if (!pending_.empty()) flush_.start();
+}
+
+void SessionBridge::push_touch(session::InputKind kind, int value, const Pending& touch) {
+  session::Input input;
+  input.time_ns = touch.time_ns;
+  input.kind = kind;
+  input.value = value;
+  const auto kernel_ns = kernel_time_ ? kernel_time_(touch.x, touch.y, touch.time_ns) : std::nullopt;
+  if (kernel_ns) {
+    input.time_ns = *kernel_ns;
+    input.quality = session::TimeQuality::kernel;
+  }
+  sink_(std::move(input));
 }
 
 void SessionBridge::next() { push(session::InputKind::next); }
@@ -82,13 +95,13 @@ bool SessionBridge::eventFilter(QObject* watched, QEvent* event) {
   if (event->type() == QEvent::TouchBegin || event->type() == QEvent::TouchUpdate) {
     const auto& touch = *static_cast<QTouchEvent*>(event);
     for (const auto& point : touch.points()) {
-      if (point.state() == QEventPoint::Pressed) note_touch(point.id());
+      if (point.state() == QEventPoint::Pressed) note_touch(point.id(), point.scenePosition(), watched);
     }
   }
   // A mouse event that Qt makes up from a touch has been counted as that touch.
   if (event->type() == QEvent::MouseButtonPress &&
       static_cast<QMouseEvent*>(event)->pointerType() != QPointingDevice::PointerType::Finger) {
-    note_touch(kMouse);
+    note_touch(kMouse, static_cast<QMouseEvent*>(event)->scenePosition(), watched);
   }
   return QObject::eventFilter(watched, event);
 }

@@ -1,9 +1,12 @@
 #pragma once
 #include <QObject>
+#include <QPointF>
 #include <QQmlEngine>
 #include <QTimer>
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "station/session/inputs.hpp"
@@ -27,8 +30,15 @@ class SessionBridge : public QObject, public session::Display {
 
   using Clock = std::function<std::int64_t()>;
   using Sink = std::function<void(session::Input)>;
+  /// The kernel's time of a touch at (x, y), each 0 ... 1 of the window, that arrived at `seen_ns`; none if
+  /// unknown.
+  using KernelTime = std::function<std::optional<std::int64_t>(double x, double y, std::int64_t seen_ns)>;
 
   SessionBridge(Clock clock, Sink sink, QObject* parent = nullptr);
+
+  /// From now on touches get the kernel's time where `kernel_time` knows it, and the quality that goes with
+  /// it. The window must fill the panel.
+  void set_kernel_time(KernelTime kernel_time) { kernel_time_ = std::move(kernel_time); }
 
   /// Any thread; returns at once. Pages appear in the order shown.
   void show(const session::Page& page) override;
@@ -62,14 +72,17 @@ class SessionBridge : public QObject, public session::Display {
   /// A touch that may yet become an answer.
   struct Pending {
     int id = 0;
-    std::int64_t time_ns = 0;
+    std::int64_t time_ns = 0;  ///< the toolkit's
+    double x = 0, y = 0;       ///< 0 ... 1 of the window
   };
 
-  void note_touch(int id);
+  void note_touch(int id, QPointF position, const QObject* window);
+  void push_touch(session::InputKind kind, int value, const Pending& touch);
   void flush();
   void push(session::InputKind kind, int value = 0, double number = 0);
   Clock clock_;
   Sink sink_;
+  KernelTime kernel_time_;
   PageModel page_;
   std::vector<Pending> pending_;
   QTimer flush_;

@@ -7,10 +7,12 @@
 #include <chrono>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <thread>
 
+#include "station/app/touch.hpp"
 #include "station/ui/screen.hpp"
 #include "station/ui/session_bridge.hpp"
 #include "station/ui/start_controller.hpp"
@@ -75,8 +77,24 @@ class StationWindow : public QObject {
     if (engine_.rootObjects().isEmpty()) throw std::runtime_error("the pages of the touchscreen do not load");
     auto* window = qobject_cast<QQuickWindow*>(engine_.rootObjects().first());
     bridge_.watch(window);
+    open_touch();
     connect(window, SIGNAL(sessionClosed()), window, SLOT(close()));
     if (!has_window_manager()) window->showFullScreen();
+  }
+
+  /// Kernel times for touches, where the rig names its panel.
+  void open_touch() {
+    touch_ = app::open_touch(setup_.rig, [this](panel::TouchPanelState state) {
+      if (state == panel::TouchPanelState::back) return;
+      session::Input input;
+      input.time_ns = now_ns();
+      input.kind = session::InputKind::fault;
+      input.text = "the touch panel is gone; check its cable";
+      inputs_.push(std::move(input));
+    });
+    if (!touch_) return;
+    bridge_.set_kernel_time(
+        [this](double x, double y, std::int64_t seen_ns) { return touch_->claim(x, y, seen_ns); });
   }
 
   static bool has_window_manager() {
@@ -125,6 +143,7 @@ class StationWindow : public QObject {
   SessionBridge bridge_;
   StartController start_;
   QQmlApplicationEngine engine_;
+  std::unique_ptr<panel::TouchReader> touch_;
   std::optional<session::Summary> summary_;
   std::exception_ptr failure_;
   std::atomic<bool> over_ = false;

@@ -26,6 +26,16 @@ void ScriptedSession::forget() {
   emit inputsChanged();
 }
 
+void ScriptedSession::setKernelLead(double ms) {
+  const auto lead_ns = static_cast<std::int64_t>(ms * 1e6);
+  bridge_.set_kernel_time([lead_ns](double x, double y, std::int64_t seen_ns) -> std::optional<std::int64_t> {
+    if (x < 0 || x > 1 || y < 0 || y > 1) return std::nullopt;
+    return seen_ns - lead_ns;
+  });
+}
+
+void ScriptedSession::forgetKernel() { bridge_.set_kernel_time({}); }
+
 double ScriptedSession::answerAgeMs() const { return static_cast<double>(steady_ns() - answer_ns_) / 1e6; }
 
 void ScriptedSession::take(const session::Input& input) {
@@ -33,6 +43,7 @@ void ScriptedSession::take(const session::Input& input) {
   switch (input.kind) {
     case InputKind::answer:
       answer_ns_ = input.time_ns;
+      quality_ = input.quality == session::TimeQuality::kernel ? "kernel" : "toolkit";
       inputs_ += QStringLiteral("answer %1").arg(input.value);
       break;
     case InputKind::next:

@@ -22,6 +22,12 @@ class ScriptedSession : public QObject {
 
   Q_INVOKABLE void show(const QString& name, const QString& language);
   Q_INVOKABLE void forget();
+  /// From now on the kernel knows every touch, as having begun so many milliseconds before the toolkit saw
+  /// it.
+  Q_INVOKABLE void setKernelLead(double ms);
+  Q_INVOKABLE void forgetKernel();
+  /// "kernel" or "toolkit": of the last answer's time stamp.
+  Q_INVOKABLE QString quality() const { return quality_; }
   /// Milliseconds from the touch that began at the last answer's time stamp until now.
   Q_INVOKABLE double answerAgeMs() const;
 
@@ -33,6 +39,7 @@ class ScriptedSession : public QObject {
   SessionBridge bridge_;
   QStringList inputs_;
   int touches_ = 0;
+  QString quality_;
   std::int64_t answer_ns_ = 0;
 };
 

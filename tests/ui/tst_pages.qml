@@ -77,6 +77,21 @@ Item {
             compare(script.inputs, ["answer 1"])
         }
 
+        function test_an_answer_has_the_kernels_time_where_it_is_known() {
+            show("explore")
+            mouseClick(item("answer0"))
+            tryCompare(script, "inputs", ["answer 0"])
+            compare(script.quality(), "toolkit")
+            show("between-trials")
+            show("explore")
+            script.setKernelLead(1000)
+            mouseClick(item("answer1"))
+            tryCompare(script, "inputs", ["answer 0", "answer 1"])
+            compare(script.quality(), "kernel")
+            verify(script.answerAgeMs() >= 1000 + settleMs)
+            script.forgetKernel()
+        }
+
         function test_the_button_shows_a_press_at_once() {
             show("explore")
             const button = item("answer0")
