@@ -83,6 +83,7 @@ void SessionBridge::pause() { push(session::InputKind::pause); }
 void SessionBridge::stop() { push(session::InputKind::stop); }
 
 void SessionBridge::push(session::InputKind kind, int value, double number) {
+  pending_.clear();  // the tap that pressed this button; it must not arrive as a stray one in the next trial
   session::Input input;
   input.time_ns = clock_();
   input.kind = kind;

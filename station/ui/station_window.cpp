@@ -3,6 +3,7 @@
 #include <QGuiApplication>
 #include <QQmlApplicationEngine>
 #include <QQuickWindow>
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
@@ -29,6 +30,9 @@ std::int64_t now_ns() {
 /// Stands in for a code that the keypad will ask for, so that everything else is checked before a window
 /// opens.
 constexpr const char* kCodeToCome = "keypad";
+
+/// The window where there is a desktop around it.
+constexpr QSize kWindow{1280, 800};
 
 class StationWindow : public QObject {
  public:
@@ -72,14 +76,16 @@ class StationWindow : public QObject {
     engine_.addImportPath("qrc:/qt/qml");
     engine_.setInitialProperties({{"bridge", QVariant::fromValue(&bridge_)},
                                   {"start", QVariant::fromValue(&start_)},
-                                  {"pixelsPerMm", pixels_per_mm(*screen)}});
+                                  {"pixelsPerMm", pixels_per_mm(*screen)},
+                                  {"width", std::min(kWindow.width(), screen->size().width())},
+                                  {"height", std::min(kWindow.height(), screen->size().height())}});
     engine_.load(QUrl("qrc:/qt/qml/Turnpoint/Main.qml"));
     if (engine_.rootObjects().isEmpty()) throw std::runtime_error("the pages of the touchscreen do not load");
     auto* window = qobject_cast<QQuickWindow*>(engine_.rootObjects().first());
     bridge_.watch(window);
     open_touch();
     connect(window, SIGNAL(sessionClosed()), window, SLOT(close()));
-    if (!has_window_manager()) window->showFullScreen();
+    if (is_bare_panel(*screen)) window->showFullScreen();
   }
 
   /// Kernel times for touches, where the rig names its panel.
@@ -97,9 +103,10 @@ class StationWindow : public QObject {
         [this](double x, double y, std::int64_t seen_ns) { return touch_->claim(x, y, seen_ns); });
   }
 
-  static bool has_window_manager() {
+  /// A panel of the station's own, or one too small for a window beside others.
+  static bool is_bare_panel(const QScreen& screen) {
     const QString platform = QGuiApplication::platformName();
-    return platform != "eglfs" && platform != "linuxfb" && platform != "offscreen";
+    return platform == "eglfs" || platform == "linuxfb" || screen.size().width() <= kWindow.width();
   }
 
   void begin() {

@@ -5,6 +5,7 @@
 #include <QtQuickTest>
 
 #include "station/ui/screen.hpp"
+#include "tests/ui/real_session.hpp"
 #include "tests/ui/scripted_session.hpp"
 
 Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
@@ -17,10 +18,12 @@ class Setup : public QObject {
     turnpoint::ui::set_fonts();
     engine->addImportPath("qrc:/qt/qml");
     engine->rootContext()->setContextProperty("script", &script_);
+    engine->rootContext()->setContextProperty("sitting", &sitting_);
   }
 
  private:
   turnpoint::ui::ScriptedSession script_;
+  turnpoint::ui::RealSession sitting_;
 };
 
 QUICK_TEST_MAIN_WITH_SETUP(pages, Setup)

@@ -1,0 +1,76 @@
+import QtQuick
+import QtTest
+import Turnpoint
+
+Item {
+    id: stage
+    width: 800
+    height: 480
+
+    ParticipantView {
+        id: view
+        anchors.fill: parent
+        bridge: sitting.bridge
+        pixelsPerMm: 5.2
+    }
+
+    TestCase {
+        name: "Session"
+        when: windowShown
+
+        readonly property PageModel page: sitting.bridge.page
+
+        function answer(choice) {
+            tryVerify(() => page.answersOpen, 20000, "answers open")
+            wait(150)
+            const button = findChild(view, "answer" + choice)
+            const touch = touchEvent(stage)
+            touch.press(1, button).commit()
+            touch.release(1, button).commit()
+            tryVerify(() => !page.answersOpen, 5000, "answer taken")
+        }
+
+        function proceed() {
+            wait(400)
+            const all = []
+            collect(view, all)
+            compare(all.length, 1)
+            mouseClick(all[0])
+        }
+
+        function collect(parent, all) {
+            for (let i = 0; i < parent.children.length; ++i) {
+                const child = parent.children[i]
+                if (!child.visible) continue
+                if (child.objectName === "proceed") all.push(child)
+                collect(child, all)
+            }
+        }
+
+        // The answers below follow no level: what counts is that each row has what was tapped.
+        function test_a_whole_session_tapped_through_is_in_the_database() {
+            sitting.bridge.watch(stage.Window.window)
+            sitting.start("short.toml")
+            tryCompare(page, "kind", PageModel.Instructions, 30000)
+            compare(page.runMode, "pilot")
+            proceed()
+            answer(0)
+            answer(1)
+            tryCompare(page, "kind", PageModel.Rest, 20000)
+            tryVerify(() => page.remainingSeconds === 0, 3000)
+            proceed()
+            answer(1)
+            answer(1)
+            tryVerify(() => sitting.over, 20000)
+            compare(sitting.failure, "")
+            compare(page.kind, PageModel.End)
+            compare(sitting.column("response"), ["left", "right", "right", "right"])
+            compare(sitting.column("outcome"), ["answered", "answered", "answered", "answered"])
+            compare(sitting.column("run_mode"), ["pilot", "pilot", "pilot", "pilot"])
+            compare(sitting.column("response_time_quality"), ["toolkit", "toolkit", "toolkit", "toolkit"])
+            compare(sitting.column("extra_touches"), ["0", "0", "0", "0"])
+            for (const time of sitting.column("response_time"))
+                verify(Number(time) > 0.1 && Number(time) < 2, time)
+        }
+    }
+}
