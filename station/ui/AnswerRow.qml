@@ -12,14 +12,15 @@ Item {
     readonly property int count: answers.length
 
     Repeater {
-        model: root.answers
+        // All that there may be, made once: a trial must not begin with building its buttons.
+        model: 6
         Rectangle {
             id: button
             required property int index
-            required property string modelData
             readonly property bool down: root.pressed === index
             objectName: "answer" + index
-            width: (root.width - (root.count - 1) * root.gap) / root.count
+            visible: index < root.count
+            width: (root.width - (root.count - 1) * root.gap) / Math.max(1, root.count)
             height: root.height
             x: index * (width + root.gap)
             radius: root.theme.radius
@@ -27,7 +28,7 @@ Item {
             border { color: root.theme.action; width: 3 * root.theme.stroke }
             Text {
                 anchors { fill: parent; margins: 2 * root.theme.unit }
-                text: button.modelData
+                text: root.answers[button.index] ?? ""
                 color: button.down ? root.theme.action : root.theme.actionText
                 font { pixelSize: root.theme.textTitle; weight: Font.DemiBold }
                 fontSizeMode: Text.Fit

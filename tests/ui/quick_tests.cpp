@@ -14,16 +14,22 @@ class Setup : public QObject {
   Q_OBJECT
 
  public slots:
+  // Owned by the application: timers and pending calls must not outlive it.
+  void applicationAvailable() {
+    script_ = new turnpoint::ui::ScriptedSession(QCoreApplication::instance());
+    sitting_ = new turnpoint::ui::RealSession(QCoreApplication::instance());
+  }
+
   void qmlEngineAvailable(QQmlEngine* engine) {
     turnpoint::ui::set_fonts();
     engine->addImportPath("qrc:/qt/qml");
-    engine->rootContext()->setContextProperty("script", &script_);
-    engine->rootContext()->setContextProperty("sitting", &sitting_);
+    engine->rootContext()->setContextProperty("script", script_);
+    engine->rootContext()->setContextProperty("sitting", sitting_);
   }
 
  private:
-  turnpoint::ui::ScriptedSession script_;
-  turnpoint::ui::RealSession sitting_;
+  turnpoint::ui::ScriptedSession* script_ = nullptr;
+  turnpoint::ui::RealSession* sitting_ = nullptr;
 };
 
 QUICK_TEST_MAIN_WITH_SETUP(pages, Setup)

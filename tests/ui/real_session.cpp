@@ -41,7 +41,7 @@ void RealSession::start(const QString& protocol) {
   });
 }
 
-QStringList RealSession::column(const QString& name) const {
+QString RealSession::column(const QString& name) const {
   store::export_data(database().toStdString(), folder_.filePath("export").toStdString(), {});
   QFile file(folder_.filePath("export/short/trials.csv"));
   if (!file.open(QIODevice::ReadOnly)) return {};
@@ -49,7 +49,7 @@ QStringList RealSession::column(const QString& name) const {
   const auto index = header.indexOf(name);
   QStringList values;
   while (!file.atEnd()) values += QString(file.readLine()).trimmed().split(',').value(index);
-  return values;
+  return values.join(" ");
 }
 
 }  // namespace turnpoint::ui

@@ -26,8 +26,8 @@ class RealSession : public QObject {
   QString failure() const { return failure_; }
 
   Q_INVOKABLE void start(const QString& protocol);
-  /// The values of one column of the exported trials.csv, in the order of its rows.
-  Q_INVOKABLE QStringList column(const QString& name) const;
+  /// The values of one column of the exported trials.csv, in the order of its rows, between spaces.
+  Q_INVOKABLE QString column(const QString& name) const;
 
  signals:
   void ended();
