@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 #include <iosfwd>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,8 @@ namespace turnpoint::cli {
 
 /// Runs a session on a screen, asking there for what the request leaves open (language, participant's code).
 /// Only turnpoint-ui has one; turnpoint hands over to turnpoint-ui.
-using Screen = std::function<session::Summary(app::RunRequest)>;
+/// A session that is already prepared (one that goes on) comes whole, and its request is not looked at.
+using Screen = std::function<session::Summary(app::RunRequest, std::optional<session::Setup>)>;
 
 /// What every sub-command gets: where its document and its messages go, and whether JSON was asked for.
 struct Context {

@@ -25,7 +25,10 @@ void add_resume(CLI::App& app, Context& context) {
         context.out << "Nothing to resume: no session in " << request->database << " was interrupted\n";
       return;
     }
-    if (setup->observer.empty() && !request->headless) return become_ui(context);
+    if (setup->observer.empty() && !request->headless) {
+      if (!context.screen) return become_ui(context);
+      return show_summary(context, context.screen({}, *setup));
+    }
     session::Inputs inputs;
     show_summary(context, session::run(*setup, nullptr, inputs));
   });

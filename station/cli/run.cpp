@@ -115,7 +115,7 @@ void add_run(CLI::App& app, Context& context) {
     if (!on_screen && request->participant.empty())
       throw UsageError("run: --participant is missing; only a screen can ask for it");
     request->rig = app::rig_or_default(request->rig, context.err);
-    if (on_screen) return show_summary(context, context.screen(*request));
+    if (on_screen) return show_summary(context, context.screen(*request, std::nullopt));
     const auto setup = app::prepare(*request);
     session::Inputs inputs;
     show_summary(context, session::run(setup, nullptr, inputs));

@@ -176,11 +176,11 @@ void choose_platform() {
 
 }  // namespace
 
-session::Summary run_on_screen(app::RunRequest request) {
-  const bool ask_code = request.participant.empty();
+session::Summary run_on_screen(app::RunRequest request, std::optional<session::Setup> prepared) {
+  const bool ask_code = !prepared && request.participant.empty();
   if (ask_code) request.participant = kCodeToCome;
-  auto setup = app::prepare(request);
-  const bool ask_language = request.language.empty() && setup.protocol.languages.size() > 1;
+  auto setup = prepared ? std::move(*prepared) : app::prepare(request);
+  const bool ask_language = !prepared && request.language.empty() && setup.protocol.languages.size() > 1;
   choose_platform();
   static int argc = 1;
   static char name[] = "turnpoint-ui";

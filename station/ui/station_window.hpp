@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "station/app/prepare.hpp"
 #include "station/session/session.hpp"
 
@@ -9,6 +11,7 @@ namespace turnpoint::ui {
 /// session runs on a thread of its own; what it throws is shown as a fault page and thrown again from here.
 /// Throws text::BadInput for files that do not fit, and std::runtime_error where there is no screen to open.
 /// Once per process, since it makes the application object.
-session::Summary run_on_screen(app::RunRequest request);
+/// `prepared` is a session that goes on: it asks nothing, and `request` is not used.
+session::Summary run_on_screen(app::RunRequest request, std::optional<session::Setup> prepared);
 
 }  // namespace turnpoint::ui
