@@ -1,0 +1,56 @@
+#include "station/app/report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <cerrno>
+#include <fstream>
+#include <memory>
+#include <system_error>
+
+#include "station/cli/command.hpp"
+#include "station/report/html.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+struct Options {
+  std::string database, out;
+  store::SessionFilter filter;
+};
+
+void write(const std::string& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file)
+    throw std::system_error(errno, std::generic_category(), fmt::format("cannot write the report {}", path));
+}
+
+void report_session(Options options, Context& context) {
+  const auto id = app::session_to_report(options.database, options.filter);
+  const auto summary = report::summarise(app::report_data(options.database, id));
+  if (context.json) context.out << report::to_json(summary) << "\n";
+  if (options.out.empty() && !context.json) options.out = "report-" + id + ".html";
+  if (options.out.empty()) return;
+  write(options.out, report::to_html(summary));
+  if (!context.json) fmt::print(context.out, "{}\n", options.out);
+}
+
+}  // namespace
+
+void add_report(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("report", "One page about a session: fits, bias, the trade, health");
+  command->add_option("--db", options->database, "Database")->required();
+  command->add_option("--session", options->filter.session_id, "This session; otherwise the newest");
+  command->add_option("--participant", options->filter.participant, "The newest of this participant code");
+  command->add_option("--protocol", options->filter.protocol_id, "The newest of this protocol");
+  command->add_option("--out", options->out, "HTML file; otherwise report-SESSION.html, with --json none");
+  add_json(*command, context);
+  command->footer("Example: turnpoint report --db lab.sqlite --participant P07 --out P07.html");
+  command->callback([options, &context] { report_session(*options, context); });
+}
+
+}  // namespace turnpoint::cli
