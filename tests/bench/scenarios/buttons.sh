@@ -1,0 +1,15 @@
+# proves: presses of the station's buttons carry the kernel's time of their first edge, and bouncing counts once
+# timeout: 240
+gpio_sim OTHER BTN_R BTN_L
+pull BTN_L down; pull BTN_R down
+station_lines buttons gpio:left=BTN_L,right=BTN_R >station.txt & station=$!
+eventually 10 has station.txt ready
+for line in BTN_L BTN_R BTN_L; do
+  gpio_line bounce "$(pull_file $line)" 80 >>driven.txt
+done
+cat station.txt
+near "presses" "$(grep -c ^press station.txt)" 3 0
+awk '$1 == "press" { print $2, $3 }' station.txt | paste -d ' ' <(awk 'NR % 2' driven.txt) - | tee pairs.txt
+awk '$4 < $1 || $4 > $2 + 1e6 { bad++ } END { exit bad || NR != 3 }' pairs.txt || fail "a stamp is not that of its first edge"
+[ "$(awk '{ printf "%s ", $3 }' pairs.txt)" = "left right left " ] || fail "the buttons are mixed up"
+kill $station
