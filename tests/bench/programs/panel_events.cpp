@@ -1,0 +1,49 @@
+// panel_events BUTTONS CONTACT SECONDS: prints presses, contacts and faults with the kernel's time stamps; ""
+// for none.
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+
+#include "station/drive/monotonic.hpp"
+#include "station/panel/buttons.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+void run(const std::string& buttons, const std::string& contact, double seconds) {
+  panel::PanelHandlers handlers;
+  handlers.press = [](const panel::Press& press) {
+    std::printf("press %d %lld\n", press.button, static_cast<long long>(press.time_ns));
+    std::fflush(stdout);
+  };
+  handlers.touch = [](const panel::Touch& touch) {
+    std::printf("contact %d %lld %.3f\n", touch.on ? 1 : 0, static_cast<long long>(touch.time_ns),
+                touch.position.value_or(-1));
+    std::fflush(stdout);
+  };
+  handlers.fault = [](const panel::PanelFault& fault) {
+    std::printf("fault %s\n", fault.what.c_str());
+    std::fflush(stdout);
+  };
+  using Buttons = std::optional<panel::ButtonsConfig>;
+  using Contact = std::optional<panel::ContactConfig>;
+  const auto opened =
+      panel::open_panel(buttons.empty() ? Buttons{} : panel::ButtonsConfig{buttons},
+                        contact.empty() ? Contact{} : panel::ContactConfig{contact}, handlers);
+  std::printf("ready\n");
+  std::fflush(stdout);
+  drive::sleep_until_ns(drive::monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 4) return std::fprintf(stderr, "panel_events BUTTONS CONTACT SECONDS\n"), 2;
+  try {
+    run(argv[1], argv[2], std::atof(argv[3]));
+    return 0;
+  } catch (const std::exception& error) {
+    return std::fprintf(stderr, "%s\n", error.what()), 1;
+  }
+}

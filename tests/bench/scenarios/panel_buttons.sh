@@ -1,0 +1,26 @@
+# proves: a press counts once, with the kernel's time of its first edge, however it bounces; lost edges and a lost chip are told
+# timeout: 90
+# suite: core
+gpio_sim BTN_L BTN_R FINGER
+for line in BTN_L BTN_R FINGER; do pull $line down; done
+panel_events gpio:left=BTN_L,right=BTN_R,refractory_ms=400 gpio:line=FINGER 30 >events.txt & panel=$!
+eventually 5 has events.txt ready
+for i in 1 2 3; do
+  for bounce in 1 2 3; do gpio_line press "$(pull_file BTN_R)" 5; done >pressed.txt   # within 400 ms
+  eventually 5 sh -c "[ \$(grep -c '^press 1' events.txt) = $i ]"
+  stamp=$(awk '/^press 1/ { print $3 }' events.txt | tail -1)
+  read -r before after _ <pressed.txt
+  [ "$stamp" -ge "$before" ] && [ "$stamp" -le "$((after + 1000000))" ] || fail "press at $stamp, first edge from $before to $after"
+  sleep 1
+done
+pull FINGER up; eventually 5 grep -q "^contact 1" events.txt
+pull FINGER down; eventually 5 grep -q "^contact 0" events.txt
+[ "$(grep -c ^press events.txt)" = 3 ] || fail "$(grep -c ^press events.txt) presses, not 3"
+# More edges than the kernel keeps while the station is frozen.
+kill -STOP $panel
+for k in $(seq 40); do pull BTN_L up; pull BTN_L down; done
+kill -CONT $panel
+eventually 5 grep -q "^press 0" events.txt
+grep ^fault events.txt && say "lost edges were told" || say "no edge was lost"
+echo 0 >/sys/kernel/config/gpio-sim/bench/live
+eventually 5 grep -q "fault.*chip is gone" events.txt
