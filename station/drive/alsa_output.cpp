@@ -17,10 +17,7 @@ class AlsaOutput final : public Output {
       : config_(std::move(config)),
         name_(name),
         device_(open_alsa_device(config_, name)),
-        silence_(static_cast<std::size_t>(config_.channels) * device_.buffer_frames) {
-    const int error = start();
-    if (error < 0) throw std::system_error(-error, std::generic_category(), "alsa:" + name + ": starting");
-  }
+        silence_(static_cast<std::size_t>(config_.channels) * device_.buffer_frames) {}
 
   const OutputConfig& config() const noexcept override { return config_; }
   bool paced() const noexcept override { return true; }
@@ -30,6 +27,12 @@ class AlsaOutput final : public Output {
     const std::int32_t* at = interleaved.data();
     auto left = interleaved.size() / static_cast<std::size_t>(config_.channels);
     WriteResult result;
+    // Not before the first block is there: what comes between opening and that would be an underrun.
+    if (!running_) {
+      running_ = true;
+      if (const int error = start(); error < 0 && !follow(recovery_.transferred({error}), error, result))
+        return result;
+    }
     while (left > 0) {
       const snd_pcm_sframes_t done = transfer(at, left, result);
       if (done > 0) {
@@ -178,6 +181,7 @@ class AlsaOutput final : public Output {
   std::int64_t frames_ = 0;
   std::int64_t lost_at_ns_ = 0;
   int stalls_ = 0;
+  bool running_ = false;
 };
 
 }  // namespace

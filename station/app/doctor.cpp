@@ -1,0 +1,172 @@
+#include "station/app/doctor.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/statvfs.h>
+#include <sys/timex.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+
+#include "station/drive/engine.hpp"
+#include "station/drive/monotonic.hpp"
+
+namespace turnpoint::app {
+namespace {
+
+using Status = Check::Status;
+
+drive::StreamConfig stream_config(const rig::Rig& rig) {
+  drive::StreamConfig config;
+  config.output = {rig.output.uri,     rig.output.rate_Hz,     2, rig.output.bits, rig.output.period_frames,
+                   rig.output.periods, rig.output.allow_plugin};
+  for (const auto& transducer : rig.transducers)
+    config.output.channels = std::max(config.output.channels, transducer.channel + 1);
+  return config;
+}
+
+// Two and a half seconds of silence, to see the device's own clock; longer where its time stamps are coarse.
+Check measured_clock(drive::Stream& stream) {
+  for (int k = 0; k < 220; ++k) {
+    drive::sleep_until_ns(drive::monotonic_ns() + 100'000'000);
+    while (stream.poll()) {
+    }
+    if (const auto rate = stream.measured_rate()) {
+      const bool good = std::abs(rate->deviation_ppm) <= drive::RateCheck::tolerance_ppm;
+      return {"converter clock", good ? Status::ok : Status::failed,
+              fmt::format("{:.2f} Hz, {:+.1f} ppm (standard error {:.1f} ppm)", rate->rate_Hz,
+                          rate->deviation_ppm, rate->standard_error_ppm),
+              good ? ""
+                   : "something resamples behind the device, or its clock is wrong: another cable, port or "
+                     "device"};
+    }
+  }
+  return {"converter clock", Status::failed, "no time stamps came from the device",
+          "another device or kernel driver"};
+}
+
+void converter(const rig::Rig& rig, std::vector<Check>& checks) {
+  if (!rig.output.uri.starts_with("alsa:")) {
+    checks.push_back({"converter", Status::ok, rig.output.uri + " (no converter)", ""});
+    return;
+  }
+  try {
+    const auto stream = drive::open_realtime(stream_config(rig));
+    checks.push_back({"converter", Status::ok,
+                      fmt::format("{} at {} Hz, {} bits, hardware, no conversion", rig.output.uri,
+                                  rig.output.rate_Hz, rig.output.bits),
+                      ""});
+    checks.push_back(measured_clock(*stream));
+    const auto underruns = stream->counters().underruns;
+    checks.push_back(
+        {"converter stream", underruns == 0 ? Status::ok : Status::failed,
+         fmt::format("{} underruns", underruns),
+         underruns == 0 ? "" : "larger period_frames, real-time rights, a kernel with less latency"});
+  } catch (const std::exception& error) {
+    checks.push_back({"converter", Status::failed, error.what(),
+                      "correct [output] in the rig file (aplay -l lists devices), plug the device in, or end "
+                      "what uses it"});
+  }
+}
+
+void rights(std::vector<Check>& checks) {
+  rlimit priority{}, memory{};
+  ::getrlimit(RLIMIT_RTPRIO, &priority);
+  ::getrlimit(RLIMIT_MEMLOCK, &memory);
+  const bool root = ::geteuid() == 0;
+  const bool fifo = root || priority.rlim_cur >= 75;
+  checks.push_back(
+      {"real-time priority", fifo ? Status::ok : Status::failed,
+       root ? "granted to root" : fmt::format("up to {} (75 is needed)", priority.rlim_cur),
+       fifo ? "" : "LimitRTPRIO=80 in the service, or @audio - rtprio 80 in /etc/security/limits.d"});
+  const bool locked = root || memory.rlim_cur == RLIM_INFINITY || memory.rlim_cur >= (256u << 20);
+  checks.push_back(
+      {"locked memory", locked ? Status::ok : Status::failed,
+       memory.rlim_cur == RLIM_INFINITY || root ? "unlimited" : fmt::format("{} KiB", memory.rlim_cur >> 10),
+       locked ? "" : "LimitMEMLOCK=infinity in the service, or @audio - memlock unlimited in limits.d"});
+}
+
+void display(std::vector<Check>& checks) {
+  std::error_code ignored;
+  const bool session = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
+  const bool direct =
+      std::filesystem::exists("/dev/dri/card0", ignored) || std::filesystem::exists("/dev/fb0", ignored);
+  checks.push_back(
+      {"display", session || direct ? Status::ok : Status::warning,
+       session  ? "a desktop session"
+       : direct ? "the kernel has a display"
+                : "no display",
+       session || direct ? "" : "sessions need a screen, --buttons-only or a simulated observer"});
+}
+
+void disk(const std::string& path, std::vector<Check>& checks) {
+  std::filesystem::path existing = std::filesystem::absolute(path);
+  std::error_code ignored;
+  while (!std::filesystem::exists(existing, ignored) && existing.has_relative_path())
+    existing = existing.parent_path();
+  struct statvfs state {};
+  if (::statvfs(existing.c_str(), &state) != 0) {
+    checks.push_back({"disk", Status::failed, fmt::format("{}: {}", existing.string(), std::strerror(errno)),
+                      "mount the data disk"});
+    return;
+  }
+  const double free_MiB = static_cast<double>(state.f_bavail) * static_cast<double>(state.f_frsize) / 1048576;
+  const bool writable = ::access(existing.c_str(), W_OK) == 0;
+  checks.push_back(
+      {"disk", free_MiB >= 200 && writable ? Status::ok : Status::failed,
+       fmt::format("{:.0f} MiB free in {}{}", free_MiB, existing.string(), writable ? "" : ", not writable"),
+       free_MiB < 200 ? "make room: 200 MiB are wanted before a session"
+       : writable     ? ""
+                      : "give the user the right to write there"});
+}
+
+void clock(std::vector<Check>& checks) {
+  std::ifstream file("/sys/devices/system/clocksource/clocksource0/current_clocksource");
+  std::string source = "unknown";
+  file >> source;
+  timex state{};
+  const bool steered = ::adjtimex(&state) != -1 && !(state.status & STA_UNSYNC);
+  const bool plausible = std::time(nullptr) > 1'700'000'000;
+  checks.push_back({"clock", plausible ? (steered ? Status::ok : Status::warning) : Status::failed,
+                    fmt::format("source {}, {}{}", source, steered ? "synchronised" : "not synchronised",
+                                plausible ? "" : ", the date is impossible"),
+                    !plausible ? "set the date; a board without a battery-backed clock needs a time service"
+                    : steered
+                        ? ""
+                        : "dates of records may be off; durations are not: systemd-timesyncd or chrony"});
+}
+
+}  // namespace
+
+std::vector<Check> examine(const rig::Rig& rig, const std::string& data_path) {
+  std::vector<Check> checks;
+  converter(rig, checks);
+  const auto lines = [&checks](const char* device, const std::string& uri) {
+    for (auto& check : panel::check_lines(device, uri)) checks.push_back(std::move(check));
+  };
+  lines("amplifier", rig.amplifier_uri);
+  if (rig.buttons_uri) lines("buttons", *rig.buttons_uri);
+  if (rig.contact_uri && rig.contact_uri->starts_with("evdev:"))
+    checks.push_back(panel::check_touch("contact", *rig.contact_uri));
+  else if (rig.contact_uri)
+    lines("contact", *rig.contact_uri);
+  if (rig.touch_uri) checks.push_back(panel::check_touch("touch", *rig.touch_uri));
+  display(checks);
+  rights(checks);
+  disk(data_path, checks);
+  clock(checks);
+  return checks;
+}
+
+bool fit_for_use(const std::vector<Check>& checks) {
+  return std::none_of(checks.begin(), checks.end(),
+                      [](const Check& check) { return check.status == Status::failed; });
+}
+
+}  // namespace turnpoint::app

@@ -1,0 +1,20 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "station/panel/probe.hpp"
+#include "station/rig/rig.hpp"
+
+namespace turnpoint::app {
+
+using panel::Check;
+
+/// Looks at everything a session on this rig depends on: converter (rate, type, depth, measured clock: two
+/// seconds of silence), GPIO lines, touch, display, real-time rights, disk, clock. Changes nothing; the
+/// amplifier stays off. `data_path` is where databases go.
+std::vector<Check> examine(const rig::Rig& rig, const std::string& data_path);
+
+/// True where nothing failed; warnings do not count.
+bool fit_for_use(const std::vector<Check>& checks);
+
+}  // namespace turnpoint::app

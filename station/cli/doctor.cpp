@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <memory>
+
+#include "station/app/doctor.hpp"
+#include "station/cli/command.hpp"
+#include "station/cli/json.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+const char* word(app::Check::Status status) {
+  switch (status) {
+    case app::Check::Status::ok:
+      return "ok";
+    case app::Check::Status::warning:
+      return "warning";
+    case app::Check::Status::failed:
+      return "failed";
+  }
+  return "?";
+}
+
+void doctor(const std::string& rig_path, const std::string& data_path, Context& context) {
+  const auto rig = rig::load(rig_path);
+  const auto checks = app::examine(rig, data_path);
+  Json list = Json::array();
+  for (const auto& check : checks) {
+    list.push_back(
+        {{"name", check.name}, {"status", word(check.status)}, {"what", check.what}, {"mend", check.mend}});
+    if (context.json) continue;
+    fmt::print(context.out, "{:<20} {:<8} {}\n", check.name, word(check.status), check.what);
+    if (!check.mend.empty()) fmt::print(context.out, "{:<29} -> {}\n", "", check.mend);
+  }
+  const bool fit = app::fit_for_use(checks);
+  if (context.json) context.out << Json{{"rig", rig.name}, {"fit", fit}, {"checks", list}}.dump(2) << "\n";
+  context.exit_code = fit ? 0 : 1;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, Context& context) {
+  auto* command = app.add_subcommand(
+      "doctor", "Check the hardware that a rig names; exit status 1 where something is wrong");
+  auto rig = std::make_shared<std::string>();
+  auto data = std::make_shared<std::string>(".");
+  command->add_option("--rig", *rig, "Rig file")->required();
+  command->add_option("--data", *data, "Where databases go (default: here)");
+  add_json(*command, context);
+  command->footer("Example: turnpoint doctor --rig deploy/rigs/raspberry-pi-aluminium.toml");
+  command->callback([rig, data, &context] { doctor(*rig, *data, context); });
+}
+
+}  // namespace turnpoint::cli

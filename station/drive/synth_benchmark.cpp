@@ -1,0 +1,175 @@
+#include "station/drive/synth_benchmark.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <complex>
+#include <functional>
+#include <numbers>
+
+#include "station/drive/oscillator.hpp"
+#include "station/drive/sine.hpp"
+
+namespace turnpoint::drive {
+namespace {
+
+constexpr int block = 384;
+constexpr double two_pi = 2 * std::numbers::pi;
+
+// Fills a block that begins at a frame. What keeps a state is brought there by `advance`, frame by frame as
+// in use.
+struct Method {
+  std::string name;
+  std::function<void(std::int64_t frame, double* out)> render;
+  bool free_running =
+      false;  ///< its error grows with the frames that it has made, not with the frame's number
+};
+
+// The frequency that the increment stands for, so that methods are judged by their arithmetic, not by the
+// last bit of the frequency: exact phase of a frame as a fraction of a cycle, 64 bits.
+double exact_sine(std::uint64_t increment, std::int64_t frame) {
+  const auto phase = static_cast<std::int64_t>(increment * static_cast<std::uint64_t>(frame));
+  return static_cast<double>(
+      std::sin(static_cast<long double>(phase) * 0x1p-64L * 2 * std::numbers::pi_v<long double>));
+}
+
+Method ours(std::uint64_t increment) {
+  return {"integer phase, polynomial, double", [=](std::int64_t frame, double* out) {
+            std::fill_n(out, block, 0.0);
+            best_kernels().steady(out, block,
+                                  {increment * static_cast<std::uint64_t>(frame), increment, 0, 1, 0});
+          }};
+}
+
+Method ours_float(std::uint64_t increment) {
+  return {"integer phase, polynomial, float",
+          [=, sum = std::vector<float>(block)](std::int64_t frame, double* out) mutable {
+            std::fill(sum.begin(), sum.end(), 0.0F);
+            best_kernels().steady_float(sum.data(), block,
+                                        {increment * static_cast<std::uint64_t>(frame), increment, 0, 1, 0});
+            std::copy(sum.begin(), sum.end(), out);
+          }};
+}
+
+Method libm(std::uint64_t increment) {
+  return {"integer phase, libm", [=](std::int64_t frame, double* out) {
+            for (int n = 0; n < block; ++n) {
+              const auto phase = static_cast<std::int64_t>(increment * static_cast<std::uint64_t>(frame + n));
+              out[n] = std::sin(static_cast<double>(phase) * (0x1p-64 * two_pi));
+            }
+          }};
+}
+
+Method table(std::uint64_t increment, int bits) {
+  std::vector<double> values;
+  for (int k = 0; k <= 1 << bits; ++k) values.push_back(std::sin(two_pi * k / (1 << bits)));
+  return {"table of " + std::to_string(1 << bits) + ", linear",
+          [=, values = std::move(values)](std::int64_t frame, double* out) {
+            for (int n = 0; n < block; ++n) {
+              const std::uint64_t phase = increment * static_cast<std::uint64_t>(frame + n);
+              const auto k = static_cast<std::size_t>(phase >> (64 - bits));
+              const double u = static_cast<double>((phase << bits) >> 11) * 0x1p-53;
+              out[n] = values[k] + u * (values[k + 1] - values[k]);
+            }
+          }};
+}
+
+Method growing_time(double frequency_Hz, int rate_Hz) {
+  return {"sin(2 pi f t), t += dt, double",
+          [=, t = 0.0](std::int64_t, double* out) mutable {
+            for (int n = 0; n < block; ++n, t += 1.0 / rate_Hz) out[n] = std::sin(two_pi * frequency_Hz * t);
+          },
+          true};
+}
+
+Method growing_float_time(double frequency_Hz, int rate_Hz) {
+  return {"sin(2 pi f t), float", [=](std::int64_t frame, double* out) {
+            const auto w = static_cast<float>(two_pi * frequency_Hz);
+            for (int n = 0; n < block; ++n) {
+              const auto t = static_cast<float>(static_cast<double>(frame + n) / rate_Hz);
+              out[n] = static_cast<double>(std::sin(w * t));
+            }
+          }};
+}
+
+Method rotation(std::uint64_t increment) {
+  const double angle = static_cast<double>(increment) * 0x1p-64 * two_pi;
+  return {
+      "rotation, free running",
+      [=, z = std::complex<double>(1, 0), step = std::polar(1.0, angle)](std::int64_t, double* out) mutable {
+        for (int n = 0; n < block; ++n, z = {z.real() * step.real() - z.imag() * step.imag(),
+                                             z.real() * step.imag() + z.imag() * step.real()})
+          out[n] = z.imag();
+      },
+      true};
+}
+
+Method reseeded_rotation(std::uint64_t increment) {
+  const double angle = static_cast<double>(increment) * 0x1p-64 * two_pi;
+  return {"rotation, reseeded each block",
+          [=, step = std::polar(1.0, angle)](std::int64_t frame, double* out) {
+            const std::uint64_t phase = increment * static_cast<std::uint64_t>(frame);
+            std::complex<double> z(sine_of_phase(phase + quarter_cycle), sine_of_phase(phase));
+            for (int n = 0; n < block; ++n, z = {z.real() * step.real() - z.imag() * step.imag(),
+                                                 z.real() * step.imag() + z.imag() * step.real()})
+              out[n] = z.imag();
+          }};
+}
+
+double error_dB(const double* samples, std::uint64_t increment, std::int64_t frame) {
+  double worst = 1e-20;
+  for (int n = 0; n < block; ++n)
+    worst = std::max(worst, std::abs(samples[n] - exact_sine(increment, frame + n)));
+  return 20 * std::log10(worst);
+}
+
+double cost_ns(Method& method, double* out) {
+  double best = 1e9;
+  for (int repeat = 0; repeat < 5; ++repeat) {
+    const auto before = std::chrono::steady_clock::now();
+    for (int k = 0; k < 200; ++k) method.render(std::int64_t{k} * block, out);
+    const std::chrono::duration<double, std::nano> taken = std::chrono::steady_clock::now() - before;
+    best = std::min(best, taken.count() / (200.0 * block));
+  }
+  return best;
+}
+
+}  // namespace
+
+SynthBenchmark benchmark_synthesis(double frequency_Hz, int rate_Hz) {
+  SynthBenchmark result{frequency_Hz, rate_Hz, best_kernels().name, {0, 1, 10, 60, 600, 86400}, {}};
+  const std::uint64_t increment = phase_increment(frequency_Hz, rate_Hz);
+  const auto methods = [&] {
+    return std::vector<Method>{ours(increment),
+                               ours_float(increment),
+                               libm(increment),
+                               table(increment, 12),
+                               table(increment, 16),
+                               reseeded_rotation(increment),
+                               rotation(increment),
+                               growing_time(frequency_Hz, rate_Hz),
+                               growing_float_time(frequency_Hz, rate_Hz)};
+  };
+  std::vector<double> samples(block);
+  auto timed = methods();
+  for (Method& method : methods()) {
+    SynthMethod row;
+    row.name = method.name;
+    std::int64_t made = 0;
+    for (const double time_s : result.times_s) {
+      const std::int64_t frame = std::llround(time_s * rate_Hz) / block * block;
+      // A free-running method has to be run; a day of that would take minutes, so it is run for a minute at
+      // most.
+      if (method.free_running && time_s > 60) break;
+      for (; method.free_running && made < frame; made += block) method.render(made, samples.data());
+      method.render(frame, samples.data());
+      made = frame + block;
+      row.error_dB.push_back(error_dB(samples.data(), increment, frame));
+    }
+    row.ns_per_tone_frame = cost_ns(timed[result.methods.size()], samples.data());
+    result.methods.push_back(std::move(row));
+  }
+  return result;
+}
+
+}  // namespace turnpoint::drive

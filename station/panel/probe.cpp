@@ -1,0 +1,70 @@
+#include "station/panel/probe.hpp"
+
+#include <linux/input.h>
+
+#include "station/panel/evdev_contact.hpp"
+#include "station/panel/lines.hpp"
+#include "station/panel/uri.hpp"
+
+namespace turnpoint::panel {
+namespace {
+
+using Status = Check::Status;
+
+// Keys of a URI that do not name a line.
+bool names_line(const std::string& key) {
+  return key != "active" && key != "fault_active" && key != "stop_active" && key != "refractory_ms" &&
+         key != "axis";
+}
+
+Check check_line(const std::string& device, const std::string& role, const std::string& line) {
+  Check check{device + " " + role, Status::ok, "", ""};
+  try {
+    const auto state = find_line(line);
+    if (!state) {
+      check.status = Status::failed;
+      check.what = "no GPIO chip has a line named " + line;
+      check.mend =
+          gpio_chips().empty()
+              ? "no chip can be opened: load the board's GPIO driver, and put the user into the group gpio"
+              : "name the line in the device tree (gpio-line-names), or correct the rig file; gpioinfo lists "
+                "them";
+    } else if (state->used) {
+      check.status = Status::failed;
+      check.what = line + " is in use by " + (state->consumer.empty() ? "a driver" : state->consumer);
+      check.mend = "end the other program, or take the line out of its driver's device tree node";
+    } else {
+      check.what = line + " is line " + std::to_string(state->offset) + " of " + state->chip;
+    }
+  } catch (const std::exception& error) {
+    check.status = Status::failed;
+    check.what = error.what();
+    check.mend = "put the user into the group that owns /dev/gpiochip*";
+  }
+  return check;
+}
+
+}  // namespace
+
+std::vector<Check> check_lines(const std::string& device, const std::string& text) {
+  const Uri uri = parse_uri(text);
+  if (uri.scheme != "gpio") return {{device, Status::ok, uri.scheme == "sim" ? "simulated" : uri.scheme, ""}};
+  std::vector<Check> checks;
+  for (const auto& [key, line] : uri.values)
+    if (names_line(key)) checks.push_back(check_line(device, key, line));
+  return checks;
+}
+
+Check check_touch(const std::string& device, const std::string& text) {
+  const Uri uri = parse_uri(text);
+  if (uri.scheme != "evdev") return {device, Status::ok, uri.scheme == "sim" ? "simulated" : uri.scheme, ""};
+  try {
+    const EvdevContact contact(uri.name, ABS_X);
+    return {device, Status::ok, "'" + uri.name + "' is there, with monotonic time stamps", ""};
+  } catch (const std::exception& error) {
+    return {device, Status::failed, error.what(),
+            "plug it in; its name stands in /proc/bus/input/devices; the user needs the group input"};
+  }
+}
+
+}  // namespace turnpoint::panel
