@@ -32,7 +32,8 @@ std::string lower(std::string text) {
 void check_type(snd_pcm_t* pcm, const OutputConfig& config, const std::string& name) {
   const snd_pcm_type_t type = snd_pcm_type(pcm);
   if (type == SND_PCM_TYPE_HW) return;
-  const std::string found = lower(snd_pcm_type_name(type));
+  const char* known = snd_pcm_type_name(type);  // none for dshare in alsa-lib 1.2.8
+  const std::string found = known ? lower(known) : fmt::format("type {}", static_cast<int>(type));
   const auto& allowed = config.allow_plugin;
   if (std::find(allowed.begin(), allowed.end(), found) == allowed.end())
     refuse(name,

@@ -185,9 +185,10 @@ std::unique_ptr<drive::Amplifier> open_amplifier(const std::string& text) {
   roles.heartbeat = want("heartbeat", "turnpoint-amp-heartbeat", LineUse::output_low);
   roles.fault = want("fault", "turnpoint-amp-fault", LineUse::input);
   roles.stop = want("stop", "turnpoint-amp-stop", LineUse::input);
-  roles.fault_active_low = is_low(uri.take("fault_active", "high"), uri);
-  roles.stop_active_low = is_low(uri.take("stop_active", "high"), uri);
-  uri.check_empty("enable, heartbeat, fault, stop, fault_active, stop_active");
+  const std::string active = uri.take("active", "high");
+  roles.fault_active_low = is_low(uri.take("fault_active", active), uri);
+  roles.stop_active_low = is_low(uri.take("stop_active", active), uri);
+  uri.check_empty("enable, heartbeat, fault, stop, active, fault_active, stop_active");
   if (roles.enable < 0) throw std::invalid_argument("amplifier '" + text + "' has no enable line");
   return guard_amplifier(open_gpio_lines(requests), roles);
 }

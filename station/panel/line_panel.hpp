@@ -16,6 +16,7 @@ struct LinePanel {
   int contact = -1;                               ///< index of the contact line
   bool buttons_low = false, contact_low = false;  ///< active level
   std::int64_t refractory_ns = 50'000'000;
+  std::int64_t contact_refractory_ns = 50'000'000;
 };
 
 /// A panel on given lines, kernel or simulated.

@@ -21,8 +21,11 @@ class LineWatcher {
  public:
   LineWatcher(std::unique_ptr<Lines> lines, const LinePanel& plan, const PanelHandlers& handlers)
       : lines_(std::move(lines)), plan_(plan), handlers_(handlers) {
-    for (int k = 0; k < plan_.lines; ++k)
-      filters_.emplace_back(plan_.refractory_ns, active(k, lines_->level(k)));
+    for (int k = 0; k < plan_.lines; ++k) {
+      const std::int64_t refractory_ns =
+          k == plan_.contact ? plan_.contact_refractory_ns : plan_.refractory_ns;
+      filters_.emplace_back(refractory_ns, active(k, lines_->level(k)));
+    }
     checks_.resize(filters_.size());
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
@@ -147,6 +150,15 @@ bool take_low(Uri& uri) {
   return active == "low";
 }
 
+std::int64_t take_refractory(Uri& uri) {
+  const std::string refractory = uri.take("refractory_ms", "50");
+  char* end = nullptr;
+  const double refractory_ms = std::strtod(refractory.c_str(), &end);
+  if (*end != '\0' || !(refractory_ms >= 0 && refractory_ms <= 1000))
+    throw std::invalid_argument("'" + uri.text + "': refractory_ms=" + refractory + "; allowed 0 to 1000");
+  return static_cast<std::int64_t>(refractory_ms * 1e6);
+}
+
 void plan_buttons(const std::string& text, RigPanel& panel, LinePanel& plan) {
   Uri uri = parse_uri(text);
   if (uri.scheme == "sim") {
@@ -156,12 +168,7 @@ void plan_buttons(const std::string& text, RigPanel& panel, LinePanel& plan) {
   if (uri.scheme != "gpio")
     throw std::invalid_argument("buttons '" + text + "'; allowed sim: or gpio:left=LINE,right=LINE");
   plan.buttons_low = take_low(uri);
-  const std::string refractory = uri.take("refractory_ms", "50");
-  char* end = nullptr;
-  const double refractory_ms = std::strtod(refractory.c_str(), &end);
-  if (*end != '\0' || !(refractory_ms >= 0 && refractory_ms <= 1000))
-    throw std::invalid_argument("'" + text + "': refractory_ms=" + refractory + "; allowed 0 to 1000");
-  plan.refractory_ns = static_cast<std::int64_t>(refractory_ms * 1e6);
+  plan.refractory_ns = take_refractory(uri);
   for (const auto& [name, line] : uri.values) {
     panel.names_.push_back(name);
     plan.requests.push_back({line, "turnpoint-button-" + name, LineUse::input});
@@ -177,7 +184,8 @@ void plan_contact(const std::string& text, RigPanel& panel, LinePanel& plan) {
   } else if (uri.scheme == "gpio") {
     plan.contact_low = take_low(uri);
     const std::string line = uri.take("line", "");
-    uri.check_empty("line, active");
+    plan.contact_refractory_ns = take_refractory(uri);
+    uri.check_empty("line, active, refractory_ms");
     if (line.empty()) throw std::invalid_argument("contact '" + text + "' names no line");
     plan.contact = static_cast<int>(plan.requests.size());
     plan.requests.push_back({line, "turnpoint-contact", LineUse::input});

@@ -64,10 +64,11 @@ std::optional<std::string> read_device(TableReader& file, const std::string& key
 
 void read_devices(TableReader& file, Rig& rig) {
   if (!file.has("amplifier")) file.require("amplifier", "a table [amplifier] with uri");
-  rig.amplifier_uri = read_device(file, "amplifier", {"sim:", "gpio:*"},
-                                  "\"sim:\" or \"gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE\"",
-                                  {"enable"}, {"fault", "stop", "heartbeat", "active"})
-                          .value_or("");
+  rig.amplifier_uri =
+      read_device(file, "amplifier", {"sim:", "gpio:*"},
+                  "\"sim:\" or \"gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE\"", {"enable"},
+                  {"fault", "stop", "heartbeat", "active", "fault_active", "stop_active"})
+          .value_or("");
   rig.buttons_uri =
       read_device(file, "buttons", {"sim:", "gpio:*"}, "\"sim:\" or \"gpio:left=LINE,right=LINE\"",
                   {"left", "right"}, {"third", "active", "refractory_ms"});

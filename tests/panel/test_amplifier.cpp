@@ -90,7 +90,7 @@ TEST_CASE("an amplifier is opened from the rig's text, with every mistake named"
   CHECK(open_amplifier("sim:")->state() == AmplifierState::disarmed);
   CHECK_THROWS_WITH(open_amplifier("gpio:fault=F"), "amplifier 'gpio:fault=F' has no enable line");
   CHECK_THROWS_WITH(open_amplifier("gpio:enable=A,foo=B"),
-                    "'gpio:enable=A,foo=B': unknown 'foo'; allowed enable, heartbeat, fault, stop, "
+                    "'gpio:enable=A,foo=B': unknown 'foo'; allowed enable, heartbeat, fault, stop, active, "
                     "fault_active, stop_active");
   CHECK_THROWS_AS(open_amplifier("gpio:enable=NO_SUCH_LINE"), LineError);
   CHECK_THROWS_AS(open_amplifier("usb:1"), std::invalid_argument);

@@ -11,6 +11,6 @@ wait $stream || fail "the stream failed"
 grep underrun events.txt
 tail -4 events.txt
 grep -q "underruns 1 " events.txt || fail "not one underrun"
-awk '/underrun/ { f = $6 } END { exit !(f > 60000 && f < 140000) }' events.txt || fail "not about half a second of frames"
+awk '/ underrun / { f = $6 } END { exit !(f > 60000 && f < 140000) }' events.txt || fail "not about half a second of frames"
 grep -q "rights fifo 70 locked 1" events.txt || fail "real-time rights were not granted to root"
 awk '/^clock/ { exit !($3 > 191900 && $3 < 192100) }' events.txt || fail "the clock's regression is off"
