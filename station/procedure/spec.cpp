@@ -80,6 +80,8 @@ std::vector<Fault> validate(const Spec& spec) {
       if (spec.stimuli.values.empty()) faults.push_back({"stimuli", "missing", "the levels to choose from"});
       if (spec.threshold.values.empty()) faults.push_back({"grid.threshold", "missing", "its values"});
       if (spec.slope.values.empty()) faults.push_back({"grid.slope", "missing", "its values"});
+      if (!spec.stop.trials && !spec.stop.threshold_sd && !spec.stop.entropy_nats)
+        faults.push_back({"stop", "nothing stops it", "trials or threshold_sd"});
       break;
     case Kind::adjustment:
       if (spec.values.empty()) faults.push_back({"start", "missing", "one or more levels to start from"});

@@ -8,6 +8,12 @@
 
 namespace turnpoint::procedure {
 
+namespace {
+
+constexpr int kRepeats = 3, kSpentAtMost = 20;
+
+}  // namespace
+
 Staircase::Staircase(const Spec& spec, const Context&) : spec_(spec), level_(spec.start.value_or(0)) {
   steps_down_ = spec.step_down.empty() ? spec.step : spec.step_down;
   steps_up_ = spec.step_up.empty() ? spec.step : spec.step_up;
@@ -23,11 +29,11 @@ Staircase::Staircase(const Spec& spec, const Context&) : spec_(spec), level_(spe
 
 bool Staircase::done() const {
   const auto& stop = spec_.stop;
-  if (stop.min_trials && recorded_ < *stop.min_trials) return false;
-  const bool by_trials = stop.trials && recorded_ >= *stop.trials;
+  if (stop.min_trials && recorded_ + spent_ < *stop.min_trials) return false;
+  const bool by_trials = stop.trials ? recorded_ + spent_ >= *stop.trials : spent_ >= kSpentAtMost;
   const bool by_reversals = stop.reversals && static_cast<int>(reversals_.size()) >= *stop.reversals;
   if (stop.rule == StopRule::any) return by_trials || by_reversals;
-  return (!stop.trials || by_trials) && (!stop.reversals || by_reversals);
+  return spent_ >= kSpentAtMost || ((!stop.trials || by_trials) && (!stop.reversals || by_reversals));
 }
 
 std::optional<Proposal> Staircase::next() const {
@@ -59,7 +65,12 @@ void Staircase::move(Direction direction) {
 }
 
 void Staircase::record(Answer answer) {
-  if (answer == Answer::none) return;
+  if (answer == Answer::none) {
+    // The same level again, but nobody is asked for ever: after three repeats a trial of the budget is spent.
+    if (++unanswered_ > kRepeats) unanswered_ = 0, ++spent_;
+    return;
+  }
+  unanswered_ = 0;
   ++recorded_;
   answers_.push_back(answer);
   const bool initial = spec_.initial_down && reversals_.empty() && direction_ != Direction::up;
@@ -101,6 +112,7 @@ std::uint64_t Staircase::state_hash() const {
   StateHash hash;
   for (const auto answer : answers_) hash.add(static_cast<std::uint64_t>(answer));
   hash.add(reversals_.size());
+  hash.add(static_cast<std::uint64_t>(8 * spent_ + unanswered_));
   return hash.value();
 }
 

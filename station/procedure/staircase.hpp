@@ -33,6 +33,7 @@ class Staircase : public Procedure {
   std::vector<double> steps_down_, steps_up_;
   double level_ = 0;
   int recorded_ = 0, ones_ = 0, zeros_ = 0;
+  int unanswered_ = 0, spent_ = 0;
   Direction direction_ = Direction::none;
   std::vector<double> reversals_;
   std::vector<Answer> answers_;

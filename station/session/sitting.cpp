@@ -96,6 +96,7 @@ Sitting::Flow Sitting::run_trial(const TrialSpec& spec) {
   count(spec, row);
   ++trial_index_;
   if (stop_asked_) return Flow::stop;
+  if (std::exchange(pause_asked_, false)) return show_and_wait(pages_.paused(director_), 0);
   if (row.outcome != store::TrialOutcome::fault) {
     voids_in_a_row_ = 0;
     return Flow::go_on;
@@ -121,6 +122,7 @@ void Sitting::drive_trial(const TrialSpec& spec, trial::Machine& machine, store:
     if (input->kind == InputKind::answer) row.response_time_quality = name(input->quality);
     if (input->kind == InputKind::stop || input->kind == InputKind::pause) {
       stop_asked_ = input->kind == InputKind::stop;
+      pause_asked_ = input->kind == InputKind::pause;
       stop_reason_ = "stopped by the participant or the operator";
     }
     if (input->kind == InputKind::fault) stop_reason_ = input->text;

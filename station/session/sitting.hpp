@@ -54,7 +54,7 @@ class Sitting {
   int scored_ = 0, right_ = 0;
   int voids_in_a_row_ = 0;
   std::int64_t started_ns_ = 0;
-  bool stop_asked_ = false;
+  bool stop_asked_ = false, pause_asked_ = false;
   std::string stop_reason_;
 };
 

@@ -53,6 +53,7 @@ trial::Plan trial_plan(const protocol::Protocol& protocol, const protocol::Block
                        const TrialSpec& spec) {
   trial::Plan plan;
   plan.cue_ns = ns(kCue_s);
+  plan.watermark_ns = ns(kWatermark_s);
   for (const auto& interval : interval_times(protocol, spec)) {
     trial::IntervalPlan timed{ns(interval.length_s), {}};
     for (const double start : interval.starts_s) timed.scene_starts_ns.push_back(ns(start));

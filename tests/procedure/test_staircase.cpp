@@ -77,3 +77,17 @@ TEST_CASE("a staircase that cannot run is refused with the key and what is allow
   spec.step = {0};
   CHECK_FALSE(validate(spec).empty());
 }
+
+TEST_CASE("an observer who never answers is not asked for ever", "[procedure]") {
+  auto spec = two_down_one_up();
+  spec.stop = {};
+  spec.stop.reversals = 8;
+  const auto procedure = make_procedure(spec, {}, {});
+  int asked = 0;
+  for (; procedure->next() && asked < 1000; ++asked) {
+    CHECK(procedure->next()->level == 20);
+    procedure->record(Answer::none);
+  }
+  CHECK(asked == 80);
+  CHECK(procedure->recorded() == 0);
+}
