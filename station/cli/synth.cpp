@@ -11,6 +11,7 @@
 #include "station/drive/engine.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/transducer.hpp"
+#include "station/session/stage.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
@@ -68,15 +69,8 @@ Json to_json(const drive::PlayReport& report, const Options& options) {
 
 void synth(const Options& options, Context& context) {
   const auto rig = rig::load(options.rig);
-  drive::StreamConfig config;
+  auto config = session::stream_of(rig);
   config.output.uri = options.out;
-  config.output.rate_Hz = rig.output.rate_Hz;
-  config.output.bits = rig.output.bits;
-  config.output.period_frames = rig.output.period_frames;
-  config.output.periods = rig.output.periods;
-  config.output.allow_plugin = rig.output.allow_plugin;
-  for (const auto& transducer : rig.transducers)
-    config.output.channels = std::max(config.output.channels, transducer.channel + 1);
   const auto report = drive::play(config, burst_for(rig, options));
   if (context.json) {
     context.out << to_json(report, options).dump(2) << "\n";

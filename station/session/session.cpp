@@ -98,6 +98,8 @@ store::SegmentStart segment(const std::string& reason, std::int64_t now_ns) {
   return {boot_id(), reason, now_ns, clock_ns(CLOCK_BOOTTIME), clock_ns(CLOCK_REALTIME)};
 }
 
+}  // namespace
+
 drive::StreamConfig stream_of(const rig::Rig& rig) {
   drive::StreamConfig config;
   config.output.uri = rig.output.uri;
@@ -110,8 +112,6 @@ drive::StreamConfig stream_of(const rig::Rig& rig) {
     config.output.channels = std::max(config.output.channels, transducer.channel + 1);
   return config;
 }
-
-}  // namespace
 
 Summary run(const Setup& setup, Display* display, Inputs& inputs) {
   const bool simulated = !setup.observer.empty();

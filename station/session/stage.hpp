@@ -8,6 +8,7 @@
 #include "station/drive/burst.hpp"
 #include "station/drive/engine.hpp"
 #include "station/observer/observer.hpp"
+#include "station/rig/rig.hpp"
 #include "station/session/inputs.hpp"
 
 namespace turnpoint::session {
@@ -53,6 +54,9 @@ class Stage {
   /// Completes a rendered output file. Throws std::system_error.
   virtual void finish() = 0;
 };
+
+/// The stream that a rig's output asks for, with a channel for each of its transducers.
+drive::StreamConfig stream_of(const rig::Rig& rig);
 
 /// Real time: CLOCK_MONOTONIC, the audio thread, inputs from a display and the panel. `inputs` must outlive
 /// it.
