@@ -8,9 +8,11 @@
 #include <system_error>
 #include <tuple>
 
+#include "station/text/toml_scan.hpp"
+
 // Some malformed files trip assertions of toml++ 3.3 (a key that begins with a byte that begins none); an
-// abort would take the station down, so they become exceptions. With NDEBUG toml++ would take the conditions for
-// granted instead.
+// abort would take the station down, so they become exceptions. With NDEBUG toml++ would take the conditions
+// for granted instead.
 #undef NDEBUG
 namespace turnpoint::text {
 namespace {
@@ -91,7 +93,7 @@ const Entry* Value::find(const std::string& key) const {
 
 Value parse_toml(const std::string& source, const std::string& path) {
   try {
-    auto document = convert_table(toml::parse(source, path), path);
+    auto document = convert_table(toml::parse(safe_for_parser(source, path), path), path);
     document.place = {path, 0, 0};
     return document;
   } catch (const ParserAssertion&) {

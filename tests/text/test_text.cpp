@@ -2,6 +2,7 @@
 
 #include "station/text/number.hpp"
 #include "station/text/problem.hpp"
+#include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::text;
@@ -37,4 +38,33 @@ TEST_CASE("a problem names file, line, column, what and what is allowed", "[text
 TEST_CASE("the nearest word is offered only where it may be a slip", "[text]") {
   CHECK(nearest("boundry_mm", {"boundary_mm", "edge"}) == "boundary_mm");
   CHECK(nearest("zzz", {"boundary_mm", "edge"}).empty());
+}
+
+TEST_CASE("letters beyond ASCII stand in strings and comments, and nowhere else", "[text]") {
+  const auto document = parse_toml(
+      "\xEF\xBB\xBF"
+      R"TOML(# é ひ
+a = "é" # ひ
+b = 'ひ"'
+c = """x\
+  ひé\\
+é"""
+d = '''é''''
+)TOML",
+      "f");
+  REQUIRE(document.find("a")->value.string == "é");
+  REQUIRE(document.find("b")->value.string == "ひ\"");
+  REQUIRE(document.find("c")->value.string == "xひé\\\né");
+  REQUIRE(document.find("d")->value.string == "é'");
+  for (const std::string source :
+       {"größe = 2", "a = 1 é", "a = [1, ひ]", R"(a = ""é)", R"(a = """""" é)", R"(a = "\é")"}) {
+    INFO(source);
+    try {
+      parse_toml("b = 1\n" + source, "f.toml");
+      FAIL("accepted");
+    } catch (const BadInput& error) {
+      REQUIRE(error.problems().at(0).place.line == 2);
+      REQUIRE_FALSE(error.problems().at(0).allowed.empty());
+    }
+  }
 }

@@ -1,0 +1,133 @@
+#include "station/text/toml_scan.hpp"
+
+#include <cstdint>
+#include <cstdio>
+#include <string_view>
+
+#include "station/text/problem.hpp"
+
+namespace turnpoint::text {
+
+namespace {
+
+struct Character {
+  std::uint32_t code = 0;
+  std::size_t bytes = 1;
+};
+
+// The character at `at`; a broken one counts as a byte and is left to the parser, which refuses it.
+Character character_at(std::string_view text, std::size_t at) {
+  const auto lead = static_cast<unsigned char>(text[at]);
+  const std::size_t bytes = lead < 0x80 ? 1 : lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
+  if (bytes == 1 || at + bytes > text.size()) return {lead, 1};
+  std::uint32_t code = lead & (0x7F >> bytes);
+  for (std::size_t i = 1; i < bytes; ++i)
+    code = code << 6 | (static_cast<unsigned char>(text[at + i]) & 0x3F);
+  return {code, bytes};
+}
+
+std::string printed(const char* format, std::uint32_t code) {
+  char buffer[16];
+  std::snprintf(buffer, sizeof buffer, format, static_cast<unsigned>(code));
+  return buffer;
+}
+
+// Walks through the source and knows whether it is in a string or a comment. Only as exact as needed: a
+// string that is not closed is the parser's to report.
+class Scanner {
+ public:
+  Scanner(std::string_view source, const std::string& path) : source_(source), path_(path) {}
+
+  std::string scan() {
+    // A byte-order mark at the very beginning is allowed.
+    if (source_.starts_with("\xEF\xBB\xBF")) copy(3);
+    while (at_ < source_.size()) step();
+    return std::move(out_);
+  }
+
+ private:
+  void step() {
+    const auto character = character_at(source_, at_);
+    if (source_[at_] == '\n') {
+      if (quote_.size() < 3) quote_ = {};
+      comment_ = false;
+      trimming_ = quote_.size() == 3 && (trimming_ || escaped_);
+      escaped_ = false;
+      copy(1);
+      ++line_;
+      column_ = 1;
+    } else if (comment_) {
+      copy(character.bytes);
+    } else if (quote_.empty()) {
+      outside(character);
+    } else {
+      inside(character);
+    }
+  }
+
+  void outside(const Character& character) {
+    if (character.code >= 0x80)
+      throw BadInput(
+          {{{path_, line_, column_},
+            "not valid TOML: the character " + printed("U+%04X", character.code) + " outside of quotes",
+            "keys without quotes take A-Z a-z 0-9 _ -"}});
+    const char c = source_[at_];
+    if (c == '#') comment_ = true;
+    if (c == '"' || c == '\'') {
+      const bool three = source_.substr(at_, 3) == std::string_view(c == '"' ? "\"\"\"" : "'''");
+      quote_ = source_.substr(at_, three ? 3 : 1);
+      copy(quote_.size());
+    } else {
+      copy(1);
+    }
+  }
+
+  void inside(const Character& character) {
+    if (!escaped_ && source_.substr(at_).starts_with(quote_)) {
+      copy(quote_.size());
+      // Up to two more quotes may belong to the text of a multi-line string.
+      while (quote_.size() == 3 && at_ < source_.size() && source_[at_] == quote_[0]) copy(1);
+      quote_ = {};
+      trimming_ = false;
+      return;
+    }
+    const bool blank = character.code == ' ' || character.code == '\t' || character.code == '\r';
+    const bool was_escaped = escaped_;
+    // White space between a backslash and the end of its line keeps it a line-ending one.
+    escaped_ = quote_[0] == '"' && ((!was_escaped && character.code == '\\') || (was_escaped && blank));
+    if (was_escaped && character.code >= 0x80)
+      throw BadInput(
+          {{{path_, line_, column_},
+            "not valid TOML: a backslash before the character " + printed("U+%04X", character.code),
+            "\\\\ for a backslash, or a line's end after it"}});
+    if (trimming_ && character.code >= 0x80) {
+      out_ += printed("\\U%08X", character.code);
+      at_ += character.bytes;
+      ++column_;
+    } else {
+      copy(character.bytes);
+    }
+    if (!blank) trimming_ = false;
+  }
+
+  void copy(std::size_t bytes) {
+    out_ += source_.substr(at_, bytes);
+    at_ += bytes;
+    ++column_;
+  }
+
+  std::string_view source_;
+  std::string path_, out_;
+  std::string_view quote_;  // the quotes that close the string we are in, else empty
+  std::size_t at_ = 0;
+  int line_ = 1, column_ = 1;
+  bool comment_ = false, escaped_ = false, trimming_ = false;
+};
+
+}  // namespace
+
+std::string safe_for_parser(const std::string& source, const std::string& path) {
+  return Scanner(source, path).scan();
+}
+
+}  // namespace turnpoint::text
