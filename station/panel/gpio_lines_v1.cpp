@@ -8,6 +8,8 @@
 namespace turnpoint::panel {
 namespace {
 
+constexpr int kernel_buffer_edges = 16;  // of a line, by Linux's character device, version 1
+
 struct ChipCloser {
   void operator()(gpiod_chip* chip) const noexcept { gpiod_chip_close(chip); }
 };
@@ -66,7 +68,11 @@ class GpioLines final : public Lines {
   }
 
   std::optional<Edge> wait(std::int64_t timeout_ns) override {
-    const auto ready = wait_readable(descriptors_, timeout_ns);
+    auto ready = wait_readable(descriptors_, 0);
+    if (!ready) {  // nothing was waiting: all buffers are empty
+      for (Last& last : last_) last.waiting = 0;
+      ready = wait_readable(descriptors_, timeout_ns);
+    }
     if (!ready) return std::nullopt;
     gpiod_line_event event{};
     if (gpiod_line_event_read_fd(descriptors_[*ready].fd, &event) != 0)
@@ -75,8 +81,11 @@ class GpioLines final : public Lines {
     Last& last = last_[static_cast<std::size_t>(line)];
     const bool rising = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
     // This interface does not number its events. Two edges in one direction prove that one between them was
-    // lost.
-    last.sequence += last.sequence != 0 && last.rising == rising ? 2 : 1;
+    // lost; a buffer that was found full has lost what came after it, but for a coincidence.
+    const bool lost = (last.sequence != 0 && last.rising == rising) || last.was_full;
+    last.was_full = ++last.waiting >= kernel_buffer_edges;
+    if (last.was_full) last.waiting = 0;
+    last.sequence += lost ? 2 : 1;
     last.rising = rising;
     return Edge{std::int64_t{1'000'000'000} * event.ts.tv_sec + event.ts.tv_nsec, line, rising,
                 last.sequence};
@@ -97,6 +106,8 @@ class GpioLines final : public Lines {
   struct Last {
     std::uint32_t sequence = 0;
     bool rising = false;
+    int waiting = 0;  ///< edges read since the buffers were last seen empty
+    bool was_full = false;
   };
   std::vector<Found> lines_;
   std::vector<pollfd> descriptors_;
