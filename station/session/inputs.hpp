@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "station/session/fault.hpp"
+
 namespace turnpoint::session {
 
 enum class InputKind {
@@ -17,7 +19,10 @@ enum class InputKind {
   stop,        ///< participant or operator wants to stop; what was done is kept
   pause,       ///< operator
   xrun,        ///< the drive lost frames
-  fault,       ///< text says what; from drive or panel
+  fault,       ///< `fault` says what, text the detail; from drive or panel
+  arm,         ///< operator: clear a latched fault of the amplifier and arm it
+  repeat,      ///< operator: void the trial under way and present it again
+  note,        ///< operator: text is kept as the session's annotation
 };
 
 /// How good the time stamp is: the kernel's own, a toolkit's, or made by a simulated observer.
@@ -29,6 +34,7 @@ struct Input {
   int value = 0;
   double number = 0;
   std::string text;
+  FaultKind fault = FaultKind::other;
   TimeQuality quality = TimeQuality::toolkit;
 };
 

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "station/session/fault.hpp"
+
 namespace turnpoint::session {
 
 /// What the participant's screen shows. The session decides, a display only draws it.
@@ -50,6 +52,9 @@ struct Page {
   std::string language;
   std::string run_mode;              ///< live | pilot | simulated: shown on every page unless live
   std::vector<SummaryLine> summary;  ///< end page, for the operator
+  FaultKind fault = FaultKind::other;
+  std::string safe, to_do;  ///< fault only: what is safe, what to do; `text` is what happened
+  std::string detail;       ///< fault only: what the station found, as it is logged; may be ""
 };
 
 /// Draws pages. show() is called on the session thread and must not wait for the participant.

@@ -122,10 +122,15 @@ Page Pages::practice_again(const protocol::Block& block, const Director& directo
   return page;
 }
 
-Page Pages::fault(const std::string& what, const Director& director) const {
+Page Pages::fault(FaultKind kind, const std::string& detail, const Director& director) const {
   auto page = blank(PageKind::fault, nullptr, &director);
+  const auto text = fault_text(kind, setup_.language);
   page.title = word(Word::fault, setup_.language);
-  page.text = what;
+  page.fault = kind;
+  page.text = text.happened;
+  page.safe = text.safe;
+  page.to_do = text.to_do;
+  page.detail = detail;
   return page;
 }
 

@@ -21,7 +21,8 @@ class Pages {
                 const trial::Result& result, const Director& director) const;
   Page rest(const protocol::Block& block, double min_s, const Director& director) const;
   Page practice_again(const protocol::Block& block, const Director& director) const;
-  Page fault(const std::string& what, const Director& director) const;
+  /// A fault that stops the session until somebody has mended it; `detail` is what the station found.
+  Page fault(FaultKind kind, const std::string& detail, const Director& director) const;
   Page paused(const Director& director) const;
   Page end(const Summary& summary) const;
 

@@ -69,6 +69,12 @@ const char* kind_of(InputKind kind) {
       return "stop";
     case InputKind::pause:
       return "pause";
+    case InputKind::arm:
+      return "arm";
+    case InputKind::repeat:
+      return "repeat";
+    case InputKind::note:
+      return "note";
     case InputKind::xrun:
       return "xrun";
     case InputKind::fault:
@@ -197,9 +203,12 @@ std::optional<trial::Event> event_of(const Input& input) {
       return trial::Event{input.time_ns, EventKind::fault, 0};
     case InputKind::stop:
     case InputKind::pause:
+    case InputKind::repeat:
       return trial::Event{input.time_ns, EventKind::abort, 0};
     case InputKind::next:
     case InputKind::slider:
+    case InputKind::arm:
+    case InputKind::note:
       break;
   }
   return std::nullopt;

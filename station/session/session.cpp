@@ -90,6 +90,7 @@ store::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::
   start.station_id = host_name();
   start.realtime_rights = rights;
   start.started_local = local_time();
+  start.consent_version = setup.consent_version;
   return start;
 }
 
@@ -113,7 +114,7 @@ drive::StreamConfig stream_of(const rig::Rig& rig) {
   return config;
 }
 
-Summary run(const Setup& setup, Display* display, Inputs& inputs) {
+Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor) {
   const bool simulated = !setup.observer.empty();
   const auto stream = stream_of(setup.rig);
   auto stage = simulated ? virtual_stage(stream, observer::Observer(observer::parse(setup.observer)))
@@ -126,7 +127,7 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs) {
                  : store::SessionLog::begin(setup.database, start_of(setup, seed, stage->realtime_rights()),
                                             segment("start", stage->now_ns()));
   const auto kept_seed = resuming ? log.session().start.seed : seed;
-  Sitting sitting(setup, kept_seed, std::move(log), std::move(stage), display);
+  Sitting sitting(setup, kept_seed, std::move(log), std::move(stage), display, monitor);
   return sitting.run();
 }
 

@@ -8,6 +8,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/inputs.hpp"
+#include "station/session/monitor.hpp"
 #include "station/session/page.hpp"
 #include "station/store/session_log.hpp"
 
@@ -28,6 +29,9 @@ struct Setup {
   std::optional<std::uint64_t> seed;
   std::string resume_session;  ///< session to go on with; "" begins a new one
   ResumeAt resume_at = ResumeAt::next_trial;
+  std::string consent_version;  ///< of the consent form that the participant signed; "" where none was asked
+  double response_offset_s =
+      0;  ///< the response device's own latency, stored with each answer, never subtracted
 };
 
 /// How a sitting ended, for people and for --json.
@@ -48,8 +52,8 @@ struct Summary {
 };
 
 /// Runs one sitting to its end on the calling thread: real clock, pages to `display`, input from `inputs`.
-/// With an observer in the setup it runs on the virtual clock and `display` may be null.
-/// Throws text::BadInput for a setup that cannot run, store::StoreError, std::system_error for devices.
-Summary run(const Setup& setup, Display* display, Inputs& inputs);
+/// With an observer in the setup it runs on the virtual clock and `display` may be null. `monitor` may be
+/// null. Throws text::BadInput for a setup that cannot run, store::StoreError, std::system_error for devices.
+Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor = nullptr);
 
 }  // namespace turnpoint::session

@@ -20,11 +20,12 @@ constexpr int kVoidsBeforeStop = 3;
 }  // namespace
 
 Sitting::Sitting(const Setup& setup, std::uint64_t seed, store::SessionLog log, std::unique_ptr<Stage> stage,
-                 Display* display)
+                 Display* display, Monitor* monitor)
     : setup_(setup),
       log_(std::move(log)),
       stage_(std::move(stage)),
       display_(display),
+      monitor_(monitor),
       planner_(setup.rig),
       director_(setup.protocol, log_.session().sequence_index, seed),
       pages_(setup) {
@@ -81,7 +82,8 @@ Sitting::Flow Sitting::rest_if_due(int trials) {
 Sitting::Flow Sitting::run_trial(const TrialSpec& spec) {
   store::TrialRow row = row_of(spec, setup_.protocol, trial_index_);
   trial::Machine machine(trial_plan(setup_.protocol, *director_.block(), spec));
-  for (const auto& stale : stage_->drain()) log(stale);
+  for (const auto& stale : stage_->drain()) note(stale);
+  if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block());
   log_.presented(trial_index_, stage_->now_ns());
   drive_trial(spec, machine, row);
   finish_row(spec, machine, row);
@@ -94,6 +96,7 @@ Sitting::Flow Sitting::run_trial(const TrialSpec& spec) {
   }
   log_.append(row);
   count(spec, row);
+  if (monitor_ != nullptr) monitor_->trial_ended(spec, row);
   ++trial_index_;
   if (stop_asked_) return Flow::stop;
   if (std::exchange(pause_asked_, false)) return show_and_wait(pages_.paused(director_), 0);
@@ -106,7 +109,7 @@ Sitting::Flow Sitting::run_trial(const TrialSpec& spec) {
     stop_reason_ = "three trials in a row were void";
     return Flow::stop;
   }
-  return show_and_wait(pages_.fault(stop_reason_, director_), 0);
+  return show_and_wait(pages_.fault(fault_, stop_reason_, director_), 0);
 }
 
 void Sitting::drive_trial(const TrialSpec& spec, trial::Machine& machine, store::TrialRow& row) {
@@ -118,14 +121,15 @@ void Sitting::drive_trial(const TrialSpec& spec, trial::Machine& machine, store:
       perform(machine.handle({*wake, trial::EventKind::tick, 0}), spec, machine, row);
       continue;
     }
-    log(*input);
+    note(*input);
     if (input->kind == InputKind::answer) row.response_time_quality = name(input->quality);
     if (input->kind == InputKind::stop || input->kind == InputKind::pause) {
       stop_asked_ = input->kind == InputKind::stop;
       pause_asked_ = input->kind == InputKind::pause;
       stop_reason_ = "stopped by the participant or the operator";
     }
-    if (input->kind == InputKind::fault) stop_reason_ = input->text;
+    if (input->kind == InputKind::fault) stop_reason_ = input->text, fault_ = input->fault;
+    if (input->kind == InputKind::xrun) stop_reason_ = input->text, fault_ = FaultKind::stimulus_missed;
     if (const auto event = event_of(*input)) perform(machine.handle(*event), spec, machine, row);
   }
 }
@@ -178,6 +182,7 @@ void Sitting::present(int interval, std::int64_t earliest_ns, const TrialSpec& s
 
 void Sitting::finish_row(const TrialSpec& spec, const trial::Machine& machine, store::TrialRow& row) {
   fill_result(row, machine.result(), spec, setup_.protocol, started_ns_);
+  row.response_offset_s = setup_.response_offset_s;
   if (const auto fit = stage_->clock_fit()) {
     row.clock_slope_ns_per_frame = fit->slope_ns_per_frame;
     row.clock_residual_ns = fit->residual_ns;
@@ -210,7 +215,7 @@ Sitting::Flow Sitting::show_and_wait(Page page, double at_least_s) {
   show(page);
   while (stage_->now_ns() < earliest)
     if (const auto input = stage_->wait_until(earliest)) {
-      log(*input);
+      note(*input);
       if (input->kind == InputKind::stop) return stop_asked_ = true, Flow::stop;
     }
   if (at_least_s > 0) {
@@ -218,7 +223,7 @@ Sitting::Flow Sitting::show_and_wait(Page page, double at_least_s) {
     show(page);
   }
   while (const auto input = stage_->wait_until(kForever)) {
-    log(*input);
+    note(*input);
     if (input->kind == InputKind::next) return Flow::go_on;
     if (input->kind == InputKind::stop) {
       stop_asked_ = true;
@@ -271,7 +276,10 @@ void Sitting::show(const Page& page) {
   if (display_ != nullptr) display_->show(page);
 }
 
-void Sitting::log(const Input& input) { log_.event(event_row(input, trial_index_)); }
+void Sitting::note(const Input& input) {
+  log_.event(event_row(input, trial_index_));
+  if (input.kind == InputKind::note && !input.text.empty()) log_.annotate(input.text);
+}
 
 void Sitting::finish(store::SessionStatus status, const std::string& reason) {
   summary_.status = status;

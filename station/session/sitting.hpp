@@ -17,7 +17,7 @@ namespace turnpoint::session {
 class Sitting {
  public:
   Sitting(const Setup& setup, std::uint64_t seed, store::SessionLog log, std::unique_ptr<Stage> stage,
-          Display* display);
+          Display* display, Monitor* monitor);
 
   /// To the end of the last block, or until somebody stops it.
   Summary run();
@@ -39,13 +39,14 @@ class Sitting {
   Flow show_and_wait(Page page, double at_least_s);
   Flow rest_if_due(int trials_in_block);
   void show(const Page& page);
-  void log(const Input& input);
+  void note(const Input& input);
   void finish(store::SessionStatus status, const std::string& reason);
 
   const Setup& setup_;
   store::SessionLog log_;
   std::unique_ptr<Stage> stage_;
   Display* display_;
+  Monitor* monitor_;
   scene::Planner planner_;
   Director director_;
   Pages pages_;
@@ -56,6 +57,7 @@ class Sitting {
   std::int64_t started_ns_ = 0;
   bool stop_asked_ = false, pause_asked_ = false;
   std::string stop_reason_;
+  FaultKind fault_ = FaultKind::other;
 };
 
 }  // namespace turnpoint::session

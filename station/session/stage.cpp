@@ -31,14 +31,17 @@ std::optional<Input> input_of(const drive::Event& event, std::int64_t time_ns) {
       return input;
     case drive::EventKind::burst_missed:
       input.kind = InputKind::fault;
+      input.fault = FaultKind::stimulus_missed;
       input.text = "a stimulus came too late to be played";
       return input;
     case drive::EventKind::device_lost:
       input.kind = InputKind::fault;
+      input.fault = FaultKind::converter_gone;
       input.text = "the converter is gone; check its cable, then arm the amplifier again";
       return input;
     case drive::EventKind::rate_wrong:
       input.kind = InputKind::fault;
+      input.fault = FaultKind::converter_rate;
       input.text = "the converter does not run at the rate that it reports: what is felt would be wrong";
       return input;
     case drive::EventKind::burst_started:

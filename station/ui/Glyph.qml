@@ -38,6 +38,8 @@ Item {
         case "bars": return "M8.5 5 L8.5 19 M15.5 5 L15.5 19"
         case "alert": return "M12 3 L22 20.5 L2 20.5 Z M12 9.5 L12 14 M12 17.1 L12 17.2"
         case "backspace": return "M9 5 L21 5 L21 19 L9 19 L3 12 Z M12 9.5 L17 14.5 M17 9.5 L12 14.5"
+        case "shield": return "M12 2.5 L20 5.5 L20 11.5 C20 16 16.5 19.5 12 21.5 C7.5 19.5 4 16 4 11.5 L4 5.5 Z M8 12 L11 15 L16 9"
+        case "tool": return "M3 12 L19 12 M13 6 L19 12 L13 18"
         case "dots": return "M6 12 L6 12.1 M12 12 L12 12.1 M18 12 L18 12.1"
         case "minus": return "M5 12 L19 12"
         case "plus": return "M5 12 L19 12 M12 5 L12 19"

@@ -39,6 +39,9 @@ QtObject {
     readonly property string keepGoing: pick("Go on", "Weitermachen", "続ける")
     readonly property string faultTitle: pick("Please tell the experimenter", "Bitte der Versuchsleitung Bescheid geben",
                                               "実験者に知らせてください")
+    readonly property string whatHappened: pick("What happened", "Was geschehen ist", "起きたこと")
+    readonly property string whatIsSafe: pick("What is safe", "Was sicher ist", "安全なこと")
+    readonly property string whatToDo: pick("What to do", "Was zu tun ist", "すること")
     readonly property string thanks: pick("Thank you!", "Vielen Dank!", "ありがとうございました")
     readonly property string thanksText: pick("You have finished. All of your answers are saved.",
                                               "Sie sind fertig. Alle Antworten sind gespeichert.",

@@ -39,6 +39,9 @@ class PageModel : public QObject {
   Q_PROPERTY(double sliderStep READ slider_step NOTIFY changed)
   Q_PROPERTY(QString language READ language NOTIFY changed)
   Q_PROPERTY(QString runMode READ run_mode NOTIFY changed)
+  Q_PROPERTY(QString safe READ safe NOTIFY changed)
+  Q_PROPERTY(QString toDo READ to_do NOTIFY changed)
+  Q_PROPERTY(QString detail READ detail NOTIFY changed)
   Q_PROPERTY(QStringList summaryLabels READ summary_labels NOTIFY changed)
   Q_PROPERTY(QStringList summaryValues READ summary_values NOTIFY changed)
 
@@ -93,6 +96,9 @@ class PageModel : public QObject {
   double slider_step() const { return page_.slider_step; }
   QString language() const { return QString::fromStdString(page_.language); }
   QString run_mode() const { return QString::fromStdString(page_.run_mode); }
+  QString safe() const { return QString::fromStdString(page_.safe); }
+  QString to_do() const { return QString::fromStdString(page_.to_do); }
+  QString detail() const { return QString::fromStdString(page_.detail); }
   QStringList summary_labels() const;
   QStringList summary_values() const;
 

@@ -95,7 +95,8 @@ class StationWindow : public QObject {
       session::Input input;
       input.time_ns = now_ns();
       input.kind = session::InputKind::fault;
-      input.text = "the touch panel is gone; check its cable";
+      input.fault = session::FaultKind::touch_gone;
+      input.text = "the touch panel is gone";
       inputs_.push(std::move(input));
     });
     if (!touch_) return;

@@ -52,6 +52,17 @@ std::vector<store::TrialRow> trials_of(const std::string& database, const std::s
   return all;
 }
 
+/// Counts what it is told.
+struct Watch : session::Monitor {
+  std::vector<std::optional<double>> announced, ended;
+  void trial_begins(const session::TrialSpec& spec, const protocol::Block&) override {
+    announced.push_back(spec.level);
+  }
+  void trial_ended(const session::TrialSpec&, const store::TrialRow& row) override {
+    ended.push_back(row.level);
+  }
+};
+
 /// Pulls the plug: throws after so many pages.
 struct Cut : session::Display {
   int pages;
@@ -182,4 +193,56 @@ TEST_CASE("bad requests are refused all at once, and nothing is written", "[sess
   request.mode = "live";
   CHECK_THROWS_AS(app::prepare(request), text::BadInput);
   CHECK_FALSE(fs::exists(folder / "a.sqlite"));
+}
+
+TEST_CASE("a monitor is told of every trial before and after, and changes none", "[session]") {
+  const Folder folder;
+  Watch watch;
+  session::Inputs inputs;
+  const auto watched =
+      session::run(app::prepare(request_for("demo", folder / "a.sqlite")), nullptr, inputs, &watch);
+  const auto alone = run(request_for("demo", folder / "b.sqlite"));
+  CHECK(static_cast<int>(watch.ended.size()) == watched.trials);
+  CHECK(watch.announced == watch.ended);
+  const auto a = trials_of(folder / "a.sqlite", watched.session_id);
+  const auto b = trials_of(folder / "b.sqlite", alone.session_id);
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    CHECK(a[i].level == b[i].level);
+    CHECK(a[i].response_time_s == b[i].response_time_s);
+  }
+}
+
+TEST_CASE("every fault says what happened, what is safe and what to do in each language", "[session]") {
+  using session::FaultKind;
+  for (const auto kind :
+       {FaultKind::other, FaultKind::converter_gone, FaultKind::converter_rate, FaultKind::amplifier,
+        FaultKind::stop_pressed, FaultKind::touch_gone, FaultKind::disk_full, FaultKind::stimulus_missed})
+    for (const auto* language : {"en", "de", "ja"}) {
+      const auto text = session::fault_text(kind, language);
+      INFO(session::name(kind) << " " << language);
+      CHECK_FALSE(text.happened.empty());
+      CHECK_FALSE(text.safe.empty());
+      CHECK_FALSE(text.to_do.empty());
+      if (std::string(language) != "en") CHECK(text.happened != session::fault_text(kind, "en").happened);
+    }
+  CHECK(session::fault_text(FaultKind::amplifier, "fi").safe ==
+        session::fault_text(FaultKind::amplifier, "en").safe);
+}
+
+TEST_CASE("the response device's latency and the consent form are stored, and no time is corrected",
+          "[session]") {
+  const Folder folder;
+  auto setup = app::prepare(request_for("demo", folder / "a.sqlite"));
+  setup.response_offset_s = 0.0625;
+  setup.consent_version = "2026-03";
+  session::Inputs inputs;
+  const auto summary = session::run(setup, nullptr, inputs);
+  const auto plain = run(request_for("demo", folder / "b.sqlite"));
+  const auto stored = store::read_session(folder / "a.sqlite", summary.session_id);
+  CHECK(stored.session.start.consent_version == "2026-03");
+  const auto a = trials_of(folder / "a.sqlite", summary.session_id);
+  const auto b = trials_of(folder / "b.sqlite", plain.session_id);
+  CHECK(a.front().response_offset_s == 0.0625);
+  CHECK(a.front().response_time_s == b.front().response_time_s);
 }

@@ -1,6 +1,9 @@
 #include "tests/ui/gallery.hpp"
 
-#include <functional>
+#include <utility>
+
+#include "station/session/fault.hpp"
+#include "station/session/words.hpp"
 
 namespace turnpoint::ui {
 
@@ -90,25 +93,38 @@ void add_trials(std::vector<Exhibit>& all, const Words& words) {
   all.push_back({"too-slow", feedback});
 }
 
+void add_faults(std::vector<Exhibit>& all, const Words& words) {
+  using session::FaultKind;
+  const std::pair<FaultKind, const char*> faults[] = {
+      {FaultKind::converter_gone, "alsa hw:CARD=DAC,DEV=0: No such device"},
+      {FaultKind::amplifier, "line AMP_FAULT active"},
+      {FaultKind::stop_pressed, "line STOP active"},
+      {FaultKind::touch_gone, "/dev/input/by-id/usb-panel-event: No such device"},
+      {FaultKind::disk_full, "lab.sqlite: database or disk is full"},
+      {FaultKind::stimulus_missed, "384 frames lost"},
+      {FaultKind::converter_rate, ""},
+      {FaultKind::other, "the panel does not answer"},
+  };
+  for (const auto& [kind, detail] : faults) {
+    Page page = base(words, PageKind::fault);
+    const auto text = session::fault_text(kind, words.language);
+    page.title = session::word(session::Word::fault, words.language);
+    page.fault = kind;
+    page.text = text.happened;
+    page.safe = text.safe;
+    page.to_do = text.to_do;
+    page.detail = detail;
+    all.push_back({std::string("fault-") + session::name(kind), page});
+  }
+}
+
 void add_notices(std::vector<Exhibit>& all, const Words& words) {
   Page rest = base(words, PageKind::rest);
   rest.remaining_s = 17.4;
   all.push_back({"rest", rest});
   rest.remaining_s = 0;
   all.push_back({"rest-over", rest});
-  Page fault = base(words, PageKind::fault);
-  fault.title =
-      words.pick("The sound converter was unplugged", "Der Wandler wurde abgezogen", "変換器が外れました");
-  fault.text = words.pick(
-      "The amplifier is off; the surface is safe to touch. Plug the converter in again, then press Continue. "
-      "The "
-      "last trial will be presented again.",
-      "Der Verstärker ist aus, die Oberfläche darf berührt werden. Wandler wieder einstecken, dann auf "
-      "Weiter tippen. "
-      "Der letzte Durchgang wird wiederholt.",
-      "アンプは切れています。表面に触れても安全です。変換器をつなぎ直してから「次へ」を押してください。直前の"
-      "試行はもう一度行います。");
-  all.push_back({"fault", fault});
+  add_faults(all, words);
   all.push_back({"paused", base(words, PageKind::paused)});
   Page end = base(words, PageKind::end);
   end.trials_done = end.trials_total = 88;

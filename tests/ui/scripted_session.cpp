@@ -64,6 +64,9 @@ void ScriptedSession::take(const session::Input& input) {
     case InputKind::contact:
     case InputKind::xrun:
     case InputKind::fault:
+    case InputKind::arm:
+    case InputKind::repeat:
+    case InputKind::note:
       qFatal("the screen cannot send this input");
   }
   emit inputsChanged();

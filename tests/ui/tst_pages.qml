@@ -186,6 +186,21 @@ Item {
             compare(script.inputs, ["slider 100", "next"])
         }
 
+        function test_every_fault_says_what_happened_what_is_safe_and_what_to_do_data() {
+            return ["converter_gone", "amplifier", "stop_pressed", "touch_gone", "disk_full", "stimulus_missed"].map(kind => ({ tag: kind }))
+        }
+        function test_every_fault_says_what_happened_what_is_safe_and_what_to_do(row) {
+            show("fault-" + row.tag)
+            const page = script.bridge.page
+            for (const says of [page.text, page.safe, page.toDo, page.detail]) {
+                verify(says !== "")
+                verify(findText(view, says), says)
+            }
+            untilArmed()
+            tap("proceed")
+            compare(script.inputs, ["next"])
+        }
+
         function test_ending_asks_once_more() {
             show("paused")
             untilArmed()
