@@ -1,5 +1,6 @@
 #include "physics/figures.hpp"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -41,67 +42,81 @@ std::string hertz(double f) {
   return text;
 }
 
-void add_tone(Figure& figure, const Surface& surface, double f, std::initializer_list<Model> models) {
+constexpr std::array kModels{Model::mode, Model::seed, Model::airy};
+constexpr std::array kLabels{"corrected mode", "paper's eq. 11, exact", "paper's Airy profile, eqs. 20-22"};
+
+FigurePanel tone_panel(const Surface& surface, double f) {
   const auto x = linspace_points(surface, points);
   const Tone tone{f, 1, 0};
-  for (const Model model : models) {
-    const Field field = evaluate(surface, {&tone, 1}, x, model, Normalise::peak);
-    Curve curve{hertz(f) + ", " + std::string(name(model)), in_mm(x), {}};
+  FigurePanel panel{hertz(f), "displacement (last maximum = 1)", {}, {}};
+  for (std::size_t i = 0; i < kModels.size(); ++i) {
+    const Field field = evaluate(surface, {&tone, 1}, x, kModels[i], Normalise::peak);
+    Curve curve{kLabels[i], in_mm(x), {}};
     for (const auto& v : field.tones[0].v) curve.value.push_back(v.real());
-    figure.curves.push_back(std::move(curve));
+    panel.curves.push_back(std::move(curve));
   }
-  if (const auto x0 = turning_point_m(surface, f))
-    figure.marks.push_back({"turning point " + hertz(f), *x0 * 1e3});
+  if (const auto x0 = turning_point_m(surface, f)) panel.marks.push_back({"turning point", *x0 * 1e3});
+  return panel;
 }
 
-void add_sum(Figure& figure, const Surface& surface, double f1, double f2) {
+FigurePanel sum_panel(const Surface& surface, double f1, double f2) {
   const auto x = linspace_points(surface, points);
   const Tone tones[] = {{f1, 1, 0}, {f2, 1, 0}};
-  const Field field = evaluate(surface, tones, x, Model::mode, Normalise::peak);
-  figure.curves.push_back(
-      {hertz(f1) + " and " + hertz(f2) + ", root of summed squares, mode", in_mm(x), field.amplitude});
+  FigurePanel panel{
+      hertz(f1) + " and " + hertz(f2) + " together", "amplitude (root of summed squares)", {}, {}};
+  for (std::size_t i = 0; i < kModels.size(); ++i) {
+    const Field field = evaluate(surface, tones, x, kModels[i], Normalise::peak);
+    panel.curves.push_back({kLabels[i], in_mm(x), field.amplitude});
+  }
+  for (const double f : {f1, f2})
+    if (const auto x0 = turning_point_m(surface, f)) panel.marks.push_back({hertz(f), *x0 * 1e3});
+  return panel;
 }
 
-Figure figure(const char* id, const char* title, const char* note) {
-  return {id, title, "distance from the drive edge (mm)", "displacement (last maximum = 1)", note, {}, {}};
+Figure figure(const char* id, const char* title, const std::string& note) {
+  return {id, title, "distance from the drive edge (mm)", note, {}};
 }
 
 }  // namespace
 
 std::vector<Figure> figures() {
-  const auto all = {Model::airy, Model::seed, Model::mode};
-  const auto two = {Model::seed, Model::mode};
-  const char* shapes =
-      "Lossless shapes with the last maximum at one; the corrected mode grows towards the boundary by "
-      "sqrt(W0/W) against equation 11.";
+  const std::string shapes =
+      "Lossless shapes. The corrected mode keeps the energy flux: against eq. 11 it grows towards the "
+      "boundary "
+      "by sqrt(W0/W).";
   Figure f3 = figure("figure-3", "Brass membrane, 19.6 kHz", shapes);
-  add_tone(f3, seed_brass(), 19600, all);
+  f3.panels = {tone_panel(seed_brass(), 19600)};
   Figure f5 = figure("figure-5", "Brass membrane, 20 and 40 kHz", shapes);
-  add_tone(f5, seed_brass(), 20000, two);
-  add_tone(f5, seed_brass(), 40000, two);
-  Figure f8 = figure(
-      "figure-8", "Rubber membrane, 30 and 40 Hz",
-      "Tension and taper are not published: fitted so that 30 Hz turns at 150 mm, as read from the figure.");
-  add_tone(f8, rubber(), 30, two);
-  add_tone(f8, rubber(), 40, two);
+  f5.panels = {tone_panel(seed_brass(), 20000), tone_panel(seed_brass(), 40000)};
+  Figure f8 =
+      figure("figure-8", "Rubber membrane, 30 and 40 Hz",
+             "Tension and taper of the rubber are not published: fitted, so that 30 Hz turns at 150 mm as "
+             "read from the paper. " +
+                 shapes);
+  f8.panels = {tone_panel(rubber(), 30), tone_panel(rubber(), 40)};
   Figure f10 = figure("figure-10", "Brass membrane, 8 and 45 kHz, alone and together", shapes);
-  add_tone(f10, seed_brass(), 8000, two);
-  add_tone(f10, seed_brass(), 45000, two);
-  add_sum(f10, seed_brass(), 8000, 45000);
+  f10.panels = {tone_panel(seed_brass(), 8000), tone_panel(seed_brass(), 45000),
+                sum_panel(seed_brass(), 8000, 45000)};
   return {f3, f5, f8, f10};
 }
 
 std::string to_csv(const Figure& figure) {
+  std::vector<const Curve*> curves;
   std::string text = "x_mm";
-  for (const Curve& curve : figure.curves) text += ",\"" + curve.label + "\"";
+  for (const FigurePanel& panel : figure.panels) {
+    for (const Curve& curve : panel.curves) {
+      text += ",\"" + panel.title + ": " + curve.label + "\"";
+      curves.push_back(&curve);
+    }
+  }
   text += '\n';
-  if (figure.curves.empty()) return text;
-  for (std::size_t i = 0; i < figure.curves[0].x_mm.size(); ++i) {
+  if (curves.empty()) return text;
+  for (std::size_t i = 0; i < curves[0]->x_mm.size(); ++i) {
     char cell[40];
-    std::snprintf(cell, sizeof cell, "%.6g", figure.curves[0].x_mm[i]);
+    std::snprintf(cell, sizeof cell, "%.6g", curves[0]->x_mm[i]);
     text += cell;
-    for (const Curve& curve : figure.curves) {
-      std::snprintf(cell, sizeof cell, ",%.9g", curve.value[i]);
+    for (const Curve* curve : curves) {
+      std::snprintf(cell, sizeof cell, ",%.9g", curve->value[i]);
       text += cell;
     }
     text += '\n';

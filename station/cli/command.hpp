@@ -51,6 +51,8 @@ void add_check(CLI::App& app, Context& context);
 void add_new(CLI::App& app, Context& context);
 void add_protocols(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);
+void add_figures(CLI::App& app, Context& context);
+void add_bench(CLI::App& app, Context& context);
 
 /// Adds `--json` to a sub-command.
 void add_json(CLI::App& command, Context& context);

@@ -39,17 +39,30 @@ std::vector<Tick> linear_ticks(const Axis& axis, int wanted) {
   return result;
 }
 
+/// 10 to a power, its digits raised.
+std::string power_of_ten(int exponent) {
+  static const char* const raised[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
+                                       "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+  std::string result = exponent < 0 ? "10\u207b" : "10";
+  for (const char digit : std::to_string(std::abs(exponent))) result += raised[digit - '0'];
+  return result;
+}
+
 std::vector<Tick> log_ticks(const Axis& axis, int wanted) {
   const int first = static_cast<int>(std::floor(std::log10(axis.low)));
   const int last = static_cast<int>(std::ceil(std::log10(axis.high)));
-  const bool decades_only = 3 * (last - first) > 2 * wanted;
+  const bool decades_only = 2 * (last - first) > wanted;
+  const bool powers = decades_only && (first < -4 || last > 4);
+  // Over many decades each has its tick, and every second, third, ... its label.
+  const int labelled = (last - first) / std::max(1, 2 * wanted) + 1;
   std::vector<Tick> result;
   for (int decade = first; decade <= last; ++decade)
     for (const double mantissa : {1.0, 2.0, 5.0}) {
       if (decades_only && mantissa > 1) continue;
       const double value = mantissa * std::pow(10.0, decade);
       if (value < axis.low * (1 - 1e-9) || value > axis.high * (1 + 1e-9)) continue;
-      result.push_back({value, label(value)});
+      const bool quiet = decades_only && decade % labelled != 0;
+      result.push_back({value, quiet ? "" : powers ? power_of_ten(decade) : label(value)});
     }
   return result.size() >= 2 ? result : linear_ticks(axis, wanted);
 }

@@ -18,8 +18,9 @@ struct Tick {
   std::string label;
 };
 
-/// About `wanted` ticks inside the axis at 1, 2 or 5 times a power of ten (log10: 1, 2, 5 of each decade, or
-/// decades alone where there are many), with as many decimals as the step needs. Throws std::invalid_argument
+/// About `wanted` ticks inside the axis at 1, 2 or 5 times a power of ten, with as many decimals as the step
+/// needs. log10: 1, 2, 5 of each decade, or decades alone where there are many, then as powers of ten, some
+/// without a label. Throws std::invalid_argument
 /// where low < high does not hold, a limit is not finite, or a log10 axis is not positive.
 std::vector<Tick> ticks(const Axis& axis, int wanted = 6);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 
 #include "station/plot/palette.hpp"
@@ -11,7 +12,7 @@ namespace turnpoint::plot {
 
 namespace {
 
-constexpr double kText = 12, kTitle = 13.5, kPad = 10, kTick = 5;
+constexpr double kText = 12, kTitle = 13.5, kPad = 10, kTick = 5, kCaptionLine = 16;
 const std::string kInk = "#222222", kSoft = "#666666", kGrid = "#e6e6e6";
 
 void check(bool good, const std::string& what) {
@@ -267,6 +268,19 @@ void draw_panel(Svg& svg, const Panel& panel, double left, double top, double wi
   if (map) draw_colour_bar(svg, frame, *map);
 }
 
+/// The caption in lines that fit the width.
+std::vector<std::string> caption_lines(const std::string& caption, double width) {
+  std::vector<std::string> lines;
+  std::istringstream words(caption);
+  for (std::string word; words >> word;) {
+    if (lines.empty() || text_width(lines.back() + " " + word, kText) > width)
+      lines.push_back(word);
+    else
+      lines.back() += " " + word;
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::string render(const Figure& figure) {
@@ -274,12 +288,20 @@ std::string render(const Figure& figure) {
   check(figure.columns > 0, "columns: at least 1");
   const int count = static_cast<int>(figure.panels.size());
   const int columns = std::min(figure.columns, count), rows = (count + columns - 1) / columns;
-  const double width = columns * figure.panel_width_px, height = rows * figure.panel_height_px;
+  const double width = columns * figure.panel_width_px, panels = rows * figure.panel_height_px;
+  const auto caption = caption_lines(figure.caption, width - 4 * kPad);
+  const double height =
+      panels + (caption.empty() ? 0 : kPad + kCaptionLine * static_cast<double>(caption.size()));
   Svg svg(width, height, figure.title);
   svg.rectangle({0, 0}, width, height, {"", "#ffffff", 0, "", 1});
   for (int i = 0; i < count; ++i)
     draw_panel(svg, figure.panels[static_cast<std::size_t>(i)], i % columns * figure.panel_width_px,
                i / columns * figure.panel_height_px, figure.panel_width_px, figure.panel_height_px);
+  double y = panels + kText;
+  for (const auto& line : caption) {
+    svg.text({2 * kPad, y}, line, kText, Anchor::start, kSoft);
+    y += kCaptionLine;
+  }
   return svg.finish();
 }
 

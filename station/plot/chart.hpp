@@ -72,6 +72,7 @@ struct Figure {
   std::vector<Panel> panels;
   int columns = 1;
   double panel_width_px = 420, panel_height_px = 300;
+  std::string caption;  ///< below the panels, broken into lines; "" leaves it out
 };
 
 /// The SVG document; the same figure gives the same bytes. Throws std::invalid_argument for lists whose

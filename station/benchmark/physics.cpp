@@ -1,0 +1,256 @@
+#include "station/benchmark/physics.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "physics/airy.hpp"
+#include "physics/airy_profile.hpp"
+#include "physics/boundary_map.hpp"
+#include "physics/centre_line.hpp"
+#include "physics/field.hpp"
+#include "physics/modal_field.hpp"
+#include "station/benchmark/scipy.hpp"
+#include "station/benchmark/solvers.hpp"
+#include "station/benchmark/stopwatch.hpp"
+
+namespace turnpoint::benchmark {
+
+namespace {
+
+using physics::CentreLine;
+using physics::Model;
+constexpr int kPoints = 1000;
+
+struct Scene {
+  std::string name;
+  physics::Surface surface;
+  double frequency_Hz;
+  bool plate = false;
+};
+
+std::vector<Scene> scenes() {
+  physics::Surface lossless = physics::seed_brass(), lossy = lossless, curved = lossless;
+  lossy.quality_factor = curved.quality_factor = 60;
+  curved.taper = physics::ExponentialTaper{0.03, 0.12};
+  return {{"seed brass 19.6 kHz, lossless", lossless, 19600},
+          {"seed brass 45 kHz, lossless", lossless, 45000},
+          {"seed brass 19.6 kHz, Q = 60", lossy, 19600},
+          {"seed brass 45 kHz, Q = 60", lossy, 45000},
+          {"exponential taper 30 kHz, Q = 60", curved, 30000},
+          {"aluminium plate 30 kHz, Q = 60", physics::aluminium_plate(), 30000, true}};
+}
+
+/// |v| at the points, last maximum at one.
+std::vector<double> amplitudes(const CentreLine& line, const std::vector<double>& x) {
+  const double unit = line.value(line.last_peak_m().value_or(0)).ln_magnitude();
+  Solution v(x.size());
+  std::vector<double> ln(x.size());
+  line.evaluate(x, 1.0, unit, v, ln);
+  for (double& one : ln) one = std::exp(std::min(one, 300.0));
+  return ln;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double worst = 0, most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    worst = std::max(worst, std::abs(a[i] - b[i]));
+    most = std::max(most, std::abs(b[i]));
+  }
+  return worst / most;
+}
+
+/// `modes` from coarse to fine; an empty setting is the default.
+struct Resolution {
+  const char* setting;
+  physics::ModalResolution resolution;
+};
+
+std::vector<Resolution> resolutions() {
+  const auto one = [](int degree, double radians, int spare) {
+    physics::ModalResolution r;
+    r.degree = degree, r.radians = radians, r.spare_functions = spare;
+    return r;
+  };
+  return {{"degree 5, 0 spare", one(5, 3, 0)}, {"default", {}}, {"degree 8, 5 spare", one(8, 2, 5)}};
+}
+
+void bench_field(const Scene& scene, double budget_s, std::vector<PhysicsRow>& rows) {
+  const auto x = physics::linspace_points(scene.surface, kPoints);
+  physics::ModalResolution fine;
+  fine.degree = 10, fine.radians = 1.5, fine.spare_functions = 9;
+  const auto solve = [&](const physics::ModalResolution& resolution) {
+    return physics::make_modal_line(scene.surface, scene.frequency_Hz, physics::Losses::kept, resolution);
+  };
+  const auto truth = amplitudes(*solve(fine), x);
+  Solution v(x.size());
+  std::vector<double> ln(x.size());
+  for (const Model model : {Model::airy, Model::seed, Model::uniform, Model::mode}) {
+    try {
+      const auto make = [&] { return make_centre_line(scene.surface, scene.frequency_Hz, model); };
+      const double error = largest_difference(amplitudes(*make(), x), truth);
+      const double took = best_time(budget_s, [&] { make()->evaluate(x, 1.0, 0.0, v, ln); });
+      rows.push_back({Task::field, scene.name, std::string(physics::name(model)), "", kPoints, took, error});
+    } catch (const std::domain_error&) {  // this rung does not exist here
+    }
+  }
+  for (const auto& [setting, resolution] : resolutions()) {
+    const double error = largest_difference(amplitudes(*solve(resolution), x), truth);
+    const double took = best_time(budget_s, [&] { solve(resolution)->evaluate(x, 1.0, 0.0, v, ln); });
+    rows.push_back({Task::field, scene.name, "modes", setting, kPoints, took, error});
+  }
+}
+
+OneModeProblem problem_of(const Scene& scene, const std::vector<double>& x) {
+  const auto equation =
+      physics::march_equation(scene.surface, scene.frequency_Hz, Model::mode, physics::Losses::kept);
+  OneModeProblem problem;
+  problem.k_squared = equation.a;
+  problem.b = equation.b;
+  problem.c = equation.c;
+  problem.length_m = scene.surface.length_m;
+  problem.x_m = x;
+  if (const auto* linear = std::get_if<physics::LinearTaper>(&scene.surface.taper)) {
+    problem.w0 = linear->half_width_m;
+    problem.slope = linear->slope;
+  } else {
+    const auto& curved = std::get<physics::ExponentialTaper>(scene.surface.taper);
+    problem.w0 = curved.half_width_m;
+    problem.decay_m = curved.decay_length_m;
+  }
+  return problem;
+}
+
+/// |v| with the reference's largest value at one at the same point.
+std::vector<double> scaled(const Solution& v, std::size_t top) {
+  std::vector<double> a;
+  for (const auto& one : v) a.push_back(std::abs(one) / std::abs(v[top]));
+  return a;
+}
+
+void bench_equation(const Scene& scene, double budget_s, std::vector<PhysicsRow>& rows) {
+  const auto x = physics::linspace_points(scene.surface, kPoints);
+  const OneModeProblem problem = problem_of(scene, x);
+  const Solution exact = reference_solution(problem);
+  if (exact.empty()) return;
+  const auto top = static_cast<std::size_t>(
+      std::max_element(exact.begin(), exact.end(),
+                       [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); }) -
+      exact.begin());
+  const auto truth = scaled(exact, top);
+  const auto add = [&](const std::string& solver, const std::string& setting, double seconds,
+                       const Solution& v) {
+    rows.push_back({Task::equation, scene.name, solver, setting, kPoints, seconds,
+                    largest_difference(scaled(v, top), truth)});
+  };
+  Solution v(x.size());
+  std::vector<double> ln(x.size());
+  const auto mode = [&] {
+    const auto line = make_centre_line(scene.surface, scene.frequency_Hz, Model::mode);
+    line->evaluate(x, 1.0, line->value(x[top]).ln_magnitude(), v, ln);
+  };
+  const double took = best_time(budget_s, mode);
+  add("mode", "", took, v);
+  for (const Solver& solver : general_solvers(problem)) {
+    const Solution answer = solver.solve(problem);
+    add(solver.name, solver.setting, best_time(budget_s, [&] { solver.solve(problem); }), answer);
+  }
+  for (const ScipyRun& run : run_scipy(problem)) add(run.name, run.setting, run.seconds, run.v);
+}
+
+/// The seed's closed profile: our Airy function beside Boost.Math's, at the same arguments.
+void bench_airy(const Scene& scene, double budget_s, std::vector<PhysicsRow>& rows) {
+  const auto scale = physics::airy_scale(scene.surface, scene.frequency_Hz);
+  std::vector<double> arguments, ours(kPoints);
+  for (const double x : physics::linspace_points(scene.surface, kPoints))
+    arguments.push_back(scale.k0_per_m * (x - scale.turning_point_m));
+  const auto theirs = boost_airy(arguments);
+  const double took = best_time(budget_s, [&] {
+    for (std::size_t i = 0; i < ours.size(); ++i) {
+      const auto one = physics::airy(arguments[i]);
+      ours[i] = one.ai * std::exp(one.ln_scale);
+    }
+  });
+  const double error = theirs.empty() ? -1 : largest_difference(ours, theirs);
+  rows.push_back({Task::airy, scene.name, "airy", "", kPoints, took, error});
+  if (!theirs.empty())
+    rows.push_back({Task::airy, scene.name, "Boost.Math airy_ai", "", kPoints,
+                    best_time(budget_s, [&] { boost_airy(arguments); }), error});
+}
+
+/// Look-ups in a map, both ways, and the round trip's largest error in metres.
+void bench_map(const std::string& name, const physics::Surface& surface, double budget_s,
+               std::vector<PhysicsRow>& rows) {
+  const auto build = [&] { return physics::BoundaryMap(surface, {physics::Edge::percent(0.5), {}, {}, {}}); };
+  const auto map = build();
+  constexpr int look_ups = 1000;
+  double worst = 0;
+  std::vector<double> x, f;
+  for (int i = 0; i < look_ups; ++i) {
+    const double at = surface.length_m * (0.3 + 0.4 * i / look_ups);
+    const auto frequency = map.frequency_Hz(at);
+    if (!frequency) continue;
+    x.push_back(at), f.push_back(*frequency);
+    worst = std::max(worst, std::abs(map.boundary_m(*frequency).value_or(0) - at));
+  }
+  double sum = 0;
+  const double forward = best_time(budget_s, [&] {
+    for (const double one : f) sum += map.boundary_m(one).value_or(0);
+  });
+  const double backward = best_time(budget_s, [&] {
+    for (const double one : x) sum += map.frequency_Hz(one).value_or(0);
+  });
+  const int n = static_cast<int>(x.size());
+  rows.push_back({Task::look_up, name, "position of a frequency", "", n, sum > 0 ? forward : 0, worst});
+  rows.push_back({Task::look_up, name, "frequency of a position", "", n, backward, worst});
+  rows.push_back({Task::look_up, name, "building the map", "", 1, best_time(0, build), -1});
+}
+
+const char* name(Task task) {
+  switch (task) {
+    case Task::field:
+      return "two-dimensional field";
+    case Task::equation:
+      return "one-mode equation";
+    case Task::airy:
+      return "Airy profile";
+    case Task::look_up:
+      break;
+  }
+  return "p50 map";
+}
+
+}  // namespace
+
+std::vector<PhysicsRow> measure_physics(double budget_s) {
+  std::vector<PhysicsRow> rows;
+  const auto all = scenes();
+  const double share = budget_s / (20.0 * static_cast<double>(all.size()));
+  for (const Scene& scene : all) bench_field(scene, share, rows);
+  for (const Scene& scene : all)
+    if (!scene.plate) bench_equation(scene, share, rows);
+  bench_airy(all.front(), share, rows);
+  bench_map("seed brass", all.front().surface, share, rows);
+  bench_map("exponential taper", all[4].surface, share, rows);
+  bench_map("aluminium plate", all.back().surface, share, rows);
+  return rows;
+}
+
+Report bench_physics(double budget_s) {
+  Report report{
+      "physics",
+      "Error against time of every model and of general solvers (error: of |v|, largest at one; maps: m)",
+      {{"against", "scene", "solver", "setting", "points", "time_us", "ns_per_point", "error"}, {}},
+      {}};
+  const auto rows = measure_physics(budget_s);
+  for (const auto& row : rows)
+    report.table.rows.push_back({std::string(name(row.task)), row.scene, row.solver, row.setting,
+                                 static_cast<double>(row.points), row.seconds * 1e6,
+                                 row.seconds * 1e9 / row.points, row.error >= 0 ? Cell(row.error) : Cell()});
+  report.pictures = physics_pictures(rows);
+  return report;
+}
+
+}  // namespace turnpoint::benchmark

@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <map>
+
+#include "station/benchmark/physics.hpp"
+
+namespace turnpoint::benchmark {
+
+namespace {
+
+/// What makes one series, in the order of the legend: the solvers whose names begin with one of these.
+struct Series {
+  const char* label;
+  std::vector<std::string> beginnings;
+  bool joined = true;  ///< several settings of one solver: a line
+};
+
+const std::vector<Series> kRungs{{"airy", {"airy"}},
+                                 {"seed", {"seed"}},
+                                 {"uniform", {"uniform"}},
+                                 {"mode", {"mode"}},
+                                 {"modes, three resolutions", {"modes"}}};
+const std::vector<Series> kSolvers{{"Turnpoint, mode", {"mode"}},
+                                   {"Numerov", {"Numerov"}},
+                                   {"Odeint dopri5", {"Boost.Odeint dopri5"}},
+                                   {"Odeint Bulirsch-Stoer", {"Boost.Odeint bulirsch"}},
+                                   {"SciPy DOP853", {"SciPy DOP853"}},
+                                   {"Bessel: Boost, SciPy", {"Boost.Math", "SciPy jv"}, false}};
+
+bool belongs(const std::string& solver, const Series& series) {
+  return std::any_of(series.beginnings.begin(), series.beginnings.end(), [&](const std::string& beginning) {
+    return beginning == "mode" ? solver == beginning : solver.starts_with(beginning);
+  });
+}
+
+/// `floor`: smaller errors stand on it; a logarithmic axis needs an end.
+plot::Panel panel_of(const std::string& scene, const std::vector<PhysicsRow>& rows,
+                     const std::vector<Series>& series, double floor) {
+  plot::Panel panel;
+  panel.title = scene;
+  panel.x = {"time for 1000 points (\u00b5s)", 10, 1e5, plot::AxisScale::log10};
+  panel.y = {"largest error of |v|", floor, 1, plot::AxisScale::log10};
+  for (std::size_t s = 0; s < series.size(); ++s) {
+    plot::Line line;
+    line.series = static_cast<int>(s);
+    line.name = series[s].label;
+    for (const auto& row : rows) {
+      if (row.scene != scene || !belongs(row.solver, series[s])) continue;
+      line.x.push_back(std::clamp(row.seconds * 1e6, 10.0, 1e5));
+      line.y.push_back(std::max(row.error, floor));
+    }
+    if (line.x.empty()) continue;
+    plot::Points dots{line.x, line.y, {}, {}, {}, {}, line.series, line.name};
+    if (line.x.size() > 1 && series[s].joined) panel.layers.emplace_back(line);
+    panel.layers.emplace_back(dots);
+  }
+  return panel;
+}
+
+plot::Figure figure_of(const std::string& title, const std::vector<PhysicsRow>& rows, Task task,
+                       const std::vector<Series>& series, double floor) {
+  std::vector<PhysicsRow> wanted;
+  std::copy_if(rows.begin(), rows.end(), std::back_inserter(wanted),
+               [task](const PhysicsRow& row) { return row.task == task; });
+  plot::Figure figure;
+  figure.title = title;
+  figure.columns = 2;
+  figure.panel_width_px = 480;
+  figure.panel_height_px = 360;
+  for (const auto& row : wanted) {
+    const bool known = std::any_of(figure.panels.begin(), figure.panels.end(),
+                                   [&](const auto& panel) { return panel.title == row.scene; });
+    if (!known) figure.panels.push_back(panel_of(row.scene, wanted, series, floor));
+  }
+  return figure;
+}
+
+}  // namespace
+
+std::vector<Picture> physics_pictures(const std::vector<PhysicsRow>& rows) {
+  std::vector<Picture> pictures;
+  const auto add = [&](const char* name, plot::Figure figure) {
+    if (!figure.panels.empty()) pictures.push_back({name, std::move(figure)});
+  };
+  add("physics-field",
+      figure_of("Models against the two-dimensional field", rows, Task::field, kRungs, 1e-8));
+  add("physics-equation", figure_of("Solvers of the one-mode equation against extended precision", rows,
+                                    Task::equation, kSolvers, 1e-16));
+  return pictures;
+}
+
+}  // namespace turnpoint::benchmark

@@ -1,0 +1,140 @@
+#include "station/benchmark/procedures.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <sstream>
+
+#include "station/benchmark/python.hpp"
+#include "station/procedure/posterior.hpp"
+
+namespace turnpoint::benchmark {
+
+namespace {
+
+/// from ... to in `count` equal steps.
+std::vector<double> spaced(double from, double to, std::size_t count) {
+  std::vector<double> values(count);
+  for (std::size_t i = 0; i < count; ++i)
+    values[i] =
+        count == 1 ? from : from + (to - from) * static_cast<double>(i) / static_cast<double>(count - 1);
+  return values;
+}
+
+struct Shape {
+  std::size_t stimuli, thresholds, slopes, lapses;
+  int trials;
+};
+
+// A threshold, a slope and a lapse to learn: a usual grid and a fine one.
+constexpr std::array<Shape, 2> kShapes{{{41, 81, 21, 5, 200}, {81, 101, 41, 11, 60}}};
+
+procedure::Spec spec_of(const Shape& shape) {
+  procedure::Spec spec;
+  spec.name = "bench";
+  spec.level = "contrast_dB";
+  spec.kind = procedure::Kind::quest_plus;
+  spec.stimuli.values = spaced(-40, 0, shape.stimuli);
+  spec.threshold.values = spaced(-40, 0, shape.thresholds);
+  spec.slope.values = spaced(0.5, 5, shape.slopes);
+  spec.guess.values = {0.5};
+  spec.lapse.values = spaced(0.005, 0.04, shape.lapses);
+  spec.stop.trials = shape.trials;
+  return spec;
+}
+
+std::vector<Cell> own(const Shape& shape) {
+  using clock = std::chrono::steady_clock;
+  procedure::Posterior posterior(spec_of(shape));
+  std::vector<double> times;
+  for (int trial = 0; trial < shape.trials; ++trial) {
+    const auto start = clock::now();
+    const auto stimulus = posterior.best_stimulus();
+    posterior.update(stimulus, trial % 4 != 3);
+    times.push_back(std::chrono::duration<double, std::milli>(clock::now() - start).count());
+  }
+  std::sort(times.begin(), times.end());
+  return {std::string("turnpoint"),
+          static_cast<double>(shape.stimuli),
+          static_cast<double>(posterior.size()),
+          times[times.size() / 2],
+          times[times.size() * 99 / 100],
+          static_cast<double>(posterior.memory_bytes()) / 1e6};
+}
+
+/// Python that prints "version median p99" (ms) for the same grid and answers.
+std::string questplus_program(const Shape& shape) {
+  std::ostringstream text;
+  text << "import time, numpy as np, questplus as q\n"
+       << "from importlib.metadata import version\n"
+       << "p = q.QuestPlus(stim_domain=dict(intensity=np.linspace(-40, 0, " << shape.stimuli << ")),"
+       << "param_domain=dict(threshold=np.linspace(-40, 0, " << shape.thresholds << "),"
+       << "slope=np.linspace(.5, 5, " << shape.slopes << "), lower_asymptote=[.5],"
+       << "lapse_rate=np.linspace(.005, .04, " << shape.lapses << ")),"
+       << "outcome_domain=dict(response=['Y', 'N']), func='weibull', stim_scale='dB')\n"
+       << "t = []\n"
+       << "for i in range(8):\n"
+       << "    a = time.perf_counter(); s = p.next_stim\n"
+       << "    p.update(stim=s, outcome=dict(response='N' if i % 4 == 3 else 'Y'))\n"
+       << "    t.append(1e3 * (time.perf_counter() - a))\n"
+       << "print(version('questplus'), np.median(t), max(t))\n";
+  return text.str();
+}
+
+/// A row for questplus; none where python3 or the package is absent.
+std::vector<std::vector<Cell>> questplus(const Shape& shape) {
+  const auto lines = run_python(questplus_program(shape));
+  if (lines.empty()) return {};
+  std::istringstream words(lines.front());
+  std::string version;
+  double median_ms = 0, p99_ms = 0;
+  if (!(words >> version >> median_ms >> p99_ms)) return {};
+  return {{"questplus " + version, static_cast<double>(shape.stimuli),
+           static_cast<double>(shape.thresholds * shape.slopes * shape.lapses), median_ms, p99_ms, Cell{}}};
+}
+
+/// Time per trial against the size of the grid, one series a program.
+Picture picture_of(const Table& table) {
+  plot::Panel panel;
+  panel.title = "One trial of QUEST+: median (marker) to 99th percentile";
+  std::vector<double> sizes, times;
+  std::vector<std::string> names;
+  for (const auto& row : table.rows) {
+    const auto& name = std::get<std::string>(row[0]);
+    auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) {
+      names.push_back(name);
+      found = names.end() - 1;
+      panel.layers.emplace_back(
+          plot::Points{{}, {}, {}, {}, {}, {}, static_cast<int>(names.size()) - 1, name});
+    }
+    auto& dots = std::get<plot::Points>(panel.layers[static_cast<std::size_t>(found - names.begin())]);
+    const double cells = std::get<double>(row[1]) * std::get<double>(row[2]);
+    dots.x.push_back(cells);
+    dots.y.push_back(std::get<double>(row[3]));
+    dots.low.push_back(std::get<double>(row[3]));
+    dots.high.push_back(std::get<double>(row[4]));
+    sizes.push_back(cells);
+    times.insert(times.end(), {dots.low.back(), dots.high.back()});
+  }
+  panel.x = plot::fitted("stimuli x parameters", sizes, 0.15, plot::AxisScale::log10);
+  panel.y = plot::fitted("time (ms)", times, 0.15, plot::AxisScale::log10);
+  return {"procedures", {"Time of an adaptive trial", {panel}, 1, 520, 340, ""}};
+}
+
+}  // namespace
+
+Report bench_procedures() {
+  Report report{"procedures",
+                "QUEST+: choosing a stimulus and learning from the answer, per trial",
+                {{"program", "stimuli", "parameters", "median_ms", "p99_ms", "memory_MB"}, {}},
+                {}};
+  for (const auto& shape : kShapes) {
+    report.table.rows.push_back(own(shape));
+    for (auto& row : questplus(shape)) report.table.rows.push_back(std::move(row));
+  }
+  report.pictures.push_back(picture_of(report.table));
+  return report;
+}
+
+}  // namespace turnpoint::benchmark

@@ -1,0 +1,11 @@
+#pragma once
+#include <string>
+#include <vector>
+
+namespace turnpoint::benchmark {
+
+/// The lines that a Python program prints; none where python3 is not there or the program fails (a package
+/// that it imports is missing).
+std::vector<std::string> run_python(const std::string& program);
+
+}  // namespace turnpoint::benchmark

@@ -1,0 +1,20 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "station/benchmark/solvers.hpp"
+
+namespace turnpoint::benchmark {
+
+/// One solver of SciPy, run and timed by python3.
+struct ScipyRun {
+  std::string name, setting;
+  double seconds = 0;
+  Solution v;
+};
+
+/// solve_ivp (DOP853, three tolerances) on the same equation and, on a wedge, special.jv (complex argument);
+/// empty where python3 has no SciPy.
+std::vector<ScipyRun> run_scipy(const OneModeProblem& problem);
+
+}  // namespace turnpoint::benchmark

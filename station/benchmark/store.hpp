@@ -1,0 +1,12 @@
+#pragma once
+#include <string>
+
+#include "station/benchmark/report.hpp"
+
+namespace turnpoint::benchmark {
+
+/// A durable trial through the session log beside bare SQLite, below `directory`: its disk is what is
+/// measured.
+Report bench_store(const std::string& directory, int trials);
+
+}  // namespace turnpoint::benchmark

@@ -1,0 +1,70 @@
+#include "station/benchmark/synth.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "station/drive/synth_benchmark.hpp"
+
+namespace turnpoint::benchmark {
+
+namespace {
+
+plot::Panel panel_of(const char* title, const drive::SynthBenchmark& measured, std::size_t from,
+                     std::size_t to) {
+  plot::Panel panel;
+  panel.title = title;
+  for (std::size_t m = from; m < std::min(to, measured.methods.size()); ++m) {
+    const auto& method = measured.methods[m];
+    plot::Line line;
+    line.series = static_cast<int>(m - from);
+    line.name = fmt::format("{}: {:.2g} ns", method.name, method.ns_per_tone_frame);
+    for (std::size_t i = 1; i < method.error_dB.size(); ++i) {
+      line.x.push_back(measured.times_s[i]);
+      line.y.push_back(method.error_dB[i]);
+    }
+    panel.layers.emplace_back(line);
+  }
+  panel.x = {"time since the start (s)", 1, 1e5, plot::AxisScale::log10};
+  panel.y = {"largest error (dB re full scale)", -340, 20, plot::AxisScale::linear};
+  return panel;
+}
+
+/// Error against the time since the start; cost per tone and frame in the legend.
+Picture picture_of(const drive::SynthBenchmark& measured) {
+  constexpr std::size_t exact = 6;  // our two first, then those of others that do not age
+  plot::Figure figure;
+  figure.title = "Ways of making a sinusoid";
+  figure.columns = 2;
+  figure.panel_width_px = 480;
+  figure.panel_height_px = 400;
+  figure.panels = {panel_of("phase from the frame's number", measured, 0, exact),
+                   panel_of("phase or time that runs on", measured, exact, measured.methods.size())};
+  figure.caption =
+      fmt::format("{} Hz at {} Hz; nanoseconds per tone and frame.", measured.frequency_Hz, measured.rate_Hz);
+  return {"synth", figure};
+}
+
+}  // namespace
+
+Report bench_synth() {
+  const auto measured = drive::benchmark_synthesis();
+  Report report{
+      "synth",
+      fmt::format("A tone of {} Hz at {} Hz, our loops by {}: largest error (dB re full scale) after "
+                  "a time, and cost",
+                  measured.frequency_Hz, measured.rate_Hz, measured.processor),
+      {{"method", "ns_per_tone_frame"}, {}},
+      {picture_of(measured)}};
+  for (const double time : measured.times_s)
+    report.table.columns.push_back(fmt::format("error_dB_{}_s", time));
+  for (const auto& method : measured.methods) {
+    std::vector<Cell> row{method.name, method.ns_per_tone_frame};
+    row.insert(row.end(), method.error_dB.begin(), method.error_dB.end());
+    row.resize(report.table.columns.size());
+    report.table.rows.push_back(std::move(row));
+  }
+  return report;
+}
+
+}  // namespace turnpoint::benchmark

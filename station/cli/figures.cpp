@@ -1,0 +1,79 @@
+#include "physics/figures.hpp"
+
+#include <fmt/ostream.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "station/cli/command.hpp"
+#include "station/cli/json.hpp"
+#include "station/cli/write_file.hpp"
+#include "station/plot/chart.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+struct Options {
+  std::string out;
+};
+
+plot::Panel drawn(const physics::FigurePanel& panel, const std::string& x_label) {
+  plot::Panel result;
+  result.title = panel.title;
+  std::vector<double> values;
+  for (const auto& mark : panel.marks)
+    result.layers.emplace_back(plot::Rule{plot::Rule::Direction::vertical, mark.x_mm, mark.label});
+  int series = 0;
+  for (const auto& curve : panel.curves) {
+    result.layers.emplace_back(plot::Line{curve.x_mm, curve.value, series++, curve.label});
+    values.insert(values.end(), curve.value.begin(), curve.value.end());
+  }
+  const auto& x_mm = panel.curves.front().x_mm;
+  result.x = {x_label, x_mm.front(), x_mm.back(), plot::AxisScale::linear};
+  result.y = plot::fitted(panel.y_label, values);
+  return result;
+}
+
+plot::Figure drawn(const physics::Figure& figure) {
+  plot::Figure result;
+  result.title = figure.title;
+  result.caption = figure.title + ". " + figure.note;
+  result.panel_width_px = 760;
+  result.panel_height_px = 300;
+  for (const auto& panel : figure.panels) result.panels.push_back(drawn(panel, figure.x_label));
+  return result;
+}
+
+void figures(const Options& options, Context& context) {
+  std::filesystem::create_directories(options.out);
+  Json list = Json::array();
+  for (const auto& figure : physics::figures()) {
+    const auto path = (std::filesystem::path(options.out) / figure.id).string();
+    write_file(path + ".svg", plot::render(drawn(figure)));
+    write_file(path + ".csv", physics::to_csv(figure));
+    list.push_back({{"id", figure.id},
+                    {"title", figure.title},
+                    {"note", figure.note},
+                    {"files", {path + ".svg", path + ".csv"}}});
+    if (!context.json)
+      fmt::print(context.out, "{}: {}\n  {}\n  wrote {}.svg and .csv\n", figure.id, figure.title, figure.note,
+                 path);
+  }
+  if (context.json) context.out << list.dump(2) << "\n";
+}
+
+}  // namespace
+
+void add_figures(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand(
+      "figures", "Figures 3, 5, 8 and 10 of the 1998 paper, with the corrected theory beside them");
+  command->add_option("--out", options->out, "Folder for the SVG and CSV files")->required();
+  add_json(*command, context);
+  command->footer("Example: turnpoint figures --out figures");
+  command->callback([options, &context] { figures(*options, context); });
+}
+
+}  // namespace turnpoint::cli

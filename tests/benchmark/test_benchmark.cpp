@@ -1,0 +1,70 @@
+#include <cmath>
+
+#include "station/benchmark/physics.hpp"
+#include "station/benchmark/python.hpp"
+#include "station/benchmark/report.hpp"
+#include "station/benchmark/solvers.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::benchmark;
+
+namespace {
+
+const std::vector<PhysicsRow>& rows() {
+  static const auto measured = measure_physics(0.01);
+  return measured;
+}
+
+double error_of(Task task, const std::string& scene, const std::string& solver,
+                const std::string& setting = "") {
+  for (const auto& row : rows())
+    if (row.task == task && row.scene == scene && row.solver == solver && row.setting == setting)
+      return row.error;
+  return -1;
+}
+
+}  // namespace
+
+TEST_CASE("errors against the field fall up the ladder, and with the resolution", "[benchmark]") {
+  const std::string scene = "seed brass 19.6 kHz, Q = 60";
+  CHECK(error_of(Task::field, scene, "airy") > error_of(Task::field, scene, "seed"));
+  CHECK(error_of(Task::field, scene, "seed") > error_of(Task::field, scene, "mode"));
+  CHECK(error_of(Task::field, scene, "mode") > error_of(Task::field, scene, "modes", "default"));
+  CHECK(error_of(Task::field, scene, "modes", "degree 5, 0 spare") >
+        error_of(Task::field, scene, "modes", "default"));
+  CHECK(error_of(Task::field, scene, "modes", "default") < 5e-4);
+  for (const auto& row : rows()) CHECK(row.seconds > 0);
+}
+
+TEST_CASE("the marched mode agrees with extended precision by an unrelated method", "[benchmark]") {
+  for (const char* scene :
+       {"seed brass 19.6 kHz, lossless", "seed brass 45 kHz, Q = 60", "exponential taper 30 kHz, Q = 60"}) {
+    const double error = error_of(Task::equation, scene, "mode");
+    CAPTURE(scene, error);
+    if (error >= 0) CHECK(error < 1e-12);
+  }
+}
+
+TEST_CASE("a general solver's error falls with its tolerance", "[benchmark]") {
+  const std::string scene = "seed brass 45 kHz, Q = 60";
+  CHECK(error_of(Task::equation, scene, "Numerov", "1000 steps") >
+        50 * error_of(Task::equation, scene, "Numerov", "4000 steps"));
+  CHECK(error_of(Task::equation, scene, "Numerov", "4000 steps") > 0);
+}
+
+TEST_CASE("a table is aligned for people and quoted for programs", "[benchmark]") {
+  const Table table{{"what", "time_us"}, {{std::string("a, \"b\""), 1.5}, {std::string("c"), Cell()}}};
+  CHECK(to_csv(table) == "what,time_us\n\"a, \"\"b\"\"\",1.5\nc,\n");
+  CHECK(to_text(table) == "what    time_us\na, \"b\"      1.5\nc             -\n");
+}
+
+TEST_CASE("a Python program that fails gives no lines", "[benchmark]") {
+  CHECK(run_python("import a_package_that_nobody_has\nprint(1)").empty());
+}
+
+TEST_CASE("the pictures have a panel for each scene", "[benchmark]") {
+  const auto pictures = physics_pictures(rows());
+  REQUIRE(!pictures.empty());
+  CHECK(pictures[0].figure.panels.size() == 6);
+  CHECK(!turnpoint::plot::render(pictures[0].figure).empty());
+}
