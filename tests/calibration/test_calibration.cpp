@@ -5,6 +5,7 @@
 #include "station/calibration/calibration.hpp"
 #include "station/text/problem.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
 using namespace turnpoint::calibration;
@@ -12,7 +13,8 @@ using namespace turnpoint::calibration;
 namespace {
 
 std::string written(const char* name, const std::string& content) {
-  const std::string path = std::string(TURNPOINT_BINARY_DIR) + "/" + name;
+  static const TemporaryFolder folder;  // tests run side by side
+  const std::string path = folder / name;
   std::ofstream(path) << content;
   return path;
 }

@@ -7,12 +7,16 @@
 #include "station/drive/engine.hpp"
 #include "tests/drive/bursts.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint::drive;
 
 namespace {
 
-std::string scratch_file(const char* name) { return std::string(TURNPOINT_BINARY_DIR) + "/" + name; }
+std::string scratch_file(const char* name) {
+  static const TemporaryFolder folder;
+  return folder / name;
+}
 
 std::vector<std::int32_t> samples_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

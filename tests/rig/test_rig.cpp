@@ -6,6 +6,7 @@
 #include "station/rig/rig.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
 
@@ -122,10 +123,9 @@ TEST_CASE("a plate needs its modulus, a tensioned membrane may leave it out", "[
 }
 
 TEST_CASE("tables beside the rig file are read, and their rows checked", "[rig]") {
-  const auto folder = std::filesystem::temp_directory_path() / "turnpoint_test_rig";
-  std::filesystem::create_directories(folder);
+  const TemporaryFolder folder;
   const auto write = [&](const char* name, const std::string& text) { std::ofstream(folder / name) << text; };
-  const auto path = (folder / "rig.toml").string();
+  const auto path = folder / "rig.toml";
   const auto parsed = [&] {
     auto text = replaced(source(), "um_per_full_scale = 4.0", "response_csv = \"response.csv\"");
     text = replaced(text,
@@ -153,7 +153,6 @@ TEST_CASE("tables beside the rig file are read, and their rows checked", "[rig]"
     write("response.csv", "frequency_Hz,um_per_full_scale,phase_deg\n14000,4,0\n60000,two,0\n");
     CHECK_THROWS_AS(parsed(), text::BadInput);
   }
-  std::filesystem::remove_all(folder);
 }
 
 TEST_CASE("a rig file that is not there is a system error that names it", "[rig]") {

@@ -2,30 +2,11 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 
 #include "station/store/session_log.hpp"
 #include "station/store/sqlite.hpp"
-
-/// A folder of its own for one test, removed afterwards.
-struct TemporaryFolder {
-  TemporaryFolder() {
-    // In memory where there is such a place: what is durable is not what these tests are about.
-    std::string name = std::filesystem::exists("/dev/shm") ? "/dev/shm" : "/tmp";
-    name += "/turnpoint-store-XXXXXX";
-    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path = name;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  std::string operator/(const std::string& name) const { return path + "/" + name; }
-  std::string path;
-};
+#include "tests/support/temporary_folder.hpp"
 
 namespace sample {
 
