@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 #include "station/procedure/psychometric.hpp"
@@ -14,23 +15,66 @@ namespace {
 /// No answer is ever impossible: a slip must not annihilate the posterior. Lower than anything that shows.
 constexpr double kFloor = 1e-14;
 
+/// What stands for a distance that no finite level makes.
+constexpr double kBeyond = 1e300;
+/// Distances closer than this share of the largest are equal: rounding of the grids' values, no more.
+constexpr double kSameDistance = 1e-13;
+
+double likely(double p) { return std::clamp(p, kFloor, 1 - kFloor); }
+
+/// How far a stimulus is above a threshold, on the axis where the function is a fixed shape.
+double distance(Scale scale, double level, double threshold) {
+  if (scale == Scale::linear) return level - threshold;
+  if (level <= 0) return -kBeyond;
+  return threshold <= 0 ? kBeyond : random::log(level / threshold);
+}
+
 /// Binary entropy in nats; 0 at 0 and 1.
 double binary_entropy(double p) {
   if (p <= 0 || p >= 1) return 0;
   return -p * random::log(p) - (1 - p) * random::log(1 - p);
 }
 
-/// Sum of products in eight fixed lanes: the compiler may use any vector width, the result is the same.
-double dot(const double* a, const double* b, std::size_t n) {
-  constexpr std::size_t kLanes = 8;
-  double lanes[kLanes] = {};
+/// Sums of products run in so many lanes.
+constexpr std::size_t kLanes = 8;
+
+/// Two numbers of a vector register; every machine has one at least that wide.
+using Pair = double __attribute__((vector_size(16)));
+
+Pair load(const double* from) {
+  Pair pair;
+  std::memcpy(&pair, from, sizeof pair);
+  return pair;
+}
+
+/// A sum of products in eight fixed lanes, so that it is the same whatever the compiler makes of it.
+struct Products {
+  Pair a{}, b{}, c{}, d{};
+  double rest = 0;
+
+  double sum() const { return rest + ((a[0] + a[1]) + (b[0] + b[1])) + ((c[0] + c[1]) + (d[0] + d[1])); }
+};
+
+void step(Products& to, Pair x0, Pair x1, Pair x2, Pair x3, const double* y) {
+  to.a += x0 * load(y);
+  to.b += x1 * load(y + 2);
+  to.c += x2 * load(y + 4);
+  to.d += x3 * load(y + 6);
+}
+
+/// Two sums with one factor in common: they do not wait for each other. Copies stay in registers, since what
+/// is read cannot overlap them.
+void add(Products& first, Products& second, const double* x, const double* y, const double* z,
+         std::size_t n) {
+  Products one = first, two = second;
   std::size_t i = 0;
-  for (; i + kLanes <= n; i += kLanes)
-    for (std::size_t lane = 0; lane < kLanes; ++lane) lanes[lane] += a[i + lane] * b[i + lane];
-  double sum = 0;
-  for (; i < n; ++i) sum += a[i] * b[i];
-  for (const double lane : lanes) sum += lane;
-  return sum;
+  for (; i + kLanes <= n; i += kLanes) {
+    const Pair x0 = load(x + i), x1 = load(x + i + 2), x2 = load(x + i + 4), x3 = load(x + i + 6);
+    step(one, x0, x1, x2, x3, y + i);
+    step(two, x0, x1, x2, x3, z + i);
+  }
+  for (; i < n; ++i) one.rest += x[i] * y[i], two.rest += x[i] * z[i];
+  first = one, second = two;
 }
 
 std::vector<double> prior_weights(const Prior& prior, const std::vector<double>& values) {
@@ -48,50 +92,92 @@ std::vector<double> prior_weights(const Prior& prior, const std::vector<double>&
 
 Posterior::Posterior(const Spec& spec) : stimuli_(spec.stimuli.values) {
   values_ = {spec.threshold.values, spec.slope.values, spec.guess.values, spec.lapse.values};
-  const bool tied = !spec.guess.tied.empty();
-  if (tied || values_[guess].empty()) values_[guess] = {0};
+  if (!spec.guess.tied.empty() || values_[guess].empty()) values_[guess] = {0};
   if (values_[lapse].empty()) values_[lapse] = {0};
   std::size_t size = 1;
   for (int parameter = lapse; parameter >= threshold; --parameter) {
     stride_[static_cast<std::size_t>(parameter)] = size;
     size *= values_[static_cast<std::size_t>(parameter)].size();
   }
+  set_asymptotes(spec);
+  set_weights(spec);
+  set_groups(spec);
+  set_rows(spec);
+}
+
+void Posterior::set_asymptotes(const Spec& spec) {
+  slopes_ = values_[slope].size();
+  padded_slopes_ = (slopes_ + kLanes - 1) / kLanes * kLanes;
+  for (const double g : values_[guess])
+    for (const double l : values_[lapse]) {
+      const double low = spec.guess.tied.empty() ? g : l;
+      guesses_.push_back(low), ranges_.push_back(1 - low - l);
+    }
+  ends_ = guesses_.size();
+}
+
+void Posterior::set_weights(const Spec& spec) {
   const std::array<const Prior*, 4> priors{&spec.prior_threshold, &spec.prior_slope, &spec.prior_guess,
                                            &spec.prior_lapse};
-  std::array<std::vector<double>, 4> prior;
+  Axes prior;
   for (std::size_t k = 0; k < 4; ++k)
-    prior[k] = k == guess && tied ? std::vector<double>{1.0} : prior_weights(*priors[k], values_[k]);
-  weights_.resize(size);
-  std::vector<Psychometric> points(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    std::array<std::size_t, 4> at{};
-    for (std::size_t k = 0; k < 4; ++k) at[k] = index_of(i, static_cast<Parameter>(k));
-    points[i] = {values_[0][at[0]], values_[1][at[1]], values_[2][at[2]], values_[3][at[3]]};
-    if (tied) points[i].guess = points[i].lapse;
-    weights_[i] = prior[0][at[0]] * prior[1][at[1]] * prior[2][at[2]] * prior[3][at[3]];
-  }
+    prior[k] = k == guess && !spec.guess.tied.empty() ? std::vector<double>{1.0}
+                                                      : prior_weights(*priors[k], values_[k]);
+  weights_.reserve(values_[0].size() * slopes_ * ends_);
+  for (const double t : prior[threshold])
+    for (const double s : prior[slope])
+      for (const double g : prior[guess])
+        for (const double l : prior[lapse]) weights_.push_back(t * s * g * l);
   const double total = std::accumulate(weights_.begin(), weights_.end(), 0.0);
   for (auto& weight : weights_) weight /= total;
+}
 
-  p_.resize(stimuli_.size() * size);
-  for (std::size_t s = 0; s < stimuli_.size(); ++s)
-    for (std::size_t i = 0; i < size; ++i)
-      p_[s * size + i] =
-          std::clamp(probability(spec.function, spec.scale, points[i], stimuli_[s]), kFloor, 1 - kFloor);
-
-  if (spec.nuisance.empty()) {
-    entropy_.resize(p_.size());
-    for (std::size_t i = 0; i < p_.size(); ++i) entropy_[i] = binary_entropy(p_[i]);
-    return;
+void Posterior::set_rows(const Spec& spec) {
+  struct Pair {
+    double distance;
+    std::size_t stimulus, at_threshold;
+  };
+  std::vector<Pair> pairs;
+  double largest = 0;
+  for (std::size_t x = 0; x < stimuli_.size(); ++x)
+    for (std::size_t t = 0; t < values_[threshold].size(); ++t) {
+      const double d = distance(spec.scale, stimuli_[x], values_[threshold][t]);
+      pairs.push_back({d, x, t});
+      if (std::fabs(d) < kBeyond) largest = std::max(largest, std::fabs(d));
+    }
+  std::stable_sort(pairs.begin(), pairs.end(),
+                   [](const Pair& a, const Pair& b) { return a.distance < b.distance; });
+  rows_.resize(pairs.size());
+  std::vector<Pair> distinct;
+  for (const auto& pair : pairs) {
+    if (distinct.empty() || pair.distance > distinct.back().distance + kSameDistance * largest)
+      distinct.push_back(pair);
+    rows_[pair.stimulus * values_[threshold].size() + pair.at_threshold] =
+        static_cast<std::uint32_t>(distinct.size() - 1);
   }
+  core_.assign(distinct.size() * padded_slopes_, 0);
+  if (kept_.empty()) entropy_.reserve(distinct.size() * slopes_ * ends_);
+  for (std::size_t d = 0; d < distinct.size(); ++d)
+    for (std::size_t s = 0; s < slopes_; ++s) {
+      const double f = probability(spec.function, spec.scale,
+                                   {values_[threshold][distinct[d].at_threshold], values_[slope][s], 0, 0},
+                                   stimuli_[distinct[d].stimulus]);
+      core_[d * padded_slopes_ + s] = f;
+      for (std::size_t e = 0; e < ends_ && kept_.empty(); ++e)
+        entropy_.push_back(binary_entropy(likely(guesses_[e] + ranges_[e] * f)));
+    }
+}
+
+void Posterior::set_groups(const Spec& spec) {
+  if (spec.nuisance.empty()) return;
   static const std::array<const char*, 4> names{"threshold", "slope", "guess", "lapse"};
-  kept_.resize(size);
+  kept_.assign(size(), 0);
   groups_ = 1;
   for (int parameter = lapse; parameter >= threshold; --parameter) {
     const auto k = static_cast<std::size_t>(parameter);
     if (std::find(spec.nuisance.begin(), spec.nuisance.end(), names[k]) != spec.nuisance.end()) continue;
-    for (std::size_t i = 0; i < size; ++i)
-      kept_[i] += groups_ * index_of(i, static_cast<Parameter>(parameter));
+    for (std::size_t i = 0; i < size(); ++i)
+      kept_[i] += static_cast<std::uint32_t>(groups_ * index_of(i, static_cast<Parameter>(parameter)));
     groups_ *= values_[k].size();
   }
 }
@@ -100,37 +186,78 @@ std::size_t Posterior::index_of(std::size_t point, Parameter parameter) const {
   return point / stride_[parameter] % values_[parameter].size();
 }
 
-double Posterior::kept_entropy(std::size_t stimulus, std::vector<double>& scratch) const {
-  // The mean over groups of the entropy of the answer, each group's probability being its nuisance average.
-  const double* p = &p_[stimulus * size()];
-  scratch.assign(2 * groups_, 0.0);
-  for (std::size_t i = 0; i < size(); ++i) {
-    scratch[2 * kept_[i]] += weights_[i];
-    scratch[2 * kept_[i] + 1] += weights_[i] * p[i];
+/// For each stimulus the sum over thresholds of factors times its row of a table, both `length` long.
+std::vector<double> Posterior::sums(const std::vector<double>& factors, const std::vector<double>& table,
+                                    std::size_t length) const {
+  const std::size_t n = stimuli_.size();
+  std::vector<double> all;
+  for (std::size_t x = 0; x < n; x += 2) {
+    const std::size_t other = std::min(x + 1, n - 1);
+    Products first, second;
+    for (std::size_t t = 0; t < values_[threshold].size(); ++t)
+      add(first, second, &factors[t * length], &table[row(x, t) * length], &table[row(other, t) * length],
+          length);
+    all.push_back(first.sum());
+    if (other > x) all.push_back(second.sum());
   }
-  double sum = 0;
-  for (std::size_t g = 0; g < groups_; ++g)
-    if (scratch[2 * g] > 0) sum += scratch[2 * g] * binary_entropy(scratch[2 * g + 1] / scratch[2 * g]);
-  return sum;
+  return all;
+}
+
+std::vector<double> Posterior::predictives() const {
+  // The answer's probability is affine in guess and 1 - guess - lapse: those are summed over first.
+  std::vector<double> range(values_[threshold].size() * padded_slopes_);
+  double floor = 0;
+  for (std::size_t t = 0; t < values_[threshold].size(); ++t)
+    for (std::size_t s = 0; s < slopes_; ++s) {
+      const double* weights = &weights_[(t * slopes_ + s) * ends_];
+      double low = 0, between = 0;
+      for (std::size_t e = 0; e < ends_; ++e)
+        low += weights[e] * guesses_[e], between += weights[e] * ranges_[e];
+      floor += low;
+      range[t * padded_slopes_ + s] = between;
+    }
+  auto all = sums(range, core_, padded_slopes_);
+  for (auto& p : all) p += floor;
+  return all;
+}
+
+/// The mean over groups of the entropy of the answer, each group's probability being its nuisance average. A
+/// group's weight and its part below the function do not depend on the stimulus.
+std::vector<double> Posterior::kept_entropies() const {
+  std::vector<double> weight(groups_), guess_part(groups_), ones(groups_), entropies;
+  for (std::size_t i = 0; i < size(); ++i) {
+    weight[kept_[i]] += weights_[i];
+    guess_part[kept_[i]] += weights_[i] * guesses_[i % ends_];
+  }
+  for (std::size_t x = 0; x < stimuli_.size(); ++x) {
+    ones = guess_part;
+    for (std::size_t t = 0; t < values_[threshold].size(); ++t)
+      for (std::size_t s = 0; s < slopes_; ++s) {
+        const double f = core_[row(x, t) * padded_slopes_ + s];
+        const std::size_t first = (t * slopes_ + s) * ends_;
+        for (std::size_t e = 0; e < ends_; ++e)
+          ones[kept_[first + e]] += weights_[first + e] * (ranges_[e] * f);
+      }
+    double sum = 0;
+    for (std::size_t g = 0; g < groups_; ++g)
+      if (weight[g] > 0) sum += weight[g] * binary_entropy(ones[g] / weight[g]);
+    entropies.push_back(sum);
+  }
+  return entropies;
 }
 
 std::size_t Posterior::memory_bytes() const {
-  return sizeof(double) * (weights_.size() + p_.size() + entropy_.size()) +
-         sizeof(std::size_t) * kept_.size();
+  return sizeof(double) * (weights_.size() + core_.size() + entropy_.size()) +
+         sizeof(std::uint32_t) * (rows_.size() + kept_.size());
 }
 
-double Posterior::predictive(std::size_t stimulus) const {
-  return dot(weights_.data(), &p_[stimulus * size()], size());
-}
+double Posterior::predictive(std::size_t stimulus) const { return predictives()[stimulus]; }
 
 std::vector<double> Posterior::information() const {
-  std::vector<double> information(stimuli_.size()), scratch;
-  for (std::size_t s = 0; s < stimuli_.size(); ++s) {
-    const double expected = predictive(s);
-    const double given =
-        kept_.empty() ? dot(weights_.data(), &entropy_[s * size()], size()) : kept_entropy(s, scratch);
-    information[s] = binary_entropy(expected) - given;
-  }
+  auto information = predictives();
+  const auto given = kept_.empty() ? sums(weights_, entropy_, slopes_ * ends_) : kept_entropies();
+  for (std::size_t x = 0; x < stimuli_.size(); ++x)
+    information[x] = binary_entropy(information[x]) - given[x];
   return information;
 }
 
@@ -140,16 +267,28 @@ std::size_t Posterior::best_stimulus() const {
 }
 
 void Posterior::update(std::size_t stimulus, bool one) {
-  const double* p = &p_[stimulus * size()];
   double total = 0;
-  for (std::size_t i = 0; i < size(); ++i) weights_[i] *= one ? p[i] : 1 - p[i];
-  for (const double weight : weights_) total += weight;
-  for (auto& weight : weights_) weight /= total;
+  for (std::size_t t = 0; t < values_[threshold].size(); ++t)
+    for (std::size_t s = 0; s < slopes_; ++s) {
+      const double f = core_[row(stimulus, t) * padded_slopes_ + s];
+      double* weights = &weights_[(t * slopes_ + s) * ends_];
+      double part = 0;
+      for (std::size_t e = 0; e < ends_; ++e) {
+        const double p = likely(guesses_[e] + ranges_[e] * f);
+        part += weights[e] *= one ? p : 1 - p;
+      }
+      total += part;
+    }
+  const double scale = 1 / total;
+  for (auto& weight : weights_) weight *= scale;
 }
 
 std::vector<double> Posterior::marginal(Parameter parameter) const {
   std::vector<double> marginal(values_[parameter].size());
-  for (std::size_t i = 0; i < size(); ++i) marginal[index_of(i, parameter)] += weights_[i];
+  const std::size_t stride = stride_[parameter];
+  for (std::size_t first = 0; first < size(); first += stride * marginal.size())
+    for (std::size_t value = 0; value < marginal.size(); ++value)
+      for (std::size_t i = 0; i < stride; ++i) marginal[value] += weights_[first + value * stride + i];
   return marginal;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "station/procedure/procedure.hpp"
@@ -8,8 +9,11 @@
 
 namespace turnpoint::procedure {
 
-/// The posterior over a grid of threshold, slope, guess and lapse, with the probability of a 1 tabulated for
-/// every stimulus. Memory: 16 bytes for each stimulus and grid point (8 with nuisance parameters).
+/// The posterior over a grid of threshold, slope, guess and lapse. The functions depend on stimulus and
+/// threshold by their distance only, and on guess and lapse affinely, so what is tabulated is small: the
+/// function between its asymptotes and the entropy of the answer, for each distance that occurs (on grids of
+/// commensurate steps their number is about that of stimuli plus thresholds, else their product).
+/// Memory: 8 bytes a grid point, and 8 for each distance and value of slope, guess and lapse.
 class Posterior {
  public:
   enum Parameter { threshold, slope, guess, lapse };
@@ -38,17 +42,32 @@ class Posterior {
   std::size_t memory_bytes() const;
 
  private:
+  using Axes = std::array<std::vector<double>, 4>;
+  void set_asymptotes(const Spec& spec);
+  void set_weights(const Spec& spec);
+  void set_rows(const Spec& spec);
+  void set_groups(const Spec& spec);
+  std::vector<double> sums(const std::vector<double>& factors, const std::vector<double>& table,
+                           std::size_t length) const;
+  std::vector<double> predictives() const;
+  std::vector<double> kept_entropies() const;
   std::vector<double> marginal(Parameter parameter) const;
   std::size_t index_of(std::size_t point, Parameter parameter) const;
-  double kept_entropy(std::size_t stimulus, std::vector<double>& scratch) const;
+  std::size_t row(std::size_t stimulus, std::size_t at_threshold) const {
+    return rows_[stimulus * values_[threshold].size() + at_threshold];
+  }
 
   std::vector<double> stimuli_;
-  std::array<std::vector<double>, 4> values_;
+  Axes values_;
   std::array<std::size_t, 4> stride_{};
-  std::vector<double> weights_;
-  std::vector<double> p_;          ///< [stimulus][point]
-  std::vector<double> entropy_;    ///< [stimulus][point], without nuisance parameters
-  std::vector<std::size_t> kept_;  ///< point -> group of kept parameters; empty without nuisance
+  std::size_t slopes_ = 1, padded_slopes_ = 1,
+              ends_ = 1;                  ///< values of the slope; of guess and lapse together
+  std::vector<double> guesses_, ranges_;  ///< [guess and lapse]: guess, 1 - guess - lapse
+  std::vector<double> weights_;           ///< [threshold][slope][guess][lapse]
+  std::vector<std::uint32_t> rows_;       ///< [stimulus][threshold]: which distance
+  std::vector<double> core_;              ///< [distance][slope, padded]: the function from 0 to 1
+  std::vector<double> entropy_;           ///< [distance][slope][guess][lapse], without nuisance parameters
+  std::vector<std::uint32_t> kept_;       ///< point -> group of kept parameters; empty without nuisance
   std::size_t groups_ = 0;
 };
 

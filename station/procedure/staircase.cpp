@@ -11,6 +11,13 @@ namespace turnpoint::procedure {
 namespace {
 
 constexpr int kRepeats = 3, kSpentAtMost = 20;
+constexpr double kLargest = 1e300, kSmallest = 1e-300;
+/// e to this is the most that one step multiplies by; the limits above hold the product.
+constexpr double kLargestExponent = 690;
+
+double factor(double exponent) {
+  return random::exp(std::clamp(exponent, -kLargestExponent, kLargestExponent));
+}
 
 }  // namespace
 
@@ -54,12 +61,15 @@ void Staircase::move(Direction direction) {
       level_ += size;
       break;
     case Scale::log10:
-      level_ *= random::exp(size * 2.302585092994045684);
+      level_ *= factor(size * 2.302585092994045684);
       break;
     case Scale::dB:
-      level_ *= random::exp(size * 0.11512925464970228420);
+      level_ *= factor(size * 0.11512925464970228420);
       break;
   }
+  // Without limits of its own a staircase still stays a number, far beyond any unit.
+  const bool multiplies = spec_.scale != Scale::linear;
+  level_ = std::clamp(level_, multiplies ? kSmallest : -kLargest, kLargest);
   if (spec_.min) level_ = std::max(level_, *spec_.min);
   if (spec_.max) level_ = std::min(level_, *spec_.max);
 }

@@ -1,37 +1,13 @@
 #include "station/procedure/trace.hpp"
+#include "tests/procedure/watson.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::procedure;
 
-// Levels and answers as published with Watson (2017), "QUEST+: a general multidimensional Bayesian adaptive
-// psychometric method", Journal of Vision 17(3):10.
-
-namespace {
-
-std::vector<double> range(double from, double to, double step) {
-  std::vector<double> values;
-  for (int i = 0; from + i * step <= to + 1e-9; ++i) values.push_back(from + i * step);
-  return values;
-}
-
-/// A Weibull in dB with a grid of thresholds only.
-Spec weibull_in_dB() {
-  Spec spec;
-  spec.name = "watson";
-  spec.level = "contrast_dB";
-  spec.kind = Kind::quest_plus;
-  spec.stimuli.values = spec.threshold.values = range(-40, 0, 1);
-  spec.slope.values = {3.5};
-  spec.guess.values = {0.5};
-  spec.lapse.values = {0.02};
-  spec.stop.trials = 64;
-  return spec;
-}
-
-}  // namespace
+// Levels and answers of the runs published with Watson (2017).
 
 TEST_CASE("Watson's run over threshold and slope comes out trial by trial", "[procedure]") {
-  auto spec = weibull_in_dB();
+  auto spec = watson_1();
   spec.slope.values = {2, 3, 4, 5};
   const auto result = trace(spec, {}, "1011111111111011011101111011111111111011001111010111011111111111");
   const std::vector<double> published{-18, -22, -12, -13, -15, -16, -17, -18, -19, -21, -24, -25, -26,
@@ -45,7 +21,7 @@ TEST_CASE("Watson's run over threshold and slope comes out trial by trial", "[pr
 }
 
 TEST_CASE("Watson's second example, with slope and lapse, comes out trial by trial", "[procedure]") {
-  auto spec = weibull_in_dB();
+  auto spec = watson_1();
   spec.slope.values = {2, 3, 4, 5};
   spec.lapse.values = {0, 0.01, 0.02, 0.03, 0.04};
   spec.stop.trials = 128;
@@ -68,7 +44,7 @@ TEST_CASE("Watson's second example, with slope and lapse, comes out trial by tri
 
 TEST_CASE("Watson's third example, a cumulative normal with tied asymptotes, comes out trial by trial",
           "[procedure]") {
-  Spec spec = weibull_in_dB();
+  Spec spec = watson_1();
   spec.function = Function::normal;
   spec.stimuli.values = range(-10, 10, 1);
   spec.threshold.values = range(-5, 5, 1);

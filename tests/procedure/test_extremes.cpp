@@ -1,0 +1,104 @@
+#include <cmath>
+
+#include "station/procedure/procedure.hpp"
+#include "tests/procedure/watson.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::procedure;
+
+namespace {
+
+constexpr int kTrials = 10'000;
+
+enum class Pattern { all_right, all_wrong, alternating };
+
+Answer answer(Pattern pattern, int trial) {
+  if (pattern == Pattern::alternating) return trial % 2 ? Answer::one : Answer::zero;
+  return pattern == Pattern::all_right ? Answer::one : Answer::zero;
+}
+
+/// Runs so many trials and demands a finite level inside [low, high] at each, and finite estimates at the
+/// end.
+void run(const Spec& spec, Pattern pattern, double low, double high) {
+  INFO(spec.name << ", pattern " << static_cast<int>(pattern));
+  const auto procedure = make_procedure(spec, {}, {});
+  bool inside = true;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const auto proposal = procedure->next();
+    REQUIRE(proposal.has_value());
+    inside = inside && std::isfinite(proposal->level) && proposal->level >= low && proposal->level <= high;
+    procedure->record(answer(pattern, trial));
+  }
+  CHECK(inside);
+  CHECK(procedure->recorded() == kTrials);
+  for (const auto& [parameter, estimate] : procedure->estimates()) {
+    INFO(parameter << " " << estimate.mean << " " << estimate.sd << " " << estimate.mode);
+    CHECK((std::isfinite(estimate.mean) && std::isfinite(estimate.sd) && std::isfinite(estimate.mode)));
+    CHECK(estimate.sd >= 0);
+  }
+  if (const auto entropy = procedure->entropy_nats()) CHECK((std::isfinite(*entropy) && *entropy > -1e-9));
+}
+
+Spec posterior_spec(Kind kind, Function function, double slope) {
+  auto spec = watson_1();
+  spec.kind = kind;
+  spec.function = function;
+  spec.stimuli.values = range(-400, 400, 100);
+  spec.threshold.values = range(-400, 400, 80);
+  spec.slope.values = {slope};
+  if (kind != Kind::quest_plus) spec.slope.values = {0.05, 3.5, 50};
+  spec.lapse.values = {0};  // a slip is impossible by the model, and must not annihilate it
+  if (kind == Kind::psi_marginal) spec.lapse.values = {0, 0.04}, spec.nuisance = {"lapse"};
+  spec.stop.trials = 2 * kTrials;
+  return spec;
+}
+
+Spec staircase(Scale scale) {
+  Spec spec;
+  spec.name = "staircase";
+  spec.level = "contrast_dB";
+  spec.kind = Kind::up_down;
+  spec.scale = scale;
+  spec.start = scale == Scale::linear ? 0 : 1;
+  spec.step = {50, 0.05};
+  spec.n_down = 2;
+  spec.stop.trials = 2 * kTrials;
+  return spec;
+}
+
+}  // namespace
+
+TEST_CASE("a posterior survives ten thousand answers of any kind at levels of 400 dB", "[procedure]") {
+  const auto kind = GENERATE(Kind::quest_plus, Kind::psi, Kind::psi_marginal);
+  const auto function = GENERATE(Function::weibull, Function::normal, Function::logistic);
+  const auto slope = GENERATE(0.05, 3.5, 50.0);
+  if (kind != Kind::quest_plus && slope > 0.05) return;  // those hold all three slopes at once
+  for (const auto pattern : {Pattern::all_right, Pattern::all_wrong, Pattern::alternating})
+    run(posterior_spec(kind, function, slope), pattern, -400, 400);
+}
+
+TEST_CASE("all right goes to the lowest threshold of the grid, all wrong to the highest", "[procedure]") {
+  for (const auto pattern : {Pattern::all_right, Pattern::all_wrong}) {
+    const auto procedure = make_procedure(posterior_spec(Kind::quest_plus, Function::weibull, 3.5), {}, {});
+    for (int trial = 0; trial < 200; ++trial) procedure->record(answer(pattern, trial));
+    CHECK(procedure->estimates().at("threshold").mode == (pattern == Pattern::all_right ? -400 : 400));
+  }
+}
+
+TEST_CASE("a staircase with limits stays inside them for ten thousand answers of any kind", "[procedure]") {
+  for (const auto pattern : {Pattern::all_right, Pattern::all_wrong, Pattern::alternating}) {
+    auto spec = staircase(Scale::linear);
+    spec.min = -400, spec.max = 400;
+    run(spec, pattern, -400, 400);
+    spec.kind = Kind::weighted_up_down;
+    spec.n_down = 1;
+    spec.target = GENERATE(0.01, 0.75, 0.99);
+    run(spec, pattern, -400, 400);
+  }
+}
+
+TEST_CASE("a multiplying staircase without limits neither overflows nor reaches zero", "[procedure]") {
+  for (const auto scale : {Scale::dB, Scale::log10})
+    for (const auto pattern : {Pattern::all_right, Pattern::all_wrong, Pattern::alternating})
+      run(staircase(scale), pattern, 1e-300, 1e300);
+}
