@@ -96,6 +96,7 @@ SharedEzResult shared_ez_diffusion(const std::vector<EzMoments>& conditions) {
   }
   SharedEz shared;
   shared.boundary = s * std::pow(sum_power / sum_weight, 0.25);
+  shared.log_boundary_sd = 0.25 / std::sqrt(sum_weight);
   const double unit = shared.boundary * shared.boundary / (s * s);
   double sum = 0, total = 0;
   for (std::size_t i = 0; i < conditions.size(); ++i) {

@@ -35,6 +35,9 @@ EzResult ez_diffusion(const EzMoments& moments);
 /// One boundary and one Ter for several difficulties under one instruction, a drift for each.
 struct SharedEz {
   double boundary = 0, nondecision_s = 0;
+  /// Standard deviation of the estimate of ln(boundary), by the delta method with the model's own kurtosis: a
+  /// sample's kurtosis is far too low, and with it the intervals of a bootstrap over trials.
+  double log_boundary_sd = 0;
   std::vector<double> drift;  ///< in the order of the moments
 };
 struct SharedEzResult {
@@ -43,9 +46,10 @@ struct SharedEzResult {
 };
 
 /// EZ's equations with shared boundary and Ter: for L = logit(Pc) the variance of a condition is
-/// (a / s)^4 h(L), so (a / s)^4 is the mean of what the conditions say, weighted by the inverse of its relative
-/// variance (delta method; the mean of logarithms would come out low by half of that variance); Ter likewise from the means. Conditions with fewer than 10 correct answers are left out.
-/// With one condition it equals ez_diffusion().
+/// (a / s)^4 h(L), so (a / s)^4 is the mean of what the conditions say, weighted by the inverse of its
+/// relative variance (delta method; the mean of logarithms would come out low by half of that variance); Ter
+/// likewise from the means. Conditions with fewer than 10 correct answers are left out. With one condition it
+/// equals ez_diffusion().
 SharedEzResult shared_ez_diffusion(const std::vector<EzMoments>& conditions);
 
 /// One decision of the diffusion between 0 and `boundary` from the middle, exact: the exit time without drift

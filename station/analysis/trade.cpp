@@ -200,11 +200,16 @@ void fill_cells(const Group& group, InstructionResult& result, double confidence
         {"caf-too-few", "Too few scored trials for a conditional accuracy function."});
 }
 
-void set_estimates(InstructionResult& result, const Measures& values,
+void set_estimates(InstructionResult& result, const Group& group, const Measures& values,
                    const std::vector<std::vector<double>>& replicates, const TradeOptions& options) {
   const auto of = [&](Measure which) { return estimate(values[which], replicates[which], options); };
   result.median_s = of(median);
   result.boundary = of(boundary);
+  if (result.boundary) {
+    const double reach = std::exp(normal_quantile(0.5 + options.confidence / 2) *
+                                  diffusion(group).parameters->log_boundary_sd);
+    result.boundary->interval = {*values[boundary] / reach, *values[boundary] * reach, options.confidence};
+  }
   result.nondecision_s = of(nondecision);
   result.lisas_s = of(lisas_score);
   result.inverse_efficiency_s = of(efficiency);
@@ -214,6 +219,13 @@ void set_estimates(InstructionResult& result, const Measures& values,
     result.statements.push_back(
         {"ez-unstable", "EZ-diffusion not identifiable: too many resampled sessions cannot be fitted."});
   }
+}
+
+/// Interval of `b - a` from the intervals of independent a and b (MOVER; Donner & Zou 2002).
+Interval difference_interval(const Estimate& a, const Estimate& b) {
+  const double gap = b.value - a.value;
+  return {gap - std::hypot(b.value - b.interval.low, a.interval.high - a.value),
+          gap + std::hypot(b.interval.high - b.value, a.value - a.interval.low), a.interval.confidence};
 }
 
 }  // namespace
@@ -246,7 +258,7 @@ Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options)
     }
   }
   for (std::size_t g = 0; g < groups.size(); ++g)
-    set_estimates(result.instructions[g], values[g], replicates[g], options);
+    set_estimates(result.instructions[g], groups[g], values[g], replicates[g], options);
   if (groups.size() < 2) return result;
   const char* names[] = {"proportion correct",
                          "median response time",
@@ -259,7 +271,11 @@ Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options)
   for (int which = 0; which < measures; ++which) {
     std::optional<double> gap;
     if (values[0][which] && values[1][which]) gap = *values[1][which] - *values[0][which];
-    result.differences.push_back({names[which], units[which], estimate(gap, gaps[which], options)});
+    auto difference = estimate(gap, gaps[which], options);
+    const auto &first = result.instructions[0].boundary, &second = result.instructions[1].boundary;
+    if (which == boundary && difference && first && second)
+      difference->interval = difference_interval(*first, *second);
+    result.differences.push_back({names[which], units[which], difference});
   }
   return result;
 }

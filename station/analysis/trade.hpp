@@ -61,7 +61,8 @@ struct TradeOptions {
 };
 
 /// Speed and accuracy by instruction, the diffusion fitted within equal difficulty with shared boundary and
-/// Ter. Intervals are percentiles of a bootstrap that draws trials anew within instruction and difficulty;
+/// Ter. Intervals are percentiles of a bootstrap that draws trials anew within instruction and difficulty,
+/// but the boundary's, which is normal in its logarithm with the standard deviation of shared_ez_diffusion();
 /// where more than 5 % of the replicates cannot be fitted there is no interval, and then no number. The score
 /// LISAS uses the standard deviations of all trials of the session, BIS those over its cells.
 Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options);
