@@ -1,152 +1,14 @@
 #include "station/app/report.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <map>
 
+#include "station/app/records.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::app {
 
 namespace {
-
-analysis::TrialType type_of(store::TrialType type) {
-  switch (type) {
-    case store::TrialType::experimental:
-      return analysis::TrialType::experimental;
-    case store::TrialType::catch_trial:
-      return analysis::TrialType::catch_trial;
-    case store::TrialType::practice:
-      return analysis::TrialType::practice;
-    case store::TrialType::warmup:
-      break;
-  }
-  return analysis::TrialType::warmup;
-}
-
-analysis::Outcome outcome_of(store::TrialOutcome outcome) {
-  switch (outcome) {
-    case store::TrialOutcome::answered:
-      return analysis::Outcome::answered;
-    case store::TrialOutcome::timeout:
-      return analysis::Outcome::timeout;
-    case store::TrialOutcome::anticipation:
-      return analysis::Outcome::anticipation;
-    case store::TrialOutcome::aborted:
-      return analysis::Outcome::aborted;
-    case store::TrialOutcome::fault:
-      break;
-  }
-  return analysis::Outcome::fault;
-}
-
-std::optional<int> index_of(const std::optional<std::string>& id, const protocol::Protocol& protocol) {
-  if (!id) return std::nullopt;
-  const auto& choices = protocol.task.choices;
-  for (std::size_t i = 0; i < choices.size(); ++i)
-    if (choices[i].id == *id) return static_cast<int>(i);
-  return std::nullopt;
-}
-
-protocol::Factors factors_of(const store::TrialRow& row) {
-  protocol::Factors factors;
-  for (const auto& [name, value] : row.factors)
-    std::visit([&factors, &key = name](const auto& v) { factors[key] = v; }, value);
-  return factors;
-}
-
-analysis::TrialRecord record_of(const store::TrialRow& row, const store::BlockStart& block,
-                                const protocol::Protocol& protocol) {
-  analysis::TrialRecord record;
-  record.trial_index = row.trial_index;
-  record.block_index = block.block_index;
-  record.block = block.name;
-  record.type = block.practice ? analysis::TrialType::practice : type_of(row.type);
-  record.procedure = row.procedure;
-  record.level = row.level;
-  record.right_choice = index_of(row.correct_response, protocol);
-  record.response = index_of(row.response, protocol);
-  record.correct = row.correct;
-  record.outcome = outcome_of(row.outcome);
-  record.response_time_s = row.response_time_s;
-  record.instruction = block.instruction;
-  const auto factors = factors_of(row);
-  if (const auto& by = protocol.analysis.by; !by.empty() && record.instruction.empty())
-    if (const auto found = factors.find(by); found != factors.end())
-      if (const auto* text = std::get_if<std::string>(&found->second)) record.instruction = *text;
-  if (protocol.analysis.difficulty)
-    record.difficulty = protocol::evaluate(*protocol.analysis.difficulty, factors);
-  return record;
-}
-
-/// The blocks whose trials count: of each block the last attempt.
-std::vector<const store::BlockRecord*> last_attempts(const store::StoredSession& stored) {
-  std::map<int, const store::BlockRecord*> last;
-  for (const auto& block : stored.blocks) {
-    auto& entry = last[block.start.block_index];
-    if (!entry || block.start.attempt >= entry->start.attempt) entry = &block;
-  }
-  std::vector<const store::BlockRecord*> result;
-  for (const auto& [index, block] : last) result.push_back(block);
-  return result;
-}
-
-report::Design design_of(const protocol::Protocol& protocol,
-                         const std::vector<analysis::TrialRecord>& trials) {
-  if (protocol.task.kind == protocol::TaskKind::adjustment) return report::Design::adjustment;
-  if (protocol.task.kind == protocol::TaskKind::same_different) return report::Design::same_different;
-  bool below = false, above = false;
-  for (const auto& trial : trials) {
-    below = below || trial.level.value_or(0) < 0;
-    above = above || trial.level.value_or(0) > 0;
-  }
-  const bool single = protocol.task.kind == protocol::TaskKind::single_interval;
-  return single && below && above ? report::Design::two_sided : report::Design::forced_choice;
-}
-
-/// The function that the protocol's own procedure assumes, else what suits the levels.
-void choose_function(const protocol::Protocol& protocol, report::SessionData& data) {
-  const bool decibel = data.level_label.find("(dB)") != std::string::npos;
-  const bool positive = std::all_of(data.trials.begin(), data.trials.end(),
-                                    [](const auto& trial) { return !trial.level || *trial.level > 0; });
-  data.function = analysis::Function::normal;
-  if (data.design == report::Design::forced_choice && (decibel || positive))
-    data.function = analysis::Function::weibull;
-  data.scale = data.design == report::Design::forced_choice && positive && !decibel ? analysis::Scale::log10
-                                                                                    : analysis::Scale::linear;
-  for (const auto& spec : protocol.procedures) {
-    using procedure::Kind;
-    if (spec.kind != Kind::quest_plus && spec.kind != Kind::psi && spec.kind != Kind::psi_marginal) continue;
-    if (spec.function == procedure::Function::logistic) data.function = analysis::Function::logistic;
-    if (spec.function == procedure::Function::normal) data.function = analysis::Function::normal;
-    if (spec.function == procedure::Function::weibull && (decibel || positive))
-      data.function = analysis::Function::weibull;
-    return;
-  }
-}
-
-/// `contrast_dB` -> `contrast (dB)`.
-std::string level_label(const protocol::Protocol& protocol) {
-  if (protocol.procedures.empty()) return "Level";
-  auto name = protocol.procedures.front().level;
-  std::string unit;
-  for (const auto* suffix : {"_dB", "_mm", "_um", "_Hz", "_kHz", "_s", "_ms"})
-    if (name.ends_with(suffix)) {
-      unit = std::string(" (") + (std::string(suffix) == "_um" ? "\u00b5m" : suffix + 1) + ")";
-      name.resize(name.size() - std::string(suffix).size());
-      break;
-    }
-  std::replace(name.begin(), name.end(), '_', ' ');
-  if (!name.empty() && name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
-  return name + unit;
-}
-
-std::string label_of(const protocol::Choice& choice, const std::string& language) {
-  const auto found = choice.label.find(language);
-  if (found != choice.label.end()) return found->second;
-  return choice.label.empty() ? choice.id : choice.label.begin()->second;
-}
 
 void add_health(const store::StoredSession& stored, report::SessionData& data) {
   int xruns = 0, extra = 0, trials = 0;
@@ -198,14 +60,7 @@ report::SessionData report_data(const std::string& database, const std::string& 
                 {"Station", start.station_id},
                 {"Seed", std::to_string(start.seed)}};
   for (const auto& note : stored.session.annotations) data.facts.emplace_back("Note", note);
-  for (const auto* block : last_attempts(stored))
-    for (const auto& row : block->trials) data.trials.push_back(record_of(row, block->start, protocol));
-  data.level_label = level_label(protocol);
-  data.design = design_of(protocol, data.trials);
-  data.alternatives = protocol.task.kind == protocol::TaskKind::oddity ? 3 : 2;
-  choose_function(protocol, data);
-  for (const auto& choice : protocol.task.choices) data.choices.push_back(label_of(choice, start.language));
-  data.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};
+  add_trials(stored.blocks, protocol, start.language, data);
   data.seed = start.seed;
   add_health(stored, data);
   return data;

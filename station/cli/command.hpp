@@ -52,6 +52,7 @@ void add_new(CLI::App& app, Context& context);
 void add_protocols(CLI::App& app, Context& context);
 void add_report(CLI::App& app, Context& context);
 void add_figures(CLI::App& app, Context& context);
+void add_power(CLI::App& app, Context& context);
 void add_bench(CLI::App& app, Context& context);
 
 /// Adds `--json` to a sub-command.

@@ -12,13 +12,16 @@ namespace turnpoint::observer {
 
 namespace {
 
+constexpr double kStrongest = 100;
 constexpr double kLn3 = 1.0986122886681098;  // odds of 75 %
 
 double strength(const Parameters& p, const Question& q) {
   const double threshold = p.threshold.value_or(q.default_threshold);
-  if (q.decibel) return random::exp((q.level - threshold) * 0.11512925464970228 * p.slope);
+  // Beyond any strength that tells answers apart; the exponential need not go there.
+  if (q.decibel)
+    return random::exp(std::min((q.level - threshold) * 0.11512925464970228 * p.slope, kStrongest));
   const double ratio = std::fabs(q.level - (q.signed_level ? p.bias : 0)) / std::fabs(threshold);
-  return ratio > 0 ? random::exp(p.slope * random::log(ratio)) : 0;
+  return ratio > 0 ? random::exp(std::min(p.slope * random::log(ratio), kStrongest)) : 0;
 }
 
 /// The bound that leaves time: with nothing felt the decision takes bound^2 s on the mean, which shall be 60
@@ -41,6 +44,21 @@ double mean_decision_s(double bound, double kx) {
   if (bound * x < 1e-6) return bound * bound;
   const double e = random::exp(-std::min(2 * bound * x, 700.0));
   return bound / x * (1 - e) / (1 + e);
+}
+
+double Observer::share(const Question& q, int choice) const {
+  const double kx = strength(parameters_, q) * kLn3 / (2 * parameters_.bound);
+  const double p2 = accuracy(bound_for(parameters_, q.deadline_s), kx);
+  const double chance = 1.0 / q.answers;
+  double p = chance;
+  if (q.signed_level) {
+    const int likely = q.level < parameters_.bias ? q.negative_answer : 1 - q.negative_answer;
+    p = choice == likely ? p2 : 1 - p2;
+  } else if (q.correct) {
+    const double right = chance + (1 - chance) * (2 * p2 - 1);
+    p = choice == *q.correct ? right : (1 - right) / std::max(1, q.answers - 1);
+  }
+  return (1 - parameters_.lapse) * p + parameters_.lapse * chance;
 }
 
 Reply Observer::answer(const Question& q) const {

@@ -47,6 +47,9 @@ struct Reply {
 class Observer {
  public:
   explicit Observer(const Parameters& parameters) : parameters_(parameters) {}
+  /// Probability that an answer (not anticipated) is `choice`, lapses included: what answer() does on the
+  /// mean.
+  double share(const Question& question, int choice) const;
   Reply answer(const Question& question) const;
 
  private:

@@ -56,12 +56,35 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
     result.positive = "\u201c" + (index < data.choices.size() ? data.choices[index] : "second") + "\u201d";
   }
   result.fit = analysis::fit_psychometric(counts, options_for(data));
-  if (result.fit.parameters)
+  if (result.fit.parameters && data.replicates > 0)
     result.bootstrap = analysis::bootstrap(result.fit, {data.replicates, 0.95, data.seed, stream, 61});
   return result;
 }
 
+/// In the order first met.
+std::vector<std::string> instructions_of(const std::vector<TrialRecord>& trials) {
+  std::vector<std::string> names;
+  for (const auto& trial : trials)
+    if (trial.type == analysis::TrialType::experimental &&
+        std::find(names.begin(), names.end(), trial.instruction) == names.end())
+      names.push_back(trial.instruction);
+  return names;
+}
+
 }  // namespace
+
+std::vector<NamedFit> fits_of(const SessionData& data) {
+  const auto instructions = instructions_of(data.trials);
+  if (instructions.size() < 2) return {fit_of(data, "", data.trials, 0)};
+  std::vector<NamedFit> fits;
+  for (const auto& instruction : instructions) {
+    std::vector<TrialRecord> part;
+    std::copy_if(data.trials.begin(), data.trials.end(), std::back_inserter(part),
+                 [&](const TrialRecord& trial) { return trial.instruction == instruction; });
+    fits.push_back(fit_of(data, instruction, part, static_cast<int>(fits.size())));
+  }
+  return fits;
+}
 
 Summary summarise(const SessionData& data) {
   Summary summary;
@@ -77,17 +100,7 @@ Summary summarise(const SessionData& data) {
   options.replicates = data.replicates;
   options.seed = data.seed;
   summary.trade = analysis::trade(data.trials, options);
-  if (summary.trade.instructions.size() < 2) {
-    summary.fits.push_back(fit_of(data, "", data.trials, 0));
-    return summary;
-  }
-  int stream = 0;
-  for (const auto& entry : summary.trade.instructions) {
-    std::vector<TrialRecord> part;
-    std::copy_if(data.trials.begin(), data.trials.end(), std::back_inserter(part),
-                 [&](const TrialRecord& trial) { return trial.instruction == entry.instruction; });
-    summary.fits.push_back(fit_of(data, entry.instruction, part, stream++));
-  }
+  summary.fits = fits_of(data);
   return summary;
 }
 

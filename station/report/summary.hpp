@@ -29,6 +29,10 @@ struct Summary {
   analysis::Trade trade;
 };
 
+/// The psychometric fits alone: of all trials, or of each instruction where there are several. With
+/// data.replicates = 0 they come without bootstraps.
+std::vector<NamedFit> fits_of(const SessionData& data);
+
 /// Analyses one session: deterministic for its seed, about 0.3 s with 1000 replicates.
 Summary summarise(const SessionData& data);
 

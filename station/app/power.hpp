@@ -1,0 +1,54 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/analysis/course.hpp"
+#include "station/observer/observer.hpp"
+#include "station/protocol/protocol.hpp"
+
+namespace turnpoint::app {
+
+struct PowerOptions {
+  int observers = 1000;
+  observer::Parameters observer;
+  std::uint64_t seed = 1;       ///< session i runs with seed + i and sequence index i
+  int interval_sessions = 200;  ///< so many sessions also get intervals, which cost most of the time
+  int replicates = 200;         ///< of each interval's bootstrap, at least 40
+  int threads = 2;
+  std::function<void(int done, int of)> progress;  ///< from any of the threads, one at a time
+};
+
+/// How well sessions recover one number. `truth`: of a procedure, the level at which the observer answers as
+/// the procedure converges (a posterior's threshold: its function's fixed share of the way between the
+/// asymptotes; a staircase: the target of its rule and steps); of a fit, the same fit to the observer's own
+/// probabilities at the levels that were presented; of a difference between instructions, what the trials of
+/// all sessions together give. None where there is no such level.
+struct Recovery {
+  std::string source;     ///< "procedure upper", "fit", "fit speed", "accuracy - speed"
+  std::string parameter;  ///< "threshold", "PSE", "spread", "75 % point", "proportion correct", ...
+  std::string unit;
+  std::optional<double> truth;
+  std::vector<double> estimates;  ///< of the sessions that had one, in order
+  int sessions = 0;               ///< that could have had one
+  double mean = 0, sd = 0;
+  std::optional<double> bias;                    ///< mean - truth
+  std::optional<analysis::Proportion> coverage;  ///< 95 % intervals that hold the truth
+  std::optional<double> interval_width;          ///< on the mean
+};
+
+/// What a protocol's sessions would find with this observer.
+struct Power {
+  int observers = 0, interval_sessions = 0;
+  double trials = 0, minutes = 0;  ///< of a session, on the mean
+  std::optional<double> accuracy;  ///< share right of scored experimental answers
+  std::vector<Recovery> recoveries;
+};
+
+/// Simulates sessions and analyses each as its report would. The same options give the same result with any
+/// number of threads. Throws std::invalid_argument for options out of range and for adjustment.
+Power power(const protocol::Protocol& protocol, const PowerOptions& options);
+
+}  // namespace turnpoint::app

@@ -1,0 +1,129 @@
+#include "station/app/rehearsal.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include "station/session/rows.hpp"
+#include "station/session/trial_plan.hpp"
+#include "station/trial/trial.hpp"
+
+namespace turnpoint::app {
+
+namespace {
+
+using session::TrialSpec;
+
+// A page is read for so long, as on the virtual clock of a session.
+constexpr std::int64_t page_ns = 1'000'000'000;
+// A procedure without a rule that ends it would be refused; this only guards against one that never does.
+constexpr int most_trials = 100'000;
+
+std::int64_t ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
+
+/// When the last interval's response times begin to count, from its onset.
+std::int64_t zero_after_onset_ns(const protocol::Protocol& protocol, const TrialSpec& spec) {
+  const auto last = session::interval_times(protocol, spec).back();
+  switch (protocol.timing.response_zero) {
+    case protocol::ResponseZero::interval_off:
+      return ns(last.length_s);
+    case protocol::ResponseZero::change:
+      return ns(last.starts_s.front());
+    default:
+      return 0;
+  }
+}
+
+/// One trial on a clock that only its machine moves: each interval sounds when it is asked for, the answer
+/// comes when the observer gives it.
+class Bench {
+ public:
+  Bench(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec,
+        std::int64_t now_ns)
+      : protocol_(protocol),
+        spec_(spec),
+        machine_(session::trial_plan(protocol, block, spec)),
+        now_ns_(now_ns) {}
+
+  const trial::Result& run(const observer::Reply& reply) {
+    perform(machine_.start(now_ns_), reply);
+    while (!machine_.done()) {
+      const auto wake_ns = machine_.wake_ns();
+      if (answer_ && (!wake_ns || answer_->time_ns <= *wake_ns)) {
+        const auto answer = *answer_;
+        answer_.reset();
+        handle(answer, reply);
+      } else if (wake_ns) {
+        handle({*wake_ns, trial::EventKind::tick, 0}, reply);
+      } else {
+        throw std::logic_error("rehearsal: a trial waits for an event that nobody sends");
+      }
+    }
+    return machine_.result();
+  }
+
+  std::int64_t now_ns() const { return now_ns_; }
+
+ private:
+  void handle(const trial::Event& event, const observer::Reply& reply) {
+    now_ns_ = std::max(now_ns_, event.time_ns);
+    perform(machine_.handle(event), reply);
+  }
+
+  void perform(const std::vector<trial::Action>& actions, const observer::Reply& reply) {
+    for (const auto& action : actions) {
+      if (action.kind != trial::ActionKind::present) continue;
+      const auto onset_ns = std::max(now_ns_, action.time_ns);
+      perform(machine_.handle({onset_ns, trial::EventKind::onset, action.value}), reply);
+      if (action.value + 1 != static_cast<int>(spec_.intervals.size()) || !reply.choice) continue;
+      const auto at_ns = onset_ns + zero_after_onset_ns(protocol_, spec_) + ns(reply.response_time_s);
+      answer_ = trial::Event{std::max(now_ns_, at_ns), trial::EventKind::answer, *reply.choice};
+    }
+  }
+
+  const protocol::Protocol& protocol_;
+  const TrialSpec& spec_;
+  trial::Machine machine_;
+  std::int64_t now_ns_;
+  std::optional<trial::Event> answer_;
+};
+
+}  // namespace
+
+Rehearsal rehearse(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed,
+                   const Answerer& answerer) {
+  if (protocol.task.kind == protocol::TaskKind::adjustment)
+    throw std::invalid_argument(protocol.path +
+                                ": an adjustment has no answers to simulate; allowed are tasks with choices");
+  Rehearsal rehearsal;
+  session::Director director(protocol, sequence_index, seed);
+  std::int64_t now_ns = 0;
+  while (const auto* block = director.block()) {
+    auto& record = rehearsal.blocks.emplace_back();
+    record.start = session::block_start(*block, director.block_index(), director.attempt());
+    now_ns += page_ns;
+    while (const auto spec = director.next()) {
+      auto row = session::row_of(*spec, protocol, rehearsal.trials);
+      Bench bench(protocol, *block, *spec, now_ns);
+      const auto& result = bench.run(answerer(*spec, session::question_of(*spec, protocol, seed)));
+      session::fill_result(row, result, *spec, protocol, 0);
+      director.record({row.outcome, result.response, row.correct});
+      now_ns = bench.now_ns();
+      record.trials.push_back(std::move(row));
+      if (++rehearsal.trials > most_trials)
+        throw std::runtime_error(protocol.path + ": block \"" + block->name + "\" does not end");
+    }
+    for (auto& estimate : director.estimates()) rehearsal.estimates.push_back(std::move(estimate));
+    director.finish_block();
+  }
+  rehearsal.duration_s = static_cast<double>(now_ns) * 1e-9;
+  return rehearsal;
+}
+
+Answerer answerer(const observer::Observer& observer) {
+  return [observer](const session::TrialSpec&, const observer::Question& question) {
+    return observer.answer(question);
+  };
+}
+
+}  // namespace turnpoint::app

@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "station/observer/observer.hpp"
+#include "station/protocol/protocol.hpp"
+#include "station/session/director.hpp"
+#include "station/store/session_log.hpp"
+
+namespace turnpoint::app {
+
+/// Who answers a trial; the trial is complete, and the reply's time counts from response_zero.
+using Answerer = std::function<observer::Reply(const session::TrialSpec&, const observer::Question&)>;
+
+/// A session that was never driven: the rows that `run` would have stored, without tones.
+struct Rehearsal {
+  std::vector<store::BlockRecord> blocks;             ///< every attempt at every block, in order
+  std::vector<session::ProcedureEstimate> estimates;  ///< when each block ended
+  int trials = 0;
+  double duration_s = 0;
+};
+
+/// Runs a whole session in memory: director, trial machine and scoring are those of `run`, only drive, screen
+/// and database are missing, so that a trial takes microseconds. Levels, answers and response times equal
+/// those of `run --observer` with the same seed and sequence index. Adjustment has no answers to choose from:
+/// throws std::invalid_argument. Thread-safe on a shared protocol.
+Rehearsal rehearse(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed,
+                   const Answerer& answerer);
+
+/// The simulated observer of `run --observer`.
+Answerer answerer(const observer::Observer& observer);
+
+}  // namespace turnpoint::app

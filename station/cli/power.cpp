@@ -1,0 +1,178 @@
+#include "station/app/power.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "station/app/places.hpp"
+#include "station/app/power_figure.hpp"
+#include "station/cli/command.hpp"
+#include "station/cli/json.hpp"
+#include "station/cli/write_file.hpp"
+#include "station/protocol/cue_guard.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+using text::number;
+
+struct Options {
+  std::string protocol, rig, observer = "sim", out;
+  int observers = 1000, intervals = 200;
+  std::uint64_t seed = 1;
+};
+
+Json to_json(const app::Recovery& recovery) {
+  Json coverage = nullptr;
+  if (recovery.coverage)
+    coverage = {{"value", recovery.coverage->value},
+                {"intervals", recovery.coverage->trials},
+                {"low", recovery.coverage->interval.low},
+                {"high", recovery.coverage->interval.high}};
+  return {{"source", recovery.source},
+          {"parameter", recovery.parameter},
+          {"unit", recovery.unit},
+          {"truth", json_number(recovery.truth)},
+          {"sessions", recovery.sessions},
+          {"estimated", recovery.estimates.size()},
+          {"mean", json_number(recovery.mean)},
+          {"bias", json_number(recovery.bias)},
+          {"sd", json_number(recovery.sd)},
+          {"coverage", coverage},
+          {"interval_width", json_number(recovery.interval_width)}};
+}
+
+// Above chance by this much, a cue is named: what 20 trials could just show.
+constexpr double noticeable = 0.1;
+
+Json to_json(const std::vector<protocol::CueReport>& cues) {
+  Json list = Json::array();
+  for (const auto& cue : cues)
+    list.push_back({{"cue", cue.cue},
+                    {"accuracy", json_number(cue.accuracy)},
+                    {"chance", json_number(cue.chance)},
+                    {"above_chance", cue.accuracy > cue.chance + noticeable}});
+  return list;
+}
+
+Json to_json(const app::Power& power, const std::vector<protocol::CueReport>& cues,
+             const std::string& protocol, const std::vector<std::string>& files) {
+  Json recoveries = Json::array();
+  for (const auto& recovery : power.recoveries) recoveries.push_back(to_json(recovery));
+  return {{"protocol", protocol},
+          {"observers", power.observers},
+          {"sessions_with_intervals", power.interval_sessions},
+          {"trials", json_number(power.trials)},
+          {"minutes", json_number(power.minutes)},
+          {"accuracy", json_number(power.accuracy)},
+          {"recoveries", recoveries},
+          {"cues", to_json(cues)},
+          {"files", files}};
+}
+
+std::string shown(const std::optional<double>& value) { return value ? number(*value, 3) : "n/a"; }
+
+void print(std::ostream& out, const app::Power& power) {
+  fmt::print(out, "{} simulated sessions, each {} trials and {} minutes on the mean{}\n", power.observers,
+             number(power.trials, 4), number(power.minutes, 3),
+             power.accuracy ? fmt::format(", {} % right", number(100 * *power.accuracy, 3)) : "");
+  fmt::print(out, "{:<22} {:<26} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  {}\n", "source", "number", "truth",
+             "mean", "bias", "SD", "width", "coverage", "sessions");
+  for (const auto& r : power.recoveries) {
+    const auto name = r.unit.empty() ? r.parameter : r.parameter + " (" + r.unit + ")";
+    const auto coverage = r.coverage ? fmt::format("{:.3f}", r.coverage->value) : "n/a";
+    fmt::print(out, "{:<22} {:<26} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  {} of {}\n", r.source, name,
+               shown(r.truth), number(r.mean, 3), shown(r.bias), number(r.sd, 3), shown(r.interval_width),
+               coverage, r.estimates.size(), r.sessions);
+  }
+  fmt::print(out, "Width and coverage: of the 95 % intervals of the first {} sessions\n",
+             power.interval_sessions);
+}
+
+void print(std::ostream& out, const std::vector<protocol::CueReport>& cues) {
+  if (cues.empty()) return;
+  fmt::print(out, "An observer with one cue alone and the best criterion for it (chance {} %):\n",
+             number(100 * cues.front().chance, 3));
+  for (const auto& cue : cues)
+    fmt::print(out, "  {:<30} {:>5} % right{}\n", cue.cue, number(100 * cue.accuracy, 3),
+               cue.accuracy > cue.chance + noticeable ? ", above chance" : "");
+}
+
+/// One line that rewrites itself, only where somebody watches.
+std::function<void(int, int)> progress_on(std::ostream& err) {
+  if (::isatty(STDERR_FILENO) == 0) return {};
+  return [&err](int done, int of) {
+    if (done % std::max(1, of / 200) != 0 && done != of) return;
+    fmt::print(err, "\r{} of {} sessions{}", done, of, done == of ? "\n" : "");
+    err.flush();
+  };
+}
+
+void power(const Options& options, Context& context) {
+  const auto protocol = protocol::load(options.protocol);
+  const auto rig = rig::load(app::rig_or_default(options.rig, context.err));
+  const auto survey = protocol::survey(protocol, rig);
+  if (!survey.problems.empty()) throw text::BadInput(survey.problems);
+  const auto cues = protocol::cue_guard(protocol, survey);
+  app::PowerOptions wanted;
+  wanted.observers = options.observers;
+  wanted.interval_sessions = options.intervals;
+  wanted.observer = observer::parse(options.observer);
+  wanted.seed = options.seed;
+  wanted.progress = progress_on(context.err);
+  const auto result = app::power(protocol, wanted);
+  std::vector<std::string> files;
+  if (!options.out.empty()) {
+    std::filesystem::create_directories(options.out);
+    files.push_back((std::filesystem::path(options.out) / (protocol.id + "-power.svg")).string());
+    write_file(files.back(), plot::render(app::figure_of(result, protocol.title)));
+  }
+  const auto document = to_json(result, cues, protocol.id, files);
+  if (!options.out.empty()) {
+    const auto path = (std::filesystem::path(options.out) / (protocol.id + "-power.json")).string();
+    write_file(path, document.dump(2) + "\n");
+    files.push_back(path);
+  }
+  if (context.json)
+    context.out << to_json(result, cues, protocol.id, files).dump(2) << "\n";
+  else
+    print(context.out, result), print(context.out, cues);
+  for (const auto& file : files)
+    if (!context.json) fmt::print(context.out, "wrote {}\n", file);
+}
+
+}  // namespace
+
+void add_power(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand(
+      "power", "What a study would find: bias, spread and interval coverage by simulated sessions");
+  command->add_option("protocol", options->protocol, "Protocol file")->required();
+  command->add_option("--rig", options->rig, "Rig file, for the cues that an observer could use instead");
+  command->add_option("--observers", options->observers, "Simulated sessions")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1'000'000));
+  command->add_option("--intervals", options->intervals, "Sessions that also get 95 % intervals")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1'000'000));
+  command
+      ->add_option("--observer", options->observer,
+                   "sim[:threshold=...,slope=...,lapse=...,bias=...]: who answers")
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Seed of the first session, 0 to 2^53")
+      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53));
+  command->add_option("--out", options->out, "Folder for the figure and the numbers");
+  add_json(*command, context);
+  command->footer(
+      "Example: turnpoint power protocols/friction-2ifc.toml --observers 1000 --observer "
+      "sim:threshold=-18,slope=1.2 --out power");
+  command->callback([options, &context] { power(*options, context); });
+}
+
+}  // namespace turnpoint::cli
