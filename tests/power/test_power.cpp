@@ -1,0 +1,137 @@
+#include "station/app/power.hpp"
+
+#include <unistd.h>
+
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include "station/app/parallel.hpp"
+#include "station/app/rehearsal.hpp"
+#include "station/session/session.hpp"
+#include "station/store/read.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+namespace fs = std::filesystem;
+
+namespace {
+
+protocol::Protocol shipped(const std::string& name) {
+  return protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
+}
+
+const app::Recovery& find(const app::Power& power, const std::string& source, const std::string& parameter) {
+  for (const auto& recovery : power.recoveries)
+    if (recovery.source == source && recovery.parameter == parameter) return recovery;
+  throw std::out_of_range("no " + parameter + " of " + source);
+}
+
+app::PowerOptions options(const std::string& observer, int observers, int intervals = 0) {
+  app::PowerOptions options;
+  options.observers = observers;
+  options.interval_sessions = intervals;
+  options.replicates = 40;
+  options.observer = observer::parse(observer);
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("a rehearsed session has the trials, answers and times of one that ran", "[power]") {
+  const auto folder = fs::temp_directory_path() / ("turnpoint-power-" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  session::Setup setup;
+  setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml");
+  setup.protocol = shipped("demo");
+  setup.participant = "P01";
+  setup.database = (folder / "a.sqlite").string();
+  setup.run_mode = store::RunMode::simulated;
+  setup.language = setup.protocol.languages.front();
+  setup.observer = "sim";
+  setup.seed = 7;
+  session::Inputs inputs;
+  const auto summary = session::run(setup, nullptr, inputs);
+  const auto stored = store::read_session(setup.database, summary.session_id);
+  const auto rehearsed = app::rehearse(setup.protocol, 0, 7, app::answerer(observer::Observer({})));
+  fs::remove_all(folder);
+  REQUIRE(rehearsed.blocks.size() == stored.blocks.size());
+  REQUIRE(rehearsed.trials == summary.trials);
+  for (std::size_t b = 0; b < stored.blocks.size(); ++b) {
+    REQUIRE(rehearsed.blocks[b].trials.size() == stored.blocks[b].trials.size());
+    for (std::size_t t = 0; t < stored.blocks[b].trials.size(); ++t) {
+      const auto& one = rehearsed.blocks[b].trials[t];
+      const auto& other = stored.blocks[b].trials[t];
+      CHECK((one.level == other.level && one.response == other.response && one.correct == other.correct));
+      CHECK(one.outcome == other.outcome);
+      REQUIRE(one.response_time_s.has_value() == other.response_time_s.has_value());
+      if (one.response_time_s) CHECK(*one.response_time_s == Approx(*other.response_time_s).margin(1e-8));
+    }
+  }
+}
+
+TEST_CASE("an observer's own bias is the point of subjective equality that sessions find", "[power]") {
+  const auto protocol = shipped("boundary-constant");
+  for (const double bias : {0.0, 5.0}) {
+    const auto power = app::power(protocol, options("sim:threshold=8,bias=" + std::to_string(bias), 40));
+    const auto& pse = find(power, "fit", "PSE");
+    REQUIRE(pse.truth.has_value());
+    CHECK(*pse.truth == Approx(bias).margin(0.8));
+    CHECK(std::fabs(*pse.bias) < 4 * pse.sd / std::sqrt(40.0));
+    CHECK(pse.estimates.size() == 40);
+  }
+}
+
+TEST_CASE("a staircase's truth is where its rule balances, a posterior's where its function stands",
+          "[power]") {
+  const auto stairs = app::power(shipped("friction-staircase"), options("sim:threshold=-16,lapse=0", 2));
+  // Three down, one up settles at 79.37 %; the observer has 75 % at -16 dB.
+  const auto truth = *find(stairs, "procedure a", "threshold").truth;
+  observer::Question question;
+  question.level = truth, question.decibel = true, question.correct = 0, question.deadline_s = 3;
+  const observer::Observer observer(observer::parse("sim:threshold=-16,lapse=0"));
+  CHECK(observer.share(question, 0) == Approx(0.793701).margin(1e-6));
+  const auto quest = app::power(shipped("friction-2ifc"), options("sim:threshold=-16,lapse=0", 2));
+  question.level = *find(quest, "procedure threshold", "threshold").truth;
+  CHECK(observer.share(question, 0) == Approx(1 - 0.5 * std::exp(-1.0)).margin(1e-6));
+}
+
+TEST_CASE("speed and accuracy instructions differ by what all sessions together say", "[power]") {
+  const auto power = app::power(shipped("speed-accuracy"), options("sim:threshold=0.15", 6, 6));
+  const auto& right = find(power, "speed - accuracy", "proportion correct");
+  CHECK(right.mean < 0);  // hurry costs accuracy
+  CHECK(find(power, "speed - accuracy", "median response time").mean < 0);
+  REQUIRE((right.truth && right.coverage && right.interval_width));
+  CHECK(right.coverage->trials == static_cast<int>(right.estimates.size()));
+  CHECK(std::fabs(*right.bias) < 2 * *right.interval_width);
+}
+
+TEST_CASE("the number of threads changes nothing", "[power]") {
+  auto one = options("sim", 8), three = one;
+  one.threads = 1, three.threads = 3;
+  const auto a = app::power(shipped("boundary-constant"), one);
+  const auto b = app::power(shipped("boundary-constant"), three);
+  REQUIRE(a.recoveries.size() == b.recoveries.size());
+  for (std::size_t i = 0; i < a.recoveries.size(); ++i)
+    CHECK(a.recoveries[i].estimates == b.recoveries[i].estimates);
+}
+
+TEST_CASE("an adjustment is refused, and so are options out of range", "[power]") {
+  CHECK_THROWS_AS(app::power(shipped("boundary-adjustment"), options("sim", 1)), std::invalid_argument);
+  CHECK_THROWS_AS(app::power(shipped("demo"), options("sim", 0)), std::invalid_argument);
+}
+
+TEST_CASE("work in parallel is done once each, and a failure arrives", "[power]") {
+  std::atomic<int> sum = 0;
+  int last = 0;
+  app::in_parallel(
+      100, 3, [&](int done, int) { last = done; }, [&](int i) { sum += i; });
+  CHECK(sum == 4950);
+  CHECK(last == 100);
+  CHECK_THROWS_AS(app::in_parallel(5, 2, {},
+                                   [](int i) {
+                                     if (i == 3) throw std::runtime_error("three");
+                                   }),
+                  std::runtime_error);
+}
