@@ -68,6 +68,7 @@ session::Setup prepare(const RunRequest& request) {
   setup.database = request.database;
   setup.observer = request.observer;
   setup.seed = request.seed;
+  setup.consent_version = request.consent_version;
   setup.run_mode = !request.observer.empty() ? store::RunMode::simulated
                    : request.mode == "live"  ? store::RunMode::live
                                              : store::RunMode::pilot;

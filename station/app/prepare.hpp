@@ -14,6 +14,8 @@ struct RunRequest {
   std::string language;        ///< "" takes the protocol's first
   std::string observer;        ///< "" for a person
   std::optional<std::uint64_t> seed;
+  std::string consent_version;         ///< of the consent form, "" where none is asked for
+  std::string operator_code = "2468";  ///< opens the operator's view where it shares the participant's screen
   bool headless = false, buttons_only = false;
 };
 

@@ -6,23 +6,32 @@
 #include <string>
 #include <vector>
 
+#include "station/app/station_request.hpp"
 #include "station/app/prepare.hpp"
+#include "station/app/preview.hpp"
 
 namespace turnpoint::cli {
 
-/// Runs a session on a screen, asking there for what the request leaves open (language, participant's code).
-/// Only turnpoint-ui has one; turnpoint hands over to turnpoint-ui.
-/// A session that is already prepared (one that goes on) comes whole, and its request is not looked at.
-using Screen = std::function<session::Summary(app::RunRequest, std::optional<session::Setup>)>;
+/// What only a program with a screen can do; turnpoint hands over to turnpoint-ui. Each comes back when its
+/// window is closed.
+struct Screens {
+  /// Runs a session, asking on the screen for what the request leaves open (language, participant's code). A
+  /// session that is already prepared (one that goes on) comes whole, and its request is not looked at.
+  std::function<session::Summary(app::RunRequest, std::optional<session::Setup>)> session;
+  /// The operator's start page, and the sessions begun there, one after another.
+  std::function<void(const app::StationRequest&)> station;
+  /// The scenes of a protocol with sliders for their factors.
+  std::function<void(const app::PreviewRequest&)> preview;
+};
 
 /// What every sub-command gets: where its document and its messages go, and whether JSON was asked for.
 struct Context {
   std::ostream& out;  ///< the result: text for people, or one JSON document
   std::ostream& err;  ///< messages
   bool json = false;
-  int exit_code = 0;             ///< what a command sets when it is neither 0 nor an exception
-  std::vector<char*> arguments;  ///< the command line as given, null at the end, for handing over
-  Screen screen = {};            ///< empty in the program without one
+  int exit_code = 0;                 ///< what a command sets when it is neither 0 nor an exception
+  std::vector<char*> arguments;      ///< the command line as given, null at the end, for handing over
+  const Screens* screens = nullptr;  ///< null in the program without a screen
 };
 
 /// Wrong usage that the option parser could not see: exit 2.
@@ -54,12 +63,14 @@ void add_report(CLI::App& app, Context& context);
 void add_figures(CLI::App& app, Context& context);
 void add_power(CLI::App& app, Context& context);
 void add_bench(CLI::App& app, Context& context);
+void add_preview(CLI::App& app, Context& context);
+void add_station(CLI::App& app, Context& context);
 
 /// Adds `--json` to a sub-command.
 void add_json(CLI::App& command, Context& context);
 
 /// Parses and does what the command line says. Returns the exit status: 0 done, 1 failed at run time, 2 bad
 /// input or usage. The only catch-all of the program.
-int run(int argc, char** argv, std::ostream& out, std::ostream& err, const Screen& screen = {});
+int run(int argc, char** argv, std::ostream& out, std::ostream& err, const Screens* screens = nullptr);
 
 }  // namespace turnpoint::cli

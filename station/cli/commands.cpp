@@ -15,7 +15,7 @@ using Add = void (*)(CLI::App&, Context&);
 constexpr Add kCommands[] = {add_map,      add_field,   add_plan,     add_synth,     add_trace,  add_run,
                              add_resume,   add_export,  add_sessions, add_backup,    add_merge,  add_withdraw,
                              add_annotate, add_check,   add_new,      add_protocols, add_report, add_power,
-                             add_doctor,   add_figures, add_bench};
+                             add_doctor,   add_figures, add_bench,    add_preview,   add_station};
 
 int report(std::ostream& err, const std::exception& error, int code) {
   err << "turnpoint: " << error.what() << "\n";
@@ -28,8 +28,8 @@ void add_json(CLI::App& command, Context& context) {
   command.add_flag("--json", context.json, "Print one JSON document on standard output");
 }
 
-int run(int argc, char** argv, std::ostream& out, std::ostream& err, const Screen& screen) {
-  Context context{out, err, false, 0, {argv, argv + argc + 1}, screen};
+int run(int argc, char** argv, std::ostream& out, std::ostream& err, const Screens* screens) {
+  Context context{out, err, false, 0, {argv, argv + argc + 1}, screens};
   CLI::App app("Turnpoint: a psychophysics station for ultrasonic tapered friction displays", "turnpoint");
   app.require_subcommand(1);
   app.set_version_flag("--version", TURNPOINT_VERSION);

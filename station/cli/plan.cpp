@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "station/app/places.hpp"
+#include "station/app/preview.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/protocol/protocol.hpp"
@@ -20,43 +21,6 @@ struct Options {
   std::string protocol, rig, scene;
   std::vector<std::string> set;
 };
-
-/// The factors' values: what `--set` says, else the first level, else the middle of the range. `assumed` gets
-/// a line for each value that nobody stated.
-protocol::Factors factors_for(const protocol::Protocol& protocol, const Options& options,
-                              std::vector<std::string>& assumed) {
-  protocol::Factors factors;
-  for (const auto& factor : protocol.factors) {
-    if (!factor.levels.empty())
-      factors[factor.name] = factor.levels.front();
-    else if (factor.range)
-      factors[factor.name] = 0.5 * (factor.range->first + factor.range->second);
-    assumed.push_back(factor.name);
-  }
-  for (const auto& text : options.set) {
-    const auto equals = text.find('=');
-    const auto name = text.substr(0, equals);
-    const auto found = factors.find(name);
-    if (equals == std::string::npos || found == factors.end()) {
-      std::string known;
-      for (const auto& [factor, value] : factors) known += (known.empty() ? "" : ", ") + factor;
-      throw UsageError(
-          fmt::format("--set {}: factor=value is allowed, with one of the factors {}", text, known));
-    }
-    const auto value = text.substr(equals + 1);
-    char* end = nullptr;
-    const double number = std::strtod(value.c_str(), &end);
-    if (std::holds_alternative<double>(found->second) &&
-        (value.empty() || *end != '\0' || !std::isfinite(number)))
-      throw UsageError(fmt::format("--set {}: {} is a number", text, name));
-    if (std::holds_alternative<double>(found->second))
-      found->second = number;
-    else
-      found->second = value;
-    std::erase(assumed, name);
-  }
-  return factors;
-}
 
 Json tones_json(const scene::DrivePlan& plan) {
   Json tones = Json::array();
@@ -147,7 +111,7 @@ void plan(const Options& options, Context& context) {
     throw UsageError(fmt::format("--scene {}: the protocol has {}", options.scene, known));
   }
   std::vector<std::string> assumed;
-  const auto factors = factors_for(protocol, options, assumed);
+  const auto factors = app::factors_for(protocol, options.set, assumed);
   for (const auto& name : assumed)
     std::visit([&](const auto& value) { fmt::print(context.err, "{} = {} (not --set)\n", name, value); },
                factors.at(name));

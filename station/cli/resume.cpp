@@ -26,8 +26,8 @@ void add_resume(CLI::App& app, Context& context) {
       return;
     }
     if (setup->observer.empty() && !request->headless) {
-      if (!context.screen) return become_ui(context);
-      return show_summary(context, context.screen({}, *setup));
+      if (!context.screens) return become_ui(context);
+      return show_summary(context, context.screens->session({}, *setup));
     }
     session::Inputs inputs;
     show_summary(context, session::run(*setup, nullptr, inputs));

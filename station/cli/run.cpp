@@ -91,6 +91,13 @@ std::shared_ptr<app::RunRequest> add_run_options(CLI::App& command) {
                      "sim[:threshold=...,slope=...]: a simulated observer answers");
   command.add_option("--seed", request->seed, "Seed of all random draws, 0 to 2^53")
       ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53));
+  command.add_option(
+      "--consent", request->consent_version,
+      "Version of the consent form; the screen asks the participant to confirm having signed it");
+  command
+      .add_option("--operator-code", request->operator_code,
+                  "Digits that open the operator's view on the participant's screen")
+      ->capture_default_str();
   command.add_flag("--headless", request->headless, "No screen");
   command.add_flag("--buttons-only", request->buttons_only,
                    "No screen: a person answers with the rig's buttons");
@@ -111,11 +118,11 @@ void add_run(CLI::App& app, Context& context) {
           "run: nobody can answer without a screen; give --observer sim for a simulated observer, or "
           "--buttons-only");
     const bool on_screen = person && !request->buttons_only;
-    if (on_screen && !context.screen) return become_ui(context);
+    if (on_screen && !context.screens) return become_ui(context);
     if (!on_screen && request->participant.empty())
       throw UsageError("run: --participant is missing; only a screen can ask for it");
     request->rig = app::rig_or_default(request->rig, context.err);
-    if (on_screen) return show_summary(context, context.screen(*request, std::nullopt));
+    if (on_screen) return show_summary(context, context.screens->session(*request, std::nullopt));
     const auto setup = app::prepare(*request);
     session::Inputs inputs;
     show_summary(context, session::run(setup, nullptr, inputs));

@@ -11,18 +11,19 @@
 namespace turnpoint::session {
 
 enum class InputKind {
-  answer,      ///< value = index of the answer chosen
-  next,        ///< Continue or Done on a page
-  slider,      ///< number = the slider's value
-  touch_down,  ///< any touch on the panel, answer or not: for the log
-  contact,     ///< value 1: finger on the surface, 0: lifted
-  stop,        ///< participant or operator wants to stop; what was done is kept
-  pause,       ///< operator
-  xrun,        ///< the drive lost frames
-  fault,       ///< `fault` says what, text the detail; from drive or panel
-  arm,         ///< operator: clear a latched fault of the amplifier and arm it
-  repeat,      ///< operator: void the trial under way and present it again
-  note,        ///< operator: text is kept as the session's annotation
+  answer,       ///< value = index of the answer chosen
+  next,         ///< Continue or Done on a page
+  slider,       ///< number = the slider's value
+  touch_down,   ///< any touch on the panel, answer or not: for the log
+  contact,      ///< value 1: finger on the surface, 0: lifted
+  stop,         ///< participant or operator wants to stop; what was done is kept
+  pause,        ///< operator
+  xrun,         ///< the drive lost frames
+  fault,        ///< `fault` says what, text the detail; from drive or panel
+  arm,          ///< operator: clear a latched fault of the amplifier and arm it
+  repeat,       ///< operator: void the trial under way and present it again
+  frames_lost,  ///< value = frames that the screen was late by in the trial before
+  note,         ///< operator: text is kept as the session's annotation
 };
 
 /// How good the time stamp is: the kernel's own, a toolkit's, or made by a simulated observer.

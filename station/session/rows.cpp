@@ -73,6 +73,8 @@ const char* kind_of(InputKind kind) {
       return "arm";
     case InputKind::repeat:
       return "repeat";
+    case InputKind::frames_lost:
+      return "frames_lost";
     case InputKind::note:
       return "note";
     case InputKind::xrun:
@@ -209,6 +211,7 @@ std::optional<trial::Event> event_of(const Input& input) {
     case InputKind::slider:
     case InputKind::arm:
     case InputKind::note:
+    case InputKind::frames_lost:
       break;
   }
   return std::nullopt;

@@ -12,17 +12,37 @@ Rectangle {
     property bool armed: true
     property bool primary: true
     property bool quiet: false
+    /// Above 0: it acts only after having been held for so long, and fills as it is.
+    property int holdMs: 0
     signal activated()
 
-    readonly property bool filled: primary !== area.pressed
+    readonly property bool filled: holdMs > 0 ? primary && !area.pressed : primary !== area.pressed
     readonly property color foreground: filled ? theme.actionText : quiet ? theme.quiet : theme.action
 
     implicitHeight: theme.controlHeight
-    implicitWidth: Math.max(row.implicitWidth + 5 * theme.unit, theme.targetMin)
+    implicitWidth: theme.dense ? row.implicitWidth + 3 * theme.unit : Math.max(row.implicitWidth + 5 * theme.unit, theme.targetMin)
     radius: theme.radius
     color: filled ? theme.action : quiet ? theme.paper : theme.raised
     border { color: quiet ? theme.line : theme.action; width: quiet ? theme.stroke / 2 : theme.stroke }
     opacity: enabled ? 1 : 0.35
+
+    Rectangle {
+        visible: root.holdMs > 0 && area.pressed
+        anchors { left: parent.left; top: parent.top; bottom: parent.bottom }
+        width: parent.width * root.held
+        radius: root.radius
+        color: root.theme.warning
+    }
+    property real held: 0
+    NumberAnimation {
+        target: root
+        property: "held"
+        running: root.holdMs > 0 && area.pressed
+        from: 0
+        to: 1
+        duration: Math.max(1, root.holdMs)
+        onFinished: root.activated()
+    }
 
     Row {
         id: row
@@ -47,6 +67,6 @@ Rectangle {
         id: area
         anchors.fill: parent
         enabled: root.enabled && root.armed
-        onClicked: root.activated()
+        onClicked: if (root.holdMs === 0) root.activated()
     }
 }

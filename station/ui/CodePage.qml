@@ -8,6 +8,11 @@ Item {
     required property Texts texts
     property bool leftHanded: false
     property bool known: false
+    /// False where an operator types, who need not be asked twice.
+    property bool confirms: true
+    /// The participant may say which hand taps; the layout follows, scoring does not.
+    property bool asksHand: false
+    signal handChosen(left: bool)
     signal edited(code: string)
     signal accepted(code: string)
 
@@ -18,7 +23,7 @@ Item {
 
     function accept() {
         if (!code.valid) return
-        if (root.known && !question.visible) {
+        if (root.confirms && root.known && !question.visible) {
             question.visible = true
             return
         }
@@ -73,6 +78,20 @@ Item {
                 }
             }
         }
+    }
+
+    ActionButton {
+        objectName: "hand"
+        visible: root.asksHand
+        anchors { right: parent.right; verticalCenter: cells.verticalCenter }
+        implicitHeight: 6.6 * root.theme.unit
+        implicitWidth: Math.min(16 * root.theme.unit, (parent.width - cells.width) / 2 - root.theme.unit)
+        theme: root.theme
+        primary: false
+        quiet: true
+        size: root.theme.textSmall
+        text: root.leftHanded ? root.texts.leftHand : root.texts.rightHand
+        onActivated: root.handChosen(!root.leftHanded)
     }
 
     component Key: Rectangle {

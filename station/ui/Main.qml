@@ -2,14 +2,20 @@ import QtQuick
 import QtQuick.Window
 import Turnpoint
 
-// The station's window: first the participant's code where none was given, then the session.
+// The station's window: the operator's start page where there is one, then what the participant is asked before the
+// session, then the session. Over the participant's pages lie, when called for, the operator's view and the report.
 Window {
     id: root
     required property SessionBridge bridge
     required property StartController start
+    required property LiveModel live
+    required property ReportModel report
+    property OperatorController operating: null
+    property string operatorCode: ""
     required property real pixelsPerMm
     property bool leftHanded: false
-    signal sessionClosed()
+    readonly property bool asking: start.stage === StartController.Language || start.stage === StartController.Consent
+                                   || start.stage === StartController.Code
 
     width: 1280
     height: 800
@@ -27,32 +33,118 @@ Window {
         id: texts
         language: root.start.language
     }
-    LanguagePage {
-        objectName: "languagePage"
-        anchors { fill: parent; margins: theme.margin }
-        visible: root.start.stage === StartController.Language
-        theme: theme
-        names: root.start.languageNames
-        onChosen: index => root.start.chooseLanguage(index)
-    }
-    CodePage {
-        id: codePage
-        objectName: "codePage"
-        anchors { fill: parent; margins: theme.margin }
-        visible: root.start.stage === StartController.Code
+
+    RunModeFrame {
+        id: frame
+        anchors.fill: parent
+        visible: root.asking && shown
         theme: theme
         texts: texts
-        leftHanded: root.leftHanded
-        onEdited: code => codePage.known = root.start.isKnown(code)
-        onAccepted: code => root.start.enterCode(code)
+        runMode: root.asking ? root.start.runMode : ""
+    }
+    Item {
+        anchors { fill: parent; margins: theme.margin; topMargin: frame.band + (frame.shown ? theme.unit : theme.margin) }
+        LanguagePage {
+            objectName: "languagePage"
+            anchors.fill: parent
+            visible: root.start.stage === StartController.Language
+            theme: theme
+            names: root.start.languageNames
+            onChosen: index => root.start.chooseLanguage(index)
+        }
+        ConsentPage {
+            objectName: "consentPage"
+            anchors.fill: parent
+            visible: root.start.stage === StartController.Consent
+            theme: theme
+            texts: texts
+            version: root.start.consentVersion
+            onAgreed: root.start.consent()
+            onDeclined: root.start.close()
+        }
+        CodePage {
+            id: codePage
+            objectName: "codePage"
+            anchors.fill: parent
+            visible: root.start.stage === StartController.Code
+            theme: theme
+            texts: texts
+            leftHanded: root.leftHanded
+            asksHand: true
+            onHandChosen: left => root.leftHanded = left
+            onEdited: code => codePage.known = root.start.isKnown(code)
+            onAccepted: code => root.start.enterCode(code)
+        }
     }
     ParticipantView {
+        id: participant
         objectName: "participantView"
         anchors.fill: parent
         visible: root.start.stage === StartController.Session
         bridge: root.bridge
         pixelsPerMm: root.pixelsPerMm
         leftHanded: root.leftHanded
-        onClosed: root.sessionClosed()
+        hasReport: root.report.ready
+        onClosed: root.start.close()
+        onReportWanted: reportPage.wanted = true
+        onOperatorWanted: if (root.operatorCode !== "") gate.visible = true
+    }
+    OperatorGate {
+        id: gate
+        objectName: "gate"
+        anchors.fill: parent
+        visible: false
+        theme: theme
+        code: root.operatorCode
+        onAbandoned: visible = false
+        onPassed: {
+            visible = false
+            // The operator's view would cover a trial: a pause ends it first, and it comes again.
+            if (participant.inTrial) root.bridge.pause()
+            liveView.wanted = true
+        }
+    }
+
+    // Made when first wanted: the station's first page does not wait for them.
+    Loader {
+        id: liveView
+        property bool wanted: false
+        anchors.fill: parent
+        active: wanted
+        sourceComponent: LiveView {
+            objectName: "liveView"
+            live: root.live
+            bridge: root.bridge
+            pixelsPerMm: root.pixelsPerMm
+            closable: true
+            onClosed: liveView.wanted = false
+        }
+        // Going on closes it: nothing of it may be seen in a trial.
+        Connections {
+            target: root.bridge
+            function onShown() { if (participant.inTrial) liveView.wanted = false }
+        }
+    }
+    Loader {
+        id: reportPage
+        property bool wanted: false
+        anchors.fill: parent
+        active: wanted
+        sourceComponent: ReportPage {
+            objectName: "reportPage"
+            report: root.report
+            runMode: root.bridge.page.runMode
+            pixelsPerMm: root.pixelsPerMm
+            onClosed: reportPage.wanted = false
+        }
+    }
+    Loader {
+        anchors.fill: parent
+        active: root.operating !== null && root.start.stage === StartController.Operator
+        sourceComponent: OperatorPage {
+            objectName: "operatorPage"
+            operating: root.operating
+            pixelsPerMm: root.pixelsPerMm
+        }
     }
 }

@@ -8,7 +8,12 @@ Rectangle {
     required property SessionBridge bridge
     required property real pixelsPerMm
     property bool leftHanded: false
+    /// The report of the session that has ended can be had from the end page.
+    property bool hasReport: false
     signal closed()
+    signal reportWanted()
+    /// Somebody held the progress for long: an operator.
+    signal operatorWanted()
 
     readonly property PageModel page: bridge.page
     readonly property int kind: page.kind
@@ -133,10 +138,22 @@ Rectangle {
             theme: theme
             texts: texts
             bridge: root.bridge
+            hasReport: root.hasReport
             onClosed: root.closed()
+            onReportWanted: root.reportWanted()
         }
     }
 
+    MouseArea {
+        objectName: "operatorCorner"
+        anchors { right: parent.right; bottom: parent.bottom }
+        width: 12 * theme.unit
+        height: Math.max(progress.height + 2 * theme.unit, 4 * theme.unit)
+        // A trial's touches belong to the trial; whoever waits for its end loses nothing.
+        enabled: !root.inTrial || root.kind === PageModel.Interval
+        pressAndHoldInterval: 2000
+        onPressAndHold: root.operatorWanted()
+    }
     ProgressStrip {
         id: progress
         anchors {

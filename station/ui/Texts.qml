@@ -48,6 +48,15 @@ QtObject {
                                               "これで終わりです。回答はすべて保存されました。")
     readonly property string forOperator: pick("For the experimenter", "Für die Versuchsleitung", "実験者用")
     readonly property string close: pick("Close", "Schließen", "閉じる")
+    readonly property string consentTitle: pick("Before we begin", "Bevor wir beginnen", "始める前に")
+    readonly property string consentText: pick("Have you read and signed the consent form, version %1?",
+                                               "Haben Sie die Einwilligung, Fassung %1, gelesen und unterschrieben?",
+                                               "同意書(版 %1)を読み、署名しましたか?")
+    readonly property string consentYes: pick("Yes, I have", "Ja", "はい")
+    readonly property string consentNo: pick("No", "Nein", "いいえ")
+    readonly property string results: pick("Results", "Ergebnisse", "結果")
+    readonly property string rightHand: pick("Right hand", "Rechte Hand", "右手")
+    readonly property string leftHand: pick("Left hand", "Linke Hand", "左手")
     readonly property string codeTitle: pick("Your participant code", "Ihr Teilnahme-Code", "参加者コード")
     readonly property string codeHelp: pick("Type the code that you were given. No names.", "Bitte den Code eingeben, den Sie erhalten haben. Keine Namen.",
                                             "渡されたコードを入力してください。名前は入力しないでください。")
@@ -55,8 +64,6 @@ QtObject {
                                              "このコードは以前に使われています。あなたのコードですか?")
     readonly property string codeYes: pick("Yes, mine", "Ja, meiner", "はい")
     readonly property string codeNo: pick("No, change it", "Nein, ändern", "いいえ、直します")
-    readonly property string smaller: pick("Back", "Zurück", "戻す")
-    readonly property string larger: pick("Forth", "Vor", "進める")
     readonly property string pilot: pick("PILOT RUN", "PROBELAUF", "予備実験")
     readonly property string pilotText: pick("not study data", "keine Studiendaten", "本番データではありません")
     readonly property string simulated: pick("SIMULATED", "SIMULIERT", "シミュレーション")

@@ -6,19 +6,21 @@ QtObject {
     required property real width
     required property real height
     required property real pixelsPerMm
+    /// The operator's pages: more on one page, read from nearer, by somebody who knows them.
+    property bool dense: false
 
     readonly property real unit: Math.min(width / 80, height / 48)
-    readonly property real margin: 3 * unit
+    readonly property real margin: (dense ? 1.6 : 3) * unit
     readonly property real targetMin: 20 * pixelsPerMm
     readonly property real targetGap: Math.max(5 * pixelsPerMm, 3 * unit)
-    readonly property real controlHeight: Math.max(11 * pixelsPerMm, 7 * unit)
-    readonly property real radius: 1.2 * unit
+    readonly property real controlHeight: dense ? Math.max(8 * pixelsPerMm, 3.6 * unit) : Math.max(11 * pixelsPerMm, 7 * unit)
+    readonly property real radius: (dense ? 0.7 : 1.2) * unit
     readonly property real stroke: Math.max(2, 0.3 * unit)
 
     readonly property real textHuge: 6 * unit
-    readonly property real textTitle: 4 * unit
-    readonly property real textBody: Math.max(2.5 * unit, 3.4 * pixelsPerMm)
-    readonly property real textSmall: Math.max(1.8 * unit, 2.4 * pixelsPerMm)
+    readonly property real textTitle: (dense ? 2 : 4) * unit
+    readonly property real textBody: dense ? Math.max(1.3 * unit, 2.5 * pixelsPerMm) : Math.max(2.5 * unit, 3.4 * pixelsPerMm)
+    readonly property real textSmall: dense ? Math.max(1.1 * unit, 2.2 * pixelsPerMm) : Math.max(1.8 * unit, 2.4 * pixelsPerMm)
 
     readonly property color paper: "#f6f4ee"
     readonly property color raised: "#fffdf8"

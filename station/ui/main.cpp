@@ -1,4 +1,5 @@
-// turnpoint-ui: the commands of turnpoint, with the touchscreen for those that want one.
+// turnpoint-ui: the commands of turnpoint, with the touchscreen for those that want one. Without any, the
+// operator's start page.
 #include <QtQml/QQmlExtensionPlugin>
 #include <iostream>
 
@@ -8,5 +9,10 @@
 Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
 
 int main(int argc, char** argv) {
-  return turnpoint::cli::run(argc, argv, std::cout, std::cerr, turnpoint::ui::run_on_screen);
+  using namespace turnpoint;
+  const cli::Screens screens{ui::run_on_screen, ui::run_station, ui::show_preview};
+  char station[] = "station";
+  char* start_page[] = {argv[0], station, nullptr};
+  const bool alone = argc <= 1;
+  return cli::run(alone ? 2 : argc, alone ? start_page : argv, std::cout, std::cerr, &screens);
 }

@@ -82,6 +82,21 @@ void SessionBridge::moveSlider(double value) { push(session::InputKind::slider, 
 void SessionBridge::pause() { push(session::InputKind::pause); }
 void SessionBridge::stop() { push(session::InputKind::stop); }
 
+void SessionBridge::repeat() { push(session::InputKind::repeat); }
+void SessionBridge::arm() { push(session::InputKind::arm); }
+
+void SessionBridge::annotate(const QString& text) {
+  session::Input input;
+  input.time_ns = clock_();
+  input.kind = session::InputKind::note;
+  input.text = text.trimmed().toStdString();
+  if (!input.text.empty()) sink_(std::move(input));
+}
+
+void SessionBridge::frames_lost(int frames) {
+  if (frames > 0) push(session::InputKind::frames_lost, frames);
+}
+
 void SessionBridge::push(session::InputKind kind, int value, double number) {
   pending_.clear();  // the tap that pressed this button; it must not arrive as a stray one in the next trial
   session::Input input;

@@ -60,6 +60,12 @@ class SessionBridge : public QObject, public session::Display {
   Q_INVOKABLE void moveSlider(double value);
   Q_INVOKABLE void pause();
   Q_INVOKABLE void stop();
+  /// The operator's: void the trial under way and present it again; arm the amplifier; keep a note.
+  Q_INVOKABLE void repeat();
+  Q_INVOKABLE void arm();
+  Q_INVOKABLE void annotate(const QString& text);
+  /// Frames that the screen lost during the trial that has just ended; 0 is not worth an event.
+  void frames_lost(int frames);
 
  signals:
   /// A page has been taken over (also when it equals the one before).

@@ -5,24 +5,32 @@
 
 namespace turnpoint::ui {
 
-StartController::StartController(QStringList languages, QString language, QString participant, Known known,
-                                 QObject* parent)
-    : QObject(parent),
-      languages_(std::move(languages)),
-      language_(std::move(language)),
-      participant_(std::move(participant)),
-      known_(std::move(known)) {
-  if (language_.isEmpty() && languages_.size() == 1) language_ = languages_.front();
+StartController::StartController(Known known, QObject* parent) : QObject(parent), known_(std::move(known)) {}
+
+void StartController::await_operator() {
+  with_operator_ = true;
+  questions_ = {};
+  emit changed();
+}
+
+void StartController::ask(Questions questions) {
+  questions_ = std::move(questions);
+  if (questions_.language.isEmpty() && questions_.languages.size() == 1)
+    questions_.language = questions_.languages.front();
+  with_operator_ = consented_ = false;
+  proceed();
 }
 
 StartController::Stage StartController::stage() const {
-  if (language_.isEmpty() && !languages_.isEmpty()) return Stage::Language;
-  return participant_.isEmpty() ? Stage::Code : Stage::Session;
+  if (with_operator_) return Stage::Operator;
+  if (questions_.language.isEmpty() && !questions_.languages.isEmpty()) return Stage::Language;
+  if (!questions_.consent_version.isEmpty() && !consented_) return Stage::Consent;
+  return questions_.participant.isEmpty() ? Stage::Code : Stage::Session;
 }
 
 QStringList StartController::language_names() const {
   QStringList names;
-  for (const auto& code : languages_) {
+  for (const auto& code : questions_.languages) {
     // A language is offered under the name that its own speakers give it; English ones by the plain word.
     const QString own = code == "en" ? "English" : QLocale(code).nativeLanguageName();
     names += own.isEmpty() ? code : own;
@@ -31,24 +39,29 @@ QStringList StartController::language_names() const {
 }
 
 QString StartController::language() const {
-  return language_.isEmpty() && !languages_.isEmpty() ? languages_.front() : language_;
+  const auto& languages = questions_.languages;
+  return questions_.language.isEmpty() && !languages.isEmpty() ? languages.front() : questions_.language;
 }
 
 void StartController::chooseLanguage(int index) {
-  if (index < 0 || index >= languages_.size()) return;
-  language_ = languages_[index];
-  emit changed();
-  begin();
+  if (index < 0 || index >= questions_.languages.size()) return;
+  questions_.language = questions_.languages[index];
+  proceed();
+}
+
+void StartController::consent() {
+  consented_ = true;
+  proceed();
 }
 
 void StartController::enterCode(const QString& code) {
   if (code.isEmpty()) return;
-  participant_ = code;
-  emit changed();
-  begin();
+  questions_.participant = code;
+  proceed();
 }
 
-void StartController::begin() {
+void StartController::proceed() {
+  emit changed();
   if (stage() == Stage::Session) emit ready();
 }
 

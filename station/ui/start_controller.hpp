@@ -7,47 +7,67 @@
 namespace turnpoint::ui {
 
 /// What has to be asked on the screen before a session can begin: the language where the protocol has several
-/// and none was given, then the participant's code where none was given. GUI thread only.
+/// and none was given, then consent where a version of the form was given, then the participant's code where
+/// none was given. With an operator, the operator's page comes before all of it. GUI thread only.
 class StartController : public QObject {
   Q_OBJECT
   QML_ELEMENT
   QML_UNCREATABLE("made by the program")
   Q_PROPERTY(Stage stage READ stage NOTIFY changed)
-  Q_PROPERTY(QStringList languageNames READ language_names CONSTANT)
+  Q_PROPERTY(QStringList languageNames READ language_names NOTIFY changed)
   Q_PROPERTY(QString language READ language NOTIFY changed)
   Q_PROPERTY(QString participant READ participant NOTIFY changed)
+  Q_PROPERTY(QString consentVersion READ consent_version NOTIFY changed)
+  Q_PROPERTY(QString runMode READ run_mode NOTIFY changed)
 
  public:
-  enum class Stage { Language, Code, Session };
+  enum class Stage { Operator, Language, Consent, Code, Session };
   Q_ENUM(Stage)
   /// True for a participant code that the database has seen.
   using Known = std::function<bool(const QString& code)>;
 
-  /// `language` and `participant` as given on the command line, "" to ask.
-  StartController(QStringList languages, QString language, QString participant, Known known,
-                  QObject* parent = nullptr);
+  /// What is to be asked: "" asks for language and participant, and for no consent.
+  struct Questions {
+    QStringList languages;
+    QString language, participant, consent_version;
+    QString run_mode;  ///< live | pilot | simulated: shown on these pages too
+  };
+
+  explicit StartController(Known known, QObject* parent = nullptr);
+
+  /// Goes back to the operator's page.
+  void await_operator();
+  /// Asks; ready() follows once nothing is left, at once where nothing is.
+  void ask(Questions questions);
 
   Stage stage() const;
   QStringList language_names() const;
   /// The language chosen; until then the protocol's first.
   QString language() const;
-  QString participant() const { return participant_; }
+  QString participant() const { return questions_.participant; }
+  QString consent_version() const { return questions_.consent_version; }
+  QString run_mode() const { return questions_.run_mode; }
 
   Q_INVOKABLE void chooseLanguage(int index);
   Q_INVOKABLE bool isKnown(const QString& code) const { return known_(code); }
+  Q_INVOKABLE void consent();
+  /// The participant does not consent, or leaves the last page.
+  Q_INVOKABLE void close() { emit closed(); }
   Q_INVOKABLE void enterCode(const QString& code);
-  /// Emits ready() if nothing is left to ask; for the program, once its window is there.
-  void begin();
 
  signals:
   void changed();
   /// Everything has been asked: the session may begin.
   void ready();
+  /// Nobody wants these pages any more.
+  void closed();
 
  private:
-  QStringList languages_;
-  QString language_, participant_;
+  void proceed();
+
+  Questions questions_;
   Known known_;
+  bool with_operator_ = true, consented_ = false;
 };
 
 }  // namespace turnpoint::ui

@@ -1,195 +1,194 @@
 #include "station/ui/station_window.hpp"
 
-#include <QGuiApplication>
+#include <time.h>
+#include <unistd.h>
+#include <QLoggingCategory>
 #include <QQmlApplicationEngine>
 #include <QQuickWindow>
-#include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <exception>
-#include <filesystem>
-#include <memory>
-#include <optional>
-#include <stdexcept>
-#include <thread>
 
-#include "station/app/touch.hpp"
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <stdexcept>
+
+#include "station/ui/operator_controller.hpp"
+#include "station/ui/platform.hpp"
+#include "station/ui/preview_controller.hpp"
 #include "station/ui/screen.hpp"
-#include "station/ui/session_bridge.hpp"
+#include "station/ui/session_runner.hpp"
 #include "station/ui/start_controller.hpp"
 
 namespace turnpoint::ui {
 
 namespace {
 
-std::int64_t now_ns() {
-  // steady_clock is CLOCK_MONOTONIC here, the clock of every time stamp.
-  return std::chrono::steady_clock::now().time_since_epoch().count();
-}
-
 /// Stands in for a code that the keypad will ask for, so that everything else is checked before a window
 /// opens.
 constexpr const char* kCodeToCome = "keypad";
 
-/// The window where there is a desktop around it.
-constexpr QSize kWindow{1280, 800};
+/// `QT_LOGGING_RULES=turnpoint.startup=true` says how long the first page took.
+Q_LOGGING_CATEGORY(startup, "turnpoint.startup", QtWarningMsg)
 
+/// Milliseconds since the kernel started this process, to its 10 ms.
+double process_age_ms() {
+  std::ifstream stat("/proc/self/stat");
+  const std::string line{std::istreambuf_iterator<char>(stat), {}};
+  std::istringstream fields(line.substr(line.rfind(')') + 1));
+  std::string field;
+  for (int i = 3; i <= 22; ++i) fields >> field;  // 22: start time in ticks since boot
+  timespec now{};
+  ::clock_gettime(CLOCK_BOOTTIME, &now);
+  const double started_s = std::stod(field) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+  return 1e3 * (static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) - started_s);
+}
+
+void tell_first_page(QQuickWindow& window) {
+  if (!startup().isInfoEnabled()) return;
+  QObject::connect(
+      &window, &QQuickWindow::frameSwapped, &window,
+      [] { qCInfo(startup) << "first page after" << process_age_ms() << "ms"; },
+      static_cast<Qt::ConnectionType>(Qt::DirectConnection | Qt::SingleShotConnection));
+}
+
+QQuickWindow& load(QQmlApplicationEngine& engine, const QString& page, const QVariantMap& properties) {
+  engine.addImportPath("qrc:/qt/qml");
+  engine.setInitialProperties(properties);
+  engine.load(QUrl("qrc:/qt/qml/Turnpoint/" + page));
+  auto* window =
+      engine.rootObjects().isEmpty() ? nullptr : qobject_cast<QQuickWindow*>(engine.rootObjects().first());
+  if (window == nullptr)
+    throw std::runtime_error("the pages of the touchscreen do not load: " + page.toStdString());
+  return *window;
+}
+
+/// The station's one window: the participant's pages, before them the operator's where there is one.
 class StationWindow : public QObject {
  public:
-  StationWindow(session::Setup setup, bool ask_language, bool ask_code)
-      : setup_(std::move(setup)),
-        bridge_(now_ns, [this](session::Input input) { inputs_.push(std::move(input)); }),
-        start_(ask_language ? languages() : QStringList(),
-               ask_language ? QString() : QString::fromStdString(setup_.language),
-               ask_code ? QString() : QString::fromStdString(setup_.participant),
-               [](const QString&) { return false; }) {
-    connect(
-        &start_, &StartController::ready, this, [this] { begin(); }, Qt::SingleShotConnection);
+  StationWindow(const Application& application, OperatorController* operating, const std::string& database,
+                const std::string& operator_code)
+      : operating_(operating), start_([database](const QString& code) { return is_known(database, code); }) {
+    connect(&start_, &StartController::ready, this, [this] { begin(); });
+    connect(&start_, &StartController::closed, this, [this] { close(); });
+    if (operating_ != nullptr)
+      connect(operating_, &OperatorController::chosen, this,
+              [this](const ChosenSession& chosen) { ask(chosen); });
+    window_ = &load(engine_, "Main.qml",
+                    {{"bridge", QVariant::fromValue(&runner_.bridge())},
+                     {"start", QVariant::fromValue(&start_)},
+                     {"live", QVariant::fromValue(&runner_.live())},
+                     {"report", QVariant::fromValue(&runner_.report())},
+                     {"operating", QVariant::fromValue(operating_)},
+                     {"operatorCode", QString::fromStdString(operator_code)},
+                     {"pixelsPerMm", pixels_per_mm(application.screen())},
+                     {"width", application.window_size().width()},
+                     {"height", application.window_size().height()}});
+    tell_first_page(*window_);
+    runner_.watch(window_);
+    if (application.is_bare_panel()) window_->showFullScreen();
+    if (auto* second = application.second_screen()) show_live_window(*second);
   }
 
-  ~StationWindow() override {
-    if (session_.joinable()) ask_to_stop();
+  /// Asks the participant what is open, then runs the session.
+  void ask(const ChosenSession& chosen) {
+    setup_ = chosen.setup;
+    arm_ = chosen.arm;
+    StartController::Questions questions;
+    questions.run_mode = store::name(setup_.run_mode);
+    if (!chosen.ask_language) questions.language = QString::fromStdString(setup_.language);
+    for (const auto& language : setup_.protocol.languages)
+      if (chosen.ask_language) questions.languages += QString::fromStdString(language);
+    if (!chosen.ask_code) questions.participant = QString::fromStdString(setup_.participant);
+    // Who goes on with a session has consented when it began.
+    if (setup_.resume_session.empty())
+      questions.consent_version = QString::fromStdString(setup_.consent_version);
+    start_.ask(std::move(questions));
   }
 
-  session::Summary run() {
-    open();
-    start_.begin();
+  /// Until the window is closed.
+  std::optional<session::Summary> run() {
     QGuiApplication::exec();
-    ask_to_stop();
-    if (session_.joinable()) session_.join();
-    if (failure_) std::rethrow_exception(failure_);
-    if (!summary_)
-      throw std::runtime_error("the window was closed before the session began; nothing was recorded");
-    return *summary_;
+    return runner_.finish();
   }
 
  private:
-  QStringList languages() const {
-    QStringList list;
-    for (const auto& language : setup_.protocol.languages) list += QString::fromStdString(language);
-    return list;
+  static bool is_known(const std::string& database, const QString& code) {
+    const auto known = app::known_participants(database);
+    return std::find(known.begin(), known.end(), code.toStdString()) != known.end();
   }
 
-  void open() {
-    const QScreen* screen = QGuiApplication::primaryScreen();
-    if (screen == nullptr) throw std::runtime_error("no screen is connected");
-    engine_.addImportPath("qrc:/qt/qml");
-    engine_.setInitialProperties({{"bridge", QVariant::fromValue(&bridge_)},
-                                  {"start", QVariant::fromValue(&start_)},
-                                  {"pixelsPerMm", pixels_per_mm(*screen)},
-                                  {"width", std::min(kWindow.width(), screen->size().width())},
-                                  {"height", std::min(kWindow.height(), screen->size().height())}});
-    engine_.load(QUrl("qrc:/qt/qml/Turnpoint/Main.qml"));
-    if (engine_.rootObjects().isEmpty()) throw std::runtime_error("the pages of the touchscreen do not load");
-    auto* window = qobject_cast<QQuickWindow*>(engine_.rootObjects().first());
-    bridge_.watch(window);
-    open_touch();
-    connect(window, SIGNAL(sessionClosed()), window, SLOT(close()));
-    if (is_bare_panel(*screen)) window->showFullScreen();
-  }
-
-  /// Kernel times for touches, where the rig names its panel.
-  void open_touch() {
-    touch_ = app::open_touch(setup_.rig, [this](panel::TouchPanelState state) {
-      if (state == panel::TouchPanelState::back) return;
-      session::Input input;
-      input.time_ns = now_ns();
-      input.kind = session::InputKind::fault;
-      input.fault = session::FaultKind::touch_gone;
-      input.text = "the touch panel is gone";
-      inputs_.push(std::move(input));
-    });
-    if (!touch_) return;
-    bridge_.set_kernel_time(
-        [this](double x, double y, std::int64_t seen_ns) { return touch_->claim(x, y, seen_ns); });
-  }
-
-  /// A panel of the station's own, or one too small for a window beside others.
-  static bool is_bare_panel(const QScreen& screen) {
-    const QString platform = QGuiApplication::platformName();
-    return platform == "eglfs" || platform == "linuxfb" || screen.size().width() <= kWindow.width();
+  void show_live_window(QScreen& screen) {
+    auto& window = load(live_engine_, "LiveWindow.qml",
+                        {{"live", QVariant::fromValue(&runner_.live())},
+                         {"bridge", QVariant::fromValue(&runner_.bridge())},
+                         {"pixelsPerMm", pixels_per_mm(screen)}});
+    window.setScreen(&screen);
+    window.showFullScreen();
   }
 
   void begin() {
     setup_.participant = start_.participant().toStdString();
-    setup_.language = start_.language().toStdString();
-    session_ = std::jthread([this] {
-      try {
-        summary_ = session::run(setup_, &bridge_, inputs_);
-      } catch (...) {
-        failure_ = std::current_exception();
-        show_failure();
-      }
-      over_ = true;
-    });
+    if (!start_.language().isEmpty()) setup_.language = start_.language().toStdString();
+    runner_.begin(setup_);
+    if (arm_) runner_.bridge().arm();
   }
 
-  /// Session thread: says on the screen what ended the session, since nobody may be looking at a terminal.
-  void show_failure() {
-    session::Page page;
-    page.kind = session::PageKind::failed;
-    page.language = setup_.language;
-    page.run_mode = store::name(setup_.run_mode);
-    try {
-      std::rethrow_exception(failure_);
-    } catch (const std::exception& error) {
-      page.text = error.what();
-    }
-    bridge_.show(page);
+  void close() {
+    if (operating_ == nullptr) return void(window_->close());
+    if (runner_.running()) return;
+    start_.await_operator();
+    operating_->refresh();
   }
 
-  void ask_to_stop() {
-    if (over_) return;
-    session::Input input;
-    input.time_ns = now_ns();
-    input.kind = session::InputKind::stop;
-    inputs_.push(std::move(input));
-  }
-
+  OperatorController* operating_;
   session::Setup setup_;
-  session::Inputs inputs_;
-  SessionBridge bridge_;
+  bool arm_ = false;
+  SessionRunner runner_;
   StartController start_;
-  QQmlApplicationEngine engine_;
-  std::unique_ptr<panel::TouchReader> touch_;
-  std::optional<session::Summary> summary_;
-  std::exception_ptr failure_;
-  std::atomic<bool> over_ = false;
-  std::jthread session_;  // last: joined before anything that it uses goes
+  QQmlApplicationEngine engine_, live_engine_;
+  QQuickWindow* window_ = nullptr;
 };
-
-/// Qt ends the process where it finds no screen; this finds out before, and picks a back end for bare panels.
-void choose_platform() {
-  if (qEnvironmentVariableIsSet("QT_QPA_PLATFORM") || qEnvironmentVariableIsSet("DISPLAY") ||
-      qEnvironmentVariableIsSet("WAYLAND_DISPLAY"))
-    return;
-  if (std::filesystem::exists("/dev/dri/card0")) {
-    qputenv("QT_QPA_PLATFORM", "eglfs");
-  } else if (std::filesystem::exists("/dev/fb0")) {
-    qputenv("QT_QPA_PLATFORM", "linuxfb");
-    qputenv("QT_QUICK_BACKEND", "software");
-  } else {
-    throw std::invalid_argument(
-        "no screen: neither DISPLAY, WAYLAND_DISPLAY, /dev/dri/card0 nor /dev/fb0 is there; give --headless "
-        "--observer sim, or --buttons-only");
-  }
-}
 
 }  // namespace
 
 session::Summary run_on_screen(app::RunRequest request, std::optional<session::Setup> prepared) {
-  const bool ask_code = !prepared && request.participant.empty();
-  if (ask_code) request.participant = kCodeToCome;
-  auto setup = prepared ? std::move(*prepared) : app::prepare(request);
-  const bool ask_language = !prepared && request.language.empty() && setup.protocol.languages.size() > 1;
-  choose_platform();
-  static int argc = 1;
-  static char name[] = "turnpoint-ui";
-  static char* argv[] = {name, nullptr};
-  QGuiApplication application(argc, argv);
-  set_fonts();
-  StationWindow window(std::move(setup), ask_language, ask_code);
-  return window.run();
+  ChosenSession chosen;
+  chosen.ask_code = !prepared && request.participant.empty();
+  if (chosen.ask_code) request.participant = kCodeToCome;
+  chosen.setup = prepared ? std::move(*prepared) : app::prepare(request);
+  chosen.ask_language = !prepared && request.language.empty() && chosen.setup.protocol.languages.size() > 1;
+  chosen.arm = true;  // the command was the operator's
+  const Application application;
+  StationWindow window(application, nullptr, chosen.setup.database, request.operator_code);
+  window.ask(chosen);
+  const auto summary = window.run();
+  if (!summary)
+    throw std::runtime_error("the window was closed before the session began; nothing was recorded");
+  return *summary;
+}
+
+void run_station(const app::StationRequest& request) {
+  const Application application;
+  OperatorController operating(request);
+  StationWindow window(application, &operating, request.database, request.operator_code);
+  try {
+    window.run();
+  } catch (const std::exception&) {
+    // What ended a session stood on the screen; leaving the station afterwards is no failure.
+  }
+}
+
+void show_preview(const app::PreviewRequest& request) {
+  const Application application;
+  PreviewController controller(request);
+  QQmlApplicationEngine engine;
+  auto& window = load(engine, "PreviewWindow.qml",
+                      {{"controller", QVariant::fromValue(&controller)},
+                       {"pixelsPerMm", pixels_per_mm(application.screen())},
+                       {"width", application.window_size().width()},
+                       {"height", application.window_size().height()}});
+  if (application.is_bare_panel()) window.showFullScreen();
+  QGuiApplication::exec();
 }
 
 }  // namespace turnpoint::ui

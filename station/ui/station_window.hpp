@@ -2,16 +2,25 @@
 #include <optional>
 
 #include "station/app/prepare.hpp"
+#include "station/app/preview.hpp"
+#include "station/app/station_request.hpp"
 #include "station/session/session.hpp"
 
 namespace turnpoint::ui {
 
-/// Runs one session on the screen: asks for what the request leaves open (language, participant's code),
-/// shows the session's pages and takes its inputs, and returns when the window is closed after the end. The
-/// session runs on a thread of its own; what it throws is shown as a fault page and thrown again from here.
-/// Throws text::BadInput for files that do not fit, and std::runtime_error where there is no screen to open.
-/// Once per process, since it makes the application object.
-/// `prepared` is a session that goes on: it asks nothing, and `request` is not used.
+// What the program does with a screen. Each makes the application object, so one call a process; each returns
+// when its window is closed, and throws std::invalid_argument where there is no screen to open.
+
+/// Runs one session: asks for what the request leaves open (language, consent, participant's code), shows the
+/// session's pages and takes its inputs. The session runs on a thread of its own; what it throws is shown as
+/// a fault page and thrown again from here. Throws text::BadInput for files that do not fit. `prepared` is a
+/// session that goes on: it asks nothing, and `request` gives only the operator's code.
 session::Summary run_on_screen(app::RunRequest request, std::optional<session::Setup> prepared);
+
+/// The operator's start page, and the sessions begun there.
+void run_station(const app::StationRequest& request);
+
+/// The scenes of a protocol with sliders for their factors.
+void show_preview(const app::PreviewRequest& request);
 
 }  // namespace turnpoint::ui

@@ -5,6 +5,7 @@
 #include <QtQuickTest>
 
 #include "station/ui/screen.hpp"
+#include "tests/ui/operator_desk.hpp"
 #include "tests/ui/real_session.hpp"
 #include "tests/ui/scripted_session.hpp"
 
@@ -17,6 +18,7 @@ class Setup : public QObject {
   // Owned by the application: timers and pending calls must not outlive it.
   void applicationAvailable() {
     script_ = new turnpoint::ui::ScriptedSession(QCoreApplication::instance());
+    desk_ = new turnpoint::ui::OperatorDesk(*script_->bridge(), QCoreApplication::instance());
     sitting_ = new turnpoint::ui::RealSession(QCoreApplication::instance());
   }
 
@@ -25,11 +27,13 @@ class Setup : public QObject {
     engine->addImportPath("qrc:/qt/qml");
     engine->rootContext()->setContextProperty("script", script_);
     engine->rootContext()->setContextProperty("sitting", sitting_);
+    engine->rootContext()->setContextProperty("desk", desk_);
   }
 
  private:
   turnpoint::ui::ScriptedSession* script_ = nullptr;
   turnpoint::ui::RealSession* sitting_ = nullptr;
+  turnpoint::ui::OperatorDesk* desk_ = nullptr;
 };
 
 QUICK_TEST_MAIN_WITH_SETUP(pages, Setup)

@@ -4,14 +4,23 @@
 #include <QDir>
 #include <QGuiApplication>
 #include <QQmlApplicationEngine>
+#include <QQmlComponent>
 #include <QQmlExtensionPlugin>
+#include <QQuickItem>
 #include <QQuickWindow>
+#include <QTemporaryDir>
+#include <QTest>
 #include <cstdio>
 
+#include "station/ui/live_model.hpp"
+#include "station/ui/operator_controller.hpp"
+#include "station/ui/preview_controller.hpp"
+#include "station/ui/report_model.hpp"
 #include "station/ui/screen.hpp"
 #include "station/ui/session_bridge.hpp"
 #include "station/ui/start_controller.hpp"
 #include "tests/ui/gallery.hpp"
+#include "tests/ui/operator_gallery.hpp"
 
 Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
 
@@ -43,10 +52,13 @@ class Camera {
         prefix_(prefix),
         only_(only),
         bridge_([] { return 0; }, [](const auto&) {}),
-        start_(kLanguages, "", "", [](const QString&) { return true; }) {
+        live_(bridge_),
+        start_([](const QString&) { return true; }) {
     engine_.addImportPath("qrc:/qt/qml");
     engine_.setInitialProperties({{"bridge", QVariant::fromValue(&bridge_)},
                                   {"start", QVariant::fromValue(&start_)},
+                                  {"live", QVariant::fromValue(&live_)},
+                                  {"report", QVariant::fromValue(&report_)},
                                   {"pixelsPerMm", panel.pixels_per_mm}});
     engine_.load(QUrl("qrc:/qt/qml/Turnpoint/Main.qml"));
     window_ = engine_.rootObjects().isEmpty() ? nullptr
@@ -75,15 +87,117 @@ class Camera {
  private:
   QString out_, prefix_, only_;
   SessionBridge bridge_;
+  turnpoint::ui::LiveModel live_;
+  turnpoint::ui::ReportModel report_;
   StartController start_;
   QQmlApplicationEngine engine_;
   QQuickWindow* window_ = nullptr;
   int count_ = 0;
 };
 
+/// One page of the operator's alone in a window: those are in English only.
+class OperatorCamera {
+ public:
+  OperatorCamera(const QString& out, const Panel& panel, const QString& prefix)
+      : out_(out),
+        panel_(panel),
+        prefix_(prefix),
+        bridge_([] { return 0; }, [](const auto&) {}),
+        live_(bridge_) {}
+
+  void shoot(const QString& page, const QString& name, QVariantMap properties) {
+    properties["pixelsPerMm"] = panel_.pixels_per_mm;
+    QQmlEngine engine;
+    engine.addImportPath("qrc:/qt/qml");
+    QQmlComponent component(&engine, QUrl("qrc:/qt/qml/Turnpoint/" + page));
+    QQuickWindow window;
+    auto* item = qobject_cast<QQuickItem*>(component.createWithInitialProperties(properties));
+    if (item == nullptr) qFatal("%s: %s", qPrintable(page), qPrintable(component.errorString()));
+    item->setParentItem(window.contentItem());
+    item->setSize(panel_.size);
+    window.resize(panel_.size);
+    window.show();
+    QGuiApplication::processEvents();
+    const QString file = out_ + "/" + prefix_ + name + ".png";
+    if (!window.grabWindow().save(file)) qFatal("cannot write %s", qPrintable(file));
+    ++count_;
+    delete item;
+  }
+
+  void shoot_live(const turnpoint::app::LiveState& state, const QString& name) {
+    turnpoint::session::Page page;
+    page.kind = turnpoint::session::PageKind::interval;
+    page.run_mode = "pilot";
+    bridge_.show(page);
+    live_.take(state);
+    QGuiApplication::processEvents();
+    shoot("LiveView.qml", name,
+          {{"live", QVariant::fromValue(&live_)}, {"bridge", QVariant::fromValue(&bridge_)}});
+  }
+
+  void shoot_report(const turnpoint::app::ReportPages& pages, const QString& name) {
+    report_.take(pages);
+    QGuiApplication::processEvents();
+    shoot("ReportPage.qml", name, {{"report", QVariant::fromValue(&report_)}, {"runMode", "pilot"}});
+  }
+
+  int count() const { return count_; }
+
+ private:
+  QString out_;
+  Panel panel_;
+  QString prefix_;
+  SessionBridge bridge_;
+  turnpoint::ui::LiveModel live_;
+  turnpoint::ui::ReportModel report_;
+  int count_ = 0;
+};
+
+/// Lets the event loop run until `ready`, at most for a minute.
+template <typename Ready>
+void wait_for(Ready ready) {
+  for (int i = 0; i < 6000 && !ready(); ++i) QTest::qWait(10);
+}
+
+int shoot_operator(const QString& out, const QStringList& sizes) {
+  using namespace turnpoint;
+  const QTemporaryDir folder;
+  const std::string source = TURNPOINT_SOURCE_DIR;
+  const auto database = ui::interrupted_exhibit(folder.path().toStdString());
+  ui::OperatorController operating(
+      {source + "/protocols", source + "/deploy/rigs/simulated.toml", database, ""});
+  operating.select(9);
+  wait_for([&] { return !operating.checking(); });
+  ui::PreviewController preview(
+      {source + "/protocols/demo.toml", source + "/deploy/rigs/simulated.toml", "", {}});
+  ui::PreviewController zones(
+      {source + "/protocols/friction-2ifc.toml", source + "/deploy/rigs/simulated.toml", "", {}});
+  wait_for([&] { return !preview.busy() && !zones.busy(); });
+  const auto live = ui::live_exhibit("boundary-adaptive", 40), live2 = ui::live_exhibit("friction-2ifc", 12);
+  const auto report = ui::report_exhibit("speed-accuracy"), report2 = ui::report_exhibit("boundary-constant");
+  int count = 0;
+  for (const auto& size : sizes) {
+    OperatorCamera camera(out, panel_of(size), size + "-operator-");
+    camera.shoot("OperatorPage.qml", "start", {{"operating", QVariant::fromValue(&operating)}});
+    camera.shoot("OperatorPage.qml", "participant",
+                 {{"operating", QVariant::fromValue(&operating)}, {"typing", true}});
+    camera.shoot_live(live, "live");
+    camera.shoot_live(live2, "live-2ifc");
+    camera.shoot_report(report, "report-trade");
+    camera.shoot_report(report2, "report-boundary");
+    camera.shoot("PreviewPage.qml", "preview", {{"controller", QVariant::fromValue(&preview)}});
+    camera.shoot("PreviewPage.qml", "preview-zone", {{"controller", QVariant::fromValue(&zones)}});
+    count += camera.count();
+  }
+  return count;
+}
+
 int shoot_all(Camera& camera, const QString& language) {
+  camera.start().ask({kLanguages, "", "", "2026-03", "pilot"});
   camera.shoot("language");
   camera.start().chooseLanguage(static_cast<int>(kLanguages.indexOf(language)));
+  camera.shoot("consent");
+  camera.start().consent();
   camera.shoot("code");
   camera.start().enterCode("P07");
   for (const auto& exhibit : turnpoint::ui::gallery(language.toStdString()))
@@ -116,6 +230,8 @@ int main(int argc, char** argv) {
       count += shoot_all(camera, language);
     }
   }
+  if (parser.value("only").isEmpty() || parser.value("only") == "operator")
+    count += shoot_operator(out, parser.value("sizes").split(','));
   std::printf("%d pictures in %s\n", count, qPrintable(QDir(out).absolutePath()));
   return 0;
 }

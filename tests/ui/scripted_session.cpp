@@ -61,12 +61,21 @@ void ScriptedSession::take(const session::Input& input) {
     case InputKind::pause:
       inputs_ += "pause";
       break;
+    case InputKind::arm:
+      inputs_ += "arm";
+      break;
+    case InputKind::repeat:
+      inputs_ += "repeat";
+      break;
+    case InputKind::note:
+      inputs_ += "note " + QString::fromStdString(input.text);
+      break;
+    case InputKind::frames_lost:
+      inputs_ += QStringLiteral("frames_lost %1").arg(input.value);
+      break;
     case InputKind::contact:
     case InputKind::xrun:
     case InputKind::fault:
-    case InputKind::arm:
-    case InputKind::repeat:
-    case InputKind::note:
       qFatal("the screen cannot send this input");
   }
   emit inputsChanged();

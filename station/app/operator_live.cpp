@@ -1,0 +1,252 @@
+#include "station/app/operator_live.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "station/app/scene_figures.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::app {
+
+namespace {
+
+using text::number;
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+/// Of limits: how much of the last 60 s had a stimulus.
+constexpr double kWindow_s = 60;
+
+std::string percent(double share) { return number(std::round(1000 * share) / 10, 4) + " %"; }
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+int count(const std::vector<LiveTrial>& trials, store::TrialOutcome outcome) {
+  return static_cast<int>(std::count_if(trials.begin(), trials.end(),
+                                        [&](const LiveTrial& trial) { return trial.outcome == outcome; }));
+}
+
+std::string in_words(const session::TrialSpec& spec) {
+  std::string order;
+  for (const auto& interval : spec.intervals) {
+    std::string scenes;
+    for (const auto& scene : interval) scenes += (scenes.empty() ? "" : " then ") + scene;
+    order += (order.empty() ? "" : " | ") + scenes;
+  }
+  return order;
+}
+
+plot::Figure alone(const char* title, const plot::Panel& panel) {
+  plot::Figure figure;
+  figure.title = title;
+  figure.panels = {panel};
+  figure.panel_width_px = 430, figure.panel_height_px = 230;
+  return figure;
+}
+
+/// What was scheduled; an exploration ends with its answer.
+double stimulus_s(const store::TrialRow& row, int rate_Hz) {
+  double scheduled_s = 0;
+  int intervals = 1;
+  for (const auto& tone : row.tones) {
+    if (tone.tone_index == 0) scheduled_s += static_cast<double>(tone.length_frames) / rate_Hz;
+    intervals = std::max(intervals, tone.interval_index + 1);
+  }
+  return intervals == 1 && row.response_time_s ? std::min(scheduled_s, *row.response_time_s) : scheduled_s;
+}
+
+}  // namespace
+
+Facts course_of(const std::vector<LiveTrial>& trials) {
+  using store::TrialOutcome;
+  std::vector<double> times;
+  int scored = 0, right = 0, catches = 0, caught = 0, xruns = 0, extra = 0;
+  for (const auto& trial : trials) {
+    xruns += trial.xruns, extra += trial.extra_touches;
+    if (trial.response_time_s) times.push_back(*trial.response_time_s);
+    if (!trial.correct) continue;
+    if (trial.type == store::TrialType::catch_trial) ++catches, caught += *trial.correct ? 1 : 0;
+    if (trial.type == store::TrialType::experimental) ++scored, right += *trial.correct ? 1 : 0;
+  }
+  Facts facts{{"Trials", std::to_string(trials.size())}};
+  facts.emplace_back("Right", scored > 0 ? fmt::format("{} of {} ({})", right, scored,
+                                                       percent(static_cast<double>(right) / scored))
+                                         : "none scored yet");
+  if (catches > 0) facts.emplace_back("Catch trials right", fmt::format("{} of {}", caught, catches));
+  facts.emplace_back("Response time", times.empty() ? "none yet"
+                                                    : "median " + number(median(times), 3) + " s, last " +
+                                                          number(times.back(), 3) + " s");
+  facts.emplace_back("Too late, too early", fmt::format("{}, {}", count(trials, TrialOutcome::timeout),
+                                                        count(trials, TrialOutcome::anticipation)));
+  facts.emplace_back(
+      "Void", std::to_string(count(trials, TrialOutcome::fault) + count(trials, TrialOutcome::aborted)));
+  facts.emplace_back("Xruns", std::to_string(xruns));
+  facts.emplace_back("Touches that no answer claimed", std::to_string(extra));
+  return facts;
+}
+
+Facts limits_used(const std::vector<LiveTrial>& trials, const scene::DrivePlan* plan, const rig::Rig& rig) {
+  const auto& limits = rig.limits;
+  Facts facts;
+  if (plan != nullptr)
+    facts.emplace_back("Displacement",
+                       fmt::format("{} of {} \u00b5m ({})", number(1e6 * plan->peak_displacement_m, 3),
+                                   number(1e6 * limits.displacement_m, 3),
+                                   percent(plan->peak_displacement_m / limits.displacement_m)));
+  const double now_s = trials.empty() ? 0 : trials.back().ended_s;
+  double on_s = 0;
+  for (const auto& trial : trials) {
+    const double from = std::max(trial.onset_s, now_s - kWindow_s);
+    on_s += std::max(0.0, trial.onset_s + trial.stimulus_s - from);
+  }
+  const double window_s = std::clamp(now_s, 1.0, kWindow_s);
+  facts.emplace_back("Stimulus time, last minute",
+                     percent(on_s / window_s) + " (limit " + percent(limits.duty) + ")");
+  facts.emplace_back("Session",
+                     fmt::format("{} of {} min", number(now_s / 60, 3), number(limits.session_minutes, 3)));
+  return facts;
+}
+
+std::optional<plot::Figure> live_trace(const std::vector<LiveTrial>& trials, const std::string& label) {
+  std::map<std::string, plot::Points> series;
+  std::map<std::string, plot::Line> estimates;
+  std::vector<double> levels;
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    const auto& trial = trials[i];
+    if (!trial.level || trial.procedure.empty()) continue;
+    auto& points = series[trial.procedure];
+    points.x.push_back(static_cast<double>(i + 1));
+    points.y.push_back(*trial.level);
+    points.open.push_back(!trial.correct.value_or(false));
+    levels.push_back(*trial.level);
+    if (!trial.threshold_est || !std::isfinite(*trial.threshold_est)) continue;
+    estimates[trial.procedure].x.push_back(static_cast<double>(i + 1));
+    estimates[trial.procedure].y.push_back(*trial.threshold_est);
+  }
+  if (levels.empty()) return std::nullopt;
+  plot::Panel panel;
+  panel.title = "Levels; open: not right";
+  panel.x = {"Trial", 0, std::max(10.0, static_cast<double>(trials.size()) + 1)};
+  panel.y = plot::fitted(label, levels, 0.1);
+  int number = 0;
+  for (auto& [name, points] : series) {
+    auto line = estimates[name];
+    line.series = points.series = number++;
+    points.name = series.size() > 1 ? name : "";
+    if (line.x.size() > 1) panel.layers.push_back(line);
+    panel.layers.push_back(points);
+  }
+  return alone("Levels", panel);
+}
+
+std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials) {
+  plot::Points points;
+  for (std::size_t i = 0; i < trials.size(); ++i)
+    if (trials[i].response_time_s) {
+      points.x.push_back(static_cast<double>(i + 1));
+      points.y.push_back(*trials[i].response_time_s);
+      points.open.push_back(!trials[i].correct.value_or(true));
+    }
+  if (points.x.empty()) return std::nullopt;
+  plot::Panel panel;
+  panel.title = "Response times; open: wrong";
+  panel.x = {"Trial", 0, std::max(10.0, static_cast<double>(trials.size()) + 1)};
+  panel.y = plot::fitted("Response time (s)", points.y, 0.15);
+  panel.y.low = 0;
+  points.series = 2;
+  panel.layers.push_back(points);
+  return alone("Response times", panel);
+}
+
+LiveView::LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state)
+    : on_state_(std::move(on_state)),
+      preview_(protocol, rig),
+      thread_([this](const std::stop_token& stop) { work(stop); }) {}
+
+LiveView::~LiveView() = default;
+
+void LiveView::trial_begins(const session::TrialSpec& spec, const protocol::Block& block) {
+  push({Begun{spec, block.name}, std::nullopt});
+}
+
+void LiveView::trial_ended(const session::TrialSpec& spec, const store::TrialRow& row) {
+  LiveTrial trial;
+  trial.procedure = spec.procedure;
+  trial.level = row.level;
+  trial.correct = row.correct;
+  trial.response_time_s = row.response_time_s;
+  trial.threshold_est = row.threshold_est;
+  trial.threshold_sd = row.threshold_sd;
+  trial.outcome = row.outcome;
+  trial.type = row.type;
+  trial.onset_s = row.onset_s;
+  trial.ended_s = row.onset_s + row.duration_s;
+  trial.stimulus_s = stimulus_s(row, preview_.rig().output.rate_Hz);
+  trial.xruns = row.xruns;
+  trial.extra_touches = row.extra_touches;
+  push({std::nullopt, trial});
+}
+
+void LiveView::push(News news) {
+  {
+    const std::lock_guard lock(mutex_);
+    queue_.push_back(std::move(news));
+  }
+  arrived_.notify_one();
+}
+
+void LiveView::work(const std::stop_token& stop) {
+  for (;;) {
+    News news;
+    {
+      std::unique_lock lock(mutex_);
+      if (!arrived_.wait(lock, stop, [this] { return !queue_.empty(); })) return;
+      news = std::move(queue_.front());
+      queue_.pop_front();
+    }
+    take(news);
+    tell();
+  }
+}
+
+void LiveView::take(const News& news) {
+  if (news.begun) plan(*news.begun);
+  if (!news.ended) return;
+  trials_.push_back(*news.ended);
+  const auto& procedures = preview_.protocol().procedures;
+  const auto trace = live_trace(trials_, procedures.empty() ? "Level" : procedures.front().level);
+  const auto times = live_times(trials_);
+  state_.trace = trace ? plot::render(*trace) : "";
+  state_.times = times ? plot::render(*times) : "";
+}
+
+void LiveView::plan(const Begun& begun) {
+  const auto& spec = begun.spec;
+  state_.heading = fmt::format("Block {}, trial {}{}: {}", begun.block, spec.trial_in_block + 1,
+                               spec.level ? ", level " + number(*spec.level, 4) : "", in_words(spec));
+  looks_.clear();
+  state_.surfaces.clear();
+  for (const auto& interval : spec.intervals) {
+    looks_.push_back(preview_.look(interval.back(), spec.factors));
+    if (looks_.back().problem.empty()) state_.surfaces.push_back(surface_svg(looks_.back(), preview_.rig()));
+  }
+  const auto& last = looks_.back();
+  state_.scene = last.problem.empty() ? last.facts : Facts{{"Problem", last.problem}};
+  state_.profile = last.problem.empty() ? plot::render(profile_figure(last)) : "";
+}
+
+void LiveView::tell() {
+  state_.course = course_of(trials_);
+  const bool planned = !looks_.empty() && looks_.back().problem.empty();
+  state_.limits = limits_used(trials_, planned ? &looks_.back().plan : nullptr, preview_.rig());
+  on_state_(state_);
+}
+
+}  // namespace turnpoint::app

@@ -1,0 +1,90 @@
+#pragma once
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "station/app/preview.hpp"
+#include "station/plot/chart.hpp"
+#include "station/session/monitor.hpp"
+
+namespace turnpoint::app {
+
+/// A running session as the operator sees it: words and pictures (SVG documents), ready to be shown.
+struct LiveState {
+  std::string heading;                                                     ///< which trial, at which level
+  std::vector<std::pair<std::string, std::string>> scene, course, limits;  ///< (label, value)
+  std::vector<std::string> surfaces;  ///< one an interval, in the order presented
+  std::string profile, trace, times;  ///< of the last interval; levels; response times. "" where none
+};
+
+/// What is kept of a trial that has ended.
+struct LiveTrial {
+  std::string procedure;
+  std::optional<double> level;
+  std::optional<bool> correct;
+  std::optional<double> response_time_s, threshold_est, threshold_sd;
+  store::TrialOutcome outcome = store::TrialOutcome::answered;
+  store::TrialType type = store::TrialType::experimental;
+  double onset_s = 0, ended_s = 0;  ///< of the session
+  double stimulus_s = 0;            ///< on the surface
+  int xruns = 0, extra_touches = 0;
+};
+
+/// Course of the session in words: accuracy, response times, what was lost. Pure.
+std::vector<std::pair<std::string, std::string>> course_of(const std::vector<LiveTrial>& trials);
+
+/// How much of the rig's limits is used, by what was presented in the last 60 s and the plan at hand.
+std::vector<std::pair<std::string, std::string>> limits_used(const std::vector<LiveTrial>& trials,
+                                                             const scene::DrivePlan* plan,
+                                                             const rig::Rig& rig);
+
+/// Levels in order, one series a procedure; open markers are wrong answers, a line the running estimate.
+std::optional<plot::Figure> live_trace(const std::vector<LiveTrial>& trials, const std::string& label);
+std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials);
+
+/// Follows a session on a thread of its own: plans each trial's scenes a second time (so the session spends
+/// nothing on the operator), and hands on a state whenever there is something new.
+class LiveView : public session::Monitor {
+ public:
+  /// `on_state` is called on the view's own thread.
+  using OnState = std::function<void(LiveState)>;
+  LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state);
+  ~LiveView() override;
+
+  void trial_begins(const session::TrialSpec& spec, const protocol::Block& block) override;
+  void trial_ended(const session::TrialSpec& spec, const store::TrialRow& row) override;
+
+ private:
+  struct Begun {
+    session::TrialSpec spec;
+    std::string block;
+  };
+  struct News {
+    std::optional<Begun> begun;
+    std::optional<LiveTrial> ended;
+  };
+  void push(News news);
+  void work(const std::stop_token& stop);
+  void take(const News& news);
+  void plan(const Begun& begun);
+  void tell();
+
+  OnState on_state_;
+  Preview preview_;
+  std::vector<LiveTrial> trials_;
+  std::vector<Look> looks_;
+  LiveState state_;
+  std::mutex mutex_;
+  std::condition_variable_any arrived_;
+  std::deque<News> queue_;
+  std::jthread thread_;  // last: joined before anything that it uses goes
+};
+
+}  // namespace turnpoint::app

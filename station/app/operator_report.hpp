@@ -1,0 +1,22 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "station/report/summary.hpp"
+
+namespace turnpoint::app {
+
+/// A session's report as pages of a screen: words and pictures (SVG documents).
+struct ReportPages {
+  std::string title;
+  std::vector<std::pair<std::string, std::string>> outcomes, fit, trade, health;  ///< (label, value)
+  std::vector<std::string> statements;                   ///< what must be said beside the numbers
+  std::string trade_svg, fit_svg, trace_svg, times_svg;  ///< "" where there is nothing to show
+};
+
+/// Of a stored session; as report_data() and report::summarise(), about 0.3 s.
+ReportPages report_pages(const std::string& database, const std::string& session_id);
+ReportPages report_pages(const report::Summary& summary);
+
+}  // namespace turnpoint::app

@@ -1,0 +1,195 @@
+#include "station/app/scene_figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "physics/surface.hpp"
+#include "station/plot/palette.hpp"
+#include "station/plot/svg.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::app {
+
+namespace {
+
+const std::string kInk = "#16202a", kQuiet = "#3f4a54", kAccent = "#b3400a", kPaper = "#ffffff";
+
+plot::Paint stroke(const std::string& colour, double width, const std::string& dash = "") {
+  return {colour, "", width, dash, 1};
+}
+plot::Paint fill(const std::string& colour, double opacity = 1) { return {"", colour, 1, "", opacity}; }
+
+void require_plan(const Look& look) {
+  if (!look.problem.empty() || look.profile.x_m.size() < 2)
+    throw std::invalid_argument("scene " + look.scene + " has no plan to draw: " + look.problem);
+}
+
+std::optional<double> mark_of(const Look& look) {
+  const auto found = look.factors.find("mark_mm");
+  if (found == look.factors.end()) return std::nullopt;
+  const auto* value = std::get_if<double>(&found->second);
+  return value ? std::optional(1e-3 * *value) : std::nullopt;
+}
+
+/// The strip on the page: x from the wide end whichever way it lies; slim strips are widened to be seen.
+struct Place {
+  double left, right, middle_y, across, length_m;
+  bool wide_left;
+  physics::Surface surface;
+
+  double x(double m) const {
+    const double share = m / length_m;
+    return wide_left ? left + share * (right - left) : right - share * (right - left);
+  }
+  double half(double m) const { return across * physics::half_width_m(surface, m); }
+  std::pair<double, double> above(double m, double beyond = 0) const {
+    return {x(m), middle_y - half(m) - beyond};
+  }
+  std::pair<double, double> below(double m, double beyond = 0) const {
+    return {x(m), middle_y + half(m) + beyond};
+  }
+};
+
+Place place_on(const rig::Rig& rig, double width_px, double height_px) {
+  Place at{30,
+           width_px - 30,
+           0.46 * height_px,
+           1,
+           rig.surface.length_m,
+           rig.surface.wide_end == rig::WideEnd::left,
+           scene::surface_of(rig)};
+  double widest = 0;
+  for (int i = 0; i <= 20; ++i)
+    widest = std::max(widest, physics::half_width_m(at.surface, at.length_m * i / 20));
+  const double to_scale = (at.right - at.left) / at.length_m;
+  at.across = std::clamp(to_scale, 0.18 * height_px / widest, 0.24 * height_px / widest);
+  return at;
+}
+
+void draw_heat(plot::Svg& svg, const Look& look, const Place& at) {
+  const auto& profile = look.profile;
+  const double top = *std::max_element(profile.displacement_m.begin(), profile.displacement_m.end());
+  for (std::size_t i = 0; i + 1 < profile.x_m.size(); ++i) {
+    const double a = profile.x_m[i], b = profile.x_m[i + 1];
+    const double value = 0.5 * (profile.displacement_m[i] + profile.displacement_m[i + 1]);
+    const auto colour = plot::shade(top > 0 ? value / top : 0);
+    // Each slice reaches under the next, so that no paper shows between two.
+    const double under = std::min(at.length_m, b + (b - a));
+    svg.polygon({at.above(a), at.above(under), at.below(under), at.below(a)}, fill(colour));
+  }
+  const double l = at.length_m;
+  svg.polygon({at.above(0), at.above(l), at.below(l), at.below(0)}, stroke(kInk, 1.2));
+}
+
+void draw_scale(plot::Svg& svg, const Place& at) {
+  const double y = at.middle_y + at.half(0) + 10;
+  for (int mm = 0; 1e-3 * mm <= at.length_m + 1e-9; mm += 10) {
+    const bool labelled = mm % 50 == 0;
+    const double x = at.x(1e-3 * mm);
+    svg.line({x, y}, {x, y + (labelled ? 7 : 4)}, stroke(kQuiet, 1));
+    if (labelled) svg.text({x, y + 20}, std::to_string(mm), 12, plot::Anchor::middle, kQuiet);
+  }
+}
+
+void draw_transducer(plot::Svg& svg, const Place& at) {
+  const double width = 14, half = at.half(0) + 4;
+  svg.rectangle({at.wide_left ? at.left - width : at.right, at.middle_y - half}, width, 2 * half,
+                fill("#4d565e"));
+}
+
+void draw_boundary(plot::Svg& svg, const Look& look, const Place& at) {
+  for (const auto& tone : look.plan.tones)
+    if (tone.turning_point_m)
+      svg.line(at.below(*tone.turning_point_m, -0.4 * at.half(*tone.turning_point_m)),
+               at.below(*tone.turning_point_m, 6), stroke(kQuiet, 1.2, "2 2"));
+  if (const auto mark = mark_of(look); mark && *mark > 0 && *mark < at.length_m) {
+    const auto tip = at.above(*mark, 3);
+    svg.polygon({tip, {tip.first - 6, tip.second - 9}, {tip.first + 6, tip.second - 9}}, fill(kInk));
+    svg.text({tip.first + 10, tip.second - 3}, "mark", 12, plot::Anchor::start, kInk);
+  }
+  if (!look.plan.boundary_m) return;
+  const double b = *look.plan.boundary_m, e = look.plan.error_bound_m;
+  if (2 * e * (at.right - at.left) / at.length_m > 2) {
+    const double low = std::max(0.0, b - e), high = std::min(at.length_m, b + e);
+    svg.polygon({at.above(low, 6), at.above(high, 6), at.below(high, 6), at.below(low, 6)},
+                fill(kAccent, 0.25));
+  }
+  svg.line(at.above(b, 14), at.below(b, 6), stroke(kAccent, 2.4));
+  svg.text({at.x(b), at.above(b).second - 18}, text::number(1e3 * b, 5) + " mm", 14, plot::Anchor::middle,
+           kAccent, 600);
+}
+
+}  // namespace
+
+std::string surface_svg(const Look& look, const rig::Rig& rig, double width_px, double height_px) {
+  require_plan(look);
+  plot::Svg svg(width_px, height_px, "Surface from above, scene " + look.scene);
+  svg.rectangle({0, 0}, width_px, height_px, fill(kPaper));
+  const auto at = place_on(rig, width_px, height_px);
+  draw_transducer(svg, at);
+  draw_heat(svg, look, at);
+  draw_scale(svg, at);
+  draw_boundary(svg, look, at);
+  svg.text({width_px / 2, height_px - 10}, "mm from the wide end; darker moves more", 12,
+           plot::Anchor::middle, kQuiet);
+  return svg.finish();
+}
+
+plot::Figure profile_figure(const Look& look) {
+  require_plan(look);
+  std::vector<double> x_mm, um;
+  for (const double x : look.profile.x_m) x_mm.push_back(1e3 * x);
+  for (const double v : look.profile.displacement_m) um.push_back(1e6 * v);
+  const double most = *std::max_element(um.begin(), um.end());
+  const plot::Axis along{"Distance from the wide end (mm)", 0, x_mm.back()};
+  const auto panel = [&](const char* title, plot::Axis y, const std::vector<double>& values, int series) {
+    plot::Panel made{title, along, std::move(y), {}};
+    plot::Line line;
+    line.x = x_mm, line.y = values, line.series = series;
+    made.layers.push_back(line);
+    if (look.plan.boundary_m)
+      made.layers.push_back(
+          plot::Rule{plot::Rule::Direction::vertical, 1e3 * *look.plan.boundary_m, "boundary"});
+    return made;
+  };
+  plot::Figure figure;
+  figure.title = "Displacement and friction, scene " + look.scene;
+  figure.panels.push_back(
+      panel("Displacement", {"Displacement (\u00b5m)", 0, most > 0 ? 1.15 * most : 1}, um, 0));
+  figure.panels.push_back(
+      panel("Friction under a fingertip", {"Friction, relative", 0, 1.05}, look.profile.friction, 1));
+  figure.columns = 2;
+  figure.panel_width_px = 430, figure.panel_height_px = 260;
+  return figure;
+}
+
+plot::Figure spectrum_figure(const Look& look) {
+  require_plan(look);
+  plot::Points points;
+  double most = 0;
+  for (const auto& tone : look.plan.tones) {
+    points.x.push_back(1e-3 * tone.frequency_Hz);
+    points.y.push_back(1e6 * tone.amplitude_m);
+    points.low.push_back(0);
+    points.high.push_back(1e6 * tone.amplitude_m);
+    most = std::max(most, 1e6 * tone.amplitude_m);
+  }
+  plot::Panel panel;
+  panel.title = "Drive";
+  panel.x = plot::fitted("Frequency (kHz)", points.x, 0.3);
+  panel.y = {"Drive edge (\u00b5m)", 0, most > 0 ? 1.2 * most : 1};
+  for (const auto& tone : look.plan.tones)
+    if (tone.nearest_resonance_Hz && 1e-3 * *tone.nearest_resonance_Hz > panel.x.low &&
+        1e-3 * *tone.nearest_resonance_Hz < panel.x.high && look.plan.tones.size() == 1)
+      panel.layers.push_back(
+          plot::Rule{plot::Rule::Direction::vertical, 1e-3 * *tone.nearest_resonance_Hz, "resonance"});
+  panel.layers.push_back(points);
+  plot::Figure figure;
+  figure.title = "Tones, scene " + look.scene;
+  figure.panels.push_back(panel);
+  figure.panel_width_px = 430, figure.panel_height_px = 260;
+  return figure;
+}
+
+}  // namespace turnpoint::app

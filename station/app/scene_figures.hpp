@@ -1,0 +1,23 @@
+#pragma once
+#include <optional>
+#include <string>
+
+#include "station/app/preview.hpp"
+#include "station/plot/chart.hpp"
+
+namespace turnpoint::app {
+
+// Pictures of a planned scene, the same on the screen and in files. All throw std::invalid_argument for a
+// look that has a problem instead of a plan.
+
+/// The surface from above, to scale along its length: a heat map of the displacement, the boundary with its
+/// model error, turning points of the tones, and a mark where one is asked about. An SVG document.
+std::string surface_svg(const Look& look, const rig::Rig& rig, double width_px = 860, double height_px = 190);
+
+/// Displacement and friction along the centre line, with the boundary.
+plot::Figure profile_figure(const Look& look);
+
+/// The drive's tones: displacement of the drive edge against frequency.
+plot::Figure spectrum_figure(const Look& look);
+
+}  // namespace turnpoint::app

@@ -1,0 +1,81 @@
+#include "station/app/preview.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <system_error>
+
+#include "station/app/places.hpp"
+#include "station/app/scene_figures.hpp"
+#include "station/cli/command.hpp"
+#include "station/cli/run.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+struct Options {
+  std::string protocol, rig, scene, out;
+  std::vector<std::string> set;
+};
+
+void write(const std::filesystem::path& path, const std::string& text, std::ostream& messages) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw std::system_error(errno, std::generic_category(), "cannot write " + path.string());
+  fmt::print(messages, "{}\n", path.string());
+}
+
+/// Every scene asked for as files; what cannot be presented is said, and is a failure at the end.
+void preview_to_files(const Options& options, Context& context) {
+  app::Preview preview(options.protocol, options.rig);
+  std::vector<std::string> assumed;
+  const auto factors = app::factors_for(preview.protocol(), options.set, assumed);
+  const auto scenes = options.scene.empty() ? preview.scenes() : std::vector<std::string>{options.scene};
+  std::filesystem::create_directories(options.out);
+  const std::filesystem::path folder = options.out;
+  for (const auto& scene : scenes) {
+    if (!preview.protocol().scenes.count(scene))
+      throw UsageError(fmt::format("--scene {}: the protocol has no such scene", scene));
+    const auto look = preview.look(scene, factors);
+    if (!look.problem.empty()) {
+      fmt::print(context.err, "{}: {}\n", scene, look.problem);
+      context.exit_code = 1;
+      continue;
+    }
+    fmt::print(context.out, "Scene {}\n", scene);
+    for (const auto* list : {&look.facts, &look.cues})
+      for (const auto& [label, value] : *list) fmt::print(context.out, "  {}: {}\n", label, value);
+    write(folder / (scene + "-surface.svg"), app::surface_svg(look, preview.rig()), context.out);
+    write(folder / (scene + "-profile.svg"), plot::render(app::profile_figure(look)), context.out);
+    write(folder / (scene + "-spectrum.svg"), plot::render(app::spectrum_figure(look)), context.out);
+  }
+}
+
+}  // namespace
+
+void add_preview(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("preview", "The scenes of a protocol before anyone is in the room");
+  command->add_option("protocol", options->protocol, "Protocol file")->required();
+  command->add_option("--scene", options->scene, "Name of the scene; otherwise every scene");
+  command->add_option("--set", options->set,
+                      "factor=value; otherwise its first level or the middle of its range");
+  command->add_option("--rig", options->rig, "Rig file");
+  command->add_option("--out", options->out, "Folder for SVG pictures, instead of a screen with sliders");
+  command->footer(
+      "Example: turnpoint preview protocols/demo.toml --scene edge --set offset_mm=9 --out looks");
+  command->callback([options, &context] {
+    if (options->out.empty() && !context.screens) return become_ui(context);
+    options->rig = app::rig_or_default(options->rig, context.err);
+    if (!options->out.empty()) return preview_to_files(*options, context);
+    context.screens->preview({options->protocol, options->rig, options->scene, options->set});
+  });
+}
+
+}  // namespace turnpoint::cli

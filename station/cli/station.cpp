@@ -1,0 +1,31 @@
+#include <memory>
+
+#include "station/app/places.hpp"
+#include "station/app/station_request.hpp"
+#include "station/cli/command.hpp"
+#include "station/cli/run.hpp"
+
+namespace turnpoint::cli {
+
+void add_station(CLI::App& app, Context& context) {
+  auto request = std::make_shared<app::StationRequest>();
+  auto* command = app.add_subcommand("station", "The operator's start page: choose, check, run, resume");
+  command->add_option("--protocols", request->protocols,
+                      "Folder with protocol files; otherwise the shipped ones");
+  command->add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
+  command->add_option("--db", request->database, "Database; otherwise one in the user's data folder");
+  command
+      ->add_option("--operator-code", request->operator_code,
+                   "Digits that open the operator's view on the participant's screen")
+      ->capture_default_str();
+  command->footer("Example: turnpoint station --db lab.sqlite");
+  command->callback([request, &context] {
+    if (!context.screens) return become_ui(context);
+    request->rig = app::rig_or_default(request->rig, context.err);
+    if (request->protocols.empty()) request->protocols = app::shipped("protocols");
+    if (request->database.empty()) request->database = app::default_database();
+    context.screens->station(*request);
+  });
+}
+
+}  // namespace turnpoint::cli

@@ -1,0 +1,45 @@
+import QtQuick
+import Turnpoint
+
+// Labels and values under a heading, for the operator.
+Column {
+    id: root
+    required property Theme theme
+    required property var facts
+    property string heading
+    property real labelWidth: 0.4 * width
+    spacing: 0.35 * theme.unit
+
+    Text {
+        visible: root.heading !== "" && root.facts.length > 0
+        text: root.heading
+        color: root.theme.action
+        font { pixelSize: root.theme.textBody; weight: Font.Bold }
+    }
+    Repeater {
+        model: root.facts
+        Item {
+            id: line
+            required property var modelData
+            width: root.width
+            height: Math.max(label.implicitHeight, value.implicitHeight)
+            Text {
+                id: label
+                width: root.labelWidth - root.theme.unit
+                text: line.modelData.label
+                color: root.theme.quiet
+                font.pixelSize: root.theme.textSmall
+                wrapMode: Text.Wrap
+            }
+            Text {
+                id: value
+                x: root.labelWidth
+                width: parent.width - x
+                text: line.modelData.value
+                color: root.theme.ink
+                font { pixelSize: root.theme.textSmall; weight: Font.DemiBold }
+                wrapMode: Text.Wrap
+            }
+        }
+    }
+}

@@ -1,0 +1,251 @@
+import QtQuick
+import Turnpoint
+
+// A running session for the operator: what is on the surface, how the procedure goes, what the limits still allow,
+// and what can be done about it. English, like the command line. The model holds news back while a stimulus runs.
+Rectangle {
+    id: root
+    required property LiveModel live
+    required property SessionBridge bridge
+    required property real pixelsPerMm
+    property bool closable: false
+    property bool noting: false
+    property bool stopping: false
+    readonly property bool waiting: bridge.page.kind === PageModel.Paused || bridge.page.kind === PageModel.Fault
+    readonly property bool over: bridge.page.kind === PageModel.End || bridge.page.kind === PageModel.Failed
+    readonly property var notes: ["participant asked", "noise in the room", "hand moved away", "surface wiped"]
+    signal closed()
+
+    color: look.paper
+
+    function keep(text: string) {
+        root.live.annotate(text)
+        note.text = ""
+        root.noting = false
+    }
+
+    Theme {
+        id: look
+        width: root.width
+        height: root.height
+        pixelsPerMm: root.pixelsPerMm
+        dense: true
+    }
+    Texts { id: texts; language: "en" }
+    RunModeFrame {
+        id: frame
+        anchors.fill: parent
+        theme: look
+        texts: texts
+        runMode: root.bridge.page.runMode
+    }
+
+    Item {
+        id: header
+        anchors { left: parent.left; right: parent.right; top: parent.top; margins: look.margin; topMargin: frame.band + look.unit }
+        height: look.controlHeight
+        Text {
+            anchors { left: parent.left; right: buttons.left; verticalCenter: parent.verticalCenter; rightMargin: look.unit }
+            text: root.live.heading !== "" ? root.live.heading : "No trial yet"
+            color: look.ink
+            font { pixelSize: look.textBody; weight: Font.Bold }
+            maximumLineCount: 2
+            wrapMode: Text.Wrap
+            elide: Text.ElideRight
+        }
+        Row {
+            id: buttons
+            anchors { right: parent.right; verticalCenter: parent.verticalCenter }
+            spacing: look.unit
+            ActionButton {
+                objectName: "livePause"
+                visible: !root.over
+                theme: look
+                primary: root.waiting
+                glyph: root.waiting ? "" : "bars"
+                text: root.waiting ? "Go on" : "Pause"
+                onActivated: root.waiting ? root.live.proceed() : root.live.pause()
+            }
+            ActionButton {
+                objectName: "liveRepeat"
+                visible: !root.over
+                theme: look
+                primary: false
+                enabled: root.live.held
+                text: "Repeat trial"
+                onActivated: root.live.repeat()
+            }
+            ActionButton {
+                objectName: "liveNote"
+                theme: look
+                primary: false
+                visible: !root.over
+                text: "Note"
+                onActivated: root.noting = true
+            }
+            ActionButton {
+                objectName: "liveArm"
+                visible: root.waiting
+                theme: look
+                primary: false
+                holdMs: 900
+                text: "Hold to arm"
+                onActivated: root.live.arm()
+            }
+            ActionButton {
+                objectName: "liveStop"
+                visible: !root.over
+                theme: look
+                primary: root.stopping
+                text: root.stopping ? "Really stop" : "Stop"
+                onActivated: {
+                    if (root.stopping) root.live.stop()
+                    root.stopping = !root.stopping
+                }
+            }
+            ActionButton {
+                objectName: "liveClose"
+                visible: root.closable
+                theme: look
+                primary: false
+                glyph: "cross"
+                text: ""
+                onActivated: root.closed()
+            }
+        }
+    }
+
+    Column {
+        id: surfaces
+        anchors { left: parent.left; right: side.left; top: header.bottom; leftMargin: look.margin; rightMargin: look.unit; topMargin: look.unit }
+        height: (root.live.surfaces.length > 1 ? 0.44 : 0.3) * (root.height - header.height - frame.band)
+        spacing: 0.4 * look.unit
+        Repeater {
+            model: root.live.surfaces
+            FigureView {
+                required property string modelData
+                width: surfaces.width
+                height: (surfaces.height - (root.live.surfaces.length - 1) * surfaces.spacing) / Math.max(1, root.live.surfaces.length)
+                svg: modelData
+            }
+        }
+    }
+    Item {
+        id: pictures
+        anchors { left: surfaces.left; right: surfaces.right; top: surfaces.bottom; bottom: parent.bottom; topMargin: 0.6 * look.unit; bottomMargin: frame.edge + look.unit }
+        readonly property real cell: (height - 0.6 * look.unit) / 2
+        FigureView {
+            anchors { left: parent.left; right: parent.right; top: parent.top }
+            height: pictures.cell
+            svg: root.live.profile
+        }
+        FigureView {
+            anchors { left: parent.left; bottom: parent.bottom }
+            width: (parent.width - look.unit) / 2
+            height: pictures.cell
+            svg: root.live.trace
+        }
+        FigureView {
+            anchors { right: parent.right; bottom: parent.bottom }
+            width: (parent.width - look.unit) / 2
+            height: pictures.cell
+            svg: root.live.times
+        }
+    }
+    Rectangle {
+        id: side
+        anchors { right: parent.right; top: header.bottom; bottom: parent.bottom; rightMargin: look.margin; topMargin: look.unit; bottomMargin: frame.edge + look.unit }
+        width: 0.36 * parent.width
+        radius: look.radius
+        color: look.raised
+        border { color: look.line; width: 1 }
+        Flickable {
+            id: scroll
+            anchors { fill: parent; margins: look.unit }
+            contentHeight: facts.height
+            boundsBehavior: Flickable.StopAtBounds
+            clip: true
+            Column {
+                id: facts
+                width: scroll.width
+                spacing: 0.9 * look.unit
+                FactTable { width: parent.width; theme: look; heading: "Course"; facts: root.live.course }
+                FactTable { width: parent.width; theme: look; heading: "Limits used"; facts: root.live.limits }
+                FactTable { width: parent.width; theme: look; heading: "On the surface"; facts: root.live.scene; labelWidth: 0.3 * width }
+            }
+        }
+    }
+
+    Rectangle {
+        visible: root.noting
+        anchors.fill: parent
+        color: look.paper
+        MouseArea { anchors.fill: parent }
+        Column {
+            anchors { fill: parent; margins: 2 * look.unit }
+            spacing: look.unit
+            Text {
+                text: "A note, kept with the session"
+                color: look.ink
+                font { pixelSize: look.textTitle; weight: Font.Bold }
+            }
+            Rectangle {
+                width: parent.width
+                height: look.controlHeight
+                radius: look.radius
+                color: look.raised
+                border { color: look.action; width: look.stroke }
+                TextInput {
+                    id: note
+                    objectName: "note"
+                    anchors { fill: parent; leftMargin: look.unit; rightMargin: look.unit }
+                    verticalAlignment: TextInput.AlignVCenter
+                    color: look.ink
+                    font.pixelSize: look.textBody
+                    focus: root.noting
+                    clip: true
+                    onAccepted: root.keep(text)
+                }
+            }
+            Flow {
+                width: parent.width
+                spacing: 0.6 * look.unit
+                Repeater {
+                    model: root.notes
+                    ActionButton {
+                        required property string modelData
+                        required property int index
+                        objectName: "quickNote" + index
+                        theme: look
+                        primary: false
+                        quiet: true
+                        text: modelData
+                        onActivated: note.text = modelData
+                    }
+                }
+            }
+            ScreenKeyboard {
+                width: parent.width
+                theme: look
+                onTyped: character => note.text += character
+                onErased: note.text = note.text.slice(0, -1)
+            }
+            Row {
+                spacing: look.unit
+                ActionButton {
+                    objectName: "keepNote"
+                    theme: look
+                    enabled: note.text !== ""
+                    text: "Keep the note"
+                    onActivated: root.keep(note.text)
+                }
+                ActionButton {
+                    theme: look
+                    primary: false
+                    text: "Cancel"
+                    onActivated: root.noting = false
+                }
+            }
+        }
+    }
+}

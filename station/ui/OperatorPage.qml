@@ -1,0 +1,371 @@
+import QtQuick
+import Turnpoint
+
+// The operator's start page: which protocol (and what it will be on this rig), who, in which language, live or
+// pilot, the amplifier armed; or an interrupted session that goes on. English, like the command line.
+Rectangle {
+    id: root
+    required property OperatorController operating
+    required property real pixelsPerMm
+    property bool typing: false
+    readonly property real gap: look.unit
+
+    color: look.paper
+
+    Theme {
+        id: look
+        width: root.width
+        height: root.height
+        pixelsPerMm: root.pixelsPerMm
+        dense: true
+    }
+    Theme {
+        id: largeTheme
+        width: root.width
+        height: root.height
+        pixelsPerMm: root.pixelsPerMm
+    }
+    Texts { id: texts; language: "en" }
+
+    Item {
+        id: header
+        anchors { left: parent.left; right: parent.right; top: parent.top; margins: look.margin }
+        height: 3 * look.unit
+        Text {
+            id: brand
+            anchors.verticalCenter: parent.verticalCenter
+            text: "Turnpoint"
+            color: look.ink
+            font { pixelSize: look.textTitle; weight: Font.Bold }
+        }
+        Text {
+            anchors { left: brand.right; leftMargin: 2 * look.unit; right: parent.right; baseline: brand.baseline }
+            text: root.operating.rig + "   ·   " + root.operating.database
+            color: look.quiet
+            font.pixelSize: look.textSmall
+            elide: Text.ElideMiddle
+        }
+    }
+
+    // A session that was cut off comes first: it is what the operator most likely came for.
+    Rectangle {
+        id: interrupted
+        visible: root.operating.interrupted !== ""
+        anchors { left: parent.left; right: parent.right; top: header.bottom; margins: look.margin; topMargin: visible ? root.gap : 0 }
+        height: visible ? resume.height + 1.2 * look.unit : 0
+        radius: look.radius
+        color: look.raised
+        border { color: look.action; width: look.stroke }
+        Text {
+            anchors { left: parent.left; right: resume.left; verticalCenter: parent.verticalCenter; margins: 1.2 * look.unit }
+            text: root.operating.interrupted
+            color: look.ink
+            font { pixelSize: look.textBody; weight: Font.DemiBold }
+            elide: Text.ElideRight
+        }
+        ActionButton {
+            id: resume
+            objectName: "resume"
+            anchors { right: parent.right; verticalCenter: parent.verticalCenter; rightMargin: 0.6 * look.unit }
+            theme: look
+            enabled: !root.operating.preparing
+            text: "Resume"
+            onActivated: root.operating.resume()
+        }
+    }
+
+    Rectangle {
+        id: list
+        anchors { left: parent.left; top: interrupted.bottom; bottom: footer.top; margins: look.margin; topMargin: root.gap; bottomMargin: root.gap }
+        width: 0.34 * parent.width
+        radius: look.radius
+        color: look.raised
+        border { color: look.line; width: 1 }
+        ListView {
+            id: protocols
+            objectName: "protocols"
+            anchors { fill: parent; margins: 0.5 * look.unit }
+            clip: true
+            boundsBehavior: Flickable.StopAtBounds
+            spacing: 0.3 * look.unit
+            model: root.operating.protocols
+            delegate: Rectangle {
+                id: card
+                required property var modelData
+                required property int index
+                readonly property bool chosen: index === root.operating.selected
+                objectName: "protocol" + index
+                width: protocols.width
+                height: Math.max(look.controlHeight, words.implicitHeight + look.unit)
+                radius: look.radius
+                color: chosen ? look.action : look.raised
+                Column {
+                    id: words
+                    anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 0.9 * look.unit }
+                    Text {
+                        width: parent.width
+                        text: card.modelData.id
+                        color: card.chosen ? look.actionText : look.ink
+                        font { pixelSize: look.textBody; weight: Font.DemiBold }
+                        elide: Text.ElideRight
+                    }
+                    Text {
+                        width: parent.width
+                        text: card.modelData.problem !== "" ? "cannot be used" : card.modelData.title
+                        color: card.chosen ? look.actionText : card.modelData.problem !== "" ? look.wrong : look.quiet
+                        font.pixelSize: look.textSmall
+                        elide: Text.ElideRight
+                    }
+                }
+                MouseArea {
+                    anchors.fill: parent
+                    onClicked: root.operating.select(card.index)
+                }
+            }
+        }
+    }
+
+    Rectangle {
+        id: summary
+        anchors { left: list.right; right: parent.right; top: list.top; bottom: list.bottom; leftMargin: root.gap; rightMargin: look.margin }
+        radius: look.radius
+        color: look.raised
+        border { color: look.line; width: 1 }
+        Text {
+            visible: root.operating.checking
+            anchors.centerIn: parent
+            text: "Checking …"
+            color: look.quiet
+            font.pixelSize: look.textBody
+        }
+        Flickable {
+            id: scroll
+            anchors { fill: parent; margins: 1.4 * look.unit }
+            visible: !root.operating.checking
+            contentHeight: sheet.height
+            boundsBehavior: Flickable.StopAtBounds
+            clip: true
+            Column {
+                id: sheet
+                width: scroll.width
+                spacing: 1.1 * look.unit
+                Repeater {
+                    model: root.operating.problems
+                    Row {
+                        id: problem
+                        required property string modelData
+                        width: sheet.width
+                        spacing: 0.8 * look.unit
+                        Glyph {
+                            id: sign
+                            height: 1.4 * look.textBody
+                            name: "alert"
+                            color: look.wrong
+                        }
+                        Text {
+                            width: parent.width - sign.width - parent.spacing
+                            text: problem.modelData
+                            color: look.wrong
+                            font { pixelSize: look.textSmall; weight: Font.DemiBold }
+                            wrapMode: Text.Wrap
+                        }
+                    }
+                }
+                FactTable {
+                    width: parent.width
+                    theme: look
+                    heading: "The session"
+                    facts: root.operating.facts
+                    labelWidth: 0.32 * width
+                }
+                Column {
+                    visible: root.operating.cues.length > 0
+                    width: parent.width
+                    spacing: 0.35 * look.unit
+                    Text {
+                        text: "What else could be used to answer"
+                        color: look.action
+                        font { pixelSize: look.textBody; weight: Font.Bold }
+                    }
+                    Repeater {
+                        model: root.operating.cues
+                        Item {
+                            id: cue
+                            required property var modelData
+                            width: sheet.width
+                            height: named.implicitHeight
+                            Glyph {
+                                id: mark
+                                visible: cue.modelData.leaks
+                                height: 1.1 * look.textSmall
+                                name: "alert"
+                                color: look.wrong
+                            }
+                            Text {
+                                id: named
+                                x: 1.8 * look.textSmall
+                                text: cue.modelData.name + ": " + cue.modelData.says
+                                color: cue.modelData.leaks ? look.wrong : look.quiet
+                                font { pixelSize: look.textSmall; weight: cue.modelData.leaks ? Font.DemiBold : Font.Normal }
+                            }
+                        }
+                    }
+                }
+                Repeater {
+                    model: root.operating.warnings
+                    Text {
+                        required property string modelData
+                        width: sheet.width
+                        text: modelData
+                        color: look.ink
+                        font.pixelSize: look.textSmall
+                        wrapMode: Text.Wrap
+                    }
+                }
+            }
+        }
+    }
+
+    component Choice: ActionButton {
+        id: choice
+        property bool chosen: false
+        theme: look
+        primary: chosen
+        quiet: !chosen
+        glyph: chosen ? "tick" : ""
+        size: look.textBody
+    }
+
+    Item {
+        id: footer
+        anchors { left: parent.left; right: parent.right; bottom: parent.bottom; margins: look.margin }
+        height: 2 * look.controlHeight + root.gap
+        Row {
+            id: first
+            anchors { left: parent.left; top: parent.top }
+            spacing: root.gap
+            Text {
+                height: look.controlHeight
+                text: "Participant"
+                color: look.quiet
+                font.pixelSize: look.textBody
+                verticalAlignment: Text.AlignVCenter
+            }
+            Choice {
+                objectName: "askCode"
+                chosen: root.operating.participant === ""
+                text: "types the code"
+                onActivated: root.operating.enterParticipant("")
+            }
+            Choice {
+                objectName: "enterCode"
+                chosen: root.operating.participant !== ""
+                text: root.operating.participant === "" ? "enter it now" : root.operating.participant + (root.operating.participantKnown ? " (known)" : " (new)")
+                onActivated: root.typing = true
+            }
+        }
+        Row {
+            anchors { right: parent.right; top: parent.top }
+            spacing: root.gap
+            visible: root.operating.languages.length > 1
+            Text {
+                height: look.controlHeight
+                text: "Language"
+                color: look.quiet
+                font.pixelSize: look.textBody
+                verticalAlignment: Text.AlignVCenter
+            }
+            Choice {
+                objectName: "languageAsked"
+                chosen: root.operating.language < 0
+                text: "asked"
+                onActivated: root.operating.chooseLanguage(-1)
+            }
+            Repeater {
+                model: root.operating.languages
+                Choice {
+                    required property string modelData
+                    required property int index
+                    objectName: "language" + index
+                    chosen: root.operating.language === index
+                    text: modelData
+                    onActivated: root.operating.chooseLanguage(index)
+                }
+            }
+        }
+        Row {
+            anchors { left: parent.left; bottom: parent.bottom }
+            spacing: root.gap
+            Choice {
+                objectName: "pilot"
+                chosen: !root.operating.live
+                text: "Pilot run"
+                onActivated: root.operating.setLive(false)
+            }
+            Choice {
+                objectName: "live"
+                chosen: root.operating.live
+                text: "Live: study data"
+                onActivated: root.operating.setLive(true)
+            }
+            Item { width: root.gap; height: 1 }
+            ActionButton {
+                objectName: "arm"
+                theme: look
+                primary: root.operating.armed
+                quiet: !root.operating.armed
+                holdMs: root.operating.armed ? 0 : 900
+                glyph: root.operating.armed ? "tick" : ""
+                text: root.operating.armed ? "Amplifier will be armed" : "Hold to arm the amplifier"
+                onActivated: root.operating.setArmed(!root.operating.armed)
+            }
+        }
+        ActionButton {
+            objectName: "begin"
+            anchors { right: parent.right; bottom: parent.bottom }
+            width: Math.max(implicitWidth, 18 * look.unit)
+            theme: look
+            enabled: root.operating.mayBegin
+            text: root.operating.preparing ? "Preparing …" : root.operating.live ? "Begin LIVE session" : "Begin pilot"
+            onActivated: root.operating.begin()
+        }
+    }
+
+    Rectangle {
+        visible: root.typing
+        anchors.fill: parent
+        color: look.paper
+        MouseArea { anchors.fill: parent }
+        CodePage {
+            id: codePage
+            objectName: "operatorCode"
+            anchors { fill: parent; margins: largeTheme.margin; bottomMargin: largeTheme.margin + (known.visible ? known.height + look.unit : 0) }
+            theme: largeTheme
+            texts: texts
+            confirms: false
+            onAccepted: code => {
+                root.operating.enterParticipant(code)
+                root.typing = false
+            }
+        }
+        Flow {
+            id: known
+            visible: root.operating.participants.length > 0
+            anchors { left: parent.left; right: parent.right; bottom: parent.bottom; margins: largeTheme.margin }
+            height: look.controlHeight
+            clip: true
+            spacing: root.gap
+            Repeater {
+                model: root.operating.participants
+                Choice {
+                    required property string modelData
+                    text: modelData
+                    onActivated: {
+                        root.operating.enterParticipant(modelData)
+                        root.typing = false
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,110 @@
+import QtQuick
+import Turnpoint
+
+// The session that has just ended, for the operator: the trade of speed against accuracy first, then fits, levels
+// and times, the numbers beside, and what must be said about them.
+Rectangle {
+    id: root
+    required property ReportModel report
+    required property real pixelsPerMm
+    property string runMode
+    property int shown: 0
+    signal closed()
+
+    color: look.paper
+    Theme {
+        id: look
+        width: root.width
+        height: root.height
+        pixelsPerMm: root.pixelsPerMm
+        dense: true
+    }
+    Texts { id: texts; language: "en" }
+    RunModeFrame {
+        id: frame
+        anchors.fill: parent
+        theme: look
+        texts: texts
+        runMode: root.runMode
+    }
+    Item {
+        id: header
+        anchors { left: parent.left; right: parent.right; top: parent.top; margins: look.margin; topMargin: frame.band + look.unit }
+        height: look.controlHeight
+        Text {
+            anchors { left: parent.left; right: close.left; verticalCenter: parent.verticalCenter; rightMargin: look.unit }
+            text: root.report.ready ? root.report.title : "The report is being made …"
+            color: look.ink
+            font { pixelSize: 1.15 * look.textBody; weight: Font.Bold }
+            elide: Text.ElideRight
+        }
+        ActionButton {
+            id: close
+            objectName: "closeReport"
+            anchors { right: parent.right; verticalCenter: parent.verticalCenter }
+            theme: look
+            primary: false
+            text: "Close"
+            onActivated: root.closed()
+        }
+    }
+    Row {
+        id: tabs
+        anchors { left: parent.left; top: header.bottom; leftMargin: look.margin; topMargin: look.unit }
+        spacing: 0.6 * look.unit
+        Repeater {
+            model: root.report.pictureNames
+            ActionButton {
+                required property int index
+                required property string modelData
+                objectName: "picture" + index
+                theme: look
+                primary: root.shown === index
+                quiet: root.shown !== index
+                size: look.textSmall
+                text: modelData
+                onActivated: root.shown = index
+            }
+        }
+    }
+    FigureView {
+        objectName: "picture"
+        anchors { left: parent.left; right: side.left; top: tabs.bottom; bottom: parent.bottom; leftMargin: look.margin; rightMargin: look.unit; topMargin: look.unit; bottomMargin: frame.edge + look.unit }
+        svg: root.report.pictures[Math.min(root.shown, root.report.pictures.length - 1)] ?? ""
+    }
+    Rectangle {
+        id: side
+        anchors { right: parent.right; top: header.bottom; bottom: parent.bottom; rightMargin: look.margin; topMargin: look.unit; bottomMargin: frame.edge + look.unit }
+        width: 0.4 * parent.width
+        radius: look.radius
+        color: look.raised
+        border { color: look.line; width: 1 }
+        Flickable {
+            id: scroll
+            anchors { fill: parent; margins: 1.2 * look.unit }
+            contentHeight: sheet.height
+            boundsBehavior: Flickable.StopAtBounds
+            clip: true
+            Column {
+                id: sheet
+                width: scroll.width
+                spacing: look.unit
+                FactTable { width: parent.width; theme: look; heading: "Trials"; facts: root.report.outcomes; labelWidth: 0.5 * width }
+                FactTable { width: parent.width; theme: look; heading: "Speed and accuracy"; facts: root.report.trade; labelWidth: 0.5 * width }
+                FactTable { width: parent.width; theme: look; heading: "Fit"; facts: root.report.fit; labelWidth: 0.5 * width }
+                Repeater {
+                    model: root.report.statements
+                    Text {
+                        required property string modelData
+                        width: sheet.width
+                        text: "• " + modelData
+                        color: look.ink
+                        font.pixelSize: look.textSmall
+                        wrapMode: Text.Wrap
+                    }
+                }
+                FactTable { width: parent.width; theme: look; heading: "Station"; facts: root.report.health; labelWidth: 0.5 * width }
+            }
+        }
+    }
+}

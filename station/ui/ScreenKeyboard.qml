@@ -1,0 +1,47 @@
+import QtQuick
+import Turnpoint
+
+// Letters and digits on the screen, for a station without a keyboard.
+Column {
+    id: root
+    required property Theme theme
+    signal typed(character: string)
+    signal erased()
+    readonly property var rows: ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,. "]
+    spacing: 0.4 * theme.unit
+
+    Repeater {
+        model: root.rows
+        Row {
+            id: line
+            required property string modelData
+            required property int index
+            spacing: 0.4 * root.theme.unit
+            Repeater {
+                model: line.modelData.split("")
+                ActionButton {
+                    required property string modelData
+                    objectName: "letter" + modelData
+                    theme: root.theme
+                    primary: false
+                    quiet: true
+                    width: (root.width - 11 * line.spacing) / 11.5
+                    height: Math.min(root.theme.controlHeight, width)
+                    text: modelData === " " ? "␣" : modelData
+                    onActivated: root.typed(modelData)
+                }
+            }
+            ActionButton {
+                visible: line.index === 0
+                objectName: visible ? "erase" : ""
+                theme: root.theme
+                primary: false
+                quiet: true
+                width: 1.5 * (root.width - 11 * line.spacing) / 11.5
+                height: Math.min(root.theme.controlHeight, width)
+                glyph: "backspace"
+                onActivated: root.erased()
+            }
+        }
+    }
+}

@@ -1,0 +1,42 @@
+#include "station/ui/live_model.hpp"
+
+#include <utility>
+
+#include "station/ui/facts.hpp"
+
+namespace turnpoint::ui {
+
+LiveModel::LiveModel(SessionBridge& bridge, QObject* parent) : QObject(parent), bridge_(bridge) {
+  connect(bridge_.page(), &PageModel::changed, this, &LiveModel::hold_or_show);
+}
+
+void LiveModel::take(app::LiveState state) {
+  QMetaObject::invokeMethod(
+      this,
+      [this, state = std::move(state)]() mutable {
+        waiting_ = std::move(state);
+        hold_or_show();
+      },
+      Qt::QueuedConnection);
+}
+
+void LiveModel::hold_or_show() {
+  const auto kind = bridge_.page()->kind();
+  const bool hold = kind == PageModel::Kind::Stimulus || kind == PageModel::Kind::Pause ||
+                    kind == PageModel::Kind::Response || kind == PageModel::Kind::Adjust;
+  if (hold != held_) {
+    held_ = hold;
+    emit heldChanged();
+  }
+  if (held_ || !waiting_) return;
+  state_ = std::move(*waiting_);
+  waiting_.reset();
+  emit changed();
+}
+
+QVariantList LiveModel::scene() const { return to_list(state_.scene); }
+QVariantList LiveModel::course() const { return to_list(state_.course); }
+QVariantList LiveModel::limits() const { return to_list(state_.limits); }
+QStringList LiveModel::surfaces() const { return to_list(state_.surfaces); }
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,64 @@
+#pragma once
+#include <QObject>
+#include <QQmlEngine>
+#include <optional>
+
+#include "station/app/operator_live.hpp"
+#include "station/ui/session_bridge.hpp"
+
+namespace turnpoint::ui {
+
+/// The operator's view of a running session, and what the operator may do to it. What is new is held back
+/// while a stimulus runs or answers are open, so that drawing it can never delay the participant's screen.
+class LiveModel : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_UNCREATABLE("made by the program")
+  Q_PROPERTY(QString heading READ heading NOTIFY changed)
+  Q_PROPERTY(QVariantList scene READ scene NOTIFY changed)
+  Q_PROPERTY(QVariantList course READ course NOTIFY changed)
+  Q_PROPERTY(QVariantList limits READ limits NOTIFY changed)
+  Q_PROPERTY(QStringList surfaces READ surfaces NOTIFY changed)
+  Q_PROPERTY(QString profile READ profile NOTIFY changed)
+  Q_PROPERTY(QString trace READ trace NOTIFY changed)
+  Q_PROPERTY(QString times READ times NOTIFY changed)
+  Q_PROPERTY(bool held READ held NOTIFY heldChanged)
+
+ public:
+  explicit LiveModel(SessionBridge& bridge, QObject* parent = nullptr);
+
+  /// Any thread; returns at once.
+  void take(app::LiveState state);
+
+  QString heading() const { return QString::fromStdString(state_.heading); }
+  QVariantList scene() const;
+  QVariantList course() const;
+  QVariantList limits() const;
+  QStringList surfaces() const;
+  QString profile() const { return QString::fromStdString(state_.profile); }
+  QString trace() const { return QString::fromStdString(state_.trace); }
+  QString times() const { return QString::fromStdString(state_.times); }
+  /// A stimulus runs or answers are open: nothing new is shown.
+  bool held() const { return held_; }
+
+  Q_INVOKABLE void pause() { bridge_.pause(); }
+  Q_INVOKABLE void proceed() { bridge_.next(); }
+  Q_INVOKABLE void stop() { bridge_.stop(); }
+  Q_INVOKABLE void repeat() { bridge_.repeat(); }
+  Q_INVOKABLE void arm() { bridge_.arm(); }
+  Q_INVOKABLE void annotate(const QString& text) { bridge_.annotate(text); }
+
+ signals:
+  void changed();
+  void heldChanged();
+
+ private:
+  void hold_or_show();
+
+  SessionBridge& bridge_;
+  app::LiveState state_;
+  std::optional<app::LiveState> waiting_;
+  bool held_ = false;
+};
+
+}  // namespace turnpoint::ui

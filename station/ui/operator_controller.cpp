@@ -1,0 +1,206 @@
+#include "station/ui/operator_controller.hpp"
+
+#include <QFileInfo>
+#include <filesystem>
+#include <sstream>
+#include <utility>
+
+#include "station/app/check.hpp"
+#include "station/app/prepare.hpp"
+#include "station/app/resume.hpp"
+#include "station/ui/facts.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+/// Stands in for a code that the keypad will ask for, so that everything else is checked before.
+constexpr const char* kCodeToCome = "keypad";
+/// Simulated sessions behind trials and duration on the start page: quick, and good to some minutes.
+constexpr int kSessions = 5;
+
+std::vector<std::string> lines_of(const std::exception& error) {
+  std::vector<std::string> lines;
+  std::istringstream text(error.what());
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+OperatorController::OperatorController(app::StationRequest request, QObject* parent)
+    : QObject(parent), request_(std::move(request)) {
+  std::filesystem::create_directories(std::filesystem::absolute(request_.database).parent_path());
+  refresh();
+}
+
+OperatorController::~OperatorController() = default;
+
+void OperatorController::refresh() {
+  armed_ = false;
+  participant_.clear();
+  protocols_ = app::list_protocols(request_.protocols);
+  try {
+    participants_ = to_list(app::known_participants(request_.database));
+    interrupted_ = app::interrupted_note(request_.database);
+  } catch (const std::exception& error) {
+    words_.problems = lines_of(error);
+  }
+  emit changed();
+  if (selected_ < 0 && !protocols_.empty()) select(0);
+}
+
+/// The job runs on the worker; what it returns runs here, unless something newer was asked for meanwhile.
+void OperatorController::work(std::function<std::function<void()>()> job) {
+  const int generation = ++generation_;
+  worker_ = std::jthread([this, generation, job = std::move(job)] {
+    std::function<void()> then;
+    try {
+      then = job();
+    } catch (const std::exception& error) {
+      then = [this, lines = lines_of(error)] { fail(lines); };
+    }
+    QMetaObject::invokeMethod(
+        this,
+        [this, generation, then = std::move(then)] {
+          if (generation == generation_) then();
+        },
+        Qt::QueuedConnection);
+  });
+}
+
+void OperatorController::fail(std::vector<std::string> problems) {
+  words_.problems = std::move(problems);
+  checking_ = preparing_ = false;
+  emit changed();
+}
+
+const app::ProtocolEntry* OperatorController::entry() const {
+  return selected_ >= 0 && selected_ < static_cast<int>(protocols_.size())
+             ? &protocols_[static_cast<std::size_t>(selected_)]
+             : nullptr;
+}
+
+void OperatorController::select(int index) {
+  if (index < 0 || index >= static_cast<int>(protocols_.size()) || preparing_) return;
+  selected_ = index;
+  language_ = -1;
+  words_ = {};
+  if (!entry()->problem.empty()) return fail({entry()->problem});
+  checking_ = true;
+  emit changed();
+  work([this, path = entry()->path, rig = request_.rig]() -> std::function<void()> {
+    auto words = app::words_of(app::check(path, rig, {kSessions}));
+    return [this, words = std::move(words)] {
+      words_ = words;
+      checking_ = false;
+      emit changed();
+    };
+  });
+}
+
+void OperatorController::chooseLanguage(int index) {
+  if (index < -1 || index >= languages().size()) return;
+  language_ = index;
+  emit changed();
+}
+
+void OperatorController::enterParticipant(const QString& code) {
+  participant_ = code;
+  emit changed();
+}
+
+void OperatorController::setLive(bool live) {
+  live_ = live;
+  emit changed();
+}
+
+void OperatorController::setArmed(bool armed) {
+  armed_ = armed;
+  emit changed();
+}
+
+bool OperatorController::may_begin() const {
+  return entry() != nullptr && !checking_ && !preparing_ && words_.problems.empty();
+}
+
+void OperatorController::begin() {
+  if (!may_begin()) return;
+  app::RunRequest request;
+  request.protocol = entry()->path;
+  request.rig = request_.rig;
+  request.database = request_.database;
+  request.operator_code = request_.operator_code;
+  request.mode = live_ ? "live" : "pilot";
+  const bool ask_code = participant_.isEmpty();
+  const bool ask_language = language_ < 0 && languages().size() > 1;
+  request.participant = ask_code ? kCodeToCome : participant_.toStdString();
+  if (language_ >= 0) request.language = languages()[language_].toStdString();
+  preparing_ = true;
+  emit changed();
+  work([this, request, ask_code, ask_language, arm = armed_]() -> std::function<void()> {
+    ChosenSession session{app::prepare(request), ask_language, ask_code, arm};
+    return [this, session] {
+      preparing_ = false;
+      emit changed();
+      emit chosen(session);
+    };
+  });
+}
+
+void OperatorController::resume() {
+  if (preparing_ || !interrupted_) return;
+  preparing_ = true;
+  emit changed();
+  work([this, arm = armed_]() -> std::function<void()> {
+    std::ostringstream messages;
+    app::ResumeRequest request;
+    request.database = request_.database;
+    request.session_id = interrupted_->session_id;
+    const auto setup = app::prepare_resume(request, messages);
+    return [this, setup, arm] {
+      preparing_ = false;
+      emit changed();
+      if (setup) emit chosen({*setup, false, false, arm});
+    };
+  });
+}
+
+QVariantList OperatorController::protocols() const {
+  QVariantList list;
+  for (const auto& entry : protocols_) {
+    const auto file = QFileInfo(QString::fromStdString(entry.path)).fileName();
+    list += QVariantMap{{"id", entry.id.empty() ? file : QString::fromStdString(entry.id)},
+                        {"title", QString::fromStdString(entry.title)},
+                        {"problem", QString::fromStdString(entry.problem)}};
+  }
+  return list;
+}
+
+QVariantList OperatorController::facts() const { return to_list(words_.facts); }
+QStringList OperatorController::problems() const { return to_list(words_.problems); }
+QStringList OperatorController::warnings() const { return to_list(words_.warnings); }
+
+QVariantList OperatorController::cues() const {
+  QVariantList list;
+  for (const auto& cue : words_.cues)
+    list += QVariantMap{{"name", QString::fromStdString(cue.name)},
+                        {"says", QString::fromStdString(cue.says)},
+                        {"leaks", cue.leaks}};
+  return list;
+}
+
+QStringList OperatorController::languages() const {
+  return entry() != nullptr ? to_list(entry()->languages) : QStringList();
+}
+
+QString OperatorController::interrupted() const {
+  if (!interrupted_) return {};
+  return QStringLiteral("%1, %2: %3 trials done, interrupted %4 ago")
+      .arg(QString::fromStdString(interrupted_->participant),
+           QString::fromStdString(interrupted_->protocol_id))
+      .arg(interrupted_->trials)
+      .arg(QString::fromStdString(app::age_in_words(interrupted_->age_s)));
+}
+
+}  // namespace turnpoint::ui

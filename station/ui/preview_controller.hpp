@@ -1,0 +1,88 @@
+#pragma once
+#include <QObject>
+#include <QQmlEngine>
+#include <QStringList>
+#include <QVariantList>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "station/app/preview.hpp"
+
+namespace turnpoint::ui {
+
+/// Scenes of a protocol with a slider for each of their factors. Plans are made on a thread of its own,
+/// always the newest asked for; everything else is GUI thread only.
+class PreviewController : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_UNCREATABLE("made by the program")
+  Q_PROPERTY(QString title READ title CONSTANT)
+  Q_PROPERTY(QString rig READ rig CONSTANT)
+  Q_PROPERTY(QStringList scenes READ scenes CONSTANT)
+  Q_PROPERTY(int scene READ scene NOTIFY sceneChanged)
+  Q_PROPERTY(QVariantList knobs READ knobs NOTIFY sceneChanged)  ///< {name, low, high, levels, value}
+  Q_PROPERTY(bool busy READ busy NOTIFY changed)
+  Q_PROPERTY(QString problem READ problem NOTIFY changed)
+  Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
+  Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
+  Q_PROPERTY(QString surface READ surface NOTIFY changed)
+  Q_PROPERTY(QString profile READ profile NOTIFY changed)
+  Q_PROPERTY(QString spectrum READ spectrum NOTIFY changed)
+
+ public:
+  /// Throws text::BadInput, std::invalid_argument for a scene or a factor that the protocol does not have.
+  explicit PreviewController(const app::PreviewRequest& request, QObject* parent = nullptr);
+  ~PreviewController() override;
+
+  QString title() const;
+  QString rig() const;
+  QStringList scenes() const;
+  int scene() const { return scene_; }
+  QVariantList knobs() const;
+  bool busy() const { return busy_; }
+  QString problem() const { return QString::fromStdString(look_.problem); }
+  QVariantList facts() const;
+  QVariantList cues() const;
+  QString surface() const { return surface_; }
+  QString profile() const { return profile_; }
+  QString spectrum() const { return spectrum_; }
+
+  Q_INVOKABLE void choose(int scene);
+  Q_INVOKABLE void set(const QString& factor, double value);
+
+ signals:
+  void sceneChanged();
+  void changed();
+
+ private:
+  /// A look with its pictures, as the worker makes it.
+  struct Drawn {
+    app::Look look;
+    QString surface, profile, spectrum;
+  };
+  struct Wanted {
+    std::string scene;
+    protocol::Factors factors;
+  };
+  void plan();
+  void work(const std::stop_token& stop);
+  Drawn draw(const Wanted& wanted);
+  void take(Drawn drawn);
+
+  app::Preview preview_;
+  std::vector<std::string> scenes_;
+  protocol::Factors factors_;
+  int scene_ = 0;
+  bool busy_ = false;
+  app::Look look_;
+  QString surface_, profile_, spectrum_;
+  std::mutex mutex_;
+  std::condition_variable_any arrived_;
+  std::optional<Wanted> wanted_;
+  std::jthread worker_;  // last: joined before anything that it uses goes
+};
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,126 @@
+#include "station/ui/session_runner.hpp"
+
+#include <QScreen>
+#include <chrono>
+#include <utility>
+
+#include "station/app/operator_report.hpp"
+#include "station/app/touch.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+std::int64_t now_ns() {
+  // steady_clock is CLOCK_MONOTONIC here, the clock of every time stamp.
+  return std::chrono::steady_clock::now().time_since_epoch().count();
+}
+
+}  // namespace
+
+SessionRunner::SessionRunner(QObject* parent)
+    : QObject(parent),
+      bridge_(now_ns, [this](session::Input input) { inputs_.push(std::move(input)); }),
+      live_(bridge_),
+      frames_(now_ns) {
+  connect(&bridge_, &SessionBridge::shown, this, [this] {
+    const auto kind = bridge_.page()->kind();
+    // Between trials nothing is at stake: there the frames lost before are counted.
+    if (kind == PageModel::Kind::Interval)
+      bridge_.frames_lost(frames_.take());
+    else
+      frames_.asked();
+  });
+}
+
+SessionRunner::~SessionRunner() {
+  if (running()) ask_to_stop();
+}
+
+void SessionRunner::watch(QQuickWindow* window) {
+  bridge_.watch(window);
+  frames_.follow(window, window->screen() != nullptr ? window->screen()->refreshRate() : 0);
+}
+
+void SessionRunner::begin(session::Setup setup) {
+  if (thread_.joinable()) thread_.join();
+  setup_ = std::move(setup);
+  inputs_.drain();
+  summary_.reset();
+  failure_ = nullptr;
+  over_ = false;
+  report_.clear();
+  open_touch();
+  view_ = std::make_unique<app::LiveView>(setup_.protocol, setup_.rig,
+                                          [this](app::LiveState state) { live_.take(std::move(state)); });
+  thread_ = std::jthread([this] { run(); });
+}
+
+/// Session thread.
+void SessionRunner::run() {
+  try {
+    summary_ = session::run(setup_, &bridge_, inputs_, view_.get());
+  } catch (...) {
+    failure_ = std::current_exception();
+    show_failure();
+  }
+  over_ = true;
+  try {
+    if (summary_ && summary_->trials > 0)
+      report_.take(app::report_pages(summary_->database, summary_->session_id));
+  } catch (const std::exception& error) {
+    // The session is whole and stored; only its report could not be made.
+    app::ReportPages pages;
+    pages.title = "No report";
+    pages.statements = {error.what()};
+    report_.take(pages);
+  }
+  emit over();
+}
+
+/// Kernel times for touches, where the rig names its panel.
+void SessionRunner::open_touch() {
+  touch_ = app::open_touch(setup_.rig, [this](panel::TouchPanelState state) {
+    if (state == panel::TouchPanelState::back) return;
+    session::Input input;
+    input.time_ns = now_ns();
+    input.kind = session::InputKind::fault;
+    input.fault = session::FaultKind::touch_gone;
+    input.text = "the touch panel is gone";
+    inputs_.push(std::move(input));
+  });
+  if (!touch_) return bridge_.set_kernel_time({});
+  bridge_.set_kernel_time(
+      [this](double x, double y, std::int64_t seen_ns) { return touch_->claim(x, y, seen_ns); });
+}
+
+/// Session thread: says on the screen what ended the session, since nobody may be looking at a terminal.
+void SessionRunner::show_failure() {
+  session::Page page;
+  page.kind = session::PageKind::failed;
+  page.language = setup_.language;
+  page.run_mode = store::name(setup_.run_mode);
+  try {
+    std::rethrow_exception(failure_);
+  } catch (const std::exception& error) {
+    page.text = error.what();
+  }
+  bridge_.show(page);
+}
+
+void SessionRunner::ask_to_stop() {
+  if (!running()) return;
+  session::Input input;
+  input.time_ns = now_ns();
+  input.kind = session::InputKind::stop;
+  inputs_.push(std::move(input));
+}
+
+std::optional<session::Summary> SessionRunner::finish() {
+  ask_to_stop();
+  if (thread_.joinable()) thread_.join();
+  if (failure_) std::rethrow_exception(failure_);
+  return summary_;
+}
+
+}  // namespace turnpoint::ui

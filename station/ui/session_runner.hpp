@@ -1,0 +1,70 @@
+#pragma once
+#include <QObject>
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "station/app/operator_live.hpp"
+#include "station/session/session.hpp"
+#include "station/ui/frame_watch.hpp"
+#include "station/ui/live_model.hpp"
+#include "station/ui/report_model.hpp"
+#include "station/ui/session_bridge.hpp"
+
+namespace turnpoint::panel {
+class TouchReader;
+}
+
+namespace turnpoint::ui {
+
+/// Runs sessions behind the pages, one at a time, each on a thread of its own: pages and inputs, kernel times
+/// of touches, the operator's live view, the report at the end. GUI thread only.
+class SessionRunner : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit SessionRunner(QObject* parent = nullptr);
+  ~SessionRunner() override;  ///< stops a session that is still running
+
+  SessionBridge& bridge() { return bridge_; }
+  LiveModel& live() { return live_; }
+  ReportModel& report() { return report_; }
+
+  /// The window that shows the pages: its touches are stamped, its late frames counted.
+  void watch(QQuickWindow* window);
+
+  /// Begins a session, after the one before has ended. Throws as panel::TouchReader where the rig's touch
+  /// panel is not there.
+  void begin(session::Setup setup);
+  bool running() const { return thread_.joinable() && !over_; }
+  void ask_to_stop();
+
+  /// Waits for the session's end. Throws what ended it; none where none has begun.
+  std::optional<session::Summary> finish();
+
+ signals:
+  /// The session is over and its end page is on the screen.
+  void over();
+
+ private:
+  void run();
+  void open_touch();
+  void show_failure();
+
+  session::Setup setup_;
+  session::Inputs inputs_;
+  SessionBridge bridge_;
+  LiveModel live_;
+  ReportModel report_;
+  FrameWatch frames_;
+  std::unique_ptr<panel::TouchReader> touch_;
+  std::unique_ptr<app::LiveView> view_;
+  std::optional<session::Summary> summary_;
+  std::exception_ptr failure_;
+  std::atomic<bool> over_ = false;
+  std::jthread thread_;  // last: joined before anything that it uses goes
+};
+
+}  // namespace turnpoint::ui

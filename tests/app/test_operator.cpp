@@ -1,0 +1,181 @@
+#include <unistd.h>
+
+#include <condition_variable>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+
+#include "station/app/operator_choices.hpp"
+#include "station/app/operator_live.hpp"
+#include "station/app/operator_report.hpp"
+#include "station/app/prepare.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string kSource = TURNPOINT_SOURCE_DIR;
+
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("turnpoint-operator-" + std::to_string(::getpid()));
+  Folder() {
+    fs::remove_all(path);
+    fs::create_directories(path);
+  }
+  ~Folder() { fs::remove_all(path); }
+};
+
+std::string value_of(const std::vector<std::pair<std::string, std::string>>& facts,
+                     const std::string& label) {
+  for (const auto& [name, value] : facts)
+    if (name == label) return value;
+  return "";
+}
+
+app::LiveTrial answered(bool correct, double response_time_s) {
+  app::LiveTrial trial;
+  trial.procedure = "levels";
+  trial.level = 4;
+  trial.correct = correct;
+  trial.response_time_s = response_time_s;
+  return trial;
+}
+
+app::RunRequest demo_in(const Folder& folder) {
+  app::RunRequest request;
+  request.protocol = kSource + "/protocols/demo.toml";
+  request.rig = kSource + "/deploy/rigs/simulated.toml";
+  request.participant = "P09";
+  request.database = (folder.path / "a.sqlite").string();
+  request.observer = "sim";
+  request.seed = 4;
+  return request;
+}
+
+}  // namespace
+
+TEST_CASE("the course of a session counts what was scored, and timeouts give no time", "[operator]") {
+  auto late = answered(false, 0);
+  late.correct.reset();
+  late.response_time_s.reset();
+  late.outcome = store::TrialOutcome::timeout;
+  auto caught = answered(true, 3);
+  caught.type = store::TrialType::catch_trial;
+  const auto facts =
+      app::course_of({answered(true, 1), answered(false, 2), answered(true, 1.5), late, caught});
+  CHECK(value_of(facts, "Trials") == "5");
+  CHECK(value_of(facts, "Right") == "2 of 3 (66.7 %)");
+  CHECK(value_of(facts, "Catch trials right") == "1 of 1");
+  CHECK(value_of(facts, "Response time") == "median 1.75 s, last 3 s");
+  CHECK(value_of(facts, "Too late, too early") == "1, 0");
+  CHECK(value_of(app::course_of({}), "Right") == "none scored yet");
+}
+
+TEST_CASE("limits used look back one minute", "[operator]") {
+  rig::Rig rig;
+  rig.limits.displacement_m = 8e-6;
+  scene::DrivePlan plan;
+  plan.peak_displacement_m = 2e-6;
+  std::vector<app::LiveTrial> trials(3, answered(true, 1));
+  for (int i = 0; i < 3; ++i) {
+    trials[static_cast<std::size_t>(i)].onset_s = 60.0 * i;
+    trials[static_cast<std::size_t>(i)].stimulus_s = 15;
+    trials[static_cast<std::size_t>(i)].ended_s = 60.0 * i + 20;
+  }
+  const auto facts = app::limits_used(trials, &plan, rig);
+  CHECK(value_of(facts, "Displacement") == "2 of 8 \u00b5m (25 %)");
+  // Of the minute up to 140 s only the trial from 120 s on is inside.
+  CHECK(value_of(facts, "Stimulus time, last minute") == "25 % (limit 80 %)");
+}
+
+TEST_CASE("the live view follows a session trial by trial and draws what is on the surface", "[operator]") {
+  const Folder folder;
+  const auto setup = app::prepare(demo_in(folder));
+  std::mutex mutex;
+  std::condition_variable told;
+  app::LiveState state;
+  int news = 0;
+  app::LiveView view(setup.protocol, setup.rig, [&](app::LiveState next) {
+    const std::lock_guard lock(mutex);
+    state = std::move(next);
+    ++news;
+    told.notify_one();
+  });
+  session::Inputs inputs;
+  const auto summary = session::run(setup, nullptr, inputs, &view);
+  std::unique_lock lock(mutex);
+  told.wait(lock, [&] { return news == 2 * summary.trials; });
+  CHECK(value_of(state.course, "Trials") == std::to_string(summary.trials));
+  CHECK(state.heading.find("Block main, trial 10") == 0);
+  REQUIRE(state.surfaces.size() == 1);
+  CHECK(state.surfaces.front().find(" mm</text>") != std::string::npos);
+  CHECK_FALSE(state.trace.empty());
+  CHECK_FALSE(state.times.empty());
+}
+
+TEST_CASE("the report on the screen has the trade's numbers and pictures", "[operator]") {
+  const Folder folder;
+  session::Inputs inputs;
+  const auto summary = session::run(app::prepare(demo_in(folder)), nullptr, inputs);
+  const auto pages = app::report_pages(summary.database, summary.session_id);
+  CHECK(value_of(pages.outcomes, "Presented") == "10");
+  CHECK_FALSE(value_of(pages.trade, "proportion right").empty());
+  CHECK_FALSE(pages.trace_svg.empty());
+  CHECK_FALSE(pages.health.empty());
+}
+
+TEST_CASE("protocol files of a folder are listed with the ones that cannot be used", "[operator]") {
+  const Folder folder;
+  fs::copy_file(kSource + "/protocols/demo.toml", folder.path / "a.toml");
+  std::ofstream(folder.path / "b.toml") << "format = 3\n";
+  std::ofstream(folder.path / "notes.txt") << "no protocol\n";
+  const auto list = app::list_protocols(folder.path.string());
+  REQUIRE(list.size() == 2);
+  CHECK(list[0].id == "demo");
+  CHECK(list[0].languages.size() == 3);
+  CHECK(list[1].problem.find("b.toml: ") != std::string::npos);
+}
+
+TEST_CASE("participants are known once a session of theirs is stored, and an interrupted one is offered",
+          "[operator]") {
+  const Folder folder;
+  const auto request = demo_in(folder);
+  CHECK(app::known_participants(request.database).empty());
+  CHECK_FALSE(app::interrupted_note(request.database).has_value());
+  struct Cut : session::Monitor {
+    int left = 3;
+    void trial_begins(const session::TrialSpec&, const protocol::Block&) override {}
+    void trial_ended(const session::TrialSpec&, const store::TrialRow&) override {
+      if (--left == 0) throw std::runtime_error("cut");
+    }
+  } cut;
+  session::Inputs inputs;
+  CHECK_THROWS(session::run(app::prepare(request), nullptr, inputs, &cut));
+  CHECK(app::known_participants(request.database) == std::vector<std::string>{"P09"});
+  const auto note = app::interrupted_note(request.database);
+  REQUIRE(note.has_value());
+  CHECK(note->participant == "P09");
+  CHECK(note->trials == 3);
+}
+
+TEST_CASE("a check in words names the cues that would give answers away first", "[operator]") {
+  app::Check check;
+  check.cues = {{"pitch", 0, 0, "Hz", 0.5, 0.5}, {"loudness", 0, 1, "dB", 0.9, 0.5}};
+  const auto words = app::words_of(check);
+  REQUIRE(words.cues.size() == 2);
+  CHECK(words.cues[0].name == "loudness");
+  CHECK(words.cues[0].leaks);
+  CHECK_FALSE(words.cues[1].leaks);
+  check.problems.push_back({{"a.toml", 3, 1}, "what", "allowed"});
+  CHECK(app::words_of(check).facts.empty());
+  CHECK(app::words_of(check).problems.front() == "a.toml:3:1: what; allowed");
+}
+
+TEST_CASE("ages are said as people say them", "[operator]") {
+  CHECK(app::age_in_words(30) == "30 s");
+  CHECK(app::age_in_words(600) == "10 min");
+  CHECK(app::age_in_words(3 * 3600) == "3 h");
+  CHECK(app::age_in_words(80 * 3600) == "3 days");
+}

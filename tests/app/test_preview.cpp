@@ -1,0 +1,85 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "station/app/preview.hpp"
+#include "station/app/scene_figures.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+const std::string kSource = TURNPOINT_SOURCE_DIR;
+
+app::Preview preview_of(const std::string& protocol) {
+  return app::Preview(kSource + "/protocols/" + protocol + ".toml", kSource + "/deploy/rigs/simulated.toml");
+}
+
+protocol::Factors factors(const app::Preview& preview, const std::vector<std::string>& set) {
+  std::vector<std::string> assumed;
+  return app::factors_for(preview.protocol(), set, assumed);
+}
+
+}  // namespace
+
+TEST_CASE("a scene's knobs are the factors that it depends on, with their ranges and levels", "[preview]") {
+  const auto preview = preview_of("demo");
+  const auto knobs = preview.knobs("edge");
+  REQUIRE(knobs.size() == 2);
+  CHECK(knobs[0].name == "offset_mm");
+  CHECK(knobs[0].low == -24);
+  CHECK(knobs[0].high == 24);
+  CHECK(knobs[0].levels.empty());
+  CHECK(knobs[1].name == "mark_mm");
+  CHECK(knobs[1].levels == std::vector<double>{150, 160});
+}
+
+TEST_CASE("a look puts the boundary where the factors say, and the displacement falls to a half there",
+          "[preview]") {
+  auto preview = preview_of("demo");
+  const auto look = preview.look("edge", factors(preview, {"offset_mm=9"}));
+  REQUIRE(look.problem.empty());
+  CHECK(*look.plan.boundary_m == Approx(0.159).margin(1e-4));
+  const auto& profile = look.profile;
+  REQUIRE(profile.x_m.size() == app::kProfilePoints);
+  const auto last_peak = std::max_element(profile.displacement_m.begin(), profile.displacement_m.end());
+  const auto beyond = std::lower_bound(profile.x_m.begin(), profile.x_m.end(), *look.plan.boundary_m);
+  const auto at = static_cast<std::size_t>(beyond - profile.x_m.begin());
+  // The boundary is that of the lossless first mode; loss, and the step of 0.75 mm to the point beyond it,
+  // are in the profile.
+  CHECK(profile.displacement_m[at] / *last_peak == Approx(0.5).margin(0.05));
+  CHECK(look.facts.front().second.find("159 mm") != std::string::npos);
+  CHECK_FALSE(look.cues.empty());
+}
+
+TEST_CASE("what a rig cannot present is the look's problem, in words", "[preview]") {
+  auto preview = preview_of("demo");
+  const auto look = preview.look("edge", factors(preview, {"mark_mm=290"}));
+  CHECK_FALSE(look.problem.empty());
+  CHECK(look.facts.empty());
+  CHECK_THROWS_AS(app::surface_svg(look, preview.rig()), std::invalid_argument);
+  CHECK_THROWS_AS(preview.look("nowhere", {}), std::out_of_range);
+}
+
+TEST_CASE("factors that are set must exist and be numbers", "[preview]") {
+  const auto preview = preview_of("demo");
+  CHECK_THROWS_AS(factors(preview, {"offset_mm"}), std::invalid_argument);
+  CHECK_THROWS_AS(factors(preview, {"offset=3"}), std::invalid_argument);
+  CHECK_THROWS_AS(factors(preview, {"offset_mm=left"}), std::invalid_argument);
+  std::vector<std::string> assumed;
+  app::factors_for(preview.protocol(), {"offset_mm=3"}, assumed);
+  CHECK(assumed == std::vector<std::string>{"mark_mm"});
+}
+
+TEST_CASE("the same look is the same picture, and another boundary another one", "[preview]") {
+  auto preview = preview_of("demo");
+  const auto draw = [&](const std::string& offset) {
+    return app::surface_svg(preview.look("edge", factors(preview, {"offset_mm=" + offset})), preview.rig());
+  };
+  CHECK(draw("9") == draw("9"));
+  CHECK(draw("9") != draw("-9"));
+  const auto look = preview.look("edge", factors(preview, {}));
+  CHECK(plot::render(app::profile_figure(look)).find("<svg") != std::string::npos);
+  CHECK(app::spectrum_figure(look).panels.front().layers.size() >= 1);
+}

@@ -1,0 +1,32 @@
+#include "tests/ui/operator_desk.hpp"
+
+#include <QDir>
+#include <QFile>
+
+namespace turnpoint::ui {
+
+OperatorDesk::OperatorDesk(SessionBridge& bridge, QObject* parent) : QObject(parent), live_(bridge) {
+  const QDir shipped(TURNPOINT_SOURCE_DIR "/protocols");
+  for (const auto& name : {"demo.toml", "boundary-constant.toml"})
+    QFile::copy(shipped.filePath(name), folder_.filePath(name));
+  QFile mistaken(folder_.filePath("mistaken.toml"));
+  if (mistaken.open(QIODevice::WriteOnly)) mistaken.write("format = \"friction-protocol/1\"\nprotocl = 3\n");
+  mistaken.close();
+  operating_ = std::make_unique<OperatorController>(
+      app::StationRequest{folder_.path().toStdString(), TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml",
+                          folder_.filePath("lab.sqlite").toStdString(), "1"});
+  connect(operating_.get(), &OperatorController::chosen, this, [this](const ChosenSession& session) {
+    const auto& setup = session.setup;
+    chosen_ = QString::fromStdString(setup.protocol.id + " " + setup.participant + " " + setup.language +
+                                     " " + store::name(setup.run_mode));
+    emit chosenChanged();
+  });
+}
+
+void OperatorDesk::tellLive(const QString& heading) {
+  app::LiveState state;
+  state.heading = heading.toStdString();
+  live_.take(state);
+}
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,39 @@
+#pragma once
+#include <QObject>
+#include <QTemporaryDir>
+#include <memory>
+
+#include "station/ui/live_model.hpp"
+#include "station/ui/operator_controller.hpp"
+#include "station/ui/session_bridge.hpp"
+
+namespace turnpoint::ui {
+
+/// For the tests of the operator's pages: the real controller on the shipped protocols beside one with
+/// mistakes, a database in a folder that goes with it, and a live model fed by hand.
+class OperatorDesk : public QObject {
+  Q_OBJECT
+  Q_PROPERTY(turnpoint::ui::OperatorController* operating READ operating CONSTANT)
+  Q_PROPERTY(turnpoint::ui::LiveModel* live READ live CONSTANT)
+  Q_PROPERTY(QString chosen READ chosen NOTIFY chosenChanged)
+
+ public:
+  explicit OperatorDesk(SessionBridge& bridge, QObject* parent = nullptr);
+  OperatorController* operating() { return operating_.get(); }
+  LiveModel* live() { return &live_; }
+  /// "protocol participant language mode" of the session that the operator began, "" before.
+  QString chosen() const { return chosen_; }
+
+  Q_INVOKABLE void tellLive(const QString& heading);
+
+ signals:
+  void chosenChanged();
+
+ private:
+  QTemporaryDir folder_;
+  std::unique_ptr<OperatorController> operating_;
+  LiveModel live_;
+  QString chosen_;
+};
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,90 @@
+#include "tests/ui/operator_gallery.hpp"
+
+#include <QTemporaryDir>
+#include <condition_variable>
+#include <mutex>
+
+#include "station/app/prepare.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+app::RunRequest request_for(const std::string& protocol, const std::string& database) {
+  app::RunRequest request;
+  request.protocol = TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml";
+  request.rig = TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml";
+  request.participant = "P03";
+  request.database = database;
+  request.observer = "sim";
+  request.seed = 20261121;
+  return request;
+}
+
+/// Hands on the first trials only, and cuts the session off after them.
+struct FirstTrials : session::Monitor {
+  session::Monitor& to;
+  int left;
+  FirstTrials(session::Monitor& monitor, int trials) : to(monitor), left(trials) {}
+  void trial_begins(const session::TrialSpec& spec, const protocol::Block& block) override {
+    to.trial_begins(spec, block);
+    if (left == 0) throw std::runtime_error("enough");
+  }
+  void trial_ended(const session::TrialSpec& spec, const store::TrialRow& row) override {
+    --left;
+    to.trial_ended(spec, row);
+  }
+};
+
+struct Nobody : session::Monitor {
+  void trial_begins(const session::TrialSpec&, const protocol::Block&) override {}
+  void trial_ended(const session::TrialSpec&, const store::TrialRow&) override {}
+};
+
+void run_first(const app::RunRequest& request, session::Monitor& monitor, int trials) {
+  session::Inputs inputs;
+  FirstTrials first(monitor, trials);
+  try {
+    session::run(app::prepare(request), nullptr, inputs, &first);
+  } catch (const std::runtime_error&) {
+  }
+}
+
+}  // namespace
+
+app::LiveState live_exhibit(const std::string& protocol, int trials) {
+  const QTemporaryDir folder;
+  const auto request = request_for(protocol, folder.filePath("a.sqlite").toStdString());
+  const auto setup = app::prepare(request);
+  std::mutex mutex;
+  std::condition_variable told;
+  app::LiveState state;
+  int news = 0;
+  app::LiveView view(setup.protocol, setup.rig, [&](app::LiveState next) {
+    const std::lock_guard lock(mutex);
+    state = std::move(next);
+    ++news;
+    told.notify_one();
+  });
+  run_first(request, view, trials);
+  std::unique_lock lock(mutex);
+  told.wait(lock, [&] { return news == 2 * trials + 1; });
+  return state;
+}
+
+app::ReportPages report_exhibit(const std::string& protocol) {
+  const QTemporaryDir folder;
+  const auto database = folder.filePath("a.sqlite").toStdString();
+  session::Inputs inputs;
+  const auto summary = session::run(app::prepare(request_for(protocol, database)), nullptr, inputs);
+  return app::report_pages(database, summary.session_id);
+}
+
+std::string interrupted_exhibit(const std::string& folder) {
+  auto request = request_for("boundary-constant", folder + "/lab.sqlite");
+  Nobody nobody;
+  run_first(request, nobody, 7);
+  return request.database;
+}
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,18 @@
+#pragma once
+#include <string>
+
+#include "station/app/operator_live.hpp"
+#include "station/app/operator_report.hpp"
+
+namespace turnpoint::ui {
+
+/// What an operator would see of a session that a simulated observer went through, up to its trial `trials`.
+app::LiveState live_exhibit(const std::string& protocol, int trials);
+
+/// The report of a whole simulated session of that protocol.
+app::ReportPages report_exhibit(const std::string& protocol);
+
+/// A database in a folder of its own, with an interrupted session of participant P03 in it.
+std::string interrupted_exhibit(const std::string& folder);
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,162 @@
+import QtQuick
+import QtTest
+import Turnpoint
+
+Item {
+    id: stage
+    width: 1280
+    height: 800
+
+    Loader {
+        id: page
+        anchors.fill: parent
+        active: false
+        sourceComponent: OperatorPage {
+            operating: desk.operating
+            pixelsPerMm: 5.9
+        }
+    }
+    LiveView {
+        id: liveView
+        anchors.fill: parent
+        visible: false
+        live: desk.live
+        bridge: script.bridge
+        pixelsPerMm: 5.9
+    }
+
+    TestCase {
+        name: "Operator"
+        when: windowShown
+
+        readonly property OperatorController operating: desk.operating
+
+        function initTestCase() { script.bridge.watch(stage.Window.window) }
+
+        function find(parent, name) {
+            for (let i = 0; i < parent.children.length; ++i) {
+                const child = parent.children[i]
+                if (!child.visible) continue
+                if (child.objectName === name) return child
+                const found = find(child, name)
+                if (found) return found
+            }
+            return null
+        }
+
+        function tap(parent, name) {
+            let button = null
+            tryVerify(() => (button = find(parent, name)) !== null, 5000, name)
+            mouseClick(button, button.width / 2, button.height / 2)
+        }
+
+        function says(parent, wanted) {
+            for (let i = 0; i < parent.children.length; ++i) {
+                const child = parent.children[i]
+                if (!child.visible) continue
+                if ((child.text ?? "").toString().includes(wanted) || says(child, wanted)) return true
+            }
+            return false
+        }
+
+        function indexOf(id) {
+            return operating.protocols.findIndex(protocol => protocol.id === id)
+        }
+
+        function test_an_operator_chooses_who_what_and_how() {
+            page.active = true
+            liveView.visible = false
+            operating.select(indexOf("demo"))
+            tryCompare(operating, "checking", false, 20000)
+            verify(operating.facts.some(fact => fact.label === "Trials" && fact.value.startsWith("10")))
+            verify(operating.cues.length > 0)
+            compare(operating.mayBegin, true)
+            verify(says(page.item, "What else could be used to answer"))
+
+            compare(operating.live, false)
+            verify(says(page.item, "Begin pilot"))
+            tap(page.item, "live")
+            verify(says(page.item, "Begin LIVE session"))
+            // The simulated rig has no measured friction: a live session is refused, with the reason.
+            tap(page.item, "begin")
+            tryVerify(() => operating.problems.length > 0, 20000)
+            verify(operating.problems[0].includes("--mode live"))
+            compare(desk.chosen, "")
+            tap(page.item, "pilot")
+
+            tap(page.item, "language1")
+            tap(page.item, "enterCode")
+            const keypad = find(page.item, "operatorCode")
+            for (const key of "T7") tap(keypad, "key" + key)
+            tap(keypad, "accept")
+            compare(operating.participant, "T7")
+            verify(says(page.item, "T7 (new)"))
+
+            operating.select(indexOf("demo"))
+            tryCompare(operating, "checking", false, 20000)
+            tap(page.item, "language1")
+            tap(page.item, "begin")
+            tryCompare(desk, "chosen", "demo T7 de pilot", 20000)
+            page.active = false
+        }
+
+        function test_arming_takes_a_long_press() {
+            page.active = true
+            liveView.visible = false
+            compare(operating.armed, false)
+            tap(page.item, "arm")
+            wait(50)
+            compare(operating.armed, false)
+            const arm = find(page.item, "arm")
+            mousePress(arm)
+            tryCompare(operating, "armed", true, 3000)
+            mouseRelease(arm)
+            tap(page.item, "arm")
+            compare(operating.armed, false)
+            page.active = false
+        }
+
+        function test_a_protocol_with_mistakes_says_them_and_cannot_begin() {
+            page.active = true
+            operating.select(indexOf("mistaken.toml"))
+            tryVerify(() => operating.problems.length > 0)
+            verify(operating.problems[0].includes("mistaken.toml:"))
+            compare(operating.mayBegin, false)
+            page.active = false
+        }
+
+        function test_the_operator_pauses_repeats_annotates_and_stops() {
+            liveView.visible = true
+            const shown = spy.count
+            script.show("explore", "en")
+            tryVerify(() => spy.count > shown)
+            script.forget()
+            tap(liveView, "livePause")
+            tap(liveView, "liveRepeat")
+            tap(liveView, "liveNote")
+            tap(liveView, "quickNote1")
+            tap(liveView, "keepNote")
+            compare(script.inputs, ["pause", "repeat", "note noise in the room"])
+            script.forget()
+            tap(liveView, "liveStop")
+            compare(script.inputs, [])
+            tap(liveView, "liveStop")
+            compare(script.inputs, ["stop"])
+            liveView.visible = false
+        }
+
+        function test_nothing_new_is_shown_to_the_operator_while_a_stimulus_runs() {
+            const shown = spy.count
+            script.show("explore", "en")
+            tryVerify(() => spy.count > shown)
+            desk.tellLive("level 7")
+            wait(100)
+            verify(!desk.live.heading.includes("level 7"))
+            compare(desk.live.held, true)
+            script.show("between-trials", "en")
+            tryVerify(() => desk.live.heading.includes("level 7"), 2000)
+        }
+
+        SignalSpy { id: spy; target: script.bridge; signalName: "shown" }
+    }
+}

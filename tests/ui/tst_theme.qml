@@ -1,0 +1,49 @@
+import QtQuick
+import QtTest
+import Turnpoint
+
+TestCase {
+    name: "Theme"
+
+    Component {
+        id: made
+        Theme {}
+    }
+
+    // Relative luminance and contrast as WCAG 2.1 defines them.
+    function linear(c) { return c <= 0.04045 ? c / 12.92 : Math.pow((c + 0.055) / 1.055, 2.4) }
+    function luminance(c) { return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b) }
+    function contrast(a, b) {
+        const la = luminance(a), lb = luminance(b)
+        return (Math.max(la, lb) + 0.05) / (Math.min(la, lb) + 0.05)
+    }
+
+    function test_contrast_is_computed_as_defined() {
+        fuzzyCompare(contrast(Qt.color("#000000"), Qt.color("#ffffff")), 21, 1e-9)
+        fuzzyCompare(contrast(Qt.color("#777777"), Qt.color("#ffffff")), 4.48, 0.01)
+    }
+
+    function test_texts_stand_out_by_seven_to_one_data() {
+        return [["ink", "paper"], ["ink", "raised"], ["quiet", "paper"], ["quiet", "raised"],
+                ["actionText", "action"], ["action", "raised"], ["action", "paper"], ["right", "paper"],
+                ["right", "raised"], ["wrong", "paper"], ["wrong", "raised"], ["actionText", "right"],
+                ["actionText", "wrong"], ["actionText", "ink"], ["warningText", "warning"],
+                ["actionText", "simulated"]].map(pair => ({ tag: pair.join(" on "), text: pair[0], under: pair[1] }))
+    }
+    function test_texts_stand_out_by_seven_to_one(row) {
+        const theme = made.createObject(null, { width: 800, height: 480, pixelsPerMm: 5.2 })
+        const found = contrast(theme[row.text], theme[row.under])
+        verify(found >= 7, row.tag + ": " + found.toFixed(2))
+    }
+
+    function test_targets_have_their_size_in_the_hand_data() {
+        return [{ tag: "7 inch", w: 800, h: 480, mm: 5.2 }, { tag: "10 inch", w: 1280, h: 800, mm: 5.9 },
+                { tag: "15 inch", w: 1920, h: 1080, mm: 5.6 }, { tag: "dense 5 inch", w: 1280, h: 720, mm: 11.6 }]
+    }
+    function test_targets_have_their_size_in_the_hand(row) {
+        const theme = made.createObject(null, { width: row.w, height: row.h, pixelsPerMm: row.mm })
+        verify(theme.targetMin >= 20 * row.mm)
+        verify(theme.targetGap >= 5 * row.mm)
+        verify(theme.textSmall >= 2.4 * row.mm)
+    }
+}
