@@ -10,6 +10,8 @@ namespace {
 
 // Below this share of the skin contacts the floor is all that is left.
 constexpr double smallest_share = 0.02;
+// Steps of the table that the solution starts from: fine enough for two Newton steps to rounding.
+constexpr int start_steps = 256;
 
 // Excursion that gives an overpressure q: (1 + q)^2 = (1 + 3 e^2/2)/(1 - e^2), solved for e.
 double excursion(double overpressure) {
@@ -39,11 +41,9 @@ double displacement_for_share(const LoadSharing& m, double share) {
 
 // The share at a displacement: the film's overpressure must be what the contacts leave, (1 - share) of the
 // load. The difference rises with L = ln(share), so Newton steps inside a bracket find it.
-double share_at(const LoadSharing& m, double displacement_m) {
-  if (displacement_m <= 0) return 1;
-  if (displacement_m >= displacement_for_share(m, smallest_share)) return smallest_share;
+double share_at(const LoadSharing& m, double displacement_m, double ln_guess) {
   double low = std::log(smallest_share), high = 0;
-  double x = std::max(low, -0.5);
+  double x = std::max(low, ln_guess);
   for (int i = 0; i < 100; ++i) {
     const double share = std::exp(x);
     const double gap = m.rest_gap_m - m.decay_length_m * x;
@@ -82,12 +82,18 @@ double squeeze_film_overpressure(double e) {
   return r / (1 + std::sqrt(1 + r));
 }
 
-FrictionMap::FrictionMap(const LoadSharing& m) : model_(m) {
+FrictionMap::FrictionMap(const LoadSharing& m) {
   require(m.pressure_Pa > 0 && std::isfinite(m.pressure_Pa), "pressure_Pa", m.pressure_Pa, "above 0");
   require(m.floor >= 0 && m.floor < 1, "floor", m.floor, "0 to below 1");
   require(m.decay_length_m > 0, "decay_length_m", m.decay_length_m, "above 0");
   require(m.rest_gap_m > 0, "rest_gap_m", m.rest_gap_m, "above 0");
   require(m.ambient_Pa > 0, "ambient_Pa", m.ambient_Pa, "above 0");
+  Sharing sharing{m, displacement_for_share(m, smallest_share), {0}};
+  for (int i = 1; i <= start_steps; ++i) {
+    const double a = sharing.highest_m * i / start_steps;
+    sharing.ln_share.push_back(std::log(share_at(m, a, sharing.ln_share.back())));
+  }
+  model_ = std::move(sharing);
 }
 
 FrictionMap::FrictionMap(std::vector<FrictionPoint> table) {
@@ -110,15 +116,23 @@ FrictionMap::FrictionMap(std::vector<FrictionPoint> table) {
 
 double FrictionMap::relative_friction(double a) const {
   require(a >= 0, "displacement_m", a, "0 or more");
-  if (const auto* m = std::get_if<LoadSharing>(&model_)) return with_floor(share_at(*m, a), m->floor);
-  return std::get<Table>(model_).friction(std::min(a, highest_displacement_m()));
+  const auto* sharing = std::get_if<Sharing>(&model_);
+  if (sharing == nullptr) return std::get<Table>(model_).friction(std::min(a, highest_displacement_m()));
+  const LoadSharing& m = sharing->model;
+  if (a == 0) return 1;
+  if (a >= sharing->highest_m) return with_floor(smallest_share, m.floor);
+  const double at = a / sharing->highest_m * start_steps;
+  const auto i = std::min(static_cast<std::size_t>(at), std::size_t{start_steps - 1});
+  const double t = at - static_cast<double>(i);
+  const double guess = (1 - t) * sharing->ln_share[i] + t * sharing->ln_share[i + 1];
+  return with_floor(share_at(m, a, guess), m.floor);
 }
 
 std::optional<double> FrictionMap::displacement_m(double friction) const {
   if (!(friction <= 1) || friction < lowest_friction()) return std::nullopt;
-  if (const auto* m = std::get_if<LoadSharing>(&model_)) {
-    const auto share = without_floor(friction, m->floor);
-    return displacement_for_share(*m, share.value_or(smallest_share));
+  if (const auto* sharing = std::get_if<Sharing>(&model_)) {
+    const auto share = without_floor(friction, sharing->model.floor);
+    return displacement_for_share(sharing->model, share.value_or(smallest_share));
   }
   return std::get<Table>(model_).friction.inverse(friction);
 }
@@ -129,12 +143,12 @@ double FrictionMap::sd(double a) const {
 }
 
 double FrictionMap::lowest_friction() const {
-  if (const auto* m = std::get_if<LoadSharing>(&model_)) return with_floor(smallest_share, m->floor);
+  if (const auto* s = std::get_if<Sharing>(&model_)) return with_floor(smallest_share, s->model.floor);
   return relative_friction(highest_displacement_m());
 }
 
 double FrictionMap::highest_displacement_m() const {
-  if (const auto* m = std::get_if<LoadSharing>(&model_)) return displacement_for_share(*m, smallest_share);
+  if (const auto* s = std::get_if<Sharing>(&model_)) return s->highest_m;
   return std::get<Table>(model_).friction.pieces().back().x1;
 }
 

@@ -37,7 +37,7 @@ struct FrictionPoint {
 // last value beyond the last point. Value type; const functions are thread-safe.
 class FrictionMap {
  public:
-  FrictionMap() = default;  // load sharing with its defaults
+  FrictionMap() : FrictionMap(LoadSharing{}) {}
   explicit FrictionMap(const LoadSharing& model);
   explicit FrictionMap(std::vector<FrictionPoint> table);  // throws std::invalid_argument
 
@@ -51,14 +51,21 @@ class FrictionMap {
   double lowest_friction() const;
   double highest_displacement_m() const;
   // Whether it is the illustrative curve rather than measured data.
-  bool illustrative() const { return std::holds_alternative<LoadSharing>(model_); }
+  bool illustrative() const { return std::holds_alternative<Sharing>(model_); }
 
  private:
   struct Table {
     MonotoneCubic friction;
     MonotoneCubic sd;
   };
-  std::variant<LoadSharing, Table> model_;
+  // Load sharing with what its solution starts from: ln of the contacts' share at equal steps of
+  // displacement.
+  struct Sharing {
+    LoadSharing model;
+    double highest_m;
+    std::vector<double> ln_share;
+  };
+  std::variant<Sharing, Table> model_;
 };
 
 // Mean of `values` (sampled at ascending `x_m`, joined linearly) over a fingertip of width `fingertip_m`

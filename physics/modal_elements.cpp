@@ -33,6 +33,11 @@ ModalAssembler::ModalAssembler(const Taper& taper, const TransverseBasis& across
       slope_unit_m_(slope_unit_m),
       rule_(gauss_legendre(along.degree + 3)) {
   for (const double t : rule_.x) table_.push_back(along.at(2 * t - 1));
+  for (std::size_t m = 0; m < 4; ++m) {
+    for (std::size_t l = 0; l < 4; ++l) {
+      single_bend_(static_cast<Eigen::Index>(m), static_cast<Eigen::Index>(l)) = across.bend[m][l](0, 0);
+    }
+  }
 }
 
 std::vector<ModalAssembler::Point> ModalAssembler::points(const ModalElement& e) const {
@@ -56,7 +61,73 @@ std::vector<ModalAssembler::Point> ModalAssembler::points(const ModalElement& e)
   return list;
 }
 
+// lap v = Y X'' + eta Y' [(2 r^2 - W''/W) X - 2 r X'] + eta^2 Y'' r^2 X + Y'' X / W^2, r = W'/W: a row a part
+// of Y, squared with the parts' integrals.
+ModalAssembler::Form ModalAssembler::single_form(double w, double r, double curve) const {
+  const double across = 1 / (w * w), stretch = 2 * r * r - curve;
+  const auto& m = single_bend_;
+  const double bending = equation_.bending, tension = equation_.tension;
+  const auto with_value = [&](Eigen::Index row) {  // the parts that multiply X
+    return stretch * m(row, 1) + r * r * m(row, 2) + across * m(row, 3);
+  };
+  Form f;
+  f.ss = bending * m(0, 0);
+  f.sf = bending * -2 * r * m(0, 1);
+  f.sv = bending * with_value(0);
+  f.ff = bending * 4 * r * r * m(1, 1) + tension * across_.mass(0, 0);
+  f.fv = bending * -2 * r * with_value(1) - tension * r * across_.stretch(0, 0);
+  f.vv = bending * (stretch * with_value(1) + r * r * with_value(2) + across * with_value(3)) +
+         tension * (r * r * across_.shear(0, 0) + across_.stiff(0, 0) * across);
+  return f;
+}
+
+// With one transverse function Y the weak form is, at each point, a symmetric form of (X'', X', X): plain
+// loops over few numbers, which is what a clamped plate's `mode` spends its time on.
+Eigen::MatrixXcd ModalAssembler::single_matrix(const ModalElement& e) const {
+  using Rows = std::array<double, largest_degree + 1>;
+  const auto n = static_cast<std::size_t>(along_.count());
+  const double d = 2 / e.h, mass_across = across_.mass(0, 0);
+  std::array<Rows, largest_degree + 1> stiffness{}, mass{};
+  for (std::size_t q = 0; q < rule_.x.size(); ++q) {
+    const double x = e.x0 + e.h * rule_.x[q], w = taper_.half_width_m(x);
+    const Form f = single_form(w, taper_.slope(x) / w, second_derivative(taper_, x) / w);
+    const double weight = e.h * rule_.w[q] * w;
+    const BasisValues& basis = table_[q];
+    Rows s{}, p{}, v{}, fs{}, fp{}, fv{};
+    for (std::size_t a = 0; a < n; ++a) {
+      const bool slope = along_.per_vertex == 2 && (a == 1 || a == n - 1);
+      const double factor = slope ? slope_factor(e) : 1;
+      s[a] = factor * d * d * basis.second[a];
+      p[a] = factor * d * basis.first[a];
+      v[a] = factor * basis.value[a];
+    }
+    for (std::size_t a = 0; a < n; ++a) {
+      fs[a] = weight * (f.ss * s[a] + f.sf * p[a] + f.sv * v[a]);
+      fp[a] = weight * (f.sf * s[a] + f.ff * p[a] + f.fv * v[a]);
+      fv[a] = weight * (f.sv * s[a] + f.fv * p[a] + f.vv * v[a]);
+    }
+    for (std::size_t a = 0; a < n; ++a) {
+      const double va = weight * mass_across * v[a];
+      for (std::size_t b = 0; b <= a; ++b) {
+        stiffness[a][b] += fs[a] * s[b] + fp[a] * p[b] + fv[a] * v[b];
+        mass[a][b] += va * v[b];
+      }
+    }
+  }
+  const auto size =
+      static_cast<Eigen::Index>(e.right == 0 ? n - static_cast<std::size_t>(along_.per_vertex) : n);
+  Eigen::MatrixXcd k(size, size);
+  for (Eigen::Index a = 0; a < size; ++a) {
+    for (Eigen::Index b = 0; b <= a; ++b) {
+      const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+      k(a, b) = k(b, a) = stiffness[i][j] - equation_.inertia * mass[i][j];
+    }
+  }
+  return k;
+}
+
 Eigen::MatrixXcd ModalAssembler::matrix(const ModalElement& e) const {
+  if (across_.count() == 1) return single_matrix(e);
   const int n = along_.count();
   const std::vector<Point> list = points(e);
   const auto rows = static_cast<Eigen::Index>(list.size());

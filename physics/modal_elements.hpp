@@ -42,6 +42,12 @@ class ModalAssembler {
     BasisValues basis;         // with respect to x, slope unknowns scaled
   };
   std::vector<Point> points(const ModalElement& element) const;
+  // A symmetric form of (X'', X', X) at one point.
+  struct Form {
+    double ss, sf, sv, ff, fv, vv;
+  };
+  Form single_form(double w, double slope_per_width, double curve_per_width) const;
+  Eigen::MatrixXcd single_matrix(const ModalElement& element) const;
 
   const Taper& taper_;
   const TransverseBasis& across_;
@@ -50,6 +56,7 @@ class ModalAssembler {
   double slope_unit_m_;
   Quadrature rule_;
   std::vector<BasisValues> table_;
+  Eigen::Matrix4d single_bend_;  // across_.bend of the first function
 };
 
 }  // namespace turnpoint::physics

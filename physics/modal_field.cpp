@@ -180,7 +180,13 @@ class ModalLine final : public CentreLine {
     if (!peak_m_) return std::nullopt;
     return find_level(*this, *peak_m_, length_m_, spacing_m_, level);
   }
-  double drive_conditioning(double) const override { return conditioning_; }
+  double drive_conditioning(double) const override {
+    const double ln_drive = value(0).ln_magnitude();
+    double most = 1;
+    for (double x = 0; x <= turning_m_; x += spacing_m_)
+      most = std::max(most, std::exp(std::min(600.0, value(x).ln_magnitude() - ln_drive)));
+    return most;
+  }
 
  private:
   Scaled at(double x, int derivative) const;
@@ -189,9 +195,8 @@ class ModalLine final : public CentreLine {
   ElementBasis along_;
   std::vector<ModalElement> elements_;
   TaylorMarch tail_;
-  double length_m_, match_m_ = 0, spacing_m_;
+  double length_m_, turning_m_ = 0, match_m_ = 0, spacing_m_;
   std::optional<double> peak_m_;
-  double conditioning_ = 1;
 };
 
 ModalLine::ModalLine(const Surface& surface, double f, Losses losses, const ModalResolution& resolution)
@@ -199,6 +204,7 @@ ModalLine::ModalLine(const Surface& surface, double f, Losses losses, const Moda
   const Setup s = make_setup(surface, f, losses, resolution);
   along_ = s.along;
   spacing_m_ = 0.25 / s.k;
+  turning_m_ = s.turning_m;
   elements_ = make_elements(s, resolution, match_m_);
   const ModalAssembler assembler(s.taper, s.across, s.along, s.equation, s.taper.half_width_m(0));
   eliminate(assembler, s.along, elements_);
@@ -208,10 +214,6 @@ ModalLine::ModalLine(const Surface& surface, double f, Losses losses, const Moda
   }
   substitute(s, assembler, drive, elements_);
   peak_m_ = find_last_peak(*this, std::min(s.turning_m, length_m_), spacing_m_);
-  const double ln_drive = value(0).ln_magnitude();
-  for (double x = 0; x <= s.turning_m; x += spacing_m_) {
-    conditioning_ = std::max(conditioning_, std::exp(std::min(600.0, value(x).ln_magnitude() - ln_drive)));
-  }
 }
 
 Scaled ModalLine::at(double x, int derivative) const {

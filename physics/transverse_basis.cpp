@@ -1,11 +1,14 @@
 #include "physics/transverse_basis.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace turnpoint::physics {
 
-Quadrature gauss_legendre(int n) {
+namespace {
+
+Quadrature make_gauss_legendre(int n) {
   Quadrature rule;
   rule.x.resize(static_cast<std::size_t>(n));
   rule.w.resize(static_cast<std::size_t>(n));
@@ -29,6 +32,19 @@ Quadrature gauss_legendre(int n) {
     rule.w[j] = 1 / ((1 - t * t) * slope * slope);
   }
   return rule;
+}
+
+}  // namespace
+
+Quadrature gauss_legendre(int n) {
+  // The rules in use, made once: a solution of a thousand points is hardly longer than making one.
+  constexpr int kept = 40;
+  static const std::vector<Quadrature> rules = [] {
+    std::vector<Quadrature> list;
+    for (int i = 0; i <= kept; ++i) list.push_back(make_gauss_legendre(std::max(1, i)));
+    return list;
+  }();
+  return n >= 1 && n <= kept ? rules[static_cast<std::size_t>(n)] : make_gauss_legendre(n);
 }
 
 TransverseBasis TransverseBasis::polynomials(int count, int power) {
