@@ -98,6 +98,38 @@ void check(const Surface& surface, const MapOptions& options) {
 
 }  // namespace
 
+std::optional<double> solve_frequency_Hz(const Surface& surface, const MapOptions& options, double x) {
+  check(surface, options);
+  const Taper taper(surface);
+  const Dispersion dispersion(surface);
+  if (!(x >= 0 && x <= surface.length_m) || !(taper.half_width_m(x) > 0)) return std::nullopt;
+  const double w = taper.half_width_m(x);
+  // As a map does: the edge's half-width over the cut-off's varies slowly, so that fixed-point steps are good
+  // and secants on them better.
+  double miss_m = 0;
+  const auto next = [&](double f) -> std::optional<double> {
+    const auto line = make_feature_line(surface, f, Model::edge, Wave::exact, Losses::left_out);
+    const auto at = edge_position_m(surface, f, *line, options);
+    if (!at) return std::nullopt;
+    miss_m = std::abs(*at - x);
+    return dispersion.cut_off_frequency_Hz(w * dispersion.cut_off_half_width_m(f) / taper.half_width_m(*at));
+  };
+  double f0 = dispersion.cut_off_frequency_Hz(w);
+  auto f1 = next(f0);
+  double g0 = f1 ? *f1 - f0 : 0;
+  for (int i = 0; i < 20 && f1; ++i) {
+    if (miss_m < 1e-9) return f0;
+    const auto f2 = next(*f1);
+    if (!f2) return std::nullopt;
+    const double g1 = *f2 - *f1;
+    const double better = g1 == g0 ? *f2 : *f1 - g1 * (*f1 - f0) / (g1 - g0);
+    f0 = *f1;
+    g0 = g1;
+    f1 = better > 0.5 * f0 && better < 2 * f0 ? better : *f2;
+  }
+  return std::nullopt;
+}
+
 BoundaryMap::BoundaryMap(const Surface& surface, const MapOptions& options) {
   check(surface, options);
   const Model model = options.model.value_or(Model::edge);

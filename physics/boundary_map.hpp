@@ -25,6 +25,11 @@ struct MapOptions {
   std::optional<Model> model;               // none: cheapest whose bound is inside `tolerance_m`
   std::optional<double> tolerance_m;        // none: the most exact position there is (`edge` where closed)
   std::optional<FrictionContext> friction;  // required for a friction edge
+  // Frequencies that matter: a table is made for them only. None: all that the surface can present.
+  struct Band {
+    double low_Hz, high_Hz;
+  };
+  std::optional<Band> band = {};
 };
 
 // One answer; the optionals are none when there is no such boundary, and `reason` says why (otherwise why
@@ -42,8 +47,9 @@ struct MapAnswer {
   std::vector<Warning> warnings;
 };
 
-// The map of one surface and one edge. Building it may take milliseconds (a table is made and validated);
-// the two look-ups take well under a microsecond, allocate nothing and may be called from any thread.
+// The map of one surface and one edge. Building it takes microseconds where it is closed, else milliseconds
+// (a table is made and validated); the two look-ups take well under a microsecond, allocate nothing and may
+// be called from any thread.
 class BoundaryMap {
  public:
   BoundaryMap(const Surface& surface, const MapOptions& options);
@@ -65,5 +71,11 @@ class BoundaryMap {
   struct State;
   std::unique_ptr<const State> state_;
 };
+
+// The frequency that puts the edge at a position (to a nanometre), without a table: a handful of solutions,
+// for a map that would be used once. None where the search from the turning point's frequency does not find
+// one; a map may still.
+std::optional<double> solve_frequency_Hz(const Surface& surface, const MapOptions& options,
+                                         double boundary_m);
 
 }  // namespace turnpoint::physics

@@ -55,20 +55,30 @@ class Builder {
     return taper_.half_width_m(*x) / dispersion_.cut_off_half_width_m(f);
   }
 
-  // Frequencies whose turning points are spread over the surface.
+  // Frequencies whose turning points are spread over the surface, or over the band that matters.
   std::vector<double> survey() const {
     std::vector<double> f;
-    constexpr int count = 48;
+    const int count = options_.band ? 12 : 48;
     for (int i = 0; i <= count; ++i) {
       const double w = taper_.half_width_m(surface_.length_m * i / count);
       if (w > 1e-6 * taper_.half_width_m(0)) f.push_back(dispersion_.cut_off_frequency_Hz(w));
     }
+    if (!options_.band) return f;
+    const double low =
+        std::max(options_.band->low_Hz, dispersion_.cut_off_frequency_Hz(taper_.half_width_m(0)));
+    const double high = options_.band->high_Hz;
+    if (!(low < high)) return {};
+    std::erase_if(f, [low, high](double one) { return one <= low || one >= high; });
+    f.insert(f.begin(), low);
+    f.push_back(high);
     return f;
   }
 
   // The end of existence between a frequency with the edge and one without.
   double limit(double with, double without) const {
-    for (int i = 0; i < 60 && std::abs(with - without) > 1e-14 * with; ++i) {
+    // A plate's solutions are dear, and the last step need not be found: the edge is tabulated up to it.
+    const double enough = dispersion_.clamped_bending() ? 1e-9 : 1e-14;
+    for (int i = 0; i < 60 && std::abs(with - without) > enough * with; ++i) {
       const double middle = 0.5 * (with + without);
       (ratio(middle) ? with : without) = middle;
     }
@@ -122,6 +132,7 @@ class Builder {
       const auto w = taper_.position_continued_m(clenshaw(piece, ln_f) * dispersion_.cut_off_half_width_m(f));
       if (!x || !w) return std::numeric_limits<double>::infinity();
       worst = std::max(worst, std::abs(*x - *w));
+      if (worst > 100 * tolerance_m(dispersion_, options_)) return worst;  // halved anyway
     }
     return worst;
   }

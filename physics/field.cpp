@@ -151,26 +151,43 @@ Normalise parse_normalise(std::string_view text) {
                               "\" is not known; allowed: drive, peak, none");
 }
 
-Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<const double> x, Model model,
-               Normalise normalise) {
+std::vector<ToneField> evaluate_tones(const Surface& surface, std::span<const Tone> tones,
+                                      std::span<const double> x, Model model, Normalise normalise) {
   validate(surface);
   require_points(surface, x);
   const double most = strongest(tones);
-  Field field;
-  field.model = model;
-  field.normalise = normalise;
-  double conditioning = 1;
+  std::vector<ToneField> fields;
   for (const Tone& tone : tones) {
     const Solved s = solve(surface, tone.frequency_Hz, model);
-    ToneField& one = field.tones.emplace_back();
+    ToneField& one = fields.emplace_back();
     one.info = s.info;
     if (normalise == Normalise::peak) one.info.conditioning = 1;
-    conditioning = std::max(conditioning, one.info.conditioning);
-    one.info.nearest_resonance_Hz = nearest_resonance_Hz(surface, tone.frequency_Hz);
     one.v.resize(x.size());
     one.ln_amplitude.resize(x.size());
     const Reference unit = reference(s, tone, normalise, most);
     s.line->evaluate(x, unit.phase, unit.ln, one.v, one.ln_amplitude);
+  }
+  return fields;
+}
+
+std::vector<double> amplitude_profile(const Surface& surface, std::span<const Tone> tones,
+                                      std::span<const double> x, Model model) {
+  Field field;
+  field.tones = evaluate_tones(surface, tones, x, model, Normalise::none);
+  sum_tones(field, x.size());
+  return field.amplitude;
+}
+
+Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<const double> x, Model model,
+               Normalise normalise) {
+  Field field;
+  field.model = model;
+  field.normalise = normalise;
+  field.tones = evaluate_tones(surface, tones, x, model, normalise);
+  double conditioning = 1;
+  for (ToneField& one : field.tones) {
+    conditioning = std::max(conditioning, one.info.conditioning);
+    one.info.nearest_resonance_Hz = nearest_resonance_Hz(surface, one.info.frequency_Hz);
   }
   sum_tones(field, x.size());
   const PlanRequest request{{tones.begin(), tones.end()}, static_cast<int>(x.size()), {}, normalise, {}};

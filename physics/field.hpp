@@ -60,6 +60,15 @@ struct Field {
 Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<const double> x_m, Model model,
                Normalise normalise);
 
+// The tones of evaluate() alone: no bound, warnings or nearest resonances, for callers that ask for those
+// once and for profiles often.
+std::vector<ToneField> evaluate_tones(const Surface& surface, std::span<const Tone> tones,
+                                      std::span<const double> x_m, Model model, Normalise normalise);
+
+// Root of the summed squares of |v| at each point (m), for the tones' amplitudes at the drive edge.
+std::vector<double> amplitude_profile(const Surface& surface, std::span<const Tone> tones,
+                                      std::span<const double> x_m, Model model);
+
 // Where and how strongly one frequency acts, without a profile.
 ToneInfo tone_info(const Surface& surface, double frequency_Hz, Model model = Model::mode);
 

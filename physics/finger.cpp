@@ -7,6 +7,7 @@
 
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
+#include "physics/modal_load.hpp"
 #include "physics/taper.hpp"
 
 namespace turnpoint::physics {
@@ -80,10 +81,30 @@ class Loaded {
 
 void check(const Surface& surface) {
   validate(surface);
-  if (bending_modelled(surface)) {
+  if (bending_modelled(surface) && surface.edges == Edges::supported) {
     throw std::domain_error(
-        "finger load is available for membranes only; with bending the load needs a plate model");
+        "finger load: membranes and clamped plates only, not a plate with simply supported sides");
   }
+}
+
+// A clamped plate: the one-shape mode's field and its answer to a force.
+std::vector<FingerLoad> plate_loads(const Surface& surface, double f, const std::vector<double>& x_m,
+                                    const Finger& finger) {
+  const auto line = make_centre_line(surface, f, Model::mode);
+  const auto receptance = plate_receptance_m_per_N(surface, f, x_m);
+  const std::complex<double> i_omega(0, 2 * std::numbers::pi * f);
+  const Scaled v0 = line->value(0);
+  std::vector<FingerLoad> all;
+  for (std::size_t i = 0; i < x_m.size(); ++i) {
+    FingerLoad load;
+    const Scaled v = line->value(x_m[i]);
+    load.x_m = x_m[i];
+    load.unloaded = v.mantissa / v0.mantissa * std::exp(std::min(600.0, v.ln_scale - v0.ln_scale));
+    load.loaded = load.unloaded / (1.0 + i_omega * finger.impedance_Ns_per_m * receptance[i]);
+    load.strip_impedance_Ns_per_m = 1 / std::max(1e-300, std::abs(i_omega * receptance[i]));
+    all.push_back(load);
+  }
+  return all;
 }
 
 // The feature of |value| on an ascending grid: last maximum, then the level beyond it.
@@ -116,6 +137,7 @@ std::vector<FingerLoad> finger_load(const Surface& surface, double f, const std:
       throw std::invalid_argument("finger position: on the surface only");
     end = std::max(end, x);
   }
+  if (Dispersion(surface).clamped_bending()) return plate_loads(surface, f, x_m, finger);
   // The apex itself is singular from the drive's side; a hair before it nothing moves any more.
   if (const auto apex = Taper(surface).apex_m()) end = std::min(end, *apex * (1 - 1e-6));
   const Loaded loaded(surface, f, std::max(end, 1e-3 * surface.length_m), finger);

@@ -26,7 +26,8 @@ struct FingerLoad {
 
 // Loaded displacement under a finger at each position, by `mode` with loss. G is the response at x to a unit
 // force shared out like the mode over the width, from the two solutions that vanish at the tip and at the
-// drive edge. Throws std::domain_error for clamped plates, whose equation has no such pair.
+// drive edge; of a clamped plate from its elements. Throws std::domain_error for plates with simply supported
+// sides.
 std::vector<FingerLoad> finger_load(const Surface& surface, double frequency_Hz,
                                     const std::vector<double>& x_m, const Finger& finger);
 

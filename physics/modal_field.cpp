@@ -8,104 +8,12 @@
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
 #include "physics/line_search.hpp"
-#include "physics/modal_elements.hpp"
+#include "physics/modal_setup.hpp"
 
 namespace turnpoint::physics {
 namespace {
 
 using std::numbers::pi;
-constexpr double ln_domain_end = 70;  // of decay beyond the turning point, where the elements stop
-constexpr double ln_match = 45;       // where the one-mode decay takes over
-constexpr double widths_per_element = 1.2;
-
-struct Setup {
-  Taper taper;
-  double k;
-  TransverseBasis across;
-  ElementBasis along;
-  ModalEquation equation;
-  double turning_m;  // or the length
-  int spare;         // transverse functions beyond those that can propagate
-};
-
-// Tension makes a boundary layer along clamped sides, of sqrt(D/N), which takes more polynomials.
-int spare_functions(const Dispersion& dispersion, double f, const ModalResolution& resolution) {
-  if (!dispersion.clamped_bending()) return resolution.spare_functions;
-  const double layers =
-      dispersion.cut_off_half_width_m(f) * std::sqrt(dispersion.tension_N_per_m / dispersion.stiffness_N_m);
-  return resolution.spare_functions + static_cast<int>(std::min(8.0, std::ceil(layers / 10)));
-}
-
-TransverseBasis make_across(const Surface& surface, double f, const ModalResolution& resolution) {
-  const Dispersion dispersion(surface);
-  const double k = dispersion.wavenumber_per_m(f);
-  const bool plate = dispersion.clamped_bending();
-  if (resolution.across == ModalResolution::Across::cut_off_shape && plate) {
-    const double w = dispersion.cut_off_half_width_m(f);
-    return TransverseBasis::clamped_shape(
-        k * w, w * std::sqrt(k * k + dispersion.tension_N_per_m / dispersion.stiffness_N_m));
-  }
-  const int functions = spare_functions(dispersion, f, resolution) + 2 +
-                        static_cast<int>(std::ceil(k * Taper(surface).half_width_m(0) / pi));
-  return TransverseBasis::polynomials(std::min(functions, 60), plate ? 2 : 1);
-}
-
-Setup make_setup(const Surface& surface, double f, Losses losses, const ModalResolution& resolution) {
-  const Dispersion dispersion(surface);
-  const double k = dispersion.wavenumber_per_m(f);
-  const std::complex<double> lossy =
-      k * std::complex<double>(1, losses == Losses::kept ? -0.5 / surface.quality_factor : 0);
-  const bool plate = dispersion.clamped_bending();
-  ModalEquation equation;
-  equation.inertia = lossy * lossy;
-  if (plate) {  // scaled by D
-    equation.bending = 1;
-    equation.tension = dispersion.tension_N_per_m / dispersion.stiffness_N_m;
-    equation.inertia *= lossy * lossy + equation.tension;
-  }
-  return {Taper(surface),
-          k,
-          make_across(surface, f, resolution),
-          ElementBasis{resolution.degree, plate ? 2 : 1},
-          equation,
-          turning_point_m(surface, f)
-              .value_or(f < dispersion.cut_off_frequency_Hz(half_width_m(surface, 0)) ? 0 : surface.length_m),
-          spare_functions(dispersion, f, resolution)};
-}
-
-// Intervals from the drive edge to the end, finer at the drive edge's corners, ending on the taper's knots.
-std::vector<ModalElement> make_elements(const Setup& s, const ModalResolution& resolution, double& match_m) {
-  std::vector<ModalElement> elements;
-  double x = 0, decay = 0;
-  match_m = s.taper.length_m();
-  const double w0 = s.taper.half_width_m(0);
-  const bool single = s.across.count() == 1;
-  while (x < s.taper.length_m() && decay < ln_domain_end) {
-    const double w = s.taper.half_width_m(x);
-    double h = std::min(resolution.radians / s.k, widths_per_element * w);
-    if (!single && elements.size() < 2) h = std::min(h, (elements.empty() ? 0.15 : 0.35) * w0);
-    double end = s.taper.length_m();
-    for (const Cubic& piece : s.taper.table().pieces()) {
-      if (piece.x0 > x * (1 + 1e-12) && piece.x0 < end) end = piece.x0;
-    }
-    if (x + 1.5 * h > end) h = x + h >= end ? end - x : 0.5 * (end - x);
-    if (!(h > 1e-9 * w0)) break;  // the apex itself
-    const int wanted = static_cast<int>(std::ceil(s.k * w / pi)) + s.spare;
-    ModalElement& e = elements.emplace_back();
-    e.x0 = x;
-    e.h = h;
-    e.left = single ? 1 : std::min(s.across.count(), wanted + (elements.size() <= 2 ? 2 : 0));
-    x = x + h >= end ? end : x + h;
-    const double middle = pi / (2 * s.taper.half_width_m(e.x0 + 0.5 * h));
-    decay += h * std::sqrt(std::max(0.0, middle * middle - s.k * s.k));
-    if (decay > ln_match && match_m == s.taper.length_m()) match_m = x;
-  }
-  // Where the elements stop short of an apex, their held end shows in the last few e-foldings.
-  if (x < s.taper.length_m())
-    match_m = std::min(match_m, elements[elements.size() - std::min<std::size_t>(8, elements.size())].x0);
-  for (std::size_t i = 0; i + 1 < elements.size(); ++i) elements[i].right = elements[i + 1].left;
-  return elements;
-}
 
 // Eliminates from the tip to the drive edge: each element's inner and outer unknowns per unknown of its inner
 // end.
@@ -123,7 +31,7 @@ void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
 }
 
 // Goes back out from the drive edge, keeping the size apart, and keeps the centre line only.
-void substitute(const Setup& s, const ModalAssembler& assembler, const Eigen::VectorXd& drive,
+void substitute(const ModalSetup& s, const ModalAssembler& assembler, const Eigen::VectorXd& drive,
                 std::vector<ModalElement>& elements) {
   Eigen::VectorXcd u = Eigen::VectorXcd::Zero(s.along.per_vertex * elements.front().left);
   u.head(elements.front().left) = drive.head(elements.front().left).cast<std::complex<double>>();
@@ -201,11 +109,11 @@ class ModalLine final : public CentreLine {
 
 ModalLine::ModalLine(const Surface& surface, double f, Losses losses, const ModalResolution& resolution)
     : along_{}, tail_(Taper(surface), best_equation(surface, f, losses)), length_m_(surface.length_m) {
-  const Setup s = make_setup(surface, f, losses, resolution);
+  const ModalSetup s = make_modal_setup(surface, f, losses, resolution);
   along_ = s.along;
   spacing_m_ = 0.25 / s.k;
   turning_m_ = s.turning_m;
-  elements_ = make_elements(s, resolution, match_m_);
+  elements_ = make_modal_elements(s, resolution, match_m_);
   const ModalAssembler assembler(s.taper, s.across, s.along, s.equation, s.taper.half_width_m(0));
   eliminate(assembler, s.along, elements_);
   Eigen::VectorXd drive = Eigen::VectorXd::Ones(1);

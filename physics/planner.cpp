@@ -107,44 +107,55 @@ void merge(RungEstimate& all, const RungEstimate& one) {
   if (all.reason.empty()) all.reason = one.reason;
 }
 
-RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, double f) {
+// What every rung is compared with, solved once for a tone.
+struct Reference {
+  double f;
+  Probe mode;
+  double conditioning;
+  ModeBound bound;
+};
+
+Reference reference(const Surface& surface, const PlanRequest& request, double f) {
+  Probe mode = probe(surface, request, f, Model::mode);
+  const double conditioning = mode.line->drive_conditioning(wavenumber_per_m(surface, f));
+  return {f, std::move(mode), conditioning, mode_bound(surface, f, conditioning)};
+}
+
+RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
   RungEstimate e;
-  e.cost_s = cost_s(surface, f, Model::edge, 0);
+  e.cost_s = cost_s(surface, reference.f, Model::edge, 0);
   e.usable = request.points == 0 && !request.tolerance.level_dB && !request.tolerance.amplitude;
   e.reason = e.usable ? "positions of the lossless first mode" : "has no profile";
   if (request.edge.kind == Edge::Kind::turning || !e.usable) return e;
-  const Probe lossy = probe(surface, request, f, Model::mode);
-  const auto line = make_feature_line(surface, f, Model::edge, Wave::exact, Losses::left_out);
+  const auto line = make_feature_line(surface, reference.f, Model::edge, Wave::exact, Losses::left_out);
   const MapOptions options{
       request.edge.kind == Edge::Kind::friction ? Edge::peak() : request.edge, {}, {}, {}};
-  const auto x = edge_position_m(surface, f, *line, options);
-  const double bound =
-      mode_bound(surface, f, lossy.line->drive_conditioning(wavenumber_per_m(surface, f))).position_m();
-  e.boundary_bound_m = bound + (x && lossy.edge ? 1.05 * std::abs(*x - *lossy.edge)
-                                : x             ? surface.length_m
-                                                : 0);
+  const auto x = edge_position_m(surface, reference.f, *line, options);
+  const auto& lossy = reference.mode.edge;
+  e.boundary_bound_m = reference.bound.position_m() + (x && lossy ? 1.05 * std::abs(*x - *lossy)
+                                                       : x        ? surface.length_m
+                                                                  : 0);
   return e;
 }
 
-RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request, double f, Model model) {
+RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference,
+                              Model model) {
   RungEstimate e;
-  e.cost_s = cost_s(surface, f, model, request.points);
+  e.cost_s = cost_s(surface, reference.f, model, request.points);
   e.reason = "compared with mode at probe points";
-  Probe mode = probe(surface, request, f, Model::mode);
-  const double conditioning = mode.line->drive_conditioning(wavenumber_per_m(surface, f));
   const bool drive = request.normalise != Normalise::peak;
   if (model == Model::modes) {
-    e.amplitude_bound = modes_accuracy * (drive ? conditioning : 1);
-    e.level_bound_dB = 20 * std::log10(1 + modes_accuracy * conditioning);
-    e.boundary_bound_m = modes_accuracy * 0.1 * cut_off_half_width_m(surface, f);
+    e.amplitude_bound = modes_accuracy * (drive ? reference.conditioning : 1);
+    e.level_bound_dB = 20 * std::log10(1 + modes_accuracy * reference.conditioning);
+    e.boundary_bound_m = modes_accuracy * 0.1 * cut_off_half_width_m(surface, reference.f);
     e.reason = "two-dimensional field at its default resolution";
     return e;
   }
-  const ModeBound bound = mode_bound(surface, f, conditioning);
+  const ModeBound& bound = reference.bound;
   e.amplitude_bound = drive ? bound.drive : bound.shape;
   e.level_bound_dB = bound.level_dB;
   e.boundary_bound_m = request.edge.kind == Edge::Kind::turning ? 0 : bound.position_m();
-  if (!mode.peak) {  // the two-dimensional field may have a maximum where the mode has none
+  if (!reference.mode.peak) {  // the two-dimensional field may have a maximum where the mode has none
     e.amplitude_bound += unknown;
     e.level_bound_dB += unknown_dB;
   }
@@ -152,11 +163,33 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
     e.reason = "first transverse mode with loss";
     return e;
   }
-  const Difference d = compare(surface, request, probe(surface, request, f, model), mode);
+  const Difference d = compare(surface, request, probe(surface, request, reference.f, model), reference.mode);
   e.amplitude_bound += d.amplitude;
   e.level_bound_dB += d.level_dB;
   e.boundary_bound_m += d.position_m;
   return e;
+}
+
+RungEstimate estimate_with(const Surface& surface, const PlanRequest& request,
+                           const std::vector<Reference>& references, Model model) {
+  RungEstimate all;
+  all.model = model;
+  for (const Reference& one : references) {
+    try {
+      merge(all, model == Model::edge ? edge_estimate(surface, request, one)
+                                      : profile_estimate(surface, request, one, model));
+    } catch (const std::domain_error& error) {  // the rung has no answer for this surface or tone
+      all.usable = false;
+      all.reason = error.what();
+    }
+  }
+  return all;
+}
+
+std::vector<Reference> references_for(const Surface& surface, const PlanRequest& request) {
+  std::vector<Reference> list;
+  for (const Tone& tone : request.tones) list.push_back(reference(surface, request, tone.frequency_Hz));
+  return list;
 }
 
 bool inside(const RungEstimate& e, const Tolerance& tolerance) {
@@ -183,25 +216,16 @@ std::string numbers(const RungEstimate& e, const Tolerance& tolerance) {
 }  // namespace
 
 RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model model) {
-  RungEstimate all;
-  all.model = model;
-  for (const Tone& tone : request.tones) {
-    try {
-      merge(all, model == Model::edge ? edge_estimate(surface, request, tone.frequency_Hz)
-                                      : profile_estimate(surface, request, tone.frequency_Hz, model));
-    } catch (const std::domain_error& error) {  // the rung has no answer for this surface or tone
-      all.usable = false;
-      all.reason = error.what();
-    }
-  }
-  return all;
+  return estimate_with(surface, request, references_for(surface, request), model);
 }
 
 PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
   validate(surface);
   if (request.tones.empty()) throw std::invalid_argument("a plan needs at least one tone");
   PlanChoice choice;
-  for (const Model model : all_models) choice.considered.push_back(estimate(surface, request, model));
+  const auto references = references_for(surface, request);
+  for (const Model model : all_models)
+    choice.considered.push_back(estimate_with(surface, request, references, model));
   std::stable_sort(choice.considered.begin(), choice.considered.end(),
                    [](const RungEstimate& a, const RungEstimate& b) { return a.cost_s < b.cost_s; });
   const auto& rungs = choice.considered;

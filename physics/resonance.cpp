@@ -67,64 +67,76 @@ std::optional<double> resonance(const Phase& phase, int n, double from_Hz, doubl
 }
 
 // A clamped plate's v(0) over its last maximum, with sign, by the lossless mode: zero at a resonance.
-class PlateResponse {
- public:
-  explicit PlateResponse(const Surface& surface) : surface_(surface) {}
+std::optional<double> plate_response(const Surface& surface, double f) {
+  const auto line = make_centre_line(surface, f, Model::mode, Losses::left_out);
+  const auto peak = line->last_peak_m();
+  if (!peak) return std::nullopt;
+  const Scaled top = line->value(*peak), drive = line->value(0);
+  return drive.mantissa.real() / top.mantissa.real() *
+         std::exp(std::min(300.0, drive.ln_scale - top.ln_scale));
+}
 
-  std::optional<double> operator()(double f) const {
-    const auto line = make_centre_line(surface_, f, Model::mode, Losses::left_out);
-    const auto peak = line->last_peak_m();
-    if (!peak) return std::nullopt;
-    const Scaled top = line->value(*peak), drive = line->value(0);
-    return drive.mantissa.real() / top.mantissa.real() *
-           std::exp(std::min(300.0, drive.ln_scale - top.ln_scale));
-  }
+// A fifth of about the distance of two resonances: half a wave more between drive edge and turning point.
+double plate_step_Hz(const Surface& surface, double f) {
+  const double reach = turning_point_m(surface, f).value_or(surface.length_m);
+  return 0.5 * f * pi / (wavenumber_per_m(surface, f) * std::max(reach, 0.05 * surface.length_m));
+}
 
-  // About the distance of two resonances: half a wave more between drive edge and turning point.
-  double spacing_Hz(double f) const {
-    const double reach = turning_point_m(surface_, f).value_or(surface_.length_m);
-    return 2 * f * pi / (0.8 * wavenumber_per_m(surface_, f) * std::max(reach, 0.05 * surface_.length_m));
-  }
-
-  // First zero from f on, in the direction of `step_Hz`, within `most` steps.
-  std::optional<double> search(double f, double step_Hz, int most) const {
-    auto at_f = (*this)(f);
-    for (int i = 0; i < most; ++i) {
-      const double next = f + step_Hz;
-      if (!(next > 0)) return std::nullopt;
-      const auto at_next = (*this)(next);
-      if (at_f && at_next && (*at_f > 0) != (*at_next > 0)) return refine(f, *at_f, next, *at_next);
-      f = next;
-      at_f = at_next;
+// Zero between two frequencies of responses of unlike sign, by false position (Illinois): the response
+// crosses zero about like a cosine.
+double plate_zero(const Surface& surface, double a, double fa, double b, double fb) {
+  double previous = a;
+  for (int i = 0; i < 40; ++i) {
+    const double x = a + (b - a) * fa / (fa - fb);
+    const double f = plate_response(surface, x).value_or(fa);
+    if (f == 0 || std::abs(x - previous) <= 1e-9 * x) return x;
+    previous = x;
+    if ((f > 0) == (fb > 0)) {
+      fa *= 0.5;
+    } else {
+      a = b, fa = fb;
     }
-    return std::nullopt;
+    b = x, fb = f;
   }
+  return b;
+}
 
- private:
-  double refine(double a, double fa, double b, double fb) const {
-    for (int i = 0; i < 40 && std::abs(b - a) > 1e-9 * a; ++i) {
-      double x = i % 3 == 2 ? 0.5 * (a + b) : a + (b - a) * fa / (fa - fb);
-      if (!(x > std::min(a, b) && x < std::max(a, b))) x = 0.5 * (a + b);
-      const double f = (*this)(x).value_or(fa);
-      if (f == 0) return x;
-      ((f > 0) == (fa > 0) ? a : b) = x;
-      ((f > 0) == (fa > 0) ? fa : fb) = f;
-    }
-    return 0.5 * (a + b);
+// A walk in steps of frequency that stops for a moment at each zero it passes.
+struct PlateWalk {
+  double f;
+  std::optional<double> response;
+
+  std::optional<double> step(const Surface& surface, double by_Hz) {
+    const double from = f;
+    const auto before = response;
+    f += by_Hz;
+    response = f > 0 ? plate_response(surface, f) : std::nullopt;
+    if (!before || !response || (*before > 0) == (*response > 0)) return std::nullopt;
+    return plate_zero(surface, from, *before, f, *response);
   }
-
-  Surface surface_;
 };
 
-constexpr int steps_per_spacing = 8;
-
 std::optional<double> nearest_plate_resonance(const Surface& surface, double f) {
-  const PlateResponse response(surface);
-  const double step = response.spacing_Hz(f) / steps_per_spacing;
-  const auto above = response.search(f, step, 2 * steps_per_spacing);
-  const auto below = response.search(f, -step, 2 * steps_per_spacing);
+  const double step = plate_step_Hz(surface, f);
+  PlateWalk up{f, plate_response(surface, f)}, down = up;
+  std::optional<double> above, below;
+  // By turns; the side found first may be the farther one within its step, so the other gets the same step.
+  for (int i = 0; i < 10 && !above && !below; ++i) {
+    above = up.step(surface, step);
+    below = down.step(surface, -step);
+  }
   if (!above || !below) return above ? above : below;
   return *above - f < f - *below ? above : below;
+}
+
+std::vector<double> plate_resonances(const Surface& surface, double low_Hz, double high_Hz) {
+  std::vector<double> found;
+  PlateWalk walk{low_Hz, plate_response(surface, low_Hz)};
+  while (walk.f < high_Hz) {
+    const auto zero = walk.step(surface, plate_step_Hz(surface, walk.f));
+    if (zero && *zero <= high_Hz) found.push_back(*zero);
+  }
+  return found;
 }
 
 }  // namespace
@@ -142,17 +154,8 @@ std::optional<double> nearest_resonance_Hz(const Surface& surface, double freque
 }
 
 std::vector<double> resonances_Hz(const Surface& surface, double low_Hz, double high_Hz) {
+  if (Dispersion(surface).clamped_bending()) return plate_resonances(surface, low_Hz, high_Hz);
   std::vector<double> found;
-  if (Dispersion(surface).clamped_bending()) {
-    const PlateResponse response(surface);
-    for (double f = low_Hz; f < high_Hz;) {
-      const double step = response.spacing_Hz(f) / steps_per_spacing;
-      const auto next = response.search(f, step, 1);
-      if (next && *next <= high_Hz) found.push_back(*next);
-      f += step;
-    }
-    return found;
-  }
   const Phase phase(surface);
   double from = low_Hz, at_from = phase(low_Hz);
   const double last = phase(high_Hz);

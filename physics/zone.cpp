@@ -47,7 +47,7 @@ void check(const Surface& surface, const FrictionMap& friction, const ZoneReques
 }
 
 // Moves all tones together until the zone's own edge lies at the wanted boundary; secants on frequency.
-void place(ZoneProfile& profile, const ZoneRequest& r) {
+void place(ZoneProfile& profile, const ZoneRequest& r, double tolerance_m) {
   double f = profile.highest_Hz();
   double slope = 0;
   double previous_f = 0, previous_x = 0;
@@ -59,7 +59,7 @@ void place(ZoneProfile& profile, const ZoneRequest& r) {
       text << "the zone's profile has no edge " << format(r.edge) << " near " << r.boundary_m * 1e3 << " mm";
       unreachable(text);
     }
-    if (std::abs(*x - r.boundary_m) < 2e-7) return;
+    if (std::abs(*x - r.boundary_m) < tolerance_m) return;
     slope = i == 0 || f == previous_f || *x == previous_x ? profile.edge_slope_m_per_Hz()
                                                           : (*x - previous_x) / (f - previous_f);
     if (!(slope > 0)) slope = profile.edge_slope_m_per_Hz();
@@ -88,10 +88,10 @@ ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, cons
   ZoneRequest single = request;
   single.tones = 1;
   ZoneProfile alone(surface, friction, single, first_guess(surface, request));
-  place(alone, single);
+  place(alone, single, 2e-5);
   require_band(alone, request);
   ZoneProfile profile(surface, friction, request, alone.highest_Hz());
-  place(profile, request);
+  place(profile, request, 2e-7);
   require_band(profile, request);
   ZoneDesign design;
   design.tones = profile.tones();

@@ -31,6 +31,7 @@ ZoneProfile::ZoneProfile(const Surface& surface, const FrictionMap& friction, co
     : surface_(surface), friction_(friction), request_(request) {
   const int count = std::clamp(static_cast<int>(std::ceil(surface.length_m / grid_step_m)), 200, 2000);
   for (int i = 0; i <= count; ++i) x_.push_back(surface.length_m * i / count);
+  weights_of_mean_ = mean_weights();
   choose_tones(highest_Hz);
 }
 
@@ -164,31 +165,68 @@ double ZoneProfile::zone_mean(const std::vector<double>& values) const {
   return sum / std::max(1, count);
 }
 
+// What each point's friction counts for in the zone's mean of fingertip averages, which is linear in it: the
+// averages are integrals of straight pieces, and each piece gives its ends their share.
+std::vector<double> ZoneProfile::mean_weights() const {
+  std::vector<double> weight(x_.size(), 0.0);
+  const double step = x_[1] - x_[0];
+  int count = 0;
+  for (std::size_t i = 0; i < x_.size(); ++i) count += in_zone(i) ? 1 : 0;
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    if (!in_zone(i)) continue;
+    if (request_.fingertip_m == 0) {
+      weight[i] += 1.0 / count;
+      continue;
+    }
+    const double low = std::max(x_.front(), x_[i] - request_.fingertip_m / 2);
+    const double high = std::min(x_.back(), x_[i] + request_.fingertip_m / 2);
+    const auto first = static_cast<std::size_t>(low / step);
+    for (std::size_t j = std::min(first, x_.size() - 2); j + 1 < x_.size() && x_[j] < high; ++j) {
+      const double from = std::max(low, x_[j]), to = std::min(high, x_[j + 1]);
+      if (!(to > from)) continue;
+      const double right = (0.5 * (from + to) - x_[j]) / (x_[j + 1] - x_[j]);
+      const double share = (to - from) / (high - low) / count;
+      weight[j] += share * (1 - right);
+      weight[j + 1] += share * right;
+    }
+  }
+  return weight;
+}
+
 void ZoneProfile::scale_to_friction() {
-  // Mean friction falls with the level: bracket on a logarithmic scale, then secants.
+  const std::vector<double> sum = summed();
+  const auto miss = [&](double ln) {
+    const double scale = std::exp(ln);
+    double mean = 0;
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      if (weights_of_mean_[i] > 0)
+        mean += weights_of_mean_[i] * friction_.relative_friction(std::sqrt(scale * sum[i]));
+    }
+    return mean - request_.friction;
+  };
+  // Mean friction falls with the level. A bracket from the level before, on a logarithmic scale, growing;
+  // then false position (Illinois).
   double low = std::log(scale_), high = low;
-  const auto miss = [&](double ln) { return zone_mean(felt(std::exp(ln))) - request_.friction; };
   double f_low = miss(low), f_high = f_low;
-  for (int i = 0; f_low < 0 && i < 60; ++i) f_low = miss(low -= 0.3 * (i + 1));
-  for (int i = 0; f_high > 0 && i < 14; ++i) f_high = miss(high += 0.3 * (i + 1));
+  double step = scaled_before_ ? 0.01 : 0.3;
+  for (; f_low < 0 && low > -120; step *= 2) f_low = miss(low -= step);
+  for (; f_high > 0 && high < 10; step *= 2) f_high = miss(high += step);
   if (f_low < 0 || f_high > 0) {
     std::ostringstream text;
     text << "mean friction " << request_.friction << " is not reachable in the zone";
     throw std::domain_error(text.str());
   }
-  for (int i = 0; i < 40 && high - low > 1e-10; ++i) {
-    double x =
-        i % 3 == 2 || f_low == f_high ? 0.5 * (low + high) : low + (high - low) * f_low / (f_low - f_high);
-    if (!(x > low && x < high)) x = 0.5 * (low + high);
-    const double f = miss(x);
-    if (std::abs(f) < 1e-9) {
-      low = high = x;
-      break;
-    }
+  double x = low, f = f_low;
+  for (int i = 0; i < 60 && std::abs(f) >= 1e-9 && high - low > 1e-12; ++i) {
+    x = i % 8 == 7 || f_low == f_high ? 0.5 * (low + high) : low + (high - low) * f_low / (f_low - f_high);
+    const double before = f;
+    f = miss(x);
     (f > 0 ? low : high) = x;
     (f > 0 ? f_low : f_high) = f;
+    if ((f > 0) == (before > 0) && i > 0) (f > 0 ? f_high : f_low) *= 0.5;
   }
-  scale_ = std::exp(0.5 * (low + high));
+  scale_ = std::exp(x);
+  scaled_before_ = true;
 }
 
 std::optional<double> ZoneProfile::edge_m() const {

@@ -40,6 +40,7 @@ class ZoneProfile {
   std::vector<double> summed() const;
   std::vector<double> felt(double scale) const;
   double zone_mean(const std::vector<double>& values) const;
+  std::vector<double> mean_weights() const;
   bool in_zone(std::size_t i) const { return x_[i] >= request_.from_m && x_[i] <= request_.boundary_m; }
 
   const Surface& surface_;
@@ -47,8 +48,10 @@ class ZoneProfile {
   const ZoneRequest& request_;
   std::vector<double> x_;
   std::vector<ToneShape> shapes_;
-  std::vector<double> weights_;  // of squared amplitudes
-  double scale_ = 1e-12;         // m^2 per unit of the weighted sum
+  std::vector<double> weights_;          // of squared amplitudes
+  std::vector<double> weights_of_mean_;  // of each point's friction in the zone's mean
+  double scale_ = 1e-12;                 // m^2 per unit of the weighted sum
+  bool scaled_before_ = false;           // the next scale is close to this one
 };
 
 }  // namespace turnpoint::physics

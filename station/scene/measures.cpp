@@ -6,15 +6,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "physics/field.hpp"
-#include "physics/warning.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::scene {
 
 namespace {
 
-constexpr int kPoints = 601;
 constexpr double kAudible_Hz = 22400;
 constexpr double kWideEnd_m = 0.030;
 
@@ -59,12 +56,14 @@ std::size_t last_maximum(const std::vector<double>& a) {
 }
 
 Cues cues_of(const physics::Surface& surface, const std::vector<physics::Tone>& tones,
-             const physics::Field& field, const std::vector<double>& x_m, const DrivePlan& plan) {
+             const std::vector<physics::ToneField>& fields, const std::vector<double>& amplitude,
+             const std::vector<double>& x_m, const DrivePlan& plan) {
   Cues cues;
   double squares = 0;
-  const physics::Tone* strongest = &tones.front();
+  std::size_t strongest = 0;
   for (const auto& tone : tones) {
-    if (tone.amplitude_m > strongest->amplitude_m) strongest = &tone;
+    if (tone.amplitude_m > tones[strongest].amplitude_m)
+      strongest = static_cast<std::size_t>(&tone - tones.data());
     if (tone.frequency_Hz >= kAudible_Hz) continue;
     cues.pitch_Hz = cues.pitch_Hz == 0 ? tone.frequency_Hz : std::min(cues.pitch_Hz, tone.frequency_Hz);
     squares += tone.amplitude_m * tone.amplitude_m;
@@ -72,18 +71,17 @@ Cues cues_of(const physics::Surface& surface, const std::vector<physics::Tone>& 
   if (squares > 0) cues.loudness_dB = 10 * std::log10(squares / 1e-12);
   double n = 0;
   for (std::size_t i = 0; i < x_m.size() && x_m[i] <= kWideEnd_m; ++i, ++n)
-    cues.wide_end_amplitude_m += field.amplitude[i];
+    cues.wide_end_amplitude_m += amplitude[i];
   cues.wide_end_amplitude_m /= std::max(n, 1.0);
-  const auto& profile = field.tones.front().v;
+  const auto& profile = fields[strongest].v;
   // Half a wavelength is the distance of the first two sign changes of the strongest tone's displacement.
   std::vector<double> nodes;
   for (std::size_t i = 1; i < profile.size() && nodes.size() < 2; ++i)
     if ((profile[i - 1].real() < 0) != (profile[i].real() < 0)) nodes.push_back(x_m[i]);
   if (nodes.size() == 2) cues.stripe_pitch_m = nodes[1] - nodes[0];
-  const auto peak = last_maximum(field.amplitude);
-  cues.displacement_m = field.amplitude[peak];
-  cues.edge_width_m =
-      last_crossing(x_m, field.amplitude, peak, 0.1) - last_crossing(x_m, field.amplitude, peak, 0.9);
+  const auto peak = last_maximum(amplitude);
+  cues.displacement_m = amplitude[peak];
+  cues.edge_width_m = last_crossing(x_m, amplitude, peak, 0.1) - last_crossing(x_m, amplitude, peak, 0.9);
   const double boundary = std::clamp(plan.boundary_m.value_or(x_m[peak]), 0.0, surface.length_m);
   cues.strip_width_m = 2 * physics::half_width_m(surface, boundary);
   cues.friction = plan.lowest_friction;
@@ -93,32 +91,36 @@ Cues cues_of(const physics::Surface& surface, const std::vector<physics::Tone>& 
 }  // namespace
 
 void measure(const physics::Surface& surface, const physics::FrictionMap& friction, const rig::Rig& rig,
-             const std::vector<physics::Tone>& tones, DrivePlan& plan) {
-  const auto x_m = physics::linspace_points(surface, kPoints);
-  const auto field = physics::evaluate(surface, tones, x_m, physics::Model::mode, physics::Normalise::none);
+             const std::vector<physics::Tone>& tones, const std::vector<physics::ToneField>& fields,
+             DrivePlan& plan) {
+  const auto x_m = physics::linspace_points(surface, profile_points);
+  std::vector<double> amplitude, values;
   for (std::size_t i = 0; i < x_m.size(); ++i) {
-    double sum = 0;
-    for (const auto& tone : field.tones) sum += std::abs(tone.v[i]);
+    double sum = 0, squares = 0;
+    for (const auto& tone : fields) {
+      sum += std::abs(tone.v[i]);
+      squares += std::norm(tone.v[i]);
+    }
     plan.peak_displacement_m = std::max(plan.peak_displacement_m, sum);
+    amplitude.push_back(std::sqrt(squares));
+    values.push_back(friction.relative_friction(amplitude.back()));
   }
-  std::vector<double> values;
-  for (const double a : field.amplitude) values.push_back(friction.relative_friction(a));
   const auto felt = physics::fingertip_average(x_m, values, rig.friction.fingertip_m);
   plan.lowest_friction = *std::min_element(felt.begin(), felt.end());
   if (plan.scene.zone) {
-    const auto zone = zone_friction(x_m, field.amplitude, 1, friction, rig.friction.fingertip_m, plan.scene);
+    const auto zone = zone_friction(x_m, amplitude, 1, friction, rig.friction.fingertip_m, plan.scene);
     plan.zone_friction = zone.mean;
     plan.residual = zone.rms;
   }
-  plan.cues = cues_of(surface, tones, field, x_m, plan);
+  plan.cues = cues_of(surface, tones, fields, amplitude, x_m, plan);
 }
 
 double scale_to_friction(const physics::Surface& surface, const physics::FrictionMap& friction,
                          const rig::Rig& rig, const std::vector<physics::Tone>& tones, const Scene& scene) {
-  const auto x_m = physics::linspace_points(surface, kPoints);
-  const auto field = physics::evaluate(surface, tones, x_m, physics::Model::mode, physics::Normalise::none);
+  const auto x_m = physics::linspace_points(surface, profile_points);
+  const auto amplitude = physics::amplitude_profile(surface, tones, x_m, physics::Model::mode);
   const auto mean_at = [&](double scale) {
-    return zone_friction(x_m, field.amplitude, scale, friction, rig.friction.fingertip_m, scene).mean;
+    return zone_friction(x_m, amplitude, scale, friction, rig.friction.fingertip_m, scene).mean;
   };
   double low = 0, high = 1;
   while (mean_at(high) > scene.zone->friction) {

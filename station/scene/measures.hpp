@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "physics/field.hpp"
 #include "physics/friction.hpp"
 #include "physics/surface.hpp"
 #include "physics/tone.hpp"
@@ -9,10 +10,14 @@
 
 namespace turnpoint::scene {
 
-/// Fills in what the surface will do: peak displacement, lowest friction, zone friction and residual, cues,
-/// each tone's boundary. Amplitudes by `mode`: a limit must not rest on a coarse model.
+/// Points of the profile that a plan is measured on, from 0 to length inclusive.
+inline constexpr int profile_points = 601;
+
+/// Fills in what the surface will do: peak displacement, lowest friction, zone friction and residual, cues.
+/// `fields` are the tones' displacements (m) at `profile_points` points.
 void measure(const physics::Surface& surface, const physics::FrictionMap& friction, const rig::Rig& rig,
-             const std::vector<physics::Tone>& tones, DrivePlan& plan);
+             const std::vector<physics::Tone>& tones, const std::vector<physics::ToneField>& fields,
+             DrivePlan& plan);
 
 /// By how much all amplitudes must be multiplied so that the zone's mean friction is the scene's. Throws
 /// Unreachable where no scale does it.

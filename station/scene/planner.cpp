@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "physics/centre_line.hpp"
 #include "physics/field.hpp"
 #include "physics/planner.hpp"
 #include "physics/zone.hpp"
@@ -57,10 +58,11 @@ struct Planner::State {
   std::map<std::string, physics::BoundaryMap> maps;
   std::map<std::string, physics::ZoneDesign> designs;
   std::map<std::string, DrivePlan> plans;
+  std::map<double, std::optional<double>> resonances;
 
   explicit State(const rig::Rig& r) : rig(r), surface(surface_of(r)), friction(friction_of(r)) {}
 
-  const physics::BoundaryMap& map_for(const physics::Edge& edge, double displacement_m);
+  const physics::BoundaryMap& map_for(const physics::Edge& edge);
   double frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m);
   double target_displacement(const Scene& scene) const;
   std::vector<Tone> single(const Scene& scene);
@@ -68,30 +70,43 @@ struct Planner::State {
   std::vector<Tone> zone(const Scene& scene, DrivePlan& plan);
   std::vector<Tone> tones_for(const Scene& scene, DrivePlan& plan);
   physics::PlanChoice choose(const Scene& scene, const std::vector<Tone>& tones) const;
-  void drive(DrivePlan& plan, const std::vector<Tone>& tones) const;
+  void equalise_by_modes(std::vector<Tone>& tones) const;
+  std::optional<double> nearest_resonance(double frequency_Hz);
+  void drive(DrivePlan& plan, const std::vector<Tone>& tones, const std::vector<physics::ToneField>& fields);
   void refuse_beyond_limits(const DrivePlan& plan) const;
 };
 
-const physics::BoundaryMap& Planner::State::map_for(const physics::Edge& edge, double displacement_m) {
-  const bool by_friction = edge.kind == physics::Edge::Kind::friction;
-  const auto key = fmt::format("{} {}", physics::format(edge), by_friction ? displacement_m : 0.0);
+/// Percent, peak and turning edges depend on the surface alone: one map each, over the tones that this rig
+/// can play.
+const physics::BoundaryMap& Planner::State::map_for(const physics::Edge& edge) {
+  const auto key = physics::format(edge);
   auto found = maps.find(key);
   if (found == maps.end()) {
     physics::MapOptions options;
     options.edge = edge;
-    if (by_friction)
-      options.friction = physics::FrictionContext{friction, displacement_m, rig.friction.fingertip_m};
+    options.band = {lowest_frequency(rig, 0),
+                    highest_frequency(rig, kHighestShareOfRate * rig.output.rate_Hz)};
     found = maps.emplace(key, physics::BoundaryMap(surface, options)).first;
   }
   return found->second;
 }
 
 double Planner::State::frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m) {
-  const auto& map = map_for(edge, displacement_m);
-  if (const auto frequency = map.frequency_Hz(boundary_m)) return *frequency;
-  const auto answer = map.at_boundary(boundary_m);
+  physics::MapOptions options;
+  options.edge = edge;
+  if (edge.kind == physics::Edge::Kind::friction) {
+    // Such an edge moves with the displacement, which roving draws anew for every trial: a map would be used
+    // once.
+    options.friction = physics::FrictionContext{friction, displacement_m, rig.friction.fingertip_m};
+    if (const auto frequency = physics::solve_frequency_Hz(surface, options, boundary_m)) return *frequency;
+  } else if (const auto frequency = map_for(edge).frequency_Hz(boundary_m)) {
+    return *frequency;
+  }
+  // Outside the rig's tones the whole map says what could be.
+  const physics::BoundaryMap whole(surface, options);
+  if (const auto frequency = whole.frequency_Hz(boundary_m)) return *frequency;
   throw Unreachable(fmt::format("no frequency puts the {} edge at {} mm: {}", physics::format(edge),
-                                number(mm(boundary_m)), answer.reason));
+                                number(mm(boundary_m)), whole.at_boundary(boundary_m).reason));
 }
 
 double Planner::State::target_displacement(const Scene& scene) const {
@@ -173,16 +188,38 @@ physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector
   return physics::choose_model(surface, request);
 }
 
-void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones) const {
-  for (const auto& tone : tones) {
-    const auto info = physics::tone_info(surface, tone.frequency_Hz);
+/// Where only `modes` is exact enough, the drive edge's share of the first mode is not all that reaches the
+/// last maximum: the amplitudes are those that give it by `modes`.
+void Planner::State::equalise_by_modes(std::vector<Tone>& tones) const {
+  for (auto& tone : tones) {
+    try {
+      tone.amplitude_m *= physics::drive_amplitude_m(surface, tone.frequency_Hz, 1, Model::modes) /
+                          physics::drive_amplitude_m(surface, tone.frequency_Hz, 1);
+    } catch (const std::domain_error&) {  // no last maximum to be equal at
+    }
+  }
+}
+
+/// Resonances are searched for, which takes longer than all else in a plan, and frequencies come again.
+std::optional<double> Planner::State::nearest_resonance(double frequency_Hz) {
+  if (resonances.size() >= kRemembered) resonances.clear();
+  const auto found = resonances.find(frequency_Hz);
+  if (found != resonances.end()) return found->second;
+  return resonances.emplace(frequency_Hz, physics::nearest_resonance_Hz(surface, frequency_Hz)).first->second;
+}
+
+void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones,
+                           const std::vector<physics::ToneField>& fields) {
+  for (std::size_t i = 0; i < tones.size(); ++i) {
+    const auto& tone = tones[i];
+    const auto& info = fields[i].info;
     DrivenTone driven;
     driven.frequency_Hz = tone.frequency_Hz;
     driven.amplitude_m = tone.amplitude_m;
     driven.phase_rad = tone.phase_rad;
     driven.turning_point_m = info.turning_point_m;
     driven.last_peak_m = info.last_peak_m;
-    driven.nearest_resonance_Hz = info.nearest_resonance_Hz;
+    driven.nearest_resonance_Hz = nearest_resonance(tone.frequency_Hz);
     driven.gain = info.gain;
     driven.displacement_m = info.gain * tone.amplitude_m;
     assign_transducer(rig, driven);
@@ -239,16 +276,20 @@ DrivePlan Planner::make(const Scene& scene) {
   plan.reason = choice.reason;
   if (scene.boundary_m && !plan.boundary_m) plan.boundary_m = scene.boundary_m;
   if (!tones.empty() && scene.edge.kind != physics::Edge::Kind::friction)
-    plan.uncertainty_m =
-        state_->map_for(scene.edge, 0).at_frequency(tones.front().frequency_Hz).uncertainty_m;
+    plan.uncertainty_m = state_->map_for(scene.edge).at_frequency(tones.front().frequency_Hz).uncertainty_m;
+  // Amplitudes and what the surface does never by less than `mode`: a limit must not rest on a coarse model.
+  const auto by = choice.model == Model::modes ? Model::modes : Model::mode;
+  if (by == Model::modes) state_->equalise_by_modes(tones);
   physics::assign_phases(tones);
   plan.crest_factor = physics::crest_factor(tones);
   plan.audible_products = physics::audible_products(tones);
   plan.warnings = physics::surface_warnings(state_->surface);
   const auto more = physics::tone_warnings(state_->surface, tones);
   plan.warnings.insert(plan.warnings.end(), more.begin(), more.end());
-  state_->drive(plan, tones);
-  measure(state_->surface, state_->friction, state_->rig, tones, plan);
+  const auto x_m = physics::linspace_points(state_->surface, profile_points);
+  const auto fields = physics::evaluate_tones(state_->surface, tones, x_m, by, physics::Normalise::none);
+  state_->drive(plan, tones, fields);
+  measure(state_->surface, state_->friction, state_->rig, tones, fields, plan);
   state_->refuse_beyond_limits(plan);
   return plan;
 }
@@ -258,8 +299,8 @@ Planner::Profile Planner::profile(const DrivePlan& plan, int points) {
   for (const auto& tone : plan.tones) tones.push_back({tone.frequency_Hz, tone.amplitude_m, tone.phase_rad});
   Profile profile;
   profile.x_m = physics::linspace_points(state_->surface, points);
-  profile.displacement_m =
-      physics::evaluate(state_->surface, tones, profile.x_m, Model::mode, physics::Normalise::none).amplitude;
+  const auto by = plan.model == Model::modes ? Model::modes : Model::mode;
+  profile.displacement_m = physics::amplitude_profile(state_->surface, tones, profile.x_m, by);
   for (const double a : profile.displacement_m)
     profile.friction.push_back(state_->friction.relative_friction(a));
   profile.friction =

@@ -150,3 +150,39 @@ TEST_CASE("the stated bound holds the two-dimensional field's edge on curved tap
     }
   }
 }
+
+TEST_CASE("one frequency solved for alone is the map's", "[physics]") {
+  for (const Surface& surface : {seed_brass(), aluminium_plate()}) {
+    for (const char* edge : {"turning", "peak", "p50", "friction=0.8"}) {
+      MapOptions options;
+      options.edge = parse_edge(edge);
+      options.friction = FrictionContext{FrictionMap{}, 1.3e-6, 10e-3};
+      const BoundaryMap map(surface, options);
+      for (const double x : {0.13, 0.16, 0.19}) {
+        const auto f = solve_frequency_Hz(surface, options, x);
+        CAPTURE(edge, x);
+        REQUIRE(f);
+        // A friction edge's table is refined to 2 um, a plate's to 0.3 um.
+        CHECK(std::abs(map.boundary_m(*f).value() - x) < 3e-6);
+      }
+    }
+  }
+  MapOptions peak;
+  peak.edge = Edge::peak();
+  CHECK_FALSE(solve_frequency_Hz(seed_brass(), peak, 0.4));
+}
+
+TEST_CASE("a map of a band is the whole map there", "[physics]") {
+  MapOptions options;
+  options.edge = Edge::percent(0.5);
+  const BoundaryMap whole(aluminium_plate(), options);
+  options.band = {20e3, 50e3};
+  const BoundaryMap band(aluminium_plate(), options);
+  for (double f = 20.5e3; f < 50e3; f += 1234.5)
+    CHECK(std::abs(band.boundary_m(f).value() - whole.boundary_m(f).value()) < 6e-7);
+  CHECK(std::abs(band.boundary_m(band.frequency_Hz(0.15).value()).value() - 0.15) < 1e-12);
+  CHECK_FALSE(band.boundary_m(60e3));
+  CHECK_FALSE(band.frequency_Hz(0.28));
+  options.band = {5e3, 6e3};
+  CHECK_THROWS_AS(BoundaryMap(aluminium_plate(), options), std::domain_error);
+}

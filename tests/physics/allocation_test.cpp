@@ -1,0 +1,64 @@
+// Counts what the profile of a model allocates: nothing may be allocated per point.
+#include <cstdlib>
+#include <new>
+
+#include "physics/boundary_map.hpp"
+#include "physics/centre_line.hpp"
+#include "tests/support/catch.hpp"
+
+namespace {
+
+thread_local long allocations = 0;
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+using namespace turnpoint::physics;
+
+namespace {
+
+long allocated_by(const CentreLine& line, std::size_t points) {
+  std::vector<double> x(points), ln(points);
+  std::vector<std::complex<double>> v(points);
+  for (std::size_t i = 0; i < points; ++i) x[i] = 0.29 * static_cast<double>(i) / static_cast<double>(points);
+  const long before = allocations;
+  line.evaluate(x, 1.0, 0.0, v, ln);
+  return allocations - before;
+}
+
+}  // namespace
+
+TEST_CASE("no model allocates per point of a profile", "[physics]") {
+  for (const bool plate : {false, true}) {
+    Surface surface = plate ? aluminium_plate() : seed_brass();
+    surface.quality_factor = 60;
+    for (const Model model : all_models) {
+      if (model == Model::edge || (plate && model == Model::uniform)) continue;
+      const auto line = make_centre_line(surface, 30e3, model);
+      CAPTURE(plate, name(model));
+      CHECK(allocated_by(*line, 2000) == allocated_by(*line, 20));
+    }
+  }
+}
+
+TEST_CASE("a look-up in a map allocates nothing", "[physics]") {
+  const BoundaryMap map(seed_brass(), {Edge::percent(0.5), {}, {}, {}});
+  const long before = allocations;
+  double sum = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const auto x = map.boundary_m(10e3 + 20 * i);
+    sum += x.value_or(0) + map.frequency_Hz(x.value_or(0.1)).value_or(0);
+  }
+  CHECK(allocations == before);
+  CHECK(sum > 0);
+  // The counter counts.
+  const auto one = std::make_unique<double>(sum);
+  CHECK(allocations == before + 1);
+}
