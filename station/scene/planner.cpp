@@ -27,7 +27,7 @@ namespace {
 constexpr double kInaudible_Hz = 22400;
 constexpr double kHighestShareOfRate = 0.45;
 
-constexpr std::size_t kRemembered = 512;
+constexpr std::size_t kRemembered = 512, kSolutions = 128;
 
 double mm(double m) { return m * 1e3; }
 
@@ -49,6 +49,19 @@ std::string key_of(const Scene& scene) {
   return key;
 }
 
+/// What a set of frequencies does on this rig's surface, however strong its tones are: what roving leaves as
+/// it is. `fields` are per metre at the drive edge, by the chosen model but never by less than `mode`: a
+/// limit must not rest on a coarse one.
+struct Solution {
+  physics::PlanChoice choice;
+  std::vector<physics::ToneField> fields;
+  std::vector<std::optional<double>> resonances_Hz;
+  double uncertainty_m = 0;
+  std::vector<physics::Warning> warnings;
+};
+
+Model at_least_mode(Model chosen) { return chosen == Model::modes ? Model::modes : Model::mode; }
+
 }  // namespace
 
 struct Planner::State {
@@ -58,7 +71,7 @@ struct Planner::State {
   std::map<std::string, physics::BoundaryMap> maps;
   std::map<std::string, physics::ZoneDesign> designs;
   std::map<std::string, DrivePlan> plans;
-  std::map<double, std::optional<double>> resonances;
+  std::map<std::string, Solution> solutions;
 
   explicit State(const rig::Rig& r) : rig(r), surface(surface_of(r)), friction(friction_of(r)) {}
 
@@ -70,9 +83,10 @@ struct Planner::State {
   std::vector<Tone> zone(const Scene& scene, DrivePlan& plan);
   std::vector<Tone> tones_for(const Scene& scene, DrivePlan& plan);
   physics::PlanChoice choose(const Scene& scene, const std::vector<Tone>& tones) const;
-  void equalise_by_modes(std::vector<Tone>& tones) const;
-  std::optional<double> nearest_resonance(double frequency_Hz);
-  void drive(DrivePlan& plan, const std::vector<Tone>& tones, const std::vector<physics::ToneField>& fields);
+  Solution solve(const Scene& scene, std::vector<Tone> tones);
+  const Solution& solution_for(const Scene& scene, const std::vector<Tone>& tones);
+  void equalise(std::vector<Tone>& tones, const Solution& solution) const;
+  void drive(DrivePlan& plan, const std::vector<Tone>& tones, const Solution& solution) const;
   void refuse_beyond_limits(const DrivePlan& plan) const;
 };
 
@@ -188,38 +202,56 @@ physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector
   return physics::choose_model(surface, request);
 }
 
-/// Where only `modes` is exact enough, the drive edge's share of the first mode is not all that reaches the
-/// last maximum: the amplitudes are those that give it by `modes`.
-void Planner::State::equalise_by_modes(std::vector<Tone>& tones) const {
-  for (auto& tone : tones) {
+Solution Planner::State::solve(const Scene& scene, std::vector<Tone> tones) {
+  for (auto& tone : tones) tone.amplitude_m = 1, tone.phase_rad = 0;
+  Solution solution;
+  solution.choice = choose(scene, tones);
+  solution.fields = physics::evaluate_tones(surface, tones, physics::linspace_points(surface, profile_points),
+                                            at_least_mode(solution.choice.model), physics::Normalise::none);
+  for (const auto& tone : tones)
+    solution.resonances_Hz.push_back(physics::nearest_resonance_Hz(surface, tone.frequency_Hz));
+  if (!tones.empty() && scene.edge.kind != physics::Edge::Kind::friction)
+    solution.uncertainty_m = map_for(scene.edge).at_frequency(tones.front().frequency_Hz).uncertainty_m;
+  solution.warnings = physics::tone_warnings(surface, tones);
+  return solution;
+}
+
+const Solution& Planner::State::solution_for(const Scene& scene, const std::vector<Tone>& tones) {
+  auto key = fmt::format("{} {} {} {} {}", physics::format(scene.edge),
+                         scene.tolerance.boundary_m.value_or(0), scene.tolerance.level_dB.value_or(0),
+                         scene.tolerance.friction.value_or(0), scene.zone || scene.tones.size() > 1);
+  for (const auto& tone : tones) key += fmt::format(" {}", tone.frequency_Hz);
+  const auto found = solutions.find(key);
+  if (found != solutions.end()) return found->second;
+  if (solutions.size() >= kSolutions) solutions.clear();
+  return solutions.emplace(key, solve(scene, tones)).first->second;
+}
+
+/// Tones are levelled by `mode`. Where only `modes` is exact enough, the drive edge's share of the first mode
+/// is not all that reaches the last maximum: the amplitudes become those that give the same level by `modes`.
+void Planner::State::equalise(std::vector<Tone>& tones, const Solution& solution) const {
+  if (solution.choice.model != Model::modes) return;
+  for (std::size_t i = 0; i < tones.size(); ++i) {
+    const auto& info = solution.fields[i].info;
+    if (!info.last_peak_m) continue;
     try {
-      tone.amplitude_m *= physics::drive_amplitude_m(surface, tone.frequency_Hz, 1, Model::modes) /
-                          physics::drive_amplitude_m(surface, tone.frequency_Hz, 1);
-    } catch (const std::domain_error&) {  // no last maximum to be equal at
+      tones[i].amplitude_m /= info.gain * physics::drive_amplitude_m(surface, tones[i].frequency_Hz, 1);
+    } catch (const std::domain_error&) {  // no last maximum by `mode`: there was nothing to be equal at
     }
   }
 }
 
-/// Resonances are searched for, which takes longer than all else in a plan, and frequencies come again.
-std::optional<double> Planner::State::nearest_resonance(double frequency_Hz) {
-  if (resonances.size() >= kRemembered) resonances.clear();
-  const auto found = resonances.find(frequency_Hz);
-  if (found != resonances.end()) return found->second;
-  return resonances.emplace(frequency_Hz, physics::nearest_resonance_Hz(surface, frequency_Hz)).first->second;
-}
-
-void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones,
-                           const std::vector<physics::ToneField>& fields) {
+void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones, const Solution& solution) const {
   for (std::size_t i = 0; i < tones.size(); ++i) {
     const auto& tone = tones[i];
-    const auto& info = fields[i].info;
+    const auto& info = solution.fields[i].info;
     DrivenTone driven;
     driven.frequency_Hz = tone.frequency_Hz;
     driven.amplitude_m = tone.amplitude_m;
     driven.phase_rad = tone.phase_rad;
     driven.turning_point_m = info.turning_point_m;
     driven.last_peak_m = info.last_peak_m;
-    driven.nearest_resonance_Hz = nearest_resonance(tone.frequency_Hz);
+    driven.nearest_resonance_Hz = solution.resonances_Hz[i];
     driven.gain = info.gain;
     driven.displacement_m = info.gain * tone.amplitude_m;
     assign_transducer(rig, driven);
@@ -267,28 +299,26 @@ DrivePlan Planner::make(const Scene& scene) {
   // Positions come from the validated table, which is both the cheapest and the most exact there is; the
   // choice of a model is about the profile.
   auto tones = state_->tones_for(scene, plan);
-  const auto choice = state_->choose(scene, tones);
+  const Solution& solution = state_->solution_for(scene, tones);
+  const auto& choice = solution.choice;
   plan.model = choice.model;
   plan.inside_tolerance = choice.inside;
   plan.error_bound_m = choice.bound.boundary_bound_m;
   plan.level_bound_dB = choice.bound.level_bound_dB;
   plan.amplitude_bound = choice.bound.amplitude_bound;
   plan.reason = choice.reason;
+  plan.uncertainty_m = solution.uncertainty_m;
   if (scene.boundary_m && !plan.boundary_m) plan.boundary_m = scene.boundary_m;
-  if (!tones.empty() && scene.edge.kind != physics::Edge::Kind::friction)
-    plan.uncertainty_m = state_->map_for(scene.edge).at_frequency(tones.front().frequency_Hz).uncertainty_m;
-  // Amplitudes and what the surface does never by less than `mode`: a limit must not rest on a coarse model.
-  const auto by = choice.model == Model::modes ? Model::modes : Model::mode;
-  if (by == Model::modes) state_->equalise_by_modes(tones);
+  state_->equalise(tones, solution);
   physics::assign_phases(tones);
   plan.crest_factor = physics::crest_factor(tones);
   plan.audible_products = physics::audible_products(tones);
   plan.warnings = physics::surface_warnings(state_->surface);
-  const auto more = physics::tone_warnings(state_->surface, tones);
-  plan.warnings.insert(plan.warnings.end(), more.begin(), more.end());
-  const auto x_m = physics::linspace_points(state_->surface, profile_points);
-  const auto fields = physics::evaluate_tones(state_->surface, tones, x_m, by, physics::Normalise::none);
-  state_->drive(plan, tones, fields);
+  plan.warnings.insert(plan.warnings.end(), solution.warnings.begin(), solution.warnings.end());
+  state_->drive(plan, tones, solution);
+  auto fields = solution.fields;
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    for (auto& v : fields[i].v) v *= tones[i].amplitude_m;
   measure(state_->surface, state_->friction, state_->rig, tones, fields, plan);
   state_->refuse_beyond_limits(plan);
   return plan;
@@ -299,8 +329,8 @@ Planner::Profile Planner::profile(const DrivePlan& plan, int points) {
   for (const auto& tone : plan.tones) tones.push_back({tone.frequency_Hz, tone.amplitude_m, tone.phase_rad});
   Profile profile;
   profile.x_m = physics::linspace_points(state_->surface, points);
-  const auto by = plan.model == Model::modes ? Model::modes : Model::mode;
-  profile.displacement_m = physics::amplitude_profile(state_->surface, tones, profile.x_m, by);
+  profile.displacement_m =
+      physics::amplitude_profile(state_->surface, tones, profile.x_m, at_least_mode(plan.model));
   for (const double a : profile.displacement_m)
     profile.friction.push_back(state_->friction.relative_friction(a));
   profile.friction =
