@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "station/drive/amplifier.hpp"
 #include "station/drive/burst.hpp"
 #include "station/drive/frame_clock.hpp"
 #include "station/drive/output.hpp"
@@ -56,6 +57,8 @@ struct StreamConfig {
   SynthLimits limits;
   int fifo_priority = 70;
   double converter_delay_s = 0;  ///< group delay of the converter, added to predicted times
+  /// Told audio_alive() after each block that a device took; must outlive the stream. None: null.
+  Amplifier* amplifier = nullptr;
 };
 
 /// A stream that runs on silence and plays bursts at absolute frames. All functions are for one control

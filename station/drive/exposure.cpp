@@ -74,6 +74,25 @@ double Exposure::earliest_start_s(double wanted_s, double length_s) const {
   return start_s;
 }
 
+// A later stimulus that has to wait holds up the whole trial, since its gaps belong to the design.
+double Exposure::earliest_start_s(double wanted_s, std::span<const Exposed> trial) const {
+  constexpr int most_tries = 1000;
+  double start_s = wanted_s;
+  for (int k = 0; k < most_tries; ++k) {
+    Exposure account = *this;
+    double late_s = 0;
+    for (const Exposed& part : trial) {
+      const double wish_s = start_s + part.start_s, length_s = part.end_s - part.start_s;
+      late_s = account.earliest_start_s(wish_s, length_s) - wish_s;
+      if (late_s > 1e-6) break;
+      account.add({wish_s, wish_s + length_s});
+    }
+    if (late_s <= 1e-6) return start_s;
+    start_s += late_s;
+  }
+  throw LimitExceeded("the intervals of a trial never keep the rig's limits together; shorten them");
+}
+
 std::string sound_problem(double frequency_Hz, double amplitude, const std::vector<SoundLevel>& measured) {
   constexpr double lowest_Hz = 22400, ultrasonic_Hz = 25000, audible_dB = 75, ultrasonic_dB = 110;
   if (!(amplitude > 0)) return "";

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -45,6 +46,9 @@ class Exposure {
   /// time. The interval between trials stretches to it, and says so. Throws LimitExceeded as above, and when
   /// the session's time would be over before the stimulus ends.
   double earliest_start_s(double wanted_s, double length_s) const;
+
+  /// The same for several stimuli of one trial, given in order by their times from its start.
+  double earliest_start_s(double wanted_s, std::span<const Exposed> trial) const;
 
   /// What was presented in the end. Stimuli must come in order.
   void add(const Exposed& exposed);

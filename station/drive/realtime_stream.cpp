@@ -99,6 +99,7 @@ class Realtime final : public Stream {
       const WriteResult result = output_->write(block_);
       frame += config_.output.period_frames + result.lost_frames;
       report(result, frame);
+      if (config_.amplifier && result.status != WriteStatus::lost) config_.amplifier->audio_alive();
       output_->paced() ? follow_device() : follow_clock(origin_ns, frame);
     }
   }

@@ -10,6 +10,7 @@
 #include "station/drive/rights.hpp"
 #include "station/panel/guard.hpp"
 #include "station/panel/guarded_amplifier.hpp"
+#include "station/panel/simulated_lines.hpp"
 #include "station/panel/uri.hpp"
 
 namespace turnpoint::panel {
@@ -36,6 +37,7 @@ class GuardedAmplifier final : public drive::Amplifier {
   void enable() override { carry_out("enabled", &Guard::enable); }
   void clear() override {
     const std::lock_guard lock(mutex_);
+    check_guarded();
     if (const std::string why = guard_.clear(); !why.empty())
       throw std::runtime_error("amplifier: cannot be cleared: " + why);
   }
@@ -75,11 +77,18 @@ class GuardedAmplifier final : public drive::Amplifier {
  private:
   void carry_out(const char* what, std::string (Guard::*step)(std::int64_t)) {
     const std::lock_guard lock(mutex_);
+    check_guarded();
     const std::int64_t now = drive::monotonic_ns();
     take_signs();
     if (const std::string why = (guard_.*step)(now); !why.empty())
       throw std::runtime_error(std::string("amplifier: cannot be ") + what + ": " + why);
     lines_->drive(roles_.enable, guard_.outputs().enable);
+  }
+
+  // An amplifier that nobody watches stays off until the station is started again.
+  void check_guarded() const {
+    if (!ended_.empty())
+      throw std::runtime_error("amplifier: its lines are gone (" + ended_ + "); mend that, then start again");
   }
 
   void take_signs() noexcept {
@@ -142,6 +151,7 @@ class GuardedAmplifier final : public drive::Amplifier {
       } catch (const std::exception& error) {
         const std::lock_guard lock(mutex_);
         guard_.trip(drive::monotonic_ns(), error.what());
+        ended_ = error.what();
         return;  // without its lines the guard cannot guard; the external heartbeat monitor acts
       }
     }
@@ -151,6 +161,7 @@ class GuardedAmplifier final : public drive::Amplifier {
   GuardLines roles_;
   mutable std::mutex mutex_;
   Guard guard_;
+  std::string ended_;  ///< why the thread watches no longer; "" while it does
   std::atomic<std::int64_t> audio_ns_{-1}, session_ns_{-1}, reaction_ns_{-1};
   std::jthread thread_;
 };
@@ -169,7 +180,8 @@ std::unique_ptr<drive::Amplifier> guard_amplifier(std::unique_ptr<Lines> lines, 
 
 std::unique_ptr<drive::Amplifier> open_amplifier(const std::string& text) {
   Uri uri = parse_uri(text);
-  if (uri.scheme == "sim" && uri.name.empty() && uri.values.empty()) return drive::simulated_amplifier();
+  if (uri.scheme == "sim" && uri.name.empty() && uri.values.empty())
+    return guard_amplifier(std::make_unique<SimulatedLines>(4), {0, 1, 2, 3, false, false});
   if (uri.scheme != "gpio" || !uri.name.empty())
     throw std::invalid_argument("amplifier '" + text +
                                 "'; allowed sim: or gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE");

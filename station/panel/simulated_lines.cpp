@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "station/drive/monotonic.hpp"
+
 namespace turnpoint::panel {
 
 void SimulatedLines::check() const {
@@ -27,7 +29,14 @@ bool SimulatedLines::level(int index) {
 void SimulatedLines::drive(int index, int level) {
   const std::lock_guard lock(mutex_);
   check();
-  levels_.at(static_cast<std::size_t>(index)) = level;
+  int& now = levels_.at(static_cast<std::size_t>(index));
+  if (now != level) driven_.push_back({drive::monotonic_ns(), index, level});
+  now = level;
+}
+
+std::vector<SimulatedLines::Driven> SimulatedLines::driven() const {
+  const std::lock_guard lock(mutex_);
+  return driven_;
 }
 
 void SimulatedLines::set(int index, bool level, std::int64_t time_ns) {

@@ -2,6 +2,7 @@
 #include <condition_variable>
 #include <deque>
 #include <mutex>
+#include <vector>
 
 #include "station/panel/lines.hpp"
 
@@ -22,17 +23,25 @@ class SimulatedLines : public Lines {
   void set(int index, bool level, std::int64_t time_ns);
   /// Edges that the kernel's buffer had no room for.
   void lose_edges(int index, std::uint32_t count);
+  /// What was driven, change by change: which output, its new level, when.
+  struct Driven {
+    std::int64_t time_ns = 0;
+    int line = 0;
+    int level = 0;
+  };
+  std::vector<Driven> driven() const;
   /// The chip is unplugged: every further call throws ENODEV.
   void remove();
 
  private:
   void check() const;
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Edge> edges_;
   std::vector<int> levels_;
   std::vector<std::uint32_t> sequences_;
+  std::vector<Driven> driven_;
   bool gone_ = false;
 };
 
