@@ -12,6 +12,7 @@ enum class FaultKind {
   stop_pressed,     ///< the stop in the amplifier's supply
   touch_gone,       ///< the touch panel was unplugged
   disk_full,        ///< a finished trial could not be stored yet
+  disarmed,         ///< no fault: nobody has armed the amplifier yet, or the operator switched it off
   stimulus_missed,  ///< frames were lost, or a stimulus came too late
 };
 

@@ -15,15 +15,19 @@ enum class InputKind {
   next,         ///< Continue or Done on a page
   slider,       ///< number = the slider's value
   touch_down,   ///< any touch on the panel, answer or not: for the log
-  contact,      ///< value 1: finger on the surface, 0: lifted
+  button,       ///< value = index of the response button, in the order of the rig's URI
+  contact,      ///< value 1: finger on the surface, 0: lifted; number: where along it, 0 to 1, or below 0
   stop,         ///< participant or operator wants to stop; what was done is kept
   pause,        ///< operator
   xrun,         ///< the drive lost frames
-  fault,        ///< `fault` says what, text the detail; from drive or panel
+  fault,        ///< `fault` says what, text the detail; from drive, amplifier or panel: the trial is void
+  failure,      ///< text says what: the session cannot go on
+  notice,       ///< text says what; for the log only
   arm,          ///< operator: clear a latched fault of the amplifier and arm it
+  disarm,       ///< operator: amplifier off, and not on again before it is armed
   repeat,       ///< operator: void the trial under way and present it again
-  frames_lost,  ///< value = frames that the screen was late by in the trial before
   note,         ///< operator: text is kept as the session's annotation
+  frames_lost,  ///< value = frames that the screen was late by in the trial before
 };
 
 /// How good the time stamp is: the kernel's own, a toolkit's, or made by a simulated observer.

@@ -50,6 +50,8 @@ struct Page {
   double remaining_s = 0;                 ///< of a break
   double slider = 0, slider_min = 0, slider_max = 1, slider_step = 0;  ///< adjust
   std::string language;
+  /// "disarmed" or "faulted" while the operator has to act (a fault page); else "armed", "enabled", or "".
+  std::string amplifier;
   std::string run_mode;              ///< live | pilot | simulated: shown on every page unless live
   std::vector<SummaryLine> summary;  ///< end page, for the operator
   FaultKind fault = FaultKind::other;

@@ -63,26 +63,42 @@ const char* kind_of(InputKind kind) {
       return "slider";
     case InputKind::touch_down:
       return "touch";
+    case InputKind::button:
+      return "button";
     case InputKind::contact:
       return "contact";
     case InputKind::stop:
       return "stop";
     case InputKind::pause:
       return "pause";
-    case InputKind::arm:
-      return "arm";
-    case InputKind::repeat:
-      return "repeat";
     case InputKind::frames_lost:
       return "frames_lost";
-    case InputKind::note:
-      return "note";
     case InputKind::xrun:
       return "xrun";
     case InputKind::fault:
       return "fault";
+    case InputKind::failure:
+      return "failure";
+    case InputKind::notice:
+      return "notice";
+    case InputKind::arm:
+      return "arm";
+    case InputKind::disarm:
+      return "disarm";
+    case InputKind::repeat:
+      return "repeat";
+    case InputKind::note:
+      return "note";
   }
   return "";
+}
+
+std::string value_of(const Input& input) {
+  if (!input.text.empty()) return input.text;
+  if (input.kind == InputKind::slider) return text::exact(input.number);
+  if (input.kind == InputKind::contact && input.number >= 0)
+    return fmt::format("{} {}", input.value, text::number(input.number, 4));
+  return std::to_string(input.value);
 }
 
 }  // namespace
@@ -172,9 +188,7 @@ store::EventRow event_row(const Input& input, int trial_index) {
   row.time_ns = input.time_ns;
   row.kind = kind_of(input.kind);
   row.trial_index = trial_index;
-  row.value = !input.text.empty()               ? input.text
-              : input.kind == InputKind::slider ? text::exact(input.number)
-                                                : std::to_string(input.value);
+  row.value = value_of(input);
   return row;
 }
 
@@ -205,10 +219,15 @@ std::optional<trial::Event> event_of(const Input& input) {
       return trial::Event{input.time_ns, EventKind::fault, 0};
     case InputKind::stop:
     case InputKind::pause:
+    case InputKind::failure:
     case InputKind::repeat:
       return trial::Event{input.time_ns, EventKind::abort, 0};
+    case InputKind::disarm:
+      return trial::Event{input.time_ns, EventKind::fault, 0};
     case InputKind::next:
     case InputKind::slider:
+    case InputKind::button:
+    case InputKind::notice:
     case InputKind::arm:
     case InputKind::note:
     case InputKind::frames_lost:

@@ -11,8 +11,10 @@
 #include <fstream>
 #include <system_error>
 
+#include "station/session/finger_account.hpp"
 #include "station/session/sitting.hpp"
 #include "station/session/stage.hpp"
+#include "station/text/canonical.hpp"
 
 namespace turnpoint::session {
 
@@ -75,6 +77,7 @@ store::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::
   start.protocol_path = setup.protocol.path;
   start.protocol_text = setup.protocol.source;
   start.protocol_sha256 = setup.protocol.sha256;
+  start.protocol_canonical = text::canonical(text::parse_toml(setup.protocol.source, setup.protocol.path));
   for (const auto& factor : setup.protocol.factors) start.factor_columns.push_back(factor.name);
   start.level_unit = level_unit(setup.protocol);
   start.rig_name = setup.rig.name;
@@ -91,6 +94,8 @@ store::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::
   start.realtime_rights = rights;
   start.started_local = local_time();
   start.consent_version = setup.consent_version;
+  if (!setup.calibration_id.empty()) start.calibration_id = setup.calibration_id;
+  start.calibration_text = setup.calibration_text;
   return start;
 }
 
@@ -114,11 +119,29 @@ drive::StreamConfig stream_of(const rig::Rig& rig) {
   return config;
 }
 
-Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor) {
-  const bool simulated = !setup.observer.empty();
-  const auto stream = stream_of(setup.rig);
-  auto stage = simulated ? virtual_stage(stream, observer::Observer(observer::parse(setup.observer)))
-                         : real_stage(stream, inputs);
+namespace {
+
+/// Without a finger no hardware: what a real converter would get is thrown away. Files are written, and so is
+/// what a rig's allowed plug-in takes.
+drive::StreamConfig simulated_stream(const rig::Rig& rig) {
+  auto config = stream_of(rig);
+  const bool hardware = config.output.uri.starts_with("alsa:") && config.output.allow_plugin.empty();
+  if (hardware) config.output.uri = "null:";
+  return config;
+}
+
+/// The finger's account begins before the log is opened for writing: it reads the same database.
+FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
+  const double now_s = 1e-9 * static_cast<double>(clock_ns(CLOCK_REALTIME));
+  const auto limits = limits_of(setup.rig, setup.run_mode);
+  const auto history = setup.observer.empty() ? read_finger_history(setup.database, setup.participant, now_s,
+                                                                    limits.continuous_s)
+                                              : FingerHistory{{}, now_s};
+  return FingerAccount(limits, history, origin_ns, now_s);
+}
+
+Summary run_on(const Setup& setup, Display* display, std::unique_ptr<Stage> stage, Monitor* monitor) {
+  auto account = account_of(setup, stage->now_ns());
   const auto seed = setup.seed ? *setup.seed : setup.protocol.seed.value_or(fresh_seed());
   const bool resuming = !setup.resume_session.empty();
   auto log = resuming
@@ -127,8 +150,20 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monit
                  : store::SessionLog::begin(setup.database, start_of(setup, seed, stage->realtime_rights()),
                                             segment("start", stage->now_ns()));
   const auto kept_seed = resuming ? log.session().start.seed : seed;
-  Sitting sitting(setup, kept_seed, std::move(log), std::move(stage), display, monitor);
+  Sitting sitting(setup, kept_seed, std::move(log), std::move(stage), std::move(account), display, monitor);
   return sitting.run();
+}
+
+}  // namespace
+
+Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor) {
+  if (setup.observer.empty()) return run(setup, display, inputs, open_devices(setup.rig, inputs), monitor);
+  const observer::Observer observer(observer::parse(setup.observer));
+  return run_on(setup, display, virtual_stage(simulated_stream(setup.rig), observer), monitor);
+}
+
+Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices, Monitor* monitor) {
+  return run_on(setup, display, real_stage(stream_of(setup.rig), std::move(devices), inputs), monitor);
 }
 
 }  // namespace turnpoint::session

@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "station/drive/exposure.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
+#include "station/session/devices.hpp"
 #include "station/session/inputs.hpp"
 #include "station/session/monitor.hpp"
 #include "station/session/page.hpp"
@@ -29,9 +31,12 @@ struct Setup {
   std::optional<std::uint64_t> seed;
   std::string resume_session;  ///< session to go on with; "" begins a new one
   ResumeAt resume_at = ResumeAt::next_trial;
+  /// The calibration in force, already applied to `rig`: SHA-256 of its file and the file; "" without one.
+  std::string calibration_id, calibration_text;
+  std::vector<drive::SoundLevel> sound;  ///< measured levels at full scale, rising in frequency
   std::string consent_version;  ///< of the consent form that the participant signed; "" where none was asked
-  double response_offset_s =
-      0;  ///< the response device's own latency, stored with each answer, never subtracted
+  /// The response device's own latency, stored with each answer, never subtracted.
+  double response_offset_s = 0;
 };
 
 /// How a sitting ended, for people and for --json.
@@ -44,6 +49,8 @@ struct Summary {
   std::optional<double> accuracy;  ///< of scored, answered, experimental trials
   double duration_s = 0;           ///< on the session's own clock
   int xruns = 0;
+  double stretched_s = 0;       ///< by how much intervals between trials were lengthened to keep the duty
+  std::string realtime_rights;  ///< what the operating system granted to the audio thread
   struct Estimate {
     std::string procedure, parameter;
     double mean = 0, sd = 0;
@@ -52,8 +59,14 @@ struct Summary {
 };
 
 /// Runs one sitting to its end on the calling thread: real clock, pages to `display`, input from `inputs`.
-/// With an observer in the setup it runs on the virtual clock and `display` may be null. `monitor` may be
-/// null. Throws text::BadInput for a setup that cannot run, store::StoreError, std::system_error for devices.
+/// Where the amplifier is real, or the session live, nothing is presented before an operator has pushed
+/// InputKind::arm, and again after each fault of the amplifier. With an observer in the setup it runs on the
+/// virtual clock, drives no hardware, and `display` may be null. `monitor` may be null.
+/// Throws text::BadInput for a setup that cannot run, store::StoreError, std::system_error for devices.
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor = nullptr);
+
+/// The same with devices already open (a real session only).
+Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices,
+            Monitor* monitor = nullptr);
 
 }  // namespace turnpoint::session

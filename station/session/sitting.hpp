@@ -2,9 +2,10 @@
 #include <memory>
 #include <optional>
 
-#include "station/scene/planner.hpp"
 #include "station/session/director.hpp"
+#include "station/session/finger_account.hpp"
 #include "station/session/pages.hpp"
+#include "station/session/plan_ahead.hpp"
 #include "station/session/session.hpp"
 #include "station/session/stage.hpp"
 #include "station/store/session_log.hpp"
@@ -13,11 +14,11 @@
 namespace turnpoint::session {
 
 /// One sitting while it runs: joins director, planner, trial machine, stage, display and store. Everything
-/// happens on the thread that calls run().
+/// happens on the thread that calls run(), but for the planning of the next trial.
 class Sitting {
  public:
   Sitting(const Setup& setup, std::uint64_t seed, store::SessionLog log, std::unique_ptr<Stage> stage,
-          Display* display, Monitor* monitor);
+          FingerAccount account, Display* display, Monitor* monitor);
 
   /// To the end of the last block, or until somebody stops it.
   Summary run();
@@ -25,29 +26,65 @@ class Sitting {
  private:
   enum class Flow { go_on, stop };
 
+  /// A trial while it runs.
+  struct Running {
+    TrialSpec spec;
+    trial::Machine machine;
+    store::TrialRow row;
+    bool decided = false;
+  };
+  /// A stimulus that is on the surface, or was last.
+  struct OnSurface {
+    std::int64_t on_ns = 0, off_ns = 0;
+  };
+  struct Fault {
+    FaultKind kind = FaultKind::other;
+    std::string detail;
+  };
+
+  // sitting.cpp: blocks and pages
   Flow run_block();
-  Flow run_trial(const TrialSpec& spec);
-  void drive_trial(const TrialSpec& spec, trial::Machine& machine, store::TrialRow& row);
-  void perform(const std::vector<trial::Action>& actions, const TrialSpec& spec, trial::Machine& machine,
-               store::TrialRow& row);
-  void present(int interval, std::int64_t earliest_ns, const TrialSpec& spec, trial::Machine& machine,
-               store::TrialRow& row);
-  void finish_row(const TrialSpec& spec, const trial::Machine& machine, store::TrialRow& row);
-  void count(const TrialSpec& spec, const store::TrialRow& row);
-  void replay_stored_blocks();
-  void enter_stored(const store::BlockStart& block);
   Flow show_and_wait(Page page, double at_least_s);
   Flow rest_if_due(int trials_in_block);
+  Flow handle_on_page(const Input& input);
   void show(const Page& page);
-  void note(const Input& input);
   void finish(store::SessionStatus status, const std::string& reason);
+
+  // sitting_trial.cpp: one trial
+  Flow run_trial(const TrialSpec& spec);
+  Flow prepare_trial(const TrialSpec& spec);
+  Flow keep_limits(const TrialSpec& spec);
+  Flow after_trial(const store::TrialRow& row);
+  void check_plans(const TrialSpec& spec);
+  void drive_trial(Running& trial);
+  void handle_in_trial(const Input& input, Running& trial);
+  void perform(const std::vector<trial::Action>& actions, Running& trial);
+  void present(int interval, std::int64_t earliest_ns, Running& trial);
+  void ask_observer(const Running& trial, std::int64_t onset_ns);
+  void decide(Running& trial);
+  void finish_row(Running& trial);
+  void leave_surface();
+  void count(const TrialSpec& spec, const store::TrialRow& row);
+
+  // sitting_operator.cpp: inputs, amplifier, faults
+  Input received(Input input);
+  void note(const Input& input);
+  void log(const Input& input);
+  bool armed() const;
+  Flow until_armed(const Fault& why);
+  Flow recover();
+
+  // sitting_resume.cpp
+  void replay_stored_blocks();
+  void enter_stored(const store::BlockStart& block);
 
   const Setup& setup_;
   store::SessionLog log_;
   std::unique_ptr<Stage> stage_;
+  FingerAccount account_;
   Display* display_;
   Monitor* monitor_;
-  scene::Planner planner_;
+  PlanAhead plans_;
   Director director_;
   Pages pages_;
   Summary summary_;
@@ -55,9 +92,10 @@ class Sitting {
   int scored_ = 0, right_ = 0;
   int voids_in_a_row_ = 0;
   std::int64_t started_ns_ = 0;
+  std::optional<OnSurface> surface_;
   bool stop_asked_ = false, pause_asked_ = false;
   std::string stop_reason_;
-  FaultKind fault_ = FaultKind::other;
+  std::optional<Fault> fault_;  ///< what happened and nobody has dealt with yet
 };
 
 }  // namespace turnpoint::session

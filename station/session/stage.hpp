@@ -1,14 +1,17 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "station/drive/amplifier.hpp"
 #include "station/drive/burst.hpp"
 #include "station/drive/engine.hpp"
 #include "station/observer/observer.hpp"
 #include "station/rig/rig.hpp"
+#include "station/session/devices.hpp"
 #include "station/session/inputs.hpp"
 
 namespace turnpoint::session {
@@ -25,9 +28,9 @@ struct ClockFit {
   double residual_ns = 0;
 };
 
-/// Time, drive and inputs of one sitting. Two exist: real (CLOCK_MONOTONIC, a person) and virtual (a
-/// simulated observer, as fast as the machine goes); the session above is the same code on both. All on one
-/// thread.
+/// Time, drive, amplifier and inputs of one sitting. Two exist: real (CLOCK_MONOTONIC, a person) and virtual
+/// (a simulated observer, as fast as the machine goes); the session above is the same code on both. All on
+/// one thread.
 class Stage {
  public:
   virtual ~Stage() = default;
@@ -40,30 +43,47 @@ class Stage {
   /// Throws away what has gathered, for a fresh start; returns it for the log.
   virtual std::vector<Input> drain() = 0;
 
+  /// Comes back once `ready` holds, which another thread brings about; keeps the amplifier's guard content.
+  /// The virtual clock stands still meanwhile.
+  virtual void wait_for(const std::function<bool()>& ready) = 0;
+
   /// Schedules the burst at the first frame that is safely ahead, no earlier than `earliest_ns`.
   virtual Onset present(drive::Burst burst, std::int64_t earliest_ns) = 0;
 
-  /// Ramps whatever sounds down, now.
-  virtual void silence() = 0;
+  /// Ramps whatever sounds down, now. Returns when the surface will be silent.
+  virtual std::int64_t silence() = 0;
+
+  /// The amplifier, by the operator: arms, disarms, clears. Each returns "" or why not.
+  virtual std::string arm() = 0;
+  virtual std::string disarm() = 0;
+  virtual std::string clear() = 0;
+  virtual drive::AmplifierState amplifier() const = 0;
+  /// Before the stimuli of a trial, in silence: amplifier on. Returns "" or why not.
+  virtual std::string open_amplifier() = 0;
+  /// After them: amplifier off as soon as the surface is silent.
+  virtual void close_amplifier() = 0;
+
+  /// Names of the rig's response buttons, in the order of their indices.
+  virtual const std::vector<std::string>& buttons() const = 0;
 
   /// Tells a simulated observer that this answer will be wanted, counted from `zero_ns`; nobody else listens.
   virtual void question(const observer::Question& question, std::int64_t zero_ns) = 0;
 
   virtual std::optional<ClockFit> clock_fit() = 0;
   virtual std::string realtime_rights() const = 0;
-  /// Completes a rendered output file. Throws std::system_error.
+  /// Amplifier disarmed; completes a rendered output file. Throws std::system_error.
   virtual void finish() = 0;
 };
 
 /// The stream that a rig's output asks for, with a channel for each of its transducers.
 drive::StreamConfig stream_of(const rig::Rig& rig);
 
-/// Real time: CLOCK_MONOTONIC, the audio thread, inputs from a display and the panel. `inputs` must outlive
-/// it.
-std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Inputs& inputs);
+/// Real time: CLOCK_MONOTONIC, the audio thread, the amplifier's guard, inputs from a display and the panel.
+/// `inputs` must outlive it.
+std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices devices, Inputs& inputs);
 
-/// The virtual clock: the drive advances with it, and the observer answers. With nothing to wait for, the
-/// observer presses Continue.
+/// The virtual clock: the drive advances with it, and the observer answers and arms what amplifier there
+/// would be. With nothing to wait for, the observer presses Continue.
 std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer);
 
 }  // namespace turnpoint::session

@@ -76,6 +76,10 @@ void ScriptedSession::take(const session::Input& input) {
     case InputKind::contact:
     case InputKind::xrun:
     case InputKind::fault:
+    case InputKind::failure:
+    case InputKind::notice:
+    case InputKind::button:
+    case InputKind::disarm:
       qFatal("the screen cannot send this input");
   }
   emit inputsChanged();

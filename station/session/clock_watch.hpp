@@ -1,0 +1,32 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace turnpoint::session {
+
+/// The three clocks of the machine, read together; ns.
+struct Clocks {
+  std::int64_t monotonic_ns = 0;  ///< stands still in suspend
+  std::int64_t boottime_ns = 0;   ///< the same, with suspend
+  std::int64_t realtime_ns = 0;   ///< wall time: may be set
+};
+Clocks read_clocks() noexcept;
+
+/// Sees that the machine was suspended, or that somebody set its clock. Pure.
+class ClockWatch {
+ public:
+  explicit ClockWatch(const Clocks& start) noexcept : last_(start) {}
+
+  struct News {
+    std::optional<double> suspended_s;  ///< how long the machine slept
+    std::optional<double> jump_s;       ///< by how much the wall clock was set, sleep taken off
+  };
+  /// What happened since the last look. Steering by a time service (at most 500 ppm) is no jump.
+  News look(const Clocks& now) noexcept;
+
+ private:
+  Clocks last_;
+};
+
+}  // namespace turnpoint::session

@@ -1,0 +1,52 @@
+#pragma once
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "station/protocol/protocol.hpp"
+#include "station/rig/rig.hpp"
+#include "station/scene/planner.hpp"
+#include "station/session/director.hpp"
+
+namespace turnpoint::session {
+
+/// Plans trials before they are wanted, on a thread of its own: the session begins the next one as soon as
+/// the last is decided, and takes it at its start. The planner's results do not depend on when it is asked,
+/// so neither do the stimuli.
+class PlanAhead {
+ public:
+  /// For each interval of a trial the plans of its scenes.
+  using Plans = std::vector<std::vector<scene::DrivePlan>>;
+
+  /// The rig and the protocol must outlive it. Throws as scene::Planner.
+  PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol);
+  ~PlanAhead();
+
+  /// Begins a trial; one that waits and was not begun yet is dropped for it. Beginning the same again does
+  /// nothing.
+  void begin(const TrialSpec& trial);
+  /// True where take() would not wait.
+  bool ready(const TrialSpec& trial);
+  /// The plans of a trial, waiting for them if need be. Throws what planning them threw.
+  const Plans& take(const TrialSpec& trial);
+
+ private:
+  void run(const std::stop_token& stop);
+  Plans plan(const TrialSpec& trial);
+
+  const protocol::Protocol& protocol_;
+  scene::Planner planner_;  // worker thread only
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::optional<TrialSpec> wanted_;  ///< newest trial asked for and not yet begun
+  std::string wanted_key_, done_key_;
+  Plans done_;
+  std::exception_ptr failed_;
+  std::jthread thread_;  // last: joined before what it uses goes
+};
+
+}  // namespace turnpoint::session

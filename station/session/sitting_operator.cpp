@@ -1,0 +1,108 @@
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "station/session/rows.hpp"
+#include "station/session/sitting.hpp"
+
+namespace turnpoint::session {
+
+namespace {
+
+constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
+
+/// The answer that a button chooses: the one of its name, else left is the first, right the second.
+std::optional<int> answer_of(const std::string& button, const protocol::Task& task) {
+  const auto& choices = task.choices;
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    if (choices[i].id == button) return static_cast<int>(i);
+  const int place = button == "left" ? 0 : button == "right" ? 1 : button == "third" ? 2 : -1;
+  return place >= 0 && place < static_cast<int>(choices.size()) ? std::optional(place) : std::nullopt;
+}
+
+}  // namespace
+
+/// Does what the operator asks and logs what came of it; a button comes back as the answer that it chooses,
+/// or as a mere touch.
+Input Sitting::received(Input input) {
+  const auto outcome = [](const std::string& why_not, const char* done) {
+    return why_not.empty() ? done : "refused: " + why_not;
+  };
+  if (input.kind == InputKind::arm) {
+    const auto not_cleared = stage_->clear();
+    input.text = outcome(not_cleared.empty() ? stage_->arm() : not_cleared, "armed");
+  }
+  if (input.kind == InputKind::disarm) input.text = outcome(stage_->disarm(), "disarmed");
+  log(input);
+  if (input.kind == InputKind::note && !input.text.empty()) log_.annotate(input.text);
+  if (input.kind != InputKind::button) return input;
+  const auto& names = stage_->buttons();
+  const auto index = static_cast<std::size_t>(input.value);
+  const auto answer = setup_.protocol.task.device != protocol::Device::touch && index < names.size()
+                          ? answer_of(names[index], setup_.protocol.task)
+                          : std::nullopt;
+  input.kind = answer ? InputKind::answer : InputKind::touch_down;
+  input.value = answer.value_or(0);
+  return input;
+}
+
+/// Remembers what has to be acted on once the trial or page is over.
+void Sitting::note(const Input& input) {
+  switch (input.kind) {
+    case InputKind::stop:
+      stop_asked_ = true;
+      stop_reason_ = "stopped by the participant or the operator";
+      break;
+    case InputKind::failure:
+      stop_asked_ = true;
+      stop_reason_ = input.text;
+      break;
+    case InputKind::pause:
+      pause_asked_ = true;
+      break;
+    case InputKind::fault:
+      fault_ = Fault{input.fault, input.text};
+      break;
+    case InputKind::disarm:
+      fault_ = Fault{FaultKind::disarmed, ""};
+      break;
+    default:
+      break;
+  }
+}
+
+bool Sitting::armed() const {
+  const auto state = stage_->amplifier();
+  return state == drive::AmplifierState::armed || state == drive::AmplifierState::enabled;
+}
+
+/// Holds until the operator has armed the amplifier; nothing sounds before.
+Sitting::Flow Sitting::until_armed(const Fault& why) {
+  auto page = pages_.fault(why.kind, why.detail, director_);
+  while (!armed()) {
+    page.amplifier = drive::name(stage_->amplifier());
+    show(page);
+    auto waited = stage_->wait_until(kForever);
+    if (!waited) continue;
+    const auto input = received(std::move(*waited));
+    note(input);
+    if (stop_asked_) return Flow::stop;
+    if (input.kind == InputKind::fault) page = pages_.fault(input.fault, input.text, director_);
+    if (input.kind == InputKind::arm && !armed()) page.detail = input.text;
+  }
+  return Flow::go_on;
+}
+
+/// After a fault: the screen says what happened; the operator mends it, clears and arms; then it goes on.
+Sitting::Flow Sitting::recover() {
+  stage_->close_amplifier();
+  while (const auto what = std::exchange(fault_, std::nullopt)) {
+    if (armed()) return show_and_wait(pages_.fault(what->kind, what->detail, director_), 0);
+    if (until_armed(*what) == Flow::stop) return Flow::stop;
+  }
+  return show_and_wait(pages_.paused(director_), 0);
+}
+
+void Sitting::log(const Input& input) { log_.event(event_row(input, trial_index_)); }
+
+}  // namespace turnpoint::session

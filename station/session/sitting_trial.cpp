@@ -1,0 +1,244 @@
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "station/session/burst.hpp"
+#include "station/session/rows.hpp"
+#include "station/session/sitting.hpp"
+#include "station/session/trial_plan.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::session {
+
+namespace {
+
+constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
+constexpr int kVoidsBeforeStop = 3;
+
+bool is_over(trial::Phase phase) {
+  return phase == trial::Phase::feedback || phase == trial::Phase::late || phase == trial::Phase::interval ||
+         phase == trial::Phase::done;
+}
+
+store::EventRow event(std::int64_t time_ns, const char* kind, double value, int trial_index) {
+  store::EventRow row;
+  row.time_ns = time_ns;
+  row.kind = kind;
+  row.value = text::number(value, 9);
+  row.trial_index = trial_index;
+  return row;
+}
+
+}  // namespace
+
+Sitting::Flow Sitting::run_trial(const TrialSpec& spec) {
+  if (prepare_trial(spec) == Flow::stop) return Flow::stop;
+  Running trial{spec, trial::Machine(trial_plan(setup_.protocol, *director_.block(), spec)),
+                row_of(spec, setup_.protocol, trial_index_)};
+  if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block());
+  log_.presented(trial_index_, stage_->now_ns());
+  drive_trial(trial);
+  stage_->close_amplifier();
+  if (!trial.decided) decide(trial);
+  leave_surface();
+  finish_row(trial);
+  log_.append(trial.row);
+  count(spec, trial.row);
+  if (monitor_ != nullptr) monitor_->trial_ended(spec, trial.row);
+  ++trial_index_;
+  return after_trial(trial.row);
+}
+
+/// Everything that may take time or go wrong before a trial: what has gathered since the last one, its plans,
+/// the rig's limits, the amplifier.
+Sitting::Flow Sitting::prepare_trial(const TrialSpec& spec) {
+  plans_.begin(spec);
+  try {
+    if (keep_limits(spec) == Flow::stop) return Flow::stop;
+    stage_->wait_for([&] { return plans_.ready(spec); });
+    check_plans(spec);
+  } catch (const std::domain_error& unreachable) {
+    stop_asked_ = true, stop_reason_ = unreachable.what();
+  } catch (const drive::LimitExceeded& limit) {
+    stop_asked_ = true, stop_reason_ = limit.what();
+  }
+  for (auto& stale : stage_->drain()) note(received(std::move(stale)));
+  while (!stop_asked_) {
+    if (!fault_)
+      if (const auto why_not = stage_->open_amplifier(); !why_not.empty())
+        fault_ = Fault{FaultKind::amplifier, why_not};
+    if (!fault_) break;
+    if (recover() == Flow::stop) return Flow::stop;
+  }
+  return stop_asked_ ? Flow::stop : Flow::go_on;
+}
+
+/// The interval between trials stretches as far as the rig's limits on duty and continuous time need.
+Sitting::Flow Sitting::keep_limits(const TrialSpec& spec) {
+  const auto now = stage_->now_ns();
+  const auto begin = account_.earliest_ns(now, stimuli_of(setup_.protocol, spec));
+  if (begin <= now) return Flow::go_on;
+  const double stretch_s = static_cast<double>(begin - now) * 1e-9;
+  summary_.stretched_s += stretch_s;
+  log_.event(event(now, "interval_stretched", stretch_s, trial_index_));
+  while (stage_->now_ns() < begin)
+    if (auto input = stage_->wait_until(begin))
+      if (handle_on_page(received(std::move(*input))) == Flow::stop) return Flow::stop;
+  return Flow::go_on;
+}
+
+/// The last look at what is about to be felt and heard. Throws drive::LimitExceeded.
+void Sitting::check_plans(const TrialSpec& spec) {
+  const auto& plans = plans_.take(spec);
+  const auto times = interval_times(setup_.protocol, spec);
+  for (std::size_t i = 0; i < plans.size(); ++i)
+    for (const auto& plan : plans[i]) {
+      account_.check(plan.peak_displacement_m, times[i].length_s);
+      if (setup_.run_mode != store::RunMode::live) continue;
+      for (const auto& tone : plan.tones)
+        if (const auto problem = drive::sound_problem(tone.frequency_Hz, tone.full_scale, setup_.sound);
+            !problem.empty())
+          throw drive::LimitExceeded(problem);
+    }
+}
+
+Sitting::Flow Sitting::after_trial(const store::TrialRow& row) {
+  if (stop_asked_) return Flow::stop;
+  const bool paused = std::exchange(pause_asked_, false);
+  const bool is_void = row.outcome == store::TrialOutcome::fault;
+  voids_in_a_row_ = is_void ? voids_in_a_row_ + 1 : 0;
+  if (voids_in_a_row_ >= kVoidsBeforeStop) {
+    stop_asked_ = true;
+    stop_reason_ = "three trials in a row were void" + (fault_ ? "; the last: " + fault_->detail : "");
+    return Flow::stop;
+  }
+  if (fault_) return recover();
+  return paused ? show_and_wait(pages_.paused(director_), 0) : Flow::go_on;
+}
+
+void Sitting::drive_trial(Running& trial) {
+  auto& machine = trial.machine;
+  perform(machine.start(stage_->now_ns()), trial);
+  while (!machine.done()) {
+    const auto wake = machine.wake_ns();
+    auto input = stage_->wait_until(wake.value_or(kForever));
+    if (input)
+      handle_in_trial(received(std::move(*input)), trial);
+    else
+      perform(machine.handle({*wake, trial::EventKind::tick, 0}), trial);
+  }
+}
+
+void Sitting::handle_in_trial(const Input& input, Running& trial) {
+  note(input);
+  if (input.kind == InputKind::answer && !trial.machine.result().response)
+    trial.row.response_time_quality = name(input.quality);
+  if (const auto event = event_of(input)) perform(trial.machine.handle(*event), trial);
+}
+
+void Sitting::perform(const std::vector<trial::Action>& actions, Running& trial) {
+  for (const auto& action : actions) {
+    switch (action.kind) {
+      case trial::ActionKind::enter: {
+        const auto phase = static_cast<trial::Phase>(action.value);
+        if (phase == trial::Phase::response || is_over(phase)) stage_->close_amplifier();
+        if (phase == trial::Phase::done) break;
+        if (is_over(phase) && !trial.decided) decide(trial);
+        show(pages_.of_phase(phase, trial.machine.interval(), trial.spec, *director_.block(),
+                             trial.machine.result(), director_));
+        break;
+      }
+      case trial::ActionKind::present:
+        present(action.value, action.time_ns, trial);
+        break;
+      case trial::ActionKind::silence: {
+        const auto silent_ns = stage_->silence();
+        if (surface_) surface_->off_ns = std::min(surface_->off_ns, silent_ns);
+        break;
+      }
+    }
+  }
+}
+
+void Sitting::present(int interval, std::int64_t earliest_ns, Running& trial) {
+  const auto index = static_cast<std::size_t>(interval);
+  const auto& spec = trial.spec;
+  const auto times = interval_times(setup_.protocol, spec)[index];
+  const auto& plans = plans_.take(spec)[index];
+  const auto burst = burst_of(plans, times.starts_s, setup_.protocol.task.transition_ms.value_or(50) * 1e-3,
+                              times.length_s, setup_.rig.output.rate_Hz);
+  leave_surface();
+  const auto onset = stage_->present(burst, earliest_ns);
+  surface_ = OnSurface{onset.time_ns, onset.time_ns + static_cast<std::int64_t>(times.length_s * 1e9)};
+  add_tones(trial.row, plans, interval, onset.frame, burst);
+  perform(trial.machine.handle({onset.time_ns, trial::EventKind::onset, interval}), trial);
+  if (interval + 1 == static_cast<int>(spec.intervals.size())) ask_observer(trial, onset.time_ns);
+}
+
+void Sitting::ask_observer(const Running& trial, std::int64_t onset_ns) {
+  const auto last = interval_times(setup_.protocol, trial.spec).back();
+  const auto ns = [](double s) { return static_cast<std::int64_t>(s * 1e9); };
+  auto zero_ns = onset_ns;
+  if (setup_.protocol.timing.response_zero == protocol::ResponseZero::interval_off)
+    zero_ns += ns(last.length_s);
+  if (setup_.protocol.timing.response_zero == protocol::ResponseZero::change)
+    zero_ns += ns(last.starts_s.front());
+  stage_->question(question_of(trial.spec, setup_.protocol, summary_.seed), zero_ns);
+}
+
+/// The outcome stands: what follows from it is known, and planned while the interval between trials lasts.
+void Sitting::decide(Running& trial) {
+  trial.decided = true;
+  auto& row = trial.row;
+  fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_);
+  director_.record({row.outcome, trial.machine.result().response, row.correct});
+  row.state_hash = director_.state_hash();
+  if (const auto threshold = director_.threshold()) {
+    row.threshold_est = threshold->first;
+    row.threshold_sd = threshold->second;
+  }
+  if (const auto next = director_.next()) plans_.begin(*next);
+}
+
+/// Books what was on the surface, for the finger's account and for the log.
+void Sitting::leave_surface() {
+  const auto left = std::exchange(surface_, std::nullopt);
+  if (!left || left->off_ns <= left->on_ns) return;
+  account_.add(left->on_ns, left->off_ns);
+  log_.event(
+      event(left->on_ns, "stimulus", static_cast<double>(left->off_ns - left->on_ns) * 1e-9, trial_index_));
+}
+
+void Sitting::finish_row(Running& trial) {
+  auto& row = trial.row;
+  fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_);
+  row.response_offset_s = setup_.response_offset_s;
+  if (const auto fit = stage_->clock_fit()) {
+    row.clock_slope_ns_per_frame = fit->slope_ns_per_frame;
+    row.clock_residual_ns = fit->residual_ns;
+  }
+}
+
+void Sitting::count(const TrialSpec& spec, const store::TrialRow& row) {
+  ++summary_.trials;
+  summary_.xruns += row.xruns;
+  switch (row.outcome) {
+    case store::TrialOutcome::answered:
+      ++summary_.answered;
+      break;
+    case store::TrialOutcome::timeout:
+      ++summary_.timeouts;
+      break;
+    case store::TrialOutcome::anticipation:
+      ++summary_.anticipations;
+      break;
+    case store::TrialOutcome::aborted:
+    case store::TrialOutcome::fault:
+      ++summary_.voided;
+      break;
+  }
+  if (spec.type == store::TrialType::experimental && row.correct) ++scored_, right_ += *row.correct ? 1 : 0;
+}
+
+}  // namespace turnpoint::session

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "station/session/schedule.hpp"
+
+namespace turnpoint::session {
+
+namespace {
+
+constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
+
+class VirtualStage : public Stage {
+ public:
+  VirtualStage(const drive::StreamConfig& config, observer::Observer observer)
+      : stream_(drive::open_synchronous(config)), observer_(std::move(observer)) {
+    amplifier_->arm();
+  }
+
+  std::int64_t now_ns() override { return now_ns_; }
+
+  std::optional<Input> wait_until(std::int64_t deadline_ns) override {
+    if (answer_ && answer_->time_ns <= deadline_ns) {
+      advance_to(answer_->time_ns);
+      return std::exchange(answer_, std::nullopt);
+    }
+    if (deadline_ns != kForever) {
+      advance_to(deadline_ns);
+      return std::nullopt;
+    }
+    advance_to(now_ns_ + kContinue_ns);
+    Input input;
+    input.time_ns = now_ns_;
+    input.kind = InputKind::next;
+    input.quality = TimeQuality::simulated;
+    return input;
+  }
+
+  std::vector<Input> drain() override {
+    answer_.reset();
+    return {};
+  }
+
+  void wait_for(const std::function<bool()>&) override {}  // who needs it next waits without time passing
+
+  Onset present(drive::Burst burst, std::int64_t earliest_ns) override {
+    ramp_ = burst.ramp;
+    return schedule(*stream_, burst, earliest_ns);
+  }
+
+  std::int64_t silence() override { return ramp_down(*stream_, ramp_); }
+
+  std::string arm() override { return amplifier_->arm(), ""; }
+  std::string disarm() override { return amplifier_->disarm(), ""; }
+  std::string clear() override { return amplifier_->clear(), ""; }
+  drive::AmplifierState amplifier() const override { return amplifier_->state(); }
+  std::string open_amplifier() override { return amplifier_->enable(), ""; }
+  void close_amplifier() override { amplifier_->disable(); }
+
+  const std::vector<std::string>& buttons() const override { return no_buttons_; }
+  void question(const observer::Question& question, std::int64_t zero_ns) override {
+    const auto reply = observer_.answer(question);
+    if (!reply.choice) return;
+    Input input;
+    input.time_ns = std::max(now_ns_, zero_ns + static_cast<std::int64_t>(reply.response_time_s * 1e9));
+    input.kind = InputKind::answer;
+    input.value = *reply.choice;
+    input.quality = TimeQuality::simulated;
+    answer_ = input;
+  }
+
+  std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
+  std::string realtime_rights() const override { return describe(stream_->rights()); }
+  void finish() override {
+    amplifier_->disarm();
+    stream_->finish();
+  }
+
+ private:
+  static constexpr std::int64_t kContinue_ns = 1'000'000'000;  // a page is read for so long
+
+  void advance_to(std::int64_t time_ns) {
+    now_ns_ = std::max(now_ns_, time_ns);
+    const auto frames = stream_->frame_at(now_ns_) - stream_->frame();
+    if (frames > 0) stream_->advance(frames);
+    while (stream_->poll()) {
+    }
+  }
+
+  const std::vector<std::string> no_buttons_;
+  std::unique_ptr<drive::Amplifier> amplifier_ = drive::simulated_amplifier();
+  std::unique_ptr<drive::SynchronousStream> stream_;
+  observer::Observer observer_;
+  std::int64_t now_ns_ = 0;
+  std::optional<Input> answer_;
+  drive::Ramp ramp_;
+};
+
+}  // namespace
+
+std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer) {
+  return std::make_unique<VirtualStage>(stream, std::move(observer));
+}
+
+}  // namespace turnpoint::session

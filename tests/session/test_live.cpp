@@ -1,0 +1,411 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+
+#include "station/app/prepare.hpp"
+#include "station/drive/monotonic.hpp"
+#include "station/panel/guarded_amplifier.hpp"
+#include "station/panel/simulated_lines.hpp"
+#include "station/session/session.hpp"
+#include "station/store/read.hpp"
+#include "station/text/problem.hpp"
+#include "tests/support/catch.hpp"
+
+// Live sessions in real time: a person with buttons, the operator, the guard on simulated lines, alsa-lib's
+// null device allowed as a plug-in, or no device at all. The assertions on the amplifier read the line's log.
+
+using namespace turnpoint;
+using session::InputKind;
+using session::PageKind;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr int kEnable = 0, kHeartbeat = 1, kFaultLine = 2, kStop = 3;
+
+std::string protocol_text(const std::string& device) {
+  return R"(format = "friction-protocol/1"
+[protocol]
+id = "live"
+version = "1.0.0"
+title = "Two quick trials"
+languages = ["en"]
+[random]
+seed = 7
+[[factor]]
+name = "offset_mm"
+range = [-24.0, 24.0]
+[scene.edge]
+boundary_mm = "160 + offset_mm"
+edge = "p50"
+displacement_um = 1.0
+ramp_ms = 20
+tolerance = { boundary_mm = 0.5 }
+[task]
+kind = "single-interval"
+intervals = ["edge"]
+device = ")" +
+         device +
+         R"("
+question = { en = "Left or right?" }
+choices = [{ id = "left", label = { en = "Left" } }, { id = "right", label = { en = "Right" } }]
+correct = { left = "offset_mm < 0", right = "offset_mm > 0" }
+[timing]
+response_zero = "go_cue"
+explore_s = 2.0
+deadline_s = 3.0
+iti_s = { uniform = [0.1, 0.2] }
+anticipation_s = 0.0
+[[procedure]]
+name = "levels"
+kind = "constant-stimuli"
+level = "offset_mm"
+values = [-20.0, 20.0]
+repeats = 1
+[[block]]
+name = "main"
+procedures = ["levels"]
+)";
+}
+
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("turnpoint-live-" + std::to_string(::getpid()));
+  Folder() {
+    fs::remove_all(path);
+    fs::create_directories(path);
+  }
+  ~Folder() { fs::remove_all(path); }
+  std::string operator/(const std::string& name) const { return (path / name).string(); }
+};
+
+/// Lines that outlive the amplifier, so that their log can be read when all is over.
+class Shared : public panel::Lines {
+ public:
+  explicit Shared(std::shared_ptr<panel::SimulatedLines> lines) : lines_(std::move(lines)) {}
+  std::optional<panel::Edge> wait(std::int64_t timeout_ns) override { return lines_->wait(timeout_ns); }
+  bool level(int index) override { return lines_->level(index); }
+  void drive(int index, int level) override { lines_->drive(index, level); }
+
+ private:
+  std::shared_ptr<panel::SimulatedLines> lines_;
+};
+
+/// Who sits in the room: told of each page on the session's thread, may push inputs and move lines.
+struct Room : session::Display {
+  session::Inputs inputs;
+  std::shared_ptr<panel::SimulatedLines> lines = std::make_shared<panel::SimulatedLines>(4);
+  std::vector<session::Page> pages;
+  std::function<void(const session::Page&)> reacts;
+  int stimuli = 0;
+
+  void push(InputKind kind, int value = 0) {
+    session::Input input;
+    input.time_ns = drive::monotonic_ns();
+    input.kind = kind;
+    input.value = value;
+    inputs.push(input);
+  }
+  void press(int button) { push(InputKind::button, button); }
+
+  void show(const session::Page& page) override {
+    pages.push_back(page);
+    if (page.kind == PageKind::stimulus) ++stimuli;
+    reacts(page);
+  }
+
+  /// What a willing participant and an operator who mends everything do.
+  void cooperate(const session::Page& page) {
+    if (page.kind == PageKind::instructions || page.kind == PageKind::paused) push(InputKind::next);
+    if (page.kind == PageKind::stimulus) press(0);
+    if (page.kind == PageKind::fault) push(page.amplifier.empty() ? InputKind::next : InputKind::arm);
+  }
+
+  session::Devices devices() {
+    session::Devices devices;
+    devices.amplifier = panel::guard_amplifier(std::make_unique<Shared>(lines),
+                                               {kEnable, kHeartbeat, kFaultLine, kStop, false, false});
+    devices.panel =
+        panel::open_panel(panel::ButtonsConfig{}, panel::ContactConfig{}, session::handlers_for(inputs));
+    return devices;
+  }
+
+  std::vector<panel::SimulatedLines::Driven> enables() const {
+    auto driven = lines->driven();
+    std::erase_if(driven, [](const auto& change) { return change.line != kEnable; });
+    return driven;
+  }
+  int heartbeats() const {
+    const auto driven = lines->driven();
+    return static_cast<int>(
+        std::count_if(driven.begin(), driven.end(), [](const auto& c) { return c.line == kHeartbeat; }));
+  }
+};
+
+session::Setup live_setup(const std::string& database, const std::string& device = "buttons") {
+  session::Setup setup;
+  setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml");
+  setup.protocol = protocol::parse(protocol_text(device), "live.toml");
+  setup.participant = "P01";
+  setup.database = database;
+  setup.run_mode = store::RunMode::live;
+  setup.language = "en";
+  return setup;
+}
+
+std::vector<store::EventRow> events_of(const std::string& database, const session::Summary& summary,
+                                       const std::string& kind) {
+  auto events = store::read_session(database, summary.session_id).events;
+  std::erase_if(events, [&](const auto& event) { return event.kind != kind; });
+  return events;
+}
+
+std::vector<store::TrialRow> trials_of(const std::string& database, const session::Summary& summary) {
+  std::vector<store::TrialRow> all;
+  for (const auto& block : store::read_session(database, summary.session_id).blocks)
+    all.insert(all.end(), block.trials.begin(), block.trials.end());
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("a live session goes from the operator's arming to answers by buttons, and ends disarmed",
+          "[session][live]") {
+  const Folder folder;
+  const auto setup = live_setup(folder / "a.sqlite");
+  Room room;
+  room.reacts = [&room](const auto& page) { room.cooperate(page); };
+  const auto summary = session::run(setup, &room, room.inputs, room.devices());
+  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(room.pages.front().kind == PageKind::fault);  // nothing before the operator has armed
+  CHECK(room.pages.front().amplifier == "disarmed");
+  CHECK(room.heartbeats() > 20);
+  const auto trials = trials_of(setup.database, summary);
+  REQUIRE(trials.size() == 2);
+  for (const auto& trial : trials) {
+    CHECK(trial.response == "left");
+    CHECK(trial.outcome == store::TrialOutcome::answered);
+    CHECK(trial.clock_slope_ns_per_frame.has_value());
+  }
+  // Enabled once for each trial, in silence before its stimulus; off once that is over.
+  const auto enables = room.enables();
+  REQUIRE(enables.size() == 4);
+  const auto stimuli = events_of(setup.database, summary, "stimulus");
+  REQUIRE(stimuli.size() == 2);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto on_ns = stimuli[k].time_ns,
+               off_ns =
+                   on_ns + static_cast<std::int64_t>(1e9 * std::strtod(stimuli[k].value.c_str(), nullptr));
+    CHECK(enables[2 * k].level == 1);
+    CHECK(enables[2 * k].time_ns < on_ns - 20'000'000);
+    CHECK(enables[2 * k + 1].level == 0);
+    CHECK(enables[2 * k + 1].time_ns > off_ns);
+  }
+  CHECK_FALSE(room.lines->level(kEnable));
+  CHECK(events_of(setup.database, summary, "button").size() == 2);
+  CHECK(events_of(setup.database, summary, "arm").front().value == "armed");
+}
+
+TEST_CASE("without the operator's arming the amplifier is never enabled", "[session][live]") {
+  const Folder folder;
+  const auto setup = live_setup(folder / "a.sqlite");
+  Room room;
+  room.reacts = [&room](const auto& page) {
+    if (page.kind != PageKind::fault) return;
+    room.push(InputKind::next);  // a participant who is impatient
+    room.press(0);
+    room.push(InputKind::stop);
+  };
+  const auto summary = session::run(setup, &room, room.inputs, room.devices());
+  CHECK(summary.trials == 0);
+  CHECK(room.stimuli == 0);
+  CHECK(room.enables().empty());
+}
+
+TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the trial and presents it again",
+          "[session][live]") {
+  const Folder folder;
+  const auto setup = live_setup(folder / "a.sqlite");
+  Room room;
+  std::int64_t pressed_ns = 0;
+  room.reacts = [&](const auto& page) {
+    if (page.kind == PageKind::stimulus && room.stimuli == 1) {
+      pressed_ns = drive::monotonic_ns();
+      return room.lines->set(kStop, true, pressed_ns);
+    }
+    if (page.kind == PageKind::fault && page.fault == session::FaultKind::stop_pressed &&
+        room.lines->level(kStop)) {
+      if (page.detail.find("refused") == std::string::npos) return room.push(InputKind::arm);  // too soon
+      room.lines->set(kStop, false, drive::monotonic_ns());
+    }
+    room.cooperate(page);
+  };
+  const auto summary = session::run(setup, &room, room.inputs, room.devices());
+  CHECK(summary.status == store::SessionStatus::completed);
+  const auto trials = trials_of(setup.database, summary);
+  REQUIRE(trials.size() == 3);
+  CHECK(trials[0].outcome == store::TrialOutcome::fault);
+  CHECK(trials[1].level == trials[0].level);
+  CHECK(trials[1].trial_in_block == trials[0].trial_in_block);
+  CHECK(trials[1].outcome == store::TrialOutcome::answered);
+  const auto enables = room.enables();
+  REQUIRE(enables.size() == 6);
+  CHECK(enables[1].level == 0);
+  CHECK(enables[1].time_ns >= pressed_ns);
+  const auto arms = events_of(setup.database, summary, "arm");
+  REQUIRE(arms.size() >= 3);
+  CHECK(arms[1].value.find("refused") == 0);  // the stop was still pressed
+  CHECK(arms.back().value == "armed");
+  CHECK(enables[2].time_ns > arms.back().time_ns);
+}
+
+TEST_CASE("lines that vanish end with the amplifier off, and no arming brings it back", "[session][live]") {
+  const Folder folder;
+  const auto setup = live_setup(folder / "a.sqlite");
+  Room room;
+  int tries = 0;
+  room.reacts = [&](const auto& page) {
+    if (page.kind == PageKind::stimulus) return room.lines->remove();
+    if (page.kind == PageKind::fault && room.stimuli > 0)
+      return room.push(++tries < 3 ? InputKind::arm : InputKind::stop);
+    room.cooperate(page);
+  };
+  const auto summary = session::run(setup, &room, room.inputs, room.devices());
+  CHECK(summary.status == store::SessionStatus::interrupted);
+  CHECK(room.stimuli == 1);
+  CHECK(room.enables().size() == 1);
+  CHECK(trials_of(setup.database, summary).front().outcome == store::TrialOutcome::fault);
+}
+
+TEST_CASE("the operator's disarming voids the trial; arming again goes on", "[session][live]") {
+  const Folder folder;
+  const auto setup = live_setup(folder / "a.sqlite");
+  Room room;
+  room.reacts = [&](const auto& page) {
+    if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.push(InputKind::disarm);
+    room.cooperate(page);
+  };
+  const auto summary = session::run(setup, &room, room.inputs, room.devices());
+  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.voided == 1);
+  CHECK(summary.answered == 2);
+}
+
+TEST_CASE("a session whose program fails leaves the amplifier's line low", "[session][live]") {
+  const Folder folder;
+  const auto setup = live_setup(folder / "a.sqlite");
+  Room room;
+  room.reacts = [&](const auto& page) {
+    if (page.kind == PageKind::stimulus) throw std::runtime_error("a bug");
+    room.cooperate(page);
+  };
+  CHECK_THROWS_WITH(session::run(setup, &room, room.inputs, room.devices()), "a bug");
+  const auto enables = room.enables();
+  REQUIRE(enables.size() == 2);
+  CHECK(enables.back().level == 0);
+}
+
+TEST_CASE("a finger's contacts are logged with their place", "[session][live]") {
+  const Folder folder;
+  const auto setup = live_setup(folder / "a.sqlite");
+  Room room;
+  auto devices = room.devices();
+  auto* panel = devices.panel.get();
+  room.reacts = [&](const auto& page) {
+    if (page.kind == PageKind::stimulus) panel->simulate(panel::Touch{drive::monotonic_ns(), true, 0.25});
+    room.cooperate(page);
+  };
+  const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
+  const auto contacts = events_of(setup.database, summary, "contact");
+  REQUIRE(contacts.size() == 2);
+  CHECK(contacts.front().value == "1 0.25");
+}
+
+TEST_CASE("the interval between trials stretches to keep the duty, and the log says by how much",
+          "[session][live]") {
+  const Folder folder;
+  auto setup = live_setup(folder / "a.sqlite");
+  setup.rig.limits.duty = 0.04;  // 2.4 s of any minute: one whole stimulus of 2 s, and no second
+  Room room;
+  room.reacts = [&](const auto& page) {
+    if (page.kind == PageKind::stimulus) return;  // explores to the end, answers after
+    if (page.kind == PageKind::response) return room.press(1);
+    if (page.kind == PageKind::interval && room.stimuli == 1) return room.push(InputKind::stop);
+    room.cooperate(page);
+  };
+  const auto first = session::run(setup, &room, room.inputs, room.devices());
+  CHECK(first.trials == 1);
+  // The same participant at once, in a new session: the database remembers.
+  Room again;
+  again.reacts = [&](const auto& page) {
+    if (page.kind == PageKind::instructions) {
+      again.push(InputKind::next);
+      std::thread([&again] {
+        drive::sleep_until_ns(drive::monotonic_ns() + 300'000'000);
+        again.push(InputKind::stop);
+      }).detach();
+      return;
+    }
+    again.cooperate(page);
+  };
+  const auto second = session::run(setup, &again, again.inputs, again.devices());
+  CHECK(second.trials == 0);
+  CHECK(second.stretched_s > 40);
+  CHECK(second.stretched_s < 60);
+  CHECK(again.enables().empty());
+  const auto stretched = events_of(setup.database, second, "interval_stretched");
+  REQUIRE(stretched.size() == 1);
+}
+
+TEST_CASE("a session whose time is used up stops with the reason", "[session][live]") {
+  const Folder folder;
+  auto setup = live_setup(folder / "a.sqlite");
+  setup.rig.limits.session_minutes = 2.5 / 60;
+  Room room;
+  room.reacts = [&](const auto& page) { room.cooperate(page); };
+  const auto summary = session::run(setup, &room, room.inputs, room.devices());
+  CHECK(summary.status == store::SessionStatus::interrupted);
+  CHECK(summary.reason.find("session's time") != std::string::npos);
+}
+
+TEST_CASE("a live session refuses a low tone without a measured sound level, before it sounds",
+          "[session][live]") {
+  const Folder folder;
+  auto setup = live_setup(folder / "a.sqlite");
+  auto text = protocol_text("buttons");
+  text.replace(text.find("160 + offset_mm"), 15, "100 + offset_mm");
+  text.replace(text.find("values = [-20.0, 20.0]"), 22, "values = [-8.0, -4.0]");
+  setup.protocol = protocol::parse(text, "live.toml");
+  Room room;
+  room.reacts = [&](const auto& page) { room.cooperate(page); };
+  const auto summary = session::run(setup, &room, room.inputs, room.devices());
+  CHECK(summary.status == store::SessionStatus::interrupted);
+  CHECK(summary.reason.find("without a measured sound level") != std::string::npos);
+  CHECK(room.stimuli == 0);
+  CHECK(room.enables().empty());
+}
+
+TEST_CASE("what a session is allowed to resample nowhere plays through alsa-lib's null device",
+          "[session][live][alsa]") {
+  ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
+  const Folder folder;
+  app::RunRequest request;
+  request.participant = "P01";
+  request.database = folder / "a.sqlite";
+  auto setup = live_setup(folder / "a.sqlite");
+  setup.rig.output.uri = "alsa:to_file";
+  setup.rig.output.allow_plugin = {"null", "file"};
+  setup.run_mode = store::RunMode::simulated;
+  setup.observer = "sim";
+  session::Inputs inputs;
+  const auto summary = session::run(setup, nullptr, inputs);
+  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.answered == 2);
+  setup.rig.output.uri = "alsa:rated";  // the negative control: a resampler behind the same permission
+  CHECK_THROWS(session::run(setup, nullptr, inputs));
+}
