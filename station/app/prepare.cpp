@@ -3,6 +3,12 @@
 #include <algorithm>
 #include <regex>
 
+#include "station/calibration/apply.hpp"
+#include "station/drive/exposure.hpp"
+#include "station/protocol/survey.hpp"
+#include "station/text/number.hpp"
+#include "station/text/toml.hpp"
+
 namespace turnpoint::app {
 
 namespace {
@@ -29,16 +35,63 @@ std::string choose_language(const std::string& wanted, const protocol::Protocol&
   return wanted;
 }
 
-/// A live session needs what a pilot may do without: a measured friction table.
-void check_live(const rig::Rig& rig, std::vector<Problem>& problems) {
+/// A live session needs what a pilot may do without: what the finger gets must have been measured.
+void check_live(const session::Setup& setup, const protocol::Survey& survey, std::vector<Problem>& problems) {
+  const auto& rig = setup.rig;
+  const auto add = [&](const std::string& what, const std::string& allowed) {
+    problems.push_back({{rig.path, 0, 0}, "--mode live: " + what, allowed});
+  };
   if (!rig.friction.measured)
-    problems.push_back({{rig.path, 0, 0},
-                        "--mode live: the rig's friction is the illustrative curve",
-                        "give [friction] a measured table_csv, or run with --mode pilot"});
+    add("the rig's friction is the illustrative curve",
+        "give [friction] a measured table_csv, or run with --mode pilot");
   if (rig.reproduction)
-    problems.push_back({{rig.path, 0, 0},
-                        "--mode live: this rig reproduces a historical one",
-                        "live sessions need a rig with reproduction = false"});
+    add("this rig reproduces a historical one", "live sessions need a rig with reproduction = false");
+  if (setup.calibration_id.empty() && rig.amplifier_uri != "sim:")
+    add("the rig has no calibration in force", "turnpoint calibrate --rig " + rig.path + " makes one");
+  for (const auto& sight : survey.sights) {
+    // However soft: whether the level is allowed is known only with each tone's amplitude, at its trial.
+    const auto problem = drive::sound_problem(sight.lowest_Hz, 1e-9, setup.sound);
+    if (problem.empty()) continue;
+    add("scene \"" + sight.scene + "\": " + problem, "measured levels around it in the calibration");
+    break;
+  }
+}
+
+void check_buttons_only(const session::Setup& setup, std::vector<Problem>& problems) {
+  const auto& task = setup.protocol.task;
+  if (!setup.rig.buttons_uri)
+    problems.push_back(
+        {{setup.rig.path, 0, 0}, "--buttons-only: the rig has no buttons", "a rig with [buttons]"});
+  if (task.device == protocol::Device::touch)
+    problems.push_back({task.device_place, "--buttons-only: the task is answered by touch",
+                        "device = \"buttons\" or \"either\""});
+}
+
+}  // namespace
+
+void take_calibration(const std::string& source, const std::string& path, session::Setup& setup) {
+  const auto calibration = calibration::parse(source, path);
+  setup.rig = calibration::applied(calibration, std::move(setup.rig));
+  setup.calibration_id = text::sha256(source);
+  setup.calibration_text = source;
+  for (const auto& point : calibration.sound) setup.sound.push_back({point.frequency_Hz, point.level_dB});
+}
+
+namespace {
+
+/// The calibration that was named, or the newest beside the rig.
+void find_calibration(const RunRequest& request, session::Setup& setup, std::vector<Problem>& problems) {
+  const auto path =
+      request.calibration.empty() ? calibration::newest_for(setup.rig.path) : request.calibration;
+  if (path.empty()) return;
+  const auto source = text::read_file(path);
+  const auto faults =
+      calibration::problems(calibration::parse(source, path), setup.rig.sha256, calibration::today());
+  const bool live = request.observer.empty() && request.mode == "live";
+  if (faults.empty()) return take_calibration(source, path, setup);
+  if (request.calibration.empty() && !live) return;
+  for (const auto& fault : faults)
+    problems.push_back({{path, 0, 0}, fault, "calibrate again, or give another file with --calibration"});
 }
 
 }  // namespace
@@ -59,14 +112,17 @@ session::Setup prepare(const RunRequest& request) {
   if (!problems.empty()) throw text::BadInput(problems);
 
   setup.language = choose_language(request.language, setup.protocol, problems);
-  const auto on_rig = protocol::check_against(setup.protocol, setup.rig);
-  problems.insert(problems.end(), on_rig.begin(), on_rig.end());
-  if (request.observer.empty() && request.mode == "live") check_live(setup.rig, problems);
+  gather([&] { find_calibration(request, setup, problems); });
+  const auto survey = protocol::survey(setup.protocol, setup.rig);
+  problems.insert(problems.end(), survey.problems.begin(), survey.problems.end());
+  if (request.observer.empty() && request.mode == "live") check_live(setup, survey, problems);
+  if (request.observer.empty() && request.buttons_only) check_buttons_only(setup, problems);
   if (!problems.empty()) throw text::BadInput(problems);
 
   setup.participant = request.participant;
   setup.database = request.database;
   setup.observer = request.observer;
+  setup.consent_version = request.consent_version;
   setup.seed = request.seed;
   setup.consent_version = request.consent_version;
   setup.run_mode = !request.observer.empty() ? store::RunMode::simulated

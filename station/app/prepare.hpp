@@ -17,10 +17,18 @@ struct RunRequest {
   std::string consent_version;         ///< of the consent form, "" where none is asked for
   std::string operator_code = "2468";  ///< opens the operator's view where it shares the participant's screen
   bool headless = false, buttons_only = false;
+  std::string calibration;      ///< file; "" takes the newest one beside the rig file, if there is one
+  std::string consent_version;  ///< of the consent form that the participant signed; "" where none was asked
 };
 
 /// Loads and checks everything that a sitting needs. Throws text::BadInput with all problems of both files,
-/// of the protocol on this rig, of participant code, language and mode.
+/// of the protocol on this rig, of participant code, language and mode. A calibration is applied to the rig;
+/// one that has expired or belongs to another rig is refused where it was named or the session is live, and
+/// left out otherwise.
 session::Setup prepare(const RunRequest& request);
+
+/// Puts a calibration file's text in force: rig, sound levels, and what the session's row keeps of it.
+/// Throws text::BadInput, std::invalid_argument.
+void take_calibration(const std::string& source, const std::string& path, session::Setup& setup);
 
 }  // namespace turnpoint::app

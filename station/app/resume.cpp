@@ -4,6 +4,7 @@
 
 #include <ostream>
 
+#include "station/app/prepare.hpp"
 #include "station/store/read.hpp"
 #include "station/text/number.hpp"
 
@@ -38,6 +39,8 @@ std::optional<session::Setup> prepare_resume(const ResumeRequest& request, std::
   session::Setup setup;
   setup.rig = rig::parse(start.rig_text, start.rig_path);
   setup.protocol = protocol::parse(start.protocol_text, start.protocol_path);
+  if (start.calibration_id) take_calibration(start.calibration_text, "the session's calibration", setup);
+  setup.consent_version = start.consent_version;
   const double age_h = found->age_s / 3600, allowed_h = setup.protocol.resume.max_age_h;
   if (age_h > allowed_h || age_h < 0)
     throw text::BadInput(

@@ -53,6 +53,8 @@ Calibration fit_measurements(const Measurements& measurements);
 /// std::system_error.
 std::string to_toml(const Calibration& calibration);
 Calibration load(const std::string& path);
+/// The same from text already in memory (a resumed session); `path` only names it in messages.
+Calibration parse(const std::string& text, const std::string& path);
 
 /// Days that it is still valid on a date (YYYY-MM-DD); negative once it has expired, the count of days since.
 int days_left(const Calibration& calibration, const std::string& today);

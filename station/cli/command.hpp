@@ -49,6 +49,7 @@ void add_synth(CLI::App& app, Context& context);
 void add_trace(CLI::App& app, Context& context);
 void add_run(CLI::App& app, Context& context);
 void add_doctor(CLI::App& app, Context& context);
+void add_calibrate(CLI::App& app, Context& context);
 void add_resume(CLI::App& app, Context& context);
 void add_export(CLI::App& app, Context& context);
 void add_sessions(CLI::App& app, Context& context);

@@ -10,6 +10,7 @@
 
 #include "station/app/places.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/operator_console.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
@@ -49,6 +50,8 @@ Json to_json(const session::Summary& summary) {
           {"accuracy", json_number(summary.accuracy)},
           {"duration_s", json_number(summary.duration_s)},
           {"xruns", summary.xruns},
+          {"stretched_s", json_number(summary.stretched_s)},
+          {"realtime_rights", summary.realtime_rights},
           {"estimates", estimates}};
 }
 
@@ -65,6 +68,10 @@ void print_summary(std::ostream& out, const session::Summary& s) {
   if (s.accuracy) fmt::print(out, "  {} % of the scored answers right\n", number(100 * *s.accuracy, 3));
   for (const auto& e : s.estimates)
     fmt::print(out, "  {}: {} {} (SD {})\n", e.procedure, e.parameter, number(e.mean, 4), number(e.sd, 3));
+  if (s.stretched_s > 0)
+    fmt::print(out, "  intervals stretched by {} s in all to keep the rig's limits\n",
+               number(s.stretched_s, 3));
+  fmt::print(out, "  real-time rights: {}\n", s.realtime_rights);
   fmt::print(out, "  database {}\n", s.database);
 }
 
@@ -100,7 +107,11 @@ std::shared_ptr<app::RunRequest> add_run_options(CLI::App& command) {
       ->capture_default_str();
   command.add_flag("--headless", request->headless, "No screen");
   command.add_flag("--buttons-only", request->buttons_only,
-                   "No screen: a person answers with the rig's buttons");
+                   "No screen: a person answers with the rig's buttons, the operator types");
+  command.add_option("--calibration", request->calibration,
+                     "Calibration file; otherwise the newest one beside the rig file");
+  command.add_option("--consent", request->consent_version,
+                     "Version of the consent form that the participant signed");
   return request;
 }
 
@@ -125,7 +136,9 @@ void add_run(CLI::App& app, Context& context) {
     if (on_screen) return show_summary(context, context.screens->session(*request, std::nullopt));
     const auto setup = app::prepare(*request);
     session::Inputs inputs;
-    show_summary(context, session::run(setup, nullptr, inputs));
+    if (!person) return show_summary(context, session::run(setup, nullptr, inputs));
+    OperatorConsole console(setup.rig, inputs, context.err);
+    show_summary(context, session::run(setup, &console, inputs));
   });
 }
 

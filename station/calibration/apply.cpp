@@ -1,0 +1,80 @@
+#include "station/calibration/apply.hpp"
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <stdexcept>
+
+#include "station/text/number.hpp"
+
+namespace turnpoint::calibration {
+
+namespace {
+
+void apply(const Calibration::Transducer& measured, rig::Rig& rig) {
+  const auto found = std::find_if(rig.transducers.begin(), rig.transducers.end(),
+                                  [&](const auto& t) { return t.name == measured.name; });
+  if (found == rig.transducers.end())
+    throw std::invalid_argument(
+        fmt::format("the calibration has a transducer \"{}\", the rig does not", measured.name));
+  found->m_per_full_scale.reset();
+  found->response.clear();
+  for (const auto& point : measured.response.points)
+    found->response.push_back({point.frequency_Hz, point.m_per_full_scale, point.phase_rad});
+  found->low_Hz = std::max(found->low_Hz, measured.response.low_Hz);
+  found->high_Hz = std::min(found->high_Hz, measured.response.high_Hz);
+  if (!(found->low_Hz < found->high_Hz))
+    throw std::invalid_argument(fmt::format(
+        "transducer \"{}\": the calibrated band, {} to {} kHz, is outside the rig's", measured.name,
+        text::number(measured.response.low_Hz * 1e-3), text::number(measured.response.high_Hz * 1e-3)));
+}
+
+std::string stem_of(const std::string& rig_path) {
+  const std::filesystem::path path(rig_path);
+  return (path.parent_path() / path.stem()).string() + ".calibration-";
+}
+
+}  // namespace
+
+rig::Rig applied(const Calibration& calibration, rig::Rig rig) {
+  for (const auto& transducer : calibration.transducers) apply(transducer, rig);
+  if (calibration.quality_factor) rig.surface.quality_factor = *calibration.quality_factor;
+  if (!calibration.friction) return rig;
+  rig.friction.stated = rig.friction.measured = true;
+  rig.friction.table.clear();
+  for (const auto& point : calibration.friction->points)
+    rig.friction.table.emplace_back(point.displacement_m, point.relative_friction);
+  return rig;
+}
+
+std::string file_for(const std::string& rig_path, const std::string& date) {
+  return stem_of(rig_path) + date + ".toml";
+}
+
+std::string newest_for(const std::string& rig_path) {
+  const auto stem = std::filesystem::path(stem_of(rig_path));
+  const auto folder = stem.parent_path().empty() ? std::filesystem::path(".") : stem.parent_path();
+  const auto begins = stem.filename().string();
+  std::string newest;
+  std::error_code unreadable;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
+    const auto name = entry.path().filename().string();
+    // Dates of this form sort as they follow each other.
+    if (name.starts_with(begins) && name.ends_with(".toml") && name.size() == begins.size() + 15)
+      newest = std::max(newest, name);
+  }
+  return newest.empty() ? "" : (stem.parent_path() / newest).string();
+}
+
+std::string today() {
+  const auto now = ::time(nullptr);
+  tm parts{};
+  ::localtime_r(&now, &parts);
+  char text[16];
+  ::strftime(text, sizeof text, "%Y-%m-%d", &parts);
+  return text;
+}
+
+}  // namespace turnpoint::calibration

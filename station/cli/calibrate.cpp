@@ -1,0 +1,163 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <iostream>
+#include <memory>
+
+#include "station/app/calibrate.hpp"
+#include "station/calibration/apply.hpp"
+#include "station/cli/command.hpp"
+#include "station/cli/json.hpp"
+#include "station/cli/write_file.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+using calibration::BoundaryFit;
+using text::number;
+
+struct Options {
+  std::string rig, out, plots, law, note, boundaries, friction, sound, sweep_out;
+  std::vector<std::string> sweeps;
+  double full_scale = 1;
+  int valid_days = 90;
+  bool sweep = false, arm = false;
+  app::SweepOptions plan;
+};
+
+calibration::Measurements measurements_of(const Options& options) {
+  calibration::Measurements measurements;
+  for (const auto& sweep : options.sweeps) {
+    const auto equals = sweep.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == sweep.size())
+      throw UsageError("calibrate: --response " + sweep + "; TRANSDUCER=FILE.csv is allowed");
+    measurements.sweeps.push_back({sweep.substr(0, equals), sweep.substr(equals + 1), options.full_scale});
+  }
+  measurements.boundaries_csv = options.boundaries;
+  measurements.friction_csv = options.friction;
+  measurements.sound_csv = options.sound;
+  if (options.law == "plate") measurements.law = BoundaryFit::Law::plate;
+  if (options.law == "membrane") measurements.law = BoundaryFit::Law::membrane;
+  if (options.sweeps.empty() && options.boundaries.empty() && options.friction.empty() &&
+      options.sound.empty())
+    throw UsageError(
+        "calibrate: nothing was measured; give --response, --boundaries, --friction or --sound (or --sweep "
+        "for "
+        "the tones to measure with)");
+  return measurements;
+}
+
+Json to_json(const calibration::Calibration& c, const std::string& out, const std::string& plots) {
+  Json json{{"file", out}, {"plots", plots}, {"made_on", c.made_on}, {"valid_days", c.valid_days}};
+  json["transducers"] = Json::array();
+  for (const auto& t : c.transducers)
+    json["transducers"].push_back({{"name", t.name},
+                                   {"low_Hz", t.response.low_Hz},
+                                   {"high_Hz", t.response.high_Hz},
+                                   {"residual_dB", json_number(t.response.residual_dB)}});
+  json["quality_factor"] = c.quality_factor ? json_number(*c.quality_factor) : Json();
+  if (c.boundary)
+    json["boundary"] = {
+        {"law", c.boundary->law == BoundaryFit::Law::plate ? "plate" : "membrane"},
+        {"apex_mm", json_number(1e3 * c.boundary->apex_m)},
+        {"apex_sd_mm", json_number(1e3 * c.boundary->apex_sd_m)},
+        {"constant", json_number(c.boundary->constant)},
+        {"residual_mm", json_number(1e3 * c.boundary->residual_m)},
+        {"curvature_z", c.boundary->curvature_z ? json_number(*c.boundary->curvature_z) : Json()}};
+  return json;
+}
+
+void print(std::ostream& out, const calibration::Calibration& c) {
+  for (const auto& t : c.transducers)
+    fmt::print(out, "{}: usable from {} to {} kHz (within {} dB), residual {} dB\n", t.name,
+               number(t.response.low_Hz * 1e-3, 5), number(t.response.high_Hz * 1e-3, 5),
+               number(calibration::equalisation_cap_dB), number(t.response.residual_dB, 2));
+  if (c.quality_factor) fmt::print(out, "quality factor {}\n", number(*c.quality_factor, 3));
+  if (c.boundary) {
+    const auto& b = *c.boundary;
+    fmt::print(out, "boundary: {}, apex {} mm (SD {}), C {}, residual {} mm\n",
+               b.law == BoundaryFit::Law::plate ? "plate" : "membrane", number(1e3 * b.apex_m, 5),
+               number(1e3 * b.apex_sd_m, 2), number(b.constant, 6), number(1e3 * b.residual_m, 2));
+    if (b.curvature_z && *b.curvature_z > 2)
+      fmt::print(out, "  bending shows: curvature of {} standard errors\n", number(*b.curvature_z, 2));
+  }
+  if (c.friction)
+    fmt::print(out, "friction: {} points, residual {}\n", c.friction->points.size(),
+               number(c.friction->residual, 2));
+  if (!c.sound.empty()) fmt::print(out, "sound: {} levels\n", c.sound.size());
+}
+
+void sweep(const Options& options, const rig::Rig& rig, Context& context) {
+  const auto steps = app::sweep_plan(rig, options.plan);
+  if (options.sweep_out.empty()) {
+    context.out << app::to_csv(steps);
+    return;
+  }
+  const auto arm = [&] {
+    if (!options.arm)
+      fmt::print(context.err, "The amplifier is off. With the surface clear, --arm lets the sweep arm it.\n");
+    return options.arm;
+  };
+  const double took_s = app::play_sweep(rig, steps, options.sweep_out, arm);
+  fmt::print(context.err, "{} tones, {} s, to {}\n", steps.size(), number(took_s, 4), options.sweep_out);
+}
+
+void calibrate(const Options& options, Context& context) {
+  const auto rig = rig::load(options.rig);
+  if (options.sweep) return sweep(options, rig, context);
+  const auto measurements = measurements_of(options);
+  const auto made = app::calibrate(rig, measurements, options.valid_days, options.note);
+  const auto out = options.out.empty() ? calibration::file_for(options.rig, made.made_on) : options.out;
+  const auto plots = options.plots.empty() ? out + ".svg" : options.plots;
+  write_file(plots, plot::render(app::calibration_figure(made, measurements)));
+  write_file(out, calibration::to_toml(made));
+  if (context.json) {
+    context.out << to_json(made, out, plots).dump(2) << "\n";
+    return;
+  }
+  print(context.out, made);
+  fmt::print(context.out, "wrote {} (valid for {} days) and {}\n", out, made.valid_days, plots);
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command =
+      app.add_subcommand("calibrate", "Fit measurements of a rig; plan or play the sweep for them");
+  command->add_option("--rig", options->rig, "Rig file that was measured")->required();
+  command->add_option("--response", options->sweeps,
+                      "TRANSDUCER=FILE: a vibrometer's frequency_Hz,displacement_um,phase_deg");
+  command->add_option("--full-scale", options->full_scale, "Drive during the sweep, 1 is full scale")
+      ->capture_default_str();
+  command->add_option("--boundaries", options->boundaries,
+                      "File: frequency_Hz,boundary_mm,sd_mm (sd 0: unknown)");
+  command->add_option("--law", options->law, "membrane | plate; otherwise three boundaries decide")
+      ->check(CLI::IsMember({"membrane", "plate"}));
+  command->add_option("--friction", options->friction, "File: displacement_um,relative_friction");
+  command->add_option("--sound", options->sound, "File: frequency_Hz,level_dB (SPL at full scale)");
+  command->add_option("--valid-days", options->valid_days, "Until it expires")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 3650));
+  command->add_option("--note", options->note, "Kept in the file: instruments, temperature, who");
+  command->add_option("--out", options->out,
+                      "File; otherwise beside the rig, with the date, where `run` finds it");
+  command->add_option("--plots", options->plots, "SVG of fits and residuals; otherwise beside the file");
+  command->add_flag("--sweep", options->sweep, "Print the stepped sweep to measure with, as CSV");
+  command->add_option("--sweep-out", options->sweep_out, "With --sweep: play it to wav:FILE or alsa:NAME");
+  command->add_flag("--arm", options->arm,
+                    "With --sweep-out alsa:...: the operator arms the amplifier by this");
+  command->add_option("--points", options->plan.points, "Of the sweep, per transducer")
+      ->capture_default_str();
+  command->add_option("--amplitude", options->plan.full_scale, "Of the sweep, 1 is full scale")
+      ->capture_default_str();
+  add_json(*command, context);
+  command->footer(
+      "Example: turnpoint calibrate --rig plate.toml --response main=sweep.csv --full-scale 0.1 --boundaries "
+      "edges.csv --friction friction.csv");
+  command->callback([options, &context] { calibrate(*options, context); });
+}
+
+}  // namespace turnpoint::cli

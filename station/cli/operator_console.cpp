@@ -1,0 +1,131 @@
+#include "station/cli/operator_console.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <optional>
+#include <ostream>
+#include <utility>
+
+#include "station/drive/monotonic.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+using session::InputKind;
+using session::PageKind;
+
+std::optional<InputKind> command_of(const std::string& word) {
+  if (word == "arm") return InputKind::arm;
+  if (word == "disarm") return InputKind::disarm;
+  if (word == "next") return InputKind::next;
+  if (word == "pause") return InputKind::pause;
+  if (word == "repeat") return InputKind::repeat;
+  if (word == "stop") return InputKind::stop;
+  if (word == "note") return InputKind::note;
+  return std::nullopt;
+}
+
+const char* name(PageKind kind) {
+  switch (kind) {
+    case PageKind::instructions:
+      return "instructions: a button or next";
+    case PageKind::cue:
+      return "get ready";
+    case PageKind::stimulus:
+      return "stimulus";
+    case PageKind::pause:
+      return "gap";
+    case PageKind::response:
+      return "response: a button";
+    case PageKind::feedback:
+      return "feedback";
+    case PageKind::interval:
+      return "interval";
+    case PageKind::rest:
+      return "rest: a button or next";
+    case PageKind::adjust:
+      return "adjust";
+    case PageKind::fault:
+      return "fault";
+    case PageKind::paused:
+      return "paused: next or stop";
+    case PageKind::end:
+      return "end";
+    case PageKind::failed:
+      return "failed";
+  }
+  return "";
+}
+
+}  // namespace
+
+OperatorConsole::OperatorConsole(const rig::Rig& rig, session::Inputs& inputs, std::ostream& messages)
+    : buttons_simulated_(rig.buttons_uri == "sim:"),
+      contact_simulated_(rig.contact_uri == "sim:"),
+      inputs_(inputs),
+      messages_(messages) {
+  say("operator: arm | disarm | next | pause | repeat | stop | note TEXT");
+  reader_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+void OperatorConsole::show(const session::Page& page) {
+  std::string text = name(page.kind);
+  if (page.kind == PageKind::fault) {
+    text += ": " + page.text + (page.detail.empty() ? "" : " (" + page.detail + ")");
+    text += page.amplifier.empty() ? "; next goes on" : "; amplifier " + page.amplifier + ": arm or stop";
+  }
+  if (page.kind == PageKind::feedback && page.correct) text += *page.correct ? ": right" : ": wrong";
+  if (text == std::exchange(last_, text)) return;
+  say(text);
+}
+
+void OperatorConsole::say(const std::string& text) {
+  const std::lock_guard lock(writing_);
+  messages_ << text << std::endl;  // at once: somebody may be waiting for it
+}
+
+void OperatorConsole::run(const std::stop_token& stop) {
+  std::string line;
+  pollfd input{STDIN_FILENO, POLLIN, 0};
+  while (!stop.stop_requested()) {
+    if (::poll(&input, 1, 100) <= 0) continue;
+    char letter = 0;
+    if (::read(STDIN_FILENO, &letter, 1) != 1) return;  // closed: nobody is there; the session goes on
+    if (letter == '\n')
+      take(std::exchange(line, ""));
+    else
+      line += letter;
+  }
+}
+
+bool OperatorConsole::simulate(const std::string& line, session::Input& input) const {
+  const char* const buttons[] = {"left", "right", "third"};
+  for (int k = 0; k < 3 && buttons_simulated_; ++k)
+    if (line == buttons[k]) return input.kind = InputKind::button, input.value = k, true;
+  if (!contact_simulated_ || (line != "finger on" && line != "finger off")) return false;
+  input.kind = InputKind::contact;
+  input.value = line == "finger on" ? 1 : 0;
+  input.number = -1;
+  return true;
+}
+
+void OperatorConsole::take(const std::string& line) {
+  if (line.empty()) return;
+  session::Input input;
+  input.time_ns = drive::monotonic_ns();
+  const auto space = line.find(' ');
+  const auto command = command_of(line.substr(0, space));
+  if (command) {
+    input.kind = *command;
+    if (*command == InputKind::note && space != std::string::npos) input.text = line.substr(space + 1);
+  } else if (!simulate(line, input)) {
+    return say("\"" + line +
+               "\" is not understood; arm, disarm, next, pause, repeat, stop, note TEXT are allowed");
+  }
+  inputs_.push(std::move(input));
+}
+
+}  // namespace turnpoint::cli
