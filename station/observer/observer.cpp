@@ -13,6 +13,9 @@ namespace turnpoint::observer {
 namespace {
 
 constexpr double kStrongest = 100;
+constexpr double kZ75 = 0.67448975019608171;  // 75 % point of the normal
+constexpr int kMoves = 5;
+constexpr double kLook_s = 1.6;              // one slide of the finger across the surface and back
 constexpr double kLn3 = 1.0986122886681098;  // odds of 75 %
 
 double strength(const Parameters& p, const Question& q) {
@@ -90,6 +93,28 @@ Reply Observer::answer(const Question& q) const {
       anticipates ? 0.05
                   : mean_decision_s(bound, kx) * spread + parameters_.residual_s + parameters_.travel_s;
   return reply;
+}
+
+Setting Observer::adjust(const Adjustment& a) const {
+  auto key = a.key;
+  key.stream = random::Stream::observer;
+  random::Draws draws(key);
+  const double threshold = parameters_.threshold.value_or(0.1 * (a.high - a.low));
+  const double sigma = std::fabs(threshold) / kZ75;
+  const bool lapses = draws.uniform() < parameters_.lapse;
+  const double anywhere = draws.uniform(a.low, a.high);
+  const double felt = parameters_.bias + sigma * draws.normal();
+  const double wanted = std::clamp(lapses ? anywhere : felt, a.low, a.high);
+  Setting setting;
+  double time_s = parameters_.residual_s;
+  for (int k = 1; k <= kMoves; ++k) {
+    // Past the aim and back, each time by half as much: people bracket what they look for.
+    const double overshoot = k == kMoves ? 0 : (a.start - wanted) * (k % 2 == 1 ? -0.5 : 0.5) / k;
+    time_s += kLook_s * random::exp(parameters_.spread * draws.normal());
+    setting.moves.push_back({time_s, std::clamp(wanted + overshoot, a.low, a.high)});
+  }
+  setting.done_s = time_s + parameters_.travel_s;
+  return setting;
 }
 
 Parameters parse(const std::string& text) {

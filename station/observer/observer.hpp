@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "station/random/draws.hpp"
 
@@ -42,6 +43,22 @@ struct Reply {
   double response_time_s = 0;  ///< from the moment that counts; may be negative for an anticipation
 };
 
+/// A slider to be set: where it starts, and what it can be set to.
+struct Adjustment {
+  double start = 0, low = 0, high = 1;
+  random::Key key;
+};
+
+struct Move {
+  double time_s = 0;  ///< from the moment that counts
+  double value = 0;
+};
+
+struct Setting {
+  std::vector<Move> moves;  ///< in time; the last one is the setting
+  double done_s = 0;        ///< when Done is pressed
+};
+
 /// A proportional-rate diffusion observer (Palmer, Huk & Shadlen 2005): accuracy 1 / (1 + exp(-2 A' k x)),
 /// mean decision time (A' / kx) tanh(A' k x). Stateless: the same question gets the same reply.
 class Observer {
@@ -51,6 +68,9 @@ class Observer {
   /// mean.
   double share(const Question& question, int choice) const;
   Reply answer(const Question& question) const;
+  /// Moves the slider to where things seem equal, in ever smaller steps: settings scatter about the bias with
+  /// the normal whose 75 % point is the threshold (none: a tenth of the range), a lapse sets it anywhere.
+  Setting adjust(const Adjustment& adjustment) const;
 
  private:
   Parameters parameters_;

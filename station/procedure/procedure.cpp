@@ -2,11 +2,16 @@
 
 #include <stdexcept>
 
+#include "station/procedure/adjustment.hpp"
 #include "station/procedure/constant_stimuli.hpp"
 #include "station/procedure/quest_plus.hpp"
 #include "station/procedure/staircase.hpp"
 
 namespace turnpoint::procedure {
+
+void Procedure::record_setting(double) {
+  throw std::logic_error("procedure: only an adjustment takes a setting");
+}
 
 std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& context, const random::Key& key) {
   if (const auto faults = validate(spec); !faults.empty())
@@ -14,8 +19,9 @@ std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& conte
                                 faults.front().what + "; " + faults.front().allowed);
   switch (spec.kind) {
     case Kind::constant_stimuli:
-    case Kind::adjustment:  // its starting levels are presented as constant stimuli are
       return std::make_unique<ConstantStimuli>(spec, context, key);
+    case Kind::adjustment:
+      return std::make_unique<Adjustment>(spec, context, key);
     case Kind::up_down:
     case Kind::weighted_up_down:
       return std::make_unique<Staircase>(spec, context);

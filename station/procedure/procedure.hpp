@@ -42,6 +42,8 @@ class Procedure {
   virtual ~Procedure() = default;
   virtual std::optional<Proposal> next() const = 0;  ///< none: done
   virtual void record(Answer answer) = 0;            ///< of the proposal that next() gives; not after done
+  /// The same for a setting of an adjustment; other kinds throw std::logic_error.
+  virtual void record_setting(double setting);
   virtual int recorded() const = 0;                  ///< trials that counted
   virtual int expected() const = 0;                  ///< in all, an estimate where a rule stops it
   virtual std::map<std::string, Estimate> estimates() const { return {}; }

@@ -13,12 +13,17 @@ void add(const std::optional<Linear>& expression, std::set<std::string>& names) 
   for (const auto& [name, coefficient] : expression->terms) names.insert(name);
 }
 
-// What a staircase can reach is everything between its limits: those stand for it.
-std::vector<double> levels_of(const procedure::Spec& spec) {
+// What a staircase can reach is everything between its limits: those stand for it. A slider reaches the whole
+// range of its factor.
+std::vector<double> levels_of(const Protocol& protocol, const procedure::Spec& spec) {
   auto levels = spec.values;
   levels.insert(levels.end(), spec.stimuli.values.begin(), spec.stimuli.values.end());
   for (const auto& limit : {spec.min, spec.start, spec.max})
     if (limit) levels.push_back(*limit);
+  const auto* factor = find_factor(protocol.factors, spec.level);
+  if (spec.kind == procedure::Kind::adjustment && factor && factor->range)
+    for (int i = 0; i <= 4; ++i)
+      levels.push_back(factor->range->first + 0.25 * i * (factor->range->second - factor->range->first));
   return levels;
 }
 
@@ -36,7 +41,7 @@ void add_block(const Protocol& protocol, const Block& block, const std::string& 
   };
   for (const auto& name : block.procedures)
     if (const auto* spec = find_procedure(protocol, name); spec && !spec->level.empty())
-      push("procedure \"" + name + "\"", spec->level, levels_of(*spec), spec);
+      push("procedure \"" + name + "\"", spec->level, levels_of(protocol, *spec), spec);
   if (!block.level.empty()) push("fixed levels", block.level, block.levels, nullptr);
   if (block.catch_trials && !block.catch_trials->factor.empty())
     push("catch trials", block.catch_trials->factor, block.catch_trials->levels, nullptr);

@@ -7,8 +7,6 @@
 
 namespace turnpoint::session {
 
-namespace {
-
 drive::ToneSet tones_of(const scene::DrivePlan& plan) {
   if (plan.tones.size() > static_cast<std::size_t>(drive::max_tones))
     throw std::length_error("a scene has more tones than the drive plays at once");
@@ -23,8 +21,6 @@ drive::ToneSet tones_of(const scene::DrivePlan& plan) {
   }
   return set;
 }
-
-}  // namespace
 
 drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::vector<double>& starts_s,
                       double transition_s, double length_s, int rate_Hz) {

@@ -7,6 +7,9 @@
 
 namespace turnpoint::session {
 
+/// The tones of a plan as the drive plays them. Throws std::length_error where they are too many.
+drive::ToneSet tones_of(const scene::DrivePlan& plan);
+
 /// One interval as the drive plays it: its scenes' plans in turn, the second and later beginning at
 /// `starts_s` from the onset with a transition of `transition_s`, `length_s` in all including both ramps.
 /// Tone i of a scene glides to tone i of the next. Throws std::length_error where the drive has no room.

@@ -65,6 +65,7 @@ struct Director::State {
   bool catch_due() const;
   TrialSpec blank(store::TrialType type, Stream stream) const;
   void complete(TrialSpec& spec) const;
+  std::optional<SliderSpan> slider(int key) const;
   std::optional<TrialSpec> make();
   TrialSpec warmup_trial() const;
   TrialSpec catch_trial() const;
@@ -179,6 +180,7 @@ void Director::State::complete(TrialSpec& spec) const {
                                spec.type == store::TrialType::warmup ? warmups_given : trial);
   spec.intervals = order.intervals;
   spec.correct = order.correct ? order.correct : correct_choice(protocol.task, spec.factors);
+  spec.slider = slider(key);
   auto rove = draws(Stream::roving, key);
   for (const auto& interval : spec.intervals) {
     const double range = protocol.scenes.at(interval.front()).rove_dB;
@@ -188,6 +190,23 @@ void Director::State::complete(TrialSpec& spec) const {
   spec.iti_s = draws(Stream::intertrial, key).uniform(iti.low, iti.high);
   if (const auto& foreperiod = protocol.task.foreperiod_s)
     spec.foreperiod_s = draws(Stream::foreperiod, key).uniform(foreperiod->low, foreperiod->high);
+}
+
+/// The window shown is wider than the range by a fifth, split between its ends at random in whole steps.
+std::optional<SliderSpan> Director::State::slider(int key) const {
+  const auto& task = protocol.task;
+  for (const auto& factor : protocol.factors) {
+    if (task.kind != protocol::TaskKind::adjustment || factor.name != task.adjusts || !factor.range) continue;
+    SliderSpan span;
+    span.low = factor.range->first, span.high = factor.range->second;
+    span.step = task.step.value_or((span.high - span.low) / 100);
+    const auto spare = std::llround(0.2 * (span.high - span.low) / span.step);
+    const auto below = draws(Stream::adjustment_start, key).below(static_cast<std::uint64_t>(spare) + 1);
+    span.shown_low = span.low - static_cast<double>(below) * span.step;
+    span.shown_high = span.high + static_cast<double>(spare - static_cast<long long>(below)) * span.step;
+    return span;
+  }
+  return std::nullopt;
 }
 
 TrialSpec Director::State::warmup_trial() const {
@@ -260,6 +279,9 @@ std::optional<TrialSpec> Director::State::make() {
 void Director::State::learn(const TrialEnd& end) {
   if (current_procedure == kNoProcedure) return;
   const auto index = static_cast<std::size_t>(current_procedure);
+  if (specs[index]->kind == procedure::Kind::adjustment && end.setting &&
+      end.outcome == store::TrialOutcome::answered)
+    return procedures[index]->record_setting(*end.setting);
   auto answer = procedure::Answer::none;
   if (end.outcome == store::TrialOutcome::answered && end.response) {
     const auto& tracks = specs[index]->tracks;
@@ -276,7 +298,7 @@ int Director::State::block_expected(const Block& b) const {
   double trials = 0;
   for (const auto& name : b.procedures) {
     const auto& spec = *find_spec(name);
-    if (spec.kind == procedure::Kind::constant_stimuli)
+    if (spec.kind == procedure::Kind::constant_stimuli || spec.kind == procedure::Kind::adjustment)
       trials += static_cast<double>(spec.values.size()) * spec.repeats;
     else
       trials += spec.stop.trials.value_or(6 * spec.stop.reversals.value_or(8));
@@ -369,7 +391,8 @@ std::vector<ProcedureEstimate> Director::estimates() const {
 std::optional<std::pair<double, double>> Director::threshold() const {
   if (state_->current_procedure == kNoProcedure) return std::nullopt;
   const auto estimates = state_->procedures[static_cast<std::size_t>(state_->current_procedure)]->estimates();
-  const auto found = estimates.find("threshold");
+  auto found = estimates.find("threshold");
+  if (found == estimates.end()) found = estimates.find("pse");
   if (found == estimates.end()) return std::nullopt;
   return std::pair(found->second.mean, found->second.sd);
 }

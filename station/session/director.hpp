@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "station/protocol/protocol.hpp"
+#include "station/session/slider.hpp"
 #include "station/store/records.hpp"
 
 namespace turnpoint::session {
@@ -21,6 +22,7 @@ struct TrialSpec {
   std::vector<std::vector<std::string>> intervals;  ///< scene names in the order presented
   std::vector<double> rove_dB;                      ///< one an interval
   std::optional<int> correct;                       ///< index of the right choice; none: nothing is right
+  std::optional<SliderSpan> slider;                 ///< adjustment only
   double iti_s = 0, foreperiod_s = 0;
   double deadline_s = 0;
   bool timeouts_are_data = false;  ///< the deadline belongs to the design (instructions)
@@ -31,6 +33,7 @@ struct TrialEnd {
   store::TrialOutcome outcome = store::TrialOutcome::answered;
   std::optional<int> response;
   std::optional<bool> correct;
+  std::optional<double> setting = {};  ///< of an adjustment that was answered
 };
 
 struct ProcedureEstimate {
@@ -74,7 +77,7 @@ class Director {
   int trials_expected() const;
   /// Of the block's procedures that estimate something.
   std::vector<ProcedureEstimate> estimates() const;
-  /// Threshold estimate and its SD of the procedure that gave the last trial, where there is one.
+  /// Threshold (or PSE) estimate and its SD of the procedure that gave the last trial, where there is one.
   std::optional<std::pair<double, double>> threshold() const;
   /// A hash of all discrete state: equal after a replay, or something differs.
   std::uint64_t state_hash() const;

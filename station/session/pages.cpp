@@ -108,6 +108,14 @@ Page Pages::of_phase(Phase phase, int interval, const TrialSpec& spec, const pro
   return page;
 }
 
+void Pages::add_slider(Page& page, const SliderSpan& span, double setting) const {
+  page.kind = PageKind::adjust;
+  page.answers.clear();
+  page.slider = setting;
+  page.slider_min = span.shown_low, page.slider_max = span.shown_high;
+  page.slider_step = span.step;
+}
+
 Page Pages::rest(const protocol::Block& block, double min_s, const Director& director) const {
   auto page = blank(PageKind::rest, &block, &director);
   page.title = word(Word::rest, setup_.language);

@@ -19,6 +19,8 @@ class Pages {
   /// The page of a phase of a trial.
   Page of_phase(trial::Phase phase, int interval, const TrialSpec& spec, const protocol::Block& block,
                 const trial::Result& result, const Director& director) const;
+  /// Makes a phase's page of an adjustment one with a slider.
+  void add_slider(Page& page, const SliderSpan& span, double setting) const;
   Page rest(const protocol::Block& block, double min_s, const Director& director) const;
   Page practice_again(const protocol::Block& block, const Director& director) const;
   /// A fault that stops the session until somebody has mended it; `detail` is what the station found.

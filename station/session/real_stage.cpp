@@ -53,13 +53,16 @@ class RealStage : public Stage {
   }
 
   Onset present(drive::Burst burst, std::int64_t earliest_ns) override {
-    ramp_ = burst.ramp;
-    const auto onset = schedule(*stream_, burst, std::max(earliest_ns, opened_ns_ + kSettle_ns));
+    const auto onset = schedule(*stream_, burst, std::max(earliest_ns, opened_ns_ + kSettle_ns), sounding_);
     quiet_ns_ = std::max(quiet_ns_, stream_->time_of(onset.frame + burst.length_frames));
     return onset;
   }
 
-  std::int64_t silence() override { return quiet_ns_ = ramp_down(*stream_, ramp_); }
+  std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
+    return glide_to(*stream_, sounding_, to, seconds);
+  }
+
+  std::int64_t silence() override { return quiet_ns_ = ramp_down(*stream_, sounding_.ramp); }
 
   std::string arm() override {
     // The audio thread proves its life by its first blocks, which at a session's start are yet to come.
@@ -91,6 +94,7 @@ class RealStage : public Stage {
     return devices_.panel ? devices_.panel->buttons() : no_buttons_;
   }
   void question(const observer::Question&, std::int64_t) override {}
+  void adjustment(const observer::Adjustment&, std::int64_t) override {}
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override { return describe(stream_->rights()); }
 
@@ -199,7 +203,7 @@ class RealStage : public Stage {
   Devices devices_;  // before the stream: it goes silent first, then the amplifier's line goes low
   Inputs& inputs_;
   std::unique_ptr<drive::Stream> stream_;
-  drive::Ramp ramp_;
+  Sounding sounding_;
   drive::UnderrunLimit underruns_;
   ClockWatch clocks_;
   std::int64_t clocks_due_ns_ = 0;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
@@ -101,6 +103,42 @@ std::string value_of(const Input& input) {
   return std::to_string(input.value);
 }
 
+/// Where a scene stands in its trial, and when it sounds.
+struct Placed {
+  int interval = 0, scene = 0;
+  std::int64_t onset_frame = 0, length_frames = 0;
+};
+
+void add_scene(store::TrialRow& row, const scene::DrivePlan& plan, const Placed& placed) {
+  for (std::size_t t = 0; t < plan.tones.size(); ++t) {
+    store::ToneRow tone;
+    tone.interval_index = placed.interval;
+    tone.scene_index = placed.scene;
+    tone.tone_index = static_cast<int>(t);
+    tone.scene = plan.scene.name;
+    if (plan.boundary_m) tone.boundary_mm = 1e3 * *plan.boundary_m;
+    tone.frequency_Hz = plan.tones[t].frequency_Hz;
+    tone.amplitude_um = 1e6 * plan.tones[t].amplitude_m;
+    tone.displacement_um = 1e6 * plan.tones[t].displacement_m;
+    tone.friction = plan.zone_friction ? plan.zone_friction : std::optional(plan.lowest_friction);
+    tone.rove_dB = plan.scene.rove_dB;
+    tone.model = physics::name(plan.model);
+    tone.error_bound_mm = 1e3 * plan.error_bound_m;
+    tone.uncertainty_mm = 1e3 * plan.uncertainty_m;
+    tone.reason = plan.reason;
+    tone.onset_frame = placed.onset_frame;
+    tone.length_frames = placed.length_frames;
+    row.tones.push_back(std::move(tone));
+  }
+}
+
+void take_last(store::TrialRow& row, const scene::DrivePlan& last) {
+  row.boundary_mm = last.boundary_m ? std::optional(1e3 * *last.boundary_m) : std::nullopt;
+  if (last.tones.empty()) return;
+  row.frequency_Hz = last.tones.front().frequency_Hz;
+  row.amplitude = 1e6 * last.tones.front().displacement_m;
+}
+
 }  // namespace
 
 store::BlockStart block_start(const protocol::Block& block, int block_index, int attempt) {
@@ -134,36 +172,20 @@ store::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protocol
 void add_tones(store::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
                std::int64_t onset_frame, const drive::Burst& burst) {
   for (std::size_t s = 0; s < scenes.size(); ++s) {
-    const auto& plan = scenes[s];
     const auto start = s == 0 ? 0 : burst.changes[s - 1].at_frame;
     const auto end = s + 1 < scenes.size() ? burst.changes[s].at_frame : burst.length_frames;
-    for (std::size_t t = 0; t < plan.tones.size(); ++t) {
-      store::ToneRow tone;
-      tone.interval_index = interval;
-      tone.scene_index = static_cast<int>(s);
-      tone.tone_index = static_cast<int>(t);
-      tone.scene = plan.scene.name;
-      if (plan.boundary_m) tone.boundary_mm = 1e3 * *plan.boundary_m;
-      tone.frequency_Hz = plan.tones[t].frequency_Hz;
-      tone.amplitude_um = 1e6 * plan.tones[t].amplitude_m;
-      tone.displacement_um = 1e6 * plan.tones[t].displacement_m;
-      tone.friction = plan.zone_friction ? plan.zone_friction : std::optional(plan.lowest_friction);
-      tone.rove_dB = plan.scene.rove_dB;
-      tone.model = physics::name(plan.model);
-      tone.error_bound_mm = 1e3 * plan.error_bound_m;
-      tone.uncertainty_mm = 1e3 * plan.uncertainty_m;
-      tone.reason = plan.reason;
-      tone.onset_frame = onset_frame + start;
-      tone.length_frames = end - start;
-      row.tones.push_back(std::move(tone));
-    }
+    add_scene(row, scenes[s], {interval, static_cast<int>(s), onset_frame + start, end - start});
   }
-  const auto& last = scenes.back();
-  row.boundary_mm = last.boundary_m ? std::optional(1e3 * *last.boundary_m) : std::nullopt;
-  if (!last.tones.empty()) {
-    row.frequency_Hz = last.tones.front().frequency_Hz;
-    row.amplitude = 1e6 * last.tones.front().displacement_m;
-  }
+  take_last(row, scenes.back());
+}
+
+void set_scene(store::TrialRow& row, const scene::DrivePlan& scene, std::int64_t frame) {
+  std::int64_t end = 0;
+  for (const auto& tone : row.tones) end = std::max(end, tone.onset_frame + tone.length_frames);
+  std::erase_if(row.tones, [](const auto& tone) { return tone.scene_index == 1; });
+  for (auto& tone : row.tones) tone.length_frames = std::min(tone.length_frames, frame - tone.onset_frame);
+  add_scene(row, scene, {0, 1, frame, end - frame});
+  take_last(row, scene);
 }
 
 void fill_result(store::TrialRow& row, const trial::Result& result, const TrialSpec& spec,
@@ -265,6 +287,14 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
   return question;
 }
 
+observer::Adjustment adjustment_of(const TrialSpec& spec, std::uint64_t seed) {
+  observer::Adjustment adjustment;
+  adjustment.start = spec.level.value_or(spec.slider->low);
+  adjustment.low = spec.slider->low, adjustment.high = spec.slider->high;
+  adjustment.key = {seed, random::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
+  return adjustment;
+}
+
 void replay(Director& director, const store::TrialRow& trial, const protocol::Protocol& protocol) {
   const auto mismatch = [&trial](const std::string& what) {
     throw std::runtime_error(
@@ -283,6 +313,13 @@ void replay(Director& director, const store::TrialRow& trial, const protocol::Pr
   if (trial.response)
     for (std::size_t i = 0; i < protocol.task.choices.size(); ++i)
       if (protocol.task.choices[i].id == *trial.response) end.response = static_cast<int>(i);
+  if (spec->slider && trial.response) {
+    double setting = 0;
+    const auto* last = trial.response->data() + trial.response->size();
+    const auto read = std::from_chars(trial.response->data(), last, setting);
+    if (read.ec != std::errc{} || read.ptr != last) mismatch("\"" + *trial.response + "\" is no setting");
+    end.response = 0, end.setting = setting;
+  }
   director.record(end);
   if (director.state_hash() != trial.state_hash) mismatch("its state hash differs");
 }

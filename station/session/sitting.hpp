@@ -31,6 +31,7 @@ class Sitting {
     TrialSpec spec;
     trial::Machine machine;
     store::TrialRow row;
+    std::optional<Slider> slider;  ///< in an adjustment
     bool decided = false;
   };
   /// A stimulus that is on the surface, or was last.
@@ -65,6 +66,11 @@ class Sitting {
   void finish_row(Running& trial);
   void leave_surface();
   void count(const TrialSpec& spec, const store::TrialRow& row);
+
+  // sitting_adjustment.cpp
+  void show_phase(trial::Phase phase, const Running& trial);
+  std::optional<trial::Event> event_in_trial(const Input& input, Running& trial);
+  void glide(Running& trial);
 
   // sitting_operator.cpp: inputs, amplifier, faults
   Input received(Input input);

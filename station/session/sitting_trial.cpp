@@ -34,8 +34,11 @@ store::EventRow event(std::int64_t time_ns, const char* kind, double value, int 
 
 Sitting::Flow Sitting::run_trial(const TrialSpec& spec) {
   if (prepare_trial(spec) == Flow::stop) return Flow::stop;
-  Running trial{spec, trial::Machine(trial_plan(setup_.protocol, *director_.block(), spec)),
-                row_of(spec, setup_.protocol, trial_index_)};
+  Running trial{spec,
+                trial::Machine(trial_plan(setup_.protocol, *director_.block(), spec)),
+                row_of(spec, setup_.protocol, trial_index_),
+                {}};
+  if (spec.slider) trial.slider.emplace(*spec.slider, spec.level.value_or(spec.slider->low));
   if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block());
   log_.presented(trial_index_, stage_->now_ns());
   drive_trial(trial);
@@ -122,9 +125,13 @@ void Sitting::drive_trial(Running& trial) {
   perform(machine.start(stage_->now_ns()), trial);
   while (!machine.done()) {
     const auto wake = machine.wake_ns();
-    auto input = stage_->wait_until(wake.value_or(kForever));
+    const auto follow_ns = trial.slider ? trial.slider->glide_due_ns().value_or(kForever) : kForever;
+    const auto until = std::min(wake.value_or(kForever), follow_ns);
+    auto input = stage_->wait_until(until);
     if (input)
       handle_in_trial(received(std::move(*input)), trial);
+    else if (follow_ns <= until && follow_ns != kForever)
+      glide(trial);
     else
       perform(machine.handle({*wake, trial::EventKind::tick, 0}), trial);
   }
@@ -132,9 +139,9 @@ void Sitting::drive_trial(Running& trial) {
 
 void Sitting::handle_in_trial(const Input& input, Running& trial) {
   note(input);
-  if (input.kind == InputKind::answer && !trial.machine.result().response)
-    trial.row.response_time_quality = name(input.quality);
-  if (const auto event = event_of(input)) perform(trial.machine.handle(*event), trial);
+  const bool answers = input.kind == InputKind::answer || (trial.slider && input.kind == InputKind::next);
+  if (answers && !trial.machine.result().response) trial.row.response_time_quality = name(input.quality);
+  if (const auto event = event_in_trial(input, trial)) perform(trial.machine.handle(*event), trial);
 }
 
 void Sitting::perform(const std::vector<trial::Action>& actions, Running& trial) {
@@ -145,8 +152,7 @@ void Sitting::perform(const std::vector<trial::Action>& actions, Running& trial)
         if (phase == trial::Phase::response || is_over(phase)) stage_->close_amplifier();
         if (phase == trial::Phase::done) break;
         if (is_over(phase) && !trial.decided) decide(trial);
-        show(pages_.of_phase(phase, trial.machine.interval(), trial.spec, *director_.block(),
-                             trial.machine.result(), director_));
+        show_phase(phase, trial);
         break;
       }
       case trial::ActionKind::present:
@@ -184,7 +190,10 @@ void Sitting::ask_observer(const Running& trial, std::int64_t onset_ns) {
     zero_ns += ns(last.length_s);
   if (setup_.protocol.timing.response_zero == protocol::ResponseZero::change)
     zero_ns += ns(last.starts_s.front());
-  stage_->question(question_of(trial.spec, setup_.protocol, summary_.seed), zero_ns);
+  if (trial.slider)
+    stage_->adjustment(adjustment_of(trial.spec, summary_.seed), zero_ns);
+  else
+    stage_->question(question_of(trial.spec, setup_.protocol, summary_.seed), zero_ns);
 }
 
 /// The outcome stands: what follows from it is known, and planned while the interval between trials lasts.
@@ -192,7 +201,9 @@ void Sitting::decide(Running& trial) {
   trial.decided = true;
   auto& row = trial.row;
   fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_);
-  director_.record({row.outcome, trial.machine.result().response, row.correct});
+  TrialEnd end{row.outcome, trial.machine.result().response, row.correct, {}};
+  if (trial.slider && end.response) end.setting = trial.slider->felt();
+  director_.record(end);
   row.state_hash = director_.state_hash();
   if (const auto threshold = director_.threshold()) {
     row.threshold_est = threshold->first;
@@ -213,6 +224,7 @@ void Sitting::leave_surface() {
 void Sitting::finish_row(Running& trial) {
   auto& row = trial.row;
   fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_);
+  if (trial.slider && row.response) row.response = text::exact(trial.slider->felt());
   row.response_offset_s = setup_.response_offset_s;
   if (const auto fit = stage_->clock_fit()) {
     row.clock_slope_ns_per_frame = fit->slope_ns_per_frame;

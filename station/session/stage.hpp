@@ -50,6 +50,10 @@ class Stage {
   /// Schedules the burst at the first frame that is safely ahead, no earlier than `earliest_ns`.
   virtual Onset present(drive::Burst burst, std::int64_t earliest_ns) = 0;
 
+  /// What sounds glides to other tones within `seconds`, from now on. Returns the frame at which it begins;
+  /// none, and nothing happens, when nothing sounds or it is about to end.
+  virtual std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) = 0;
+
   /// Ramps whatever sounds down, now. Returns when the surface will be silent.
   virtual std::int64_t silence() = 0;
 
@@ -68,6 +72,9 @@ class Stage {
 
   /// Tells a simulated observer that this answer will be wanted, counted from `zero_ns`; nobody else listens.
   virtual void question(const observer::Question& question, std::int64_t zero_ns) = 0;
+
+  /// Tells it to move a slider, counted from `zero_ns`, and then to press Done.
+  virtual void adjustment(const observer::Adjustment& adjustment, std::int64_t zero_ns) = 0;
 
   virtual std::optional<ClockFit> clock_fit() = 0;
   virtual std::string realtime_rights() const = 0;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <deque>
 #include <limits>
 #include <utility>
 
@@ -20,9 +21,11 @@ class VirtualStage : public Stage {
   std::int64_t now_ns() override { return now_ns_; }
 
   std::optional<Input> wait_until(std::int64_t deadline_ns) override {
-    if (answer_ && answer_->time_ns <= deadline_ns) {
-      advance_to(answer_->time_ns);
-      return std::exchange(answer_, std::nullopt);
+    if (!script_.empty() && script_.front().time_ns <= deadline_ns) {
+      auto input = std::move(script_.front());
+      script_.pop_front();
+      advance_to(input.time_ns);
+      return input;
     }
     if (deadline_ns != kForever) {
       advance_to(deadline_ns);
@@ -37,18 +40,21 @@ class VirtualStage : public Stage {
   }
 
   std::vector<Input> drain() override {
-    answer_.reset();
+    script_.clear();
     return {};
   }
 
   void wait_for(const std::function<bool()>&) override {}  // who needs it next waits without time passing
 
   Onset present(drive::Burst burst, std::int64_t earliest_ns) override {
-    ramp_ = burst.ramp;
-    return schedule(*stream_, burst, earliest_ns);
+    return schedule(*stream_, burst, earliest_ns, sounding_);
   }
 
-  std::int64_t silence() override { return ramp_down(*stream_, ramp_); }
+  std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
+    return glide_to(*stream_, sounding_, to, seconds);
+  }
+
+  std::int64_t silence() override { return ramp_down(*stream_, sounding_.ramp); }
 
   std::string arm() override { return amplifier_->arm(), ""; }
   std::string disarm() override { return amplifier_->disarm(), ""; }
@@ -66,7 +72,22 @@ class VirtualStage : public Stage {
     input.kind = InputKind::answer;
     input.value = *reply.choice;
     input.quality = TimeQuality::simulated;
-    answer_ = input;
+    script_ = {input};
+  }
+
+  void adjustment(const observer::Adjustment& adjustment, std::int64_t zero_ns) override {
+    const auto settings = observer_.adjust(adjustment);
+    const auto at = [&](double s) { return std::max(now_ns_, zero_ns + static_cast<std::int64_t>(s * 1e9)); };
+    Input input;
+    input.quality = TimeQuality::simulated;
+    input.kind = InputKind::slider;
+    script_.clear();
+    for (const auto& move : settings.moves) {
+      input.time_ns = at(move.time_s), input.number = move.value;
+      script_.push_back(input);
+    }
+    input.time_ns = at(settings.done_s), input.kind = InputKind::next, input.number = 0;
+    script_.push_back(input);
   }
 
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
@@ -92,8 +113,8 @@ class VirtualStage : public Stage {
   std::unique_ptr<drive::SynchronousStream> stream_;
   observer::Observer observer_;
   std::int64_t now_ns_ = 0;
-  std::optional<Input> answer_;
-  drive::Ramp ramp_;
+  std::deque<Input> script_;  ///< what the observer will do, in time
+  Sounding sounding_;
 };
 
 }  // namespace

@@ -68,7 +68,7 @@ std::vector<Column> trial_columns(const std::vector<std::string>& factors) {
       {"amplitude", "Predicted displacement of that scene at its last maximum", "um", ""},
       {"model", "Model that planned that scene", "", ""},
       {"correct_response", "Right choice; n/a where nothing is right", "", ""},
-      {"response", "Choice made", "", ""},
+      {"response", "Choice made; in an adjustment the setting, in the unit of the level", "", ""},
       {"correct", "1 where the choice was right; only for scored answers", "", "0 | 1 | n/a"},
       {"outcome", "How the trial ended; only answered trials have a response, a score and a response time",
        "", "answered | timeout | anticipation | aborted | fault"},

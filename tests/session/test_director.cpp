@@ -50,7 +50,7 @@ TEST_CASE("a void trial is presented again as it was and shifts nothing after it
       auto spec = disturbed.next();
       REQUIRE(spec.has_value());
       if (trial % 5 == 2) {
-        disturbed.record({store::TrialOutcome::fault, {}, {}});
+        disturbed.record({store::TrialOutcome::fault, {}, {}, {}});
         spec = disturbed.next();
       }
       CHECK(spec->level == expected->level);

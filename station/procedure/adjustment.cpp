@@ -1,0 +1,39 @@
+#include "station/procedure/adjustment.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+#include "station/procedure/state_hash.hpp"
+
+namespace turnpoint::procedure {
+
+void Adjustment::record_setting(double setting) {
+  if (!std::isfinite(setting)) throw std::invalid_argument("adjustment: a setting must be a finite number");
+  settings_.push_back(setting);
+  record(Answer::one);
+}
+
+std::map<std::string, Estimate> Adjustment::estimates() const {
+  const auto n = settings_.size();
+  if (n < 2) return {};
+  auto sorted = settings_;
+  std::sort(sorted.begin(), sorted.end());
+  Estimate estimate;
+  estimate.mode = 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]);
+  for (const double setting : settings_) estimate.mean += setting / static_cast<double>(n);
+  double squares = 0;
+  for (const double setting : settings_) squares += (setting - estimate.mean) * (setting - estimate.mean);
+  estimate.sd = std::sqrt(squares / static_cast<double>(n - 1));
+  return {{"pse", estimate}};
+}
+
+std::uint64_t Adjustment::state_hash() const {
+  StateHash hash;
+  hash.add(ConstantStimuli::state_hash());
+  for (const double setting : settings_) hash.add(std::bit_cast<std::uint64_t>(setting));
+  return hash.value();
+}
+
+}  // namespace turnpoint::procedure
