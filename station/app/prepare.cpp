@@ -122,7 +122,6 @@ session::Setup prepare(const RunRequest& request) {
   setup.participant = request.participant;
   setup.database = request.database;
   setup.observer = request.observer;
-  setup.consent_version = request.consent_version;
   setup.seed = request.seed;
   setup.consent_version = request.consent_version;
   setup.run_mode = !request.observer.empty() ? store::RunMode::simulated

@@ -17,8 +17,7 @@ struct RunRequest {
   std::string consent_version;         ///< of the consent form, "" where none is asked for
   std::string operator_code = "2468";  ///< opens the operator's view where it shares the participant's screen
   bool headless = false, buttons_only = false;
-  std::string calibration;      ///< file; "" takes the newest one beside the rig file, if there is one
-  std::string consent_version;  ///< of the consent form that the participant signed; "" where none was asked
+  std::string calibration;  ///< file; "" takes the newest one beside the rig file, if there is one
 };
 
 /// Loads and checks everything that a sitting needs. Throws text::BadInput with all problems of both files,

@@ -110,8 +110,6 @@ std::shared_ptr<app::RunRequest> add_run_options(CLI::App& command) {
                    "No screen: a person answers with the rig's buttons, the operator types");
   command.add_option("--calibration", request->calibration,
                      "Calibration file; otherwise the newest one beside the rig file");
-  command.add_option("--consent", request->consent_version,
-                     "Version of the consent form that the participant signed");
   return request;
 }
 
