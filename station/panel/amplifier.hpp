@@ -8,8 +8,8 @@ namespace turnpoint::panel {
 
 /// The rig's amplifier: `sim:` or `gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB` (all but
 /// enable may be absent). Fault and stop are active high unless `active=low` (both), `fault_active=low` or
-/// `stop_active=low` is given. A GPIO amplifier has a guard thread (SCHED_FIFO 75). Throws
-/// std::invalid_argument, LineError.
+/// `stop_active=low` is given. Both have a guard thread (SCHED_FIFO 75 where that is allowed); `sim:` keeps
+/// its lines in memory. Throws std::invalid_argument, LineError.
 std::unique_ptr<drive::Amplifier> open_amplifier(const std::string& uri);
 
 }  // namespace turnpoint::panel

@@ -100,6 +100,10 @@ TEST_CASE("an amplifier is opened from the rig's text, with every mistake named"
 TEST_CASE("the simulated amplifier keeps the same order of states", "[panel][amplifier]") {
   const auto amplifier = open_amplifier("sim:");
   CHECK_THROWS(amplifier->enable());
+  CHECK_THROWS_WITH(amplifier->arm(), "amplifier: cannot be armed: the audio thread gives no sign");
+  amplifier->audio_alive();
+  CHECK_THROWS_WITH(amplifier->arm(), "amplifier: cannot be armed: the session gives no sign");
+  amplifier->session_alive();
   amplifier->arm();
   amplifier->enable();
   amplifier->trip("test");
