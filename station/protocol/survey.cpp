@@ -1,7 +1,10 @@
 #include "station/protocol/survey.hpp"
 
 #include <algorithm>
+#include <future>
 #include <map>
+#include <optional>
+#include <set>
 #include <stdexcept>
 
 #include "physics/boundary_map.hpp"
@@ -88,29 +91,65 @@ std::vector<Combination> planned(const Protocol& protocol, const std::vector<Com
   return chosen;
 }
 
-void plan_scenes(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
+// What the rig makes of one combination: a plan, or why there is none and what there could be.
+struct Answer {
+  std::optional<scene::DrivePlan> plan;
+  std::string refused, allowed;
+};
+
+void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector<Combination>& combinations,
+                std::size_t begin, std::size_t end, std::vector<Answer>& answers) {
   scene::Planner planner(rig);
-  const auto all = combinations_of(protocol);
-  survey.combinations = all.size();
-  std::map<std::string, Trouble> unreachable, inexact;
-  std::map<std::string, std::string> told;  // warnings of the planner by code
-  for (const auto& combination : planned(protocol, all)) {
+  std::set<std::string> explained;
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto& combination = combinations[i];
     const auto& from = protocol.scenes.at(combination.scene);
     // Roving upwards: the limits must hold for the strongest stimulus that can be drawn.
     const auto scene = resolve(protocol, combination.scene, combination.factors, from.rove_dB);
     try {
-      const auto plan = planner.plan(scene);
-      survey.sights.push_back(sight_of(combination, plan));
-      survey.models.emplace(physics::name(plan.model));
-      if (!plan.inside_tolerance && inexact[combination.scene].cases++ == 0)
-        inexact[combination.scene].first = in_case(combination) + ": " + plan.reason;
-      for (const auto& warning : plan.warnings)
-        told.emplace(warning.code, in_case(combination) + ": " + warning.text);
+      answers[i].plan = planner.plan(scene);
     } catch (const scene::Unreachable& error) {
+      answers[i].refused = error.what();
+      if (explained.insert(combination.scene).second) answers[i].allowed = reach(scene, rig, planner);
+    }
+  }
+}
+
+// Combinations side by side differ least, and a planner remembers: so each of two threads takes a half.
+std::vector<Answer> plan_all(const Protocol& protocol, const rig::Rig& rig,
+                             const std::vector<Combination>& combinations) {
+  std::vector<Answer> answers(combinations.size());
+  const auto half = combinations.size() / 2;
+  auto second = std::async(std::launch::async, [&] {
+    plan_range(protocol, rig, combinations, half, combinations.size(), answers);
+  });
+  plan_range(protocol, rig, combinations, 0, half, answers);
+  second.get();
+  return answers;
+}
+
+void plan_scenes(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
+  const auto all = combinations_of(protocol);
+  survey.combinations = all.size();
+  const auto combinations = planned(protocol, all);
+  const auto answers = plan_all(protocol, rig, combinations);
+  std::map<std::string, Trouble> unreachable, inexact;
+  std::map<std::string, std::string> told;  // warnings of the planner by code
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    const auto& combination = combinations[i];
+    if (!answers[i].plan) {
       auto& trouble = unreachable[combination.scene];
       if (trouble.cases++ == 0)
-        trouble = {in_case(combination) + ": " + error.what(), reach(scene, rig, planner), 1};
+        trouble = {in_case(combination) + ": " + answers[i].refused, answers[i].allowed, 1};
+      continue;
     }
+    const auto& plan = *answers[i].plan;
+    survey.sights.push_back(sight_of(combination, plan));
+    survey.models.emplace(physics::name(plan.model));
+    if (!plan.inside_tolerance && inexact[combination.scene].cases++ == 0)
+      inexact[combination.scene].first = in_case(combination) + ": " + plan.reason;
+    for (const auto& warning : plan.warnings)
+      told.emplace(warning.code, in_case(combination) + ": " + warning.text);
   }
   for (const auto& [name, trouble] : unreachable)
     survey.problems.push_back({protocol.scenes.at(name).place, counted(trouble), trouble.allowed});
