@@ -5,7 +5,7 @@
 #include <chrono>
 #include <sstream>
 
-#include "station/benchmark/python.hpp"
+#include "station/benchmark/scripts.hpp"
 #include "station/procedure/posterior.hpp"
 
 namespace turnpoint::benchmark {
@@ -81,15 +81,35 @@ std::string questplus_program(const Shape& shape) {
   return text.str();
 }
 
-/// A row for questplus; none where python3 or the package is absent.
-std::vector<std::vector<Cell>> questplus(const Shape& shape) {
-  const auto lines = run_python(questplus_program(shape));
+/// JavaScript that prints the same of jsQuestPlus, which keeps a table of stimuli times parameters.
+std::string jsquestplus_program(const Shape& shape) {
+  std::ostringstream text;
+  text << "const Q = require('jsquest-plus');\n"
+       << "const grid = (a, b, n) => Array.from({length: n}, (_, i) => a + (b - a) * i / (n - 1));\n"
+       << "const no = (x, t, s, g, l) => Q.weibull(x, t, s, g, l);\n"
+       << "const q = new Q({psych_func: [no, (...a) => 1 - no(...a)],"
+       << "stim_samples: [grid(-40, 0, " << shape.stimuli << ")],"
+       << "psych_samples: [grid(-40, 0, " << shape.thresholds << "), grid(.5, 5, " << shape.slopes
+       << "), [.5], grid(.005, .04, " << shape.lapses << ")]});\n"
+       << "const t = [];\n"
+       << "for (let i = 0; i < 8; ++i) {\n"
+       << "  const a = performance.now(), s = q.getStimParams(); q.update(s, i % 4 == 3 ? 0 : 1);\n"
+       << "  t.push(performance.now() - a);\n"
+       << "}\n"
+       << "t.sort((a, b) => a - b);\n"
+       << "console.log('2', (t[3] + t[4]) / 2, t[7]);\n";
+  return text.str();
+}
+
+/// A row for another program from its line "version median p99"; none where it is absent.
+std::vector<std::vector<Cell>> peer(const std::string& name, const Shape& shape,
+                                    const std::vector<std::string>& lines) {
   if (lines.empty()) return {};
-  std::istringstream words(lines.front());
+  std::istringstream words(lines.back());  // a program may greet before
   std::string version;
   double median_ms = 0, p99_ms = 0;
   if (!(words >> version >> median_ms >> p99_ms)) return {};
-  return {{"questplus " + version, static_cast<double>(shape.stimuli),
+  return {{name + " " + version, static_cast<double>(shape.stimuli),
            static_cast<double>(shape.thresholds * shape.slopes * shape.lapses), median_ms, p99_ms, Cell{}}};
 }
 
@@ -131,7 +151,10 @@ Report bench_procedures() {
                 {}};
   for (const auto& shape : kShapes) {
     report.table.rows.push_back(own(shape));
-    for (auto& row : questplus(shape)) report.table.rows.push_back(std::move(row));
+    for (auto& row : peer("questplus", shape, run_python(questplus_program(shape))))
+      report.table.rows.push_back(std::move(row));
+    for (auto& row : peer("jsQuestPlus", shape, run_node(jsquestplus_program(shape))))
+      report.table.rows.push_back(std::move(row));
   }
   report.pictures.push_back(picture_of(report.table));
   return report;

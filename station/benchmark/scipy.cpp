@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "station/benchmark/python.hpp"
+#include "station/benchmark/scripts.hpp"
 
 namespace turnpoint::benchmark {
 

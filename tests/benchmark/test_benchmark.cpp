@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "station/benchmark/physics.hpp"
-#include "station/benchmark/python.hpp"
+#include "station/benchmark/scripts.hpp"
 #include "station/benchmark/report.hpp"
 #include "station/benchmark/solvers.hpp"
 #include "tests/support/catch.hpp"

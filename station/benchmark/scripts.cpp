@@ -1,4 +1,4 @@
-#include "station/benchmark/python.hpp"
+#include "station/benchmark/scripts.hpp"
 
 #include <array>
 #include <cstdio>
@@ -32,12 +32,10 @@ struct Script {
   }
 };
 
-}  // namespace
-
-std::vector<std::string> run_python(const std::string& program) {
+std::vector<std::string> run(const std::string& interpreter, const std::string& program) {
   const Script script(program);
   if (script.path.empty()) return {};
-  const auto command = "python3 -W ignore '" + script.path + "' 2>/dev/null";
+  const auto command = interpreter + " '" + script.path + "' 2>/dev/null";
   std::string output;
   {
     const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
@@ -51,5 +49,11 @@ std::vector<std::string> run_python(const std::string& program) {
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
   return lines;
 }
+
+}  // namespace
+
+std::vector<std::string> run_python(const std::string& program) { return run("python3 -W ignore", program); }
+
+std::vector<std::string> run_node(const std::string& program) { return run("node", program); }
 
 }  // namespace turnpoint::benchmark

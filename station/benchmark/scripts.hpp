@@ -8,4 +8,7 @@ namespace turnpoint::benchmark {
 /// that it imports is missing).
 std::vector<std::string> run_python(const std::string& program);
 
+/// Likewise for JavaScript, by node and the packages in NODE_PATH.
+std::vector<std::string> run_node(const std::string& program);
+
 }  // namespace turnpoint::benchmark
