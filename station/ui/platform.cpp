@@ -32,6 +32,7 @@ Application::Application() {
   choose_platform();
   application_ = std::make_unique<QGuiApplication>(argc_, argv_);
   set_fonts();
+  watchdog_ = std::make_unique<ServiceWatchdog>();
 }
 
 QScreen& Application::screen() const {

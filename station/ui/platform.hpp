@@ -3,6 +3,8 @@
 #include <QScreen>
 #include <memory>
 
+#include "station/ui/service_watchdog.hpp"
+
 namespace turnpoint::ui {
 
 /// The window where there is a desktop around it.
@@ -26,6 +28,7 @@ class Application {
   char name_[13] = "turnpoint-ui";
   char* argv_[2] = {name_, nullptr};
   std::unique_ptr<QGuiApplication> application_;
+  std::unique_ptr<ServiceWatchdog> watchdog_;  // its timer lives in the application's event loop
 };
 
 }  // namespace turnpoint::ui

@@ -29,15 +29,20 @@ void notify(std::string_view state) {
   ::close(descriptor);
 }
 
+/// Half of what the manager allows between two signs of life; 0 where it wants none from this process.
+int interval_ms() {
+  const char* allowed_us = std::getenv("WATCHDOG_USEC");
+  const char* process = std::getenv("WATCHDOG_PID");
+  if (allowed_us == nullptr || (process != nullptr && std::atol(process) != ::getpid())) return 0;
+  return static_cast<int>(std::atoll(allowed_us) / 2000);
+}
+
 }  // namespace
 
 ServiceWatchdog::ServiceWatchdog() {
-  timer_.setSingleShot(false);
   connect(&timer_, &QTimer::timeout, [] { notify("WATCHDOG=1"); });
   QTimer::singleShot(0, this, [] { notify("READY=1"); });
-  const char* interval_us = std::getenv("WATCHDOG_USEC");
-  if (interval_us != nullptr && std::atoll(interval_us) > 2000)
-    timer_.start(static_cast<int>(std::atoll(interval_us) / 2000));
+  if (const int every_ms = interval_ms(); every_ms > 0) timer_.start(every_ms);
 }
 
 }  // namespace turnpoint::ui
