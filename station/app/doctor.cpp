@@ -24,8 +24,8 @@ using Status = Check::Status;
 
 drive::StreamConfig stream_config(const rig::Rig& rig) {
   drive::StreamConfig config;
-  config.output = {rig.output.uri,     rig.output.rate_Hz,     2, rig.output.bits, rig.output.period_frames,
-                   rig.output.periods, rig.output.allow_plugin};
+  config.output = {rig.output.uri,           rig.output.rate_Hz, rig::channels(rig),     rig.output.bits,
+                   rig.output.period_frames, rig.output.periods, rig.output.allow_plugin};
   for (const auto& transducer : rig.transducers)
     config.output.channels = std::max(config.output.channels, transducer.channel + 1);
   return config;

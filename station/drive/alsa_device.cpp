@@ -161,9 +161,21 @@ void check_kernel(snd_pcm_t* pcm, const OutputConfig& config, const std::string&
   refuse(name, "{} does not state the rate", path);
 }
 
+void say_nothing(const char*, int, const char*, int, const char*, va_list) {}
+
+// alsa-lib also writes to standard error what its status says; this thread's errors are told once, by ours.
+struct QuietAlsa {
+  snd_local_error_handler_t before = snd_lib_error_set_local(say_nothing);
+  QuietAlsa() = default;
+  QuietAlsa(const QuietAlsa&) = delete;
+  QuietAlsa& operator=(const QuietAlsa&) = delete;
+  ~QuietAlsa() { snd_lib_error_set_local(before); }
+};
+
 }  // namespace
 
 AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name) {
+  const QuietAlsa quiet;
   AlsaDevice device;
   snd_pcm_t* pcm = nullptr;
   const int opened =

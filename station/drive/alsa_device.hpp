@@ -1,5 +1,7 @@
 #pragma once
+extern "C" {  // alsa-lib's header declares its per-thread error handler outside of its own
 #include <alsa/asoundlib.h>
+}
 
 #include <memory>
 #include <string>

@@ -98,6 +98,7 @@ struct Distribution {
 
 enum class TaskKind { single_interval, two_interval, same_different, oddity, adjustment };
 enum class Device { touch, buttons, either };
+enum class Sound { none, masking_noise };
 enum class Odd { target, standard, either };
 
 struct Choice {
@@ -115,6 +116,8 @@ struct Task {
   std::optional<double> transition_ms;
   Device device = Device::touch;
   Place device_place;
+  Sound sound = Sound::none;  ///< heard while the surface moves
+  Place sound_place;
   Localised question;
   std::vector<Choice> choices;
   std::string correct_scene;  ///< 2ifc: the interval that held this scene

@@ -190,6 +190,9 @@ void read_task(TableReader& file, Reading& reading) {
   task.device = device == "touch" ? Device::touch : device == "buttons" ? Device::buttons : Device::either;
   if (task.kind == TaskKind::adjustment && task.device == Device::buttons)
     reader.problem("device", "a slider cannot be moved with buttons", "\"touch\"");
+  if (reader.maybe_word("sound", {"none", "masking_noise"}) == "masking_noise")
+    task.sound = Sound::masking_noise;
+  task.sound_place = reader.place("sound");
   task.question = read_localised(reader, "question", reading);
   read_choices(reader, task, reading);
   read_correct(reader, task, reading);

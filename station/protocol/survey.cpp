@@ -178,6 +178,9 @@ void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey
   if (task.device == Device::buttons && task.choices.size() > 2 && two_lines)
     add(task.device_place, "the task has three answers, and the rig two buttons",
         "a line \"third\" in [buttons], or device = \"touch\"");
+  if (task.sound == Sound::masking_noise && !rig.noise)
+    add(task.sound_place, "the task needs masking noise, and the rig has none",
+        "a rig with [noise] (headphones on a spare channel), or no \"sound\"");
   const auto zero = protocol.timing.response_zero;
   const bool contact = zero == ResponseZero::first_contact || zero == ResponseZero::lift_off;
   if (contact && !rig.contact_uri)

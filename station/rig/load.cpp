@@ -6,6 +6,7 @@
 #include "station/rig/csv.hpp"
 #include "station/rig/devices.hpp"
 #include "station/rig/rig.hpp"
+#include "station/rig/spare_channels.hpp"
 #include "station/rig/surface.hpp"
 #include "station/text/number.hpp"
 
@@ -50,7 +51,7 @@ Transducer read_transducer(const text::Value& table, const std::string& rig_path
   TableReader reader(table, titled("transducer", table), findings);
   Transducer transducer;
   transducer.name = reader.string("name", "a name for messages");
-  transducer.channel = reader.integer("channel", 0, 63);
+  transducer.channel = reader.integer("channel", 0, kLastChannel);
   reader.require("band_kHz", "the usable band: [low, high] in kHz");
   if (const auto band = reader.maybe_interval("band_kHz", {0, 1000, Ends::open_low, "kHz"})) {
     transducer.low_Hz = 1e3 * band->first;
@@ -185,6 +186,7 @@ Rig parse(const std::string& source, const std::string& path) {
   read_output(file, rig);
   check_bands(file, rig);
   read_devices(file, rig);
+  read_spare_channels(file, rig);
   read_friction(file, rig);
   read_limits(file, rig);
   file.finish();

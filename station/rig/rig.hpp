@@ -63,6 +63,23 @@ struct Output {
   std::vector<std::string> allow_plugin;
 };
 
+/// A mark for recording equipment at each onset and change, on a channel that drives no transducer.
+struct Marker {
+  enum class Kind { pulse, tone };
+  int channel = 1;
+  Kind kind = Kind::pulse;
+  double amplitude = 0.5;  ///< 1 is full scale
+  double duration_s = 1e-3;
+  double frequency_Hz = 1000;  ///< of a tone
+};
+
+/// Headphones that mask what can be heard of a stimulus, for protocols that ask for it.
+struct MaskingNoise {
+  int channel = 1;
+  double rms = 0;  ///< 1 is full scale
+  double low_Hz = 100, high_Hz = 8000;
+};
+
 /// Amplitude to relative friction: the illustrative load-sharing curve or a measured table.
 struct Friction {
   bool stated = false;    ///< the file has a [friction] table
@@ -91,6 +108,8 @@ struct Rig {
   Output output;
   std::string amplifier_uri;
   std::optional<std::string> buttons_uri, contact_uri, touch_uri;
+  std::optional<Marker> marker;
+  std::optional<MaskingNoise> noise;
   Friction friction;
   Limits limits;
   std::vector<std::string> defaults_used;  ///< `key = value` for each default that stood in
@@ -102,6 +121,9 @@ Rig load(const std::string& path);
 
 /// The same from text already in memory (a resumed session); files that it names are looked up beside `path`.
 Rig parse(const std::string& source, const std::string& path);
+
+/// Channels of the stream: at least two, and as many as the rig uses.
+int channels(const Rig& rig);
 
 /// The materials that fill density, modulus, Poisson ratio and yield strength.
 std::vector<std::string> materials();

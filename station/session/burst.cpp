@@ -40,4 +40,18 @@ drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::ve
   return burst;
 }
 
+void mark(drive::Burst& burst, const rig::Marker& marker, int rate_Hz) {
+  burst.marker.kind =
+      marker.kind == rig::Marker::Kind::tone ? drive::MarkerKind::tone : drive::MarkerKind::pulse;
+  burst.marker.channel = marker.channel;
+  burst.marker.amplitude = marker.amplitude;
+  burst.marker.frequency_Hz = marker.frequency_Hz;
+  burst.marker.frames =
+      std::clamp<std::int64_t>(std::llround(marker.duration_s * rate_Hz), 1, burst.length_frames);
+}
+
+void mask(drive::Burst& burst, const rig::MaskingNoise& noise, std::uint64_t seed) {
+  burst.noise = {noise.channel, noise.rms, noise.low_Hz, noise.high_Hz, seed};
+}
+
 }  // namespace turnpoint::session

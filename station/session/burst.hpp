@@ -16,4 +16,10 @@ drive::ToneSet tones_of(const scene::DrivePlan& plan);
 drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::vector<double>& starts_s,
                       double transition_s, double length_s, int rate_Hz);
 
+/// Adds the rig's marker at the onset and at each change; no longer than the burst.
+void mark(drive::Burst& burst, const rig::Marker& marker, int rate_Hz);
+
+/// Adds the rig's masking noise; `seed` makes it another noise for each interval.
+void mask(drive::Burst& burst, const rig::MaskingNoise& noise, std::uint64_t seed);
+
 }  // namespace turnpoint::session

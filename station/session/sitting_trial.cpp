@@ -172,8 +172,12 @@ void Sitting::present(int interval, std::int64_t earliest_ns, Running& trial) {
   const auto& spec = trial.spec;
   const auto times = interval_times(setup_.protocol, spec)[index];
   const auto& plans = plans_.take(spec)[index];
-  const auto burst = burst_of(plans, times.starts_s, setup_.protocol.task.transition_ms.value_or(50) * 1e-3,
-                              times.length_s, setup_.rig.output.rate_Hz);
+  const auto& rig = setup_.rig;
+  auto burst = burst_of(plans, times.starts_s, setup_.protocol.task.transition_ms.value_or(50) * 1e-3,
+                        times.length_s, rig.output.rate_Hz);
+  if (rig.marker) mark(burst, *rig.marker, rig.output.rate_Hz);
+  if (rig.noise && setup_.protocol.task.sound == protocol::Sound::masking_noise)
+    mask(burst, *rig.noise, summary_.seed + 16 * static_cast<std::uint64_t>(trial_index_) + index);
   leave_surface();
   const auto onset = stage_->present(burst, earliest_ns);
   surface_ = OnSurface{onset.time_ns, onset.time_ns + static_cast<std::int64_t>(times.length_s * 1e9)};

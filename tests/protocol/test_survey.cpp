@@ -118,6 +118,13 @@ TEST_CASE("devices that the task needs and the rig lacks are named at the key th
       replaced(source("demo.toml"), "response_zero = \"go_cue\"", "response_zero = \"lift_off\"");
   CHECK(contains(problems(lift, no_contact), "the rig does not sense it"));
   CHECK(problems(lift, quick()).empty());
+  const auto masked =
+      replaced(buttons, "device = \"buttons\"", "device = \"buttons\"\nsound = \"masking_noise\"");
+  CHECK(
+      contains(problems(masked, quick()), "p.toml:36:9: the task needs masking noise, and the rig has none"));
+  const auto headphones = rig::parse(
+      replaced(quick_source(), "[limits]", "[noise]\nchannel = 1\nrms = 0.05\n[limits]"), "r.toml");
+  CHECK(problems(masked, headphones).empty());
 }
 
 TEST_CASE("tones that last longer than the rig allows are refused", "[protocol]") {

@@ -80,8 +80,7 @@ TEST_CASE("all mistakes of a rig file come at once, each with its line", "[rig]"
                    "r.toml:12:1: unknown key \"thicknes_mm\" in [surface]; did you mean \"thickness_mm\"?"));
     CHECK(contains(all, "[surface] needs the key \"thickness_mm\""));
     CHECK(contains(all, "r.toml:19:9: \"slope\" is -0.03; allowed: above 0 and at most 1"));
-    CHECK(
-        contains(all, "r.toml:23:11: \"channel\" is the text \"0\"; a whole number from 0 to 63 is needed"));
+    CHECK(contains(all, "r.toml:23:11: \"channel\" is the text \"0\"; a whole number from 0 to 7 is needed"));
   }
 }
 
@@ -101,6 +100,30 @@ TEST_CASE("what a rig file may not say is refused with what is allowed", "[rig]"
                  "no line \"enable\""));
   CHECK(contains(problems("[surface]", "[surface"), "not valid TOML"));
   CHECK(problems("quality_factor = 60", "quality_factor = inf").empty());
+}
+
+TEST_CASE("spare channels carry a marker and masking noise", "[rig]") {
+  const std::string both =
+      "[marker]\nchannel = 1\nkind = \"tone\"\nfrequency_Hz = 5000\nduration_ms = 2\n"
+      "[noise]\nchannel = 3\nrms = 0.05\n\n[limits]";
+  const auto rig = rig::parse(replaced(source(), "[limits]", both), "r.toml");
+  REQUIRE(rig.marker);
+  CHECK(rig.marker->kind == rig::Marker::Kind::tone);
+  CHECK(rig.marker->duration_s == Approx(2e-3));
+  REQUIRE(rig.noise);
+  CHECK(rig.noise->high_Hz == 8000);
+  CHECK(rig::channels(rig) == 4);
+  CHECK(rig::channels(rig::load(simulated)) == 2);
+}
+
+TEST_CASE("a spare channel is one that nothing else drives", "[rig]") {
+  const auto taken = problems(
+      "[limits]", "[marker]\nchannel = 0\nkind = \"pulse\"\n[noise]\nchannel = 0\nrms = 0.5\n[limits]");
+  CHECK(contains(taken, "channel 0 drives"));
+  CHECK(contains(taken, "a channel without a transducer"));
+  CHECK(contains(taken, "channel 0 carries the marker"));
+  CHECK(contains(taken, "\"rms\""));
+  CHECK(contains(problems("[limits]", "[marker]\nchannel = 8\nkind = \"click\"\n[limits]"), "\"click\""));
 }
 
 TEST_CASE("a material fills the constants that the file does not state", "[rig]") {
