@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
@@ -108,9 +109,8 @@ struct PlateWalk {
 
   std::optional<double> step(const Surface& surface, double by_Hz) {
     const double from = f;
-    const auto before = response;
     f += by_Hz;
-    response = f > 0 ? plate_response(surface, f) : std::nullopt;
+    const auto before = std::exchange(response, f > 0 ? plate_response(surface, f) : std::nullopt);
     if (!before || !response || (*before > 0) == (*response > 0)) return std::nullopt;
     return plate_zero(surface, from, *before, f, *response);
   }

@@ -211,7 +211,8 @@ void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
     return false;
   };
   const auto check_all = [&](const char* key, const std::vector<double>& levels) {
-    std::all_of(levels.begin(), levels.end(), [&](double level) { return check(key, level); });
+    for (const double level : levels)
+      if (!check(key, level)) break;  // one of a list is told
   };
   check_all(spec.kind == Kind::adjustment ? "start" : "values", spec.values);
   check_all("stimuli", spec.stimuli.values);
