@@ -1,5 +1,6 @@
 # Installs the library to a fresh prefix, then builds and runs the example against it as a stranger would.
-#   cmake -D BUILD=<build tree> -D SOURCE=<source tree> -D WORK=<scratch folder> -P install_test.cmake
+#   cmake -D BUILD=<build tree> -D SOURCE=<source tree> -D WORK=<scratch folder>
+#         -D GENERATOR=<that of the build tree> -P install_test.cmake
 function(step)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)
@@ -11,7 +12,7 @@ endfunction()
 file(REMOVE_RECURSE ${WORK})
 step(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix --component physics)
 file(COPY ${SOURCE}/physics/example DESTINATION ${WORK})
-step(${CMAKE_COMMAND} -S ${WORK}/example -B ${WORK}/build -D CMAKE_PREFIX_PATH=${WORK}/prefix)
+step(${CMAKE_COMMAND} -G ${GENERATOR} -S ${WORK}/example -B ${WORK}/build -D CMAKE_PREFIX_PATH=${WORK}/prefix)
 step(${CMAKE_COMMAND} --build ${WORK}/build)
 step(${WORK}/build/example)
 if(NOT output MATCHES "a boundary at 150 mm: 29[0-9][0-9][0-9]\\.")

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <string_view>
 
 #include "station/app/parallel.hpp"
 #include "station/app/rehearsal.hpp"
@@ -22,10 +23,10 @@ protocol::Protocol shipped(const std::string& name) {
   return protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
 }
 
-const app::Recovery& find(const app::Power& power, const std::string& source, const std::string& parameter) {
+const app::Recovery& find(const app::Power& power, std::string_view source, std::string_view parameter) {
   for (const auto& recovery : power.recoveries)
     if (recovery.source == source && recovery.parameter == parameter) return recovery;
-  throw std::out_of_range("no " + parameter + " of " + source);
+  throw std::out_of_range("no " + std::string(parameter) + " of " + std::string(source));
 }
 
 app::PowerOptions options(const std::string& observer, int observers, int intervals = 0) {

@@ -141,3 +141,7 @@ void LossyDisk::cut(const std::string& database, const std::string& into, std::u
     std::ofstream(into + "/" + name, std::ios::binary) << bytes;
   }
 }
+
+void LossyDisk::forget(const std::string& database) {
+  for (const auto* suffix : {"", "-wal"}) platters.erase(database + suffix);
+}

@@ -22,4 +22,7 @@ class LossyDisk {
   /// The files of `database` as a power cut at this moment may leave them, into the folder `into`, which must
   /// exist. `seed` chooses what survives.
   void cut(const std::string& database, const std::string& into, std::uint64_t seed) const;
+
+  /// Keeps nothing of this database any longer; no connection to it may be open.
+  void forget(const std::string& database);
 };

@@ -1,0 +1,235 @@
+#include "tests/endurance/room.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace endurance {
+
+using namespace turnpoint;
+using drive::AmplifierState;
+using session::FaultKind;
+using session::Input;
+using session::InputKind;
+
+namespace {
+
+constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
+constexpr std::int64_t kContinue_ns = 1'000'000'000;  // how long the virtual stage reads a page
+constexpr std::int64_t kSettle_ns = 50'000'000, kTail_ns = 20'000'000;  // as on the real stage
+constexpr std::int64_t kDay_ns = 86'400'000'000'000;
+
+}  // namespace
+
+Room::Room(World& world, Disk disk, std::unique_ptr<session::Stage> inner, int rate_Hz)
+    : world_(world),
+      disk_(std::move(disk)),
+      inner_(std::move(inner)),
+      ns_per_frame_(1e9 / rate_Hz),
+      born_ns_(world.now_ns) {
+  world_.amplifier.begin(born_ns_);
+}
+
+Room::~Room() {
+  // The line falls back to its pull however the process ends.
+  world_.amplifier.line(world_ns(), false);
+  for (const char* what : {"amplifier line", "stop pressed"}) world_.amplifier.over(what);
+  world_.now_ns = world_ns();
+  world_.session_ns += now_ns();
+}
+
+void Room::line() {
+  if (!disk_.dead()) world_.amplifier.line(world_ns(), guard_.outputs().enable == 1);
+}
+
+void Room::plan(std::int64_t in_ns, std::function<void()> happens) {
+  planned_.push_back({now_ns() + in_ns, std::move(happens)});
+  std::stable_sort(planned_.begin(), planned_.end(),
+                   [](const auto& a, const auto& b) { return a.time_ns < b.time_ns; });
+}
+
+void Room::push(InputKind kind, FaultKind fault, const std::string& text) {
+  Input input;
+  input.time_ns = now_ns();
+  input.kind = kind;
+  input.fault = fault;
+  input.text = text;
+  input.quality = session::TimeQuality::simulated;
+  inputs_.push_back(std::move(input));
+}
+
+/// What guard thread and session do in between on the real stage.
+void Room::attend() {
+  if (disk_.dead()) throw Died("in a write");
+  const auto now = now_ns();
+  guard_.audio_alive(now);
+  guard_.session_alive(now);
+  guard_.tick(now);
+  if (closing_ && now >= quiet_ns_ + kTail_ns) {
+    guard_.disable();
+    closing_ = false;
+  }
+  line();
+}
+
+std::optional<Input> Room::wait_until(std::int64_t deadline_ns) {
+  for (;;) {
+    attend();
+    if (!inputs_.empty()) {
+      auto input = std::move(inputs_.front());
+      inputs_.pop_front();
+      return input;
+    }
+    const auto now = now_ns();
+    const auto off_ns = closing_ ? std::max(now + 1, quiet_ns_ + kTail_ns) : kForever;
+    const auto mine = planned_.empty() ? kForever : planned_.front().time_ns;
+    const auto fault = std::max(now, world_.next_fault_ns - born_ns_);
+    const auto next = std::min({off_ns, mine, fault});
+    if (deadline_ns == kForever && next > now + kContinue_ns) return inner_->wait_until(kForever);
+    if (auto input = inner_->wait_until(std::min(deadline_ns, next))) return attend(), input;
+    if (now_ns() >= mine) {
+      auto due = std::move(planned_.front());
+      planned_.erase(planned_.begin());
+      due.happens();
+    } else if (now_ns() >= fault) {
+      world_.next_fault_ns = world_ns() + world_.course.until_next_ns();
+      strike(world_.course.next());
+    }
+    if (now_ns() >= deadline_ns && inputs_.empty()) return attend(), std::nullopt;
+  }
+}
+
+std::vector<Input> Room::drain() {
+  inner_->drain();
+  return {std::make_move_iterator(inputs_.begin()),
+          std::make_move_iterator(std::exchange(inputs_, {}).end())};
+}
+
+session::Onset Room::present(drive::Burst burst, std::int64_t earliest_ns) {
+  attend();
+  const auto onset = inner_->present(burst, std::max(earliest_ns, opened_ns_ + kSettle_ns));
+  const auto length_ns = static_cast<std::int64_t>(static_cast<double>(burst.length_frames) * ns_per_frame_);
+  quiet_ns_ = std::max(quiet_ns_, onset.time_ns + length_ns);
+  world_.amplifier.stimulus(born_ns_ + onset.time_ns, born_ns_ + onset.time_ns + length_ns);
+  return onset;
+}
+
+std::int64_t Room::silence() { return quiet_ns_ = inner_->silence(); }
+
+std::string Room::arm() {
+  attend();
+  const auto why_not = guard_.arm(now_ns());
+  if (why_not.empty()) world_.amplifier.armed(world_ns()), fault_told_ = false;
+  return why_not;
+}
+
+std::string Room::disarm() {
+  world_.amplifier.cause(world_ns(), "disarmed by the operator");
+  guard_.disarm();
+  line();
+  return "";
+}
+
+std::string Room::open_amplifier() {
+  attend();
+  closing_ = false;
+  if (amplifier() == AmplifierState::enabled) return "";
+  opened_ns_ = now_ns();
+  auto why_not = guard_.enable(now_ns());
+  line();
+  return why_not;
+}
+
+void Room::finish() {
+  guard_.disarm();
+  line();
+  world_.amplifier.cause(world_ns(), "the session's end");
+}
+
+/// The operator: whoever has to arm does so after some seconds, whether the cause is gone or not.
+void Room::show(const session::Page& page) {
+  if (disk_.dead()) return;
+  world_.amplifier.page(world_ns(), page.kind);
+  if (page.kind != session::PageKind::fault) return;
+  disk_.bytes_left(-1);
+  const bool wanted = page.amplifier == "disarmed" || page.amplifier == "faulted";
+  if (!wanted || std::exchange(arm_planned_, true)) return;
+  plan(world_.course.seconds(1, 8), [this] {
+    arm_planned_ = false;
+    push(InputKind::arm);
+  });
+}
+
+// A fault of the room, told to the session as the real stage tells it: once for each that latched.
+void Room::tell_guard_fault() {
+  line();
+  if (guard_.state() != AmplifierState::faulted || std::exchange(fault_told_, true)) return;
+  const auto& what = guard_.fault();
+  const auto kind = what == "the converter is gone" ? FaultKind::converter_gone
+                    : what.starts_with("the stop")  ? FaultKind::stop_pressed
+                                                    : FaultKind::amplifier;
+  push(InputKind::fault, kind, what);
+}
+
+void Room::strike_line(const char* what, void (panel::Guard::*change)(std::int64_t, bool)) {
+  world_.amplifier.cause(world_ns(), what);
+  world_.amplifier.lasts(what);
+  if (world_.plant != Plant::deaf_guard) (guard_.*change)(now_ns(), true);
+  tell_guard_fault();
+  plan(world_.course.seconds(0.01, 20), [this, what, change] {
+    world_.amplifier.over(what);
+    (guard_.*change)(now_ns(), false);
+  });
+}
+
+void Room::strike_device() {
+  world_.amplifier.cause(world_ns(), "converter gone");
+  guard_.trip(now_ns(), "the converter is gone");
+  tell_guard_fault();
+  plan(world_.course.seconds(0.5, 10), [this] { push(InputKind::notice, {}, "the converter is back"); });
+}
+
+void Room::strike(Fault fault) {
+  switch (fault) {
+    case Fault::amplifier_line:
+      return strike_line("amplifier line", &panel::Guard::fault_line);
+    case Fault::stop_pressed:
+      return strike_line("stop pressed", &panel::Guard::stop_line);
+    case Fault::converter_gone:
+      return strike_device();
+    case Fault::audio_silent: {
+      guard_.session_alive(now_ns() + 150'000'000);
+      guard_.tick(now_ns() + 150'000'000);  // the last sign of the audio thread is that old then
+      if (guard_.state() == AmplifierState::faulted) world_.amplifier.cause(world_ns(), "audio silent");
+      return tell_guard_fault();
+    }
+    case Fault::underrun:
+      return push(InputKind::xrun, {}, "960 frames lost");
+    case Fault::touch_gone:
+      return push(InputKind::fault, FaultKind::touch_gone, "panel: it was unplugged");
+    case Fault::disarm:
+      return push(InputKind::disarm);
+    case Fault::repeat:
+      return push(InputKind::repeat);
+    case Fault::pause:
+      return push(InputKind::pause);
+    case Fault::end_session:
+      return push(InputKind::stop);
+    case Fault::clock_jump: {
+      const auto by_ns = world_.course.between(-3 * kDay_ns, 3 * kDay_ns);
+      world_.wall_offset_ns += by_ns;
+      return push(InputKind::notice, {}, "the wall clock was set");
+    }
+    case Fault::disk_full:
+      return disk_.bytes_left(world_.course.between(0, 40'000));
+    case Fault::kill_in_write:
+    case Fault::power_cut_in_write:
+      return disk_.die_later(fault, static_cast<int>(world_.course.between(1, 40)));
+    case Fault::kill:
+    case Fault::power_cut:
+      disk_.die(fault);
+      throw Died(name(fault));
+  }
+}
+
+}  // namespace endurance

@@ -1,0 +1,117 @@
+#pragma once
+#include <deque>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+
+#include "station/panel/guard.hpp"
+#include "station/session/monitor.hpp"
+#include "station/session/stage.hpp"
+#include "tests/endurance/faults.hpp"
+#include "tests/endurance/watch.hpp"
+
+namespace endurance {
+
+/// Violations planted on purpose: the checker has to see each.
+enum class Plant { none, deaf_guard, never_off, lost_trial, careless_disk, leak };
+
+/// The process ends here: thrown out of the sitting, whose files were taken as they were at the death.
+struct Died : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// What goes on around a station whatever happens to its process.
+struct World {
+  explicit World(Course c, Plant p) : course(std::move(c)), plant(p) {}
+
+  Course course;
+  Plant plant = Plant::none;
+  Violations violations;
+  AmplifierWatch amplifier{violations};
+  TrialWatch trials{violations};
+  MemoryWatch memory;
+  std::int64_t now_ns = 0;                                  ///< since the beginning of the run; virtual
+  std::int64_t end_ns = 0;                                  ///< of session time: then the run is over
+  std::int64_t session_ns = 0;                              ///< of it, with a session running
+  std::int64_t wall_offset_ns = 1'700'000'000'000'000'000;  ///< of the wall clock, which people set
+  std::int64_t next_fault_ns = 0;
+};
+
+/// What the files do when the process dies or the disk fills; the station knows them.
+struct Disk {
+  std::function<void(Fault)> die;             ///< takes the files as this death leaves them
+  std::function<void(Fault, int)> die_later;  ///< the same, after so many operations on the files
+  std::function<void(std::int64_t)> bytes_left;
+  std::function<bool()> dead;
+};
+
+/// A room for one life of the station's process: time, drive and observer are the virtual stage's; the
+/// amplifier is the station's own guard on a line that the watch looks at; and faults come as the course has
+/// them. It is also the operator, who mends and arms (now and then too soon), and the participant who sees
+/// the pages.
+class Room : public turnpoint::session::Stage, public turnpoint::session::Display {
+ public:
+  using Input = turnpoint::session::Input;
+  using InputKind = turnpoint::session::InputKind;
+
+  Room(World& world, Disk disk, std::unique_ptr<turnpoint::session::Stage> inner, int rate_Hz);
+  ~Room() override;
+
+  std::int64_t now_ns() override { return inner_->now_ns(); }
+  std::optional<Input> wait_until(std::int64_t deadline_ns) override;
+  std::vector<Input> drain() override;
+  void wait_for(const std::function<bool()>&) override {}
+  turnpoint::session::Onset present(turnpoint::drive::Burst burst, std::int64_t earliest_ns) override;
+  std::optional<std::int64_t> glide(const turnpoint::drive::ToneSet& to, double seconds) override {
+    return inner_->glide(to, seconds);
+  }
+  std::int64_t silence() override;
+  std::string arm() override;
+  std::string disarm() override;
+  std::string clear() override { return guard_.clear(); }
+  turnpoint::drive::AmplifierState amplifier() const override { return guard_.state(); }
+  std::string open_amplifier() override;
+  void close_amplifier() override { closing_ = world_.plant != Plant::never_off; }
+  const std::vector<std::string>& buttons() const override { return inner_->buttons(); }
+  void question(const turnpoint::observer::Question& question, std::int64_t zero_ns) override {
+    inner_->question(question, zero_ns);
+  }
+  void adjustment(const turnpoint::observer::Adjustment& adjustment, std::int64_t zero_ns) override {
+    inner_->adjustment(adjustment, zero_ns);
+  }
+  std::optional<turnpoint::session::ClockFit> clock_fit() override { return inner_->clock_fit(); }
+  std::string realtime_rights() const override { return "none"; }
+  void finish() override;
+
+  void show(const turnpoint::session::Page& page) override;
+  std::int64_t world_ns() const { return born_ns_ + inner_->now_ns(); }
+  std::int64_t age_ns() const { return inner_->now_ns(); }
+
+ private:
+  struct Planned {
+    std::int64_t time_ns = 0;
+    std::function<void()> happens;
+  };
+
+  void attend();
+  void line();
+  void plan(std::int64_t in_ns, std::function<void()> happens);
+  void push(InputKind kind, turnpoint::session::FaultKind fault = {}, const std::string& text = "");
+  void strike(Fault fault);
+  void strike_line(const char* what, void (turnpoint::panel::Guard::*change)(std::int64_t, bool));
+  void strike_device();
+  void tell_guard_fault();
+
+  World& world_;
+  Disk disk_;
+  std::unique_ptr<turnpoint::session::Stage> inner_;
+  turnpoint::panel::Guard guard_;
+  double ns_per_frame_;
+  std::int64_t born_ns_;
+  std::vector<Planned> planned_;
+  std::deque<Input> inputs_;
+  std::int64_t quiet_ns_ = 0, opened_ns_ = 0;
+  bool closing_ = false, arm_planned_ = false, fault_told_ = false;
+};
+
+}  // namespace endurance

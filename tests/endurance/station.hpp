@@ -1,0 +1,47 @@
+#pragma once
+#include <memory>
+#include <string>
+
+#include "station/session/session.hpp"
+#include "tests/endurance/room.hpp"
+#include "tests/store/failing_disk.hpp"
+#include "tests/store/lossy_disk.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace endurance {
+
+/// One database and the sessions of a participant in it, through every death of the station's process: what a
+/// death leaves of the files is looked at and gone on with. Built of the station's own sitting, store,
+/// procedures, planner, drive and guard.
+class Station {
+ public:
+  explicit Station(World& world);
+
+  /// A session of this protocol from its beginning to its end, in as many lives as it takes; then compared
+  /// with one that nothing befell. It stays as it is when the run's time is over. False where the database
+  /// can no longer be used.
+  bool run_session(const std::string& protocol, std::uint64_t seed);
+
+  int lives = 0, sessions = 0;
+
+ private:
+  enum class Ending { on_the_way, session_over, unusable };
+
+  Ending live_and_die(const turnpoint::session::Setup& setup);
+  Ending give_up(const std::string& why);
+  bool live(turnpoint::session::Setup setup);
+  void take_files(Fault how);
+  void bury(const std::string& how);
+  Disk disk();
+
+  World& world_;
+  TemporaryFolder folder_;
+  FailingDisk full_;
+  LossyDisk lossy_;
+  std::string database_, session_id_;
+  int deaths_ = 0, operations_left_ = 0;
+  Fault death_ = Fault::kill;
+  bool dead_ = false;
+};
+
+}  // namespace endurance
