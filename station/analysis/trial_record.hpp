@@ -20,6 +20,7 @@ struct TrialRecord {
   std::optional<int> right_choice;  ///< index of the choice that is right; none where no choice is
   std::optional<int> response;      ///< index of the choice that was made
   std::optional<bool> correct;
+  std::optional<double> setting;  ///< of a slider, in the unit of the level, which is where it began
   Outcome outcome = Outcome::answered;
   std::optional<double> response_time_s;
   std::string instruction;           ///< "" where the design has none

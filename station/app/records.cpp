@@ -1,6 +1,7 @@
 #include "station/app/records.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <map>
 
 namespace turnpoint::app {
@@ -45,6 +46,14 @@ std::optional<int> index_of(const std::optional<std::string>& id, const protocol
   return std::nullopt;
 }
 
+/// An adjustment's row has the setting where others have a choice.
+std::optional<double> setting_of(const std::string& response) {
+  double value = 0;
+  const auto* end = response.data() + response.size();
+  const auto read = std::from_chars(response.data(), end, value);
+  return read.ec == std::errc{} && read.ptr == end ? std::optional(value) : std::nullopt;
+}
+
 protocol::Factors factors_of(const store::TrialRow& row) {
   protocol::Factors factors;
   for (const auto& [name, value] : row.factors)
@@ -64,6 +73,8 @@ analysis::TrialRecord record_of(const store::TrialRow& row, const store::BlockSt
   record.right_choice = index_of(row.correct_response, protocol);
   record.response = index_of(row.response, protocol);
   record.correct = row.correct;
+  if (row.response && protocol.task.kind == protocol::TaskKind::adjustment)
+    record.setting = setting_of(*row.response);
   record.outcome = outcome_of(row.outcome);
   record.response_time_s = row.response_time_s;
   record.instruction = block.instruction;

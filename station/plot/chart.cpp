@@ -159,7 +159,7 @@ struct Draw {
 struct Entry {
   std::string name;
   int series = 0;
-  bool line = false, points = false, area = false;
+  bool line = false, points = false, open_points = false, area = false;
 };
 
 std::vector<Entry> legend_of(const Panel& panel) {
@@ -171,12 +171,16 @@ std::vector<Entry> legend_of(const Panel& panel) {
         entry.*what = true;
         return;
       }
-    entries.push_back({name, series, false, false, false});
+    entries.push_back({name, series, false, false, false, false});
     entries.back().*what = true;
   };
   for (const auto& layer : panel.layers) {
     if (const auto* line = std::get_if<Line>(&layer)) add(line->name, line->series, &Entry::line);
-    if (const auto* dots = std::get_if<Points>(&layer)) add(dots->name, dots->series, &Entry::points);
+    if (const auto* dots = std::get_if<Points>(&layer)) {
+      const bool open =
+          !dots->open.empty() && std::find(dots->open.begin(), dots->open.end(), false) == dots->open.end();
+      add(dots->name, dots->series, open ? &Entry::open_points : &Entry::points);
+    }
     if (const auto* band = std::get_if<Band>(&layer)) add(band->name, band->series, &Entry::area);
     if (const auto* bars = std::get_if<Histogram>(&layer)) add(bars->name, bars->series, &Entry::area);
   }
@@ -195,7 +199,7 @@ double draw_legend(Svg* svg, const std::vector<Entry>& entries, double left, dou
       if (entry.area)
         svg->rectangle({x, y + 3}, sample, 10, {"", look.colour, 0, "", entry.line ? 0.18 : 0.85});
       if (entry.line) svg->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 2, look.dash, 1});
-      if (entry.points) marker(*svg, {x + sample / 2, y + 8}, 4, look, false);
+      if (entry.points || entry.open_points) marker(*svg, {x + sample / 2, y + 8}, 4, look, !entry.points);
       svg->text({x + sample + 6, y + 12}, entry.name, kText, Anchor::start, kInk);
     }
     x += need + gap;
@@ -244,8 +248,24 @@ void draw_axes(Svg& svg, const Frame& frame, const std::vector<Tick>& across, co
   svg.text({frame.x + frame.width / 2, bottom + 37}, frame.across->label, kText, Anchor::middle, kInk);
 }
 
+/// As many ticks across as have room for all their labels; on a log axis some go without.
+std::vector<Tick> ticks_with_room(const Axis& axis, double width) {
+  for (int wanted = 7; wanted > 2 && axis.scale == AxisScale::linear; --wanted) {
+    const auto some = ticks(axis, wanted);
+    double free_from = -1e9;
+    const bool fit = std::all_of(some.begin(), some.end(), [&](const Tick& tick) {
+      const double x = position(axis, tick.value) * width, half = text_width(tick.label, kText) / 2;
+      const bool free = x - half >= free_from;
+      free_from = x + half + 6;
+      return free;
+    });
+    if (fit) return some;
+  }
+  return ticks(axis, axis.scale == AxisScale::linear ? 2 : 7);
+}
+
 void draw_panel(Svg& svg, const Panel& panel, double left, double top, double width, double height) {
-  const auto up = ticks(panel.y, 5), across = ticks(panel.x, 7);
+  const auto up = ticks(panel.y, 5);
   double labels = 0;
   for (const auto& tick : up) labels = std::max(labels, text_width(tick.label, kText));
   const double title = panel.title.empty() ? 4 : 26;
@@ -259,7 +279,7 @@ void draw_panel(Svg& svg, const Panel& panel, double left, double top, double wi
   check(frame.width > 40 && frame.height > 40, "panel \"" + panel.title + "\" leaves no room for its data");
   svg.text({inner_left, top + kPad + 14}, panel.title, kTitle, Anchor::start, kInk, 600);
   draw_legend(&svg, entries, inner_left, top + kPad + title, inner_width);
-  draw_axes(svg, frame, across, up);
+  draw_axes(svg, frame, ticks_with_room(panel.x, inner_width), up);
   svg.text({left + kPad + 10, frame.y + frame.height / 2}, panel.y.label, kText, Anchor::middle, kInk, 400,
            90);
   svg.begin_clip({frame.x - 1, frame.y - 6}, frame.width + 7, frame.height + 7);

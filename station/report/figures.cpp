@@ -11,6 +11,10 @@ namespace turnpoint::report {
 
 namespace {
 
+/// A cell of fewer trials shows nothing but its interval; more cells than this are not joined by a line.
+constexpr int kFewestOfCell = 5;
+constexpr std::size_t kMostJoined = 8;
+
 plot::Points observed(const NamedFit& named, int series, const std::string& name) {
   plot::Points points;
   points.series = series;
@@ -92,28 +96,64 @@ std::optional<plot::Figure> trace_figure(const Summary& summary) {
   figure.panel_width_px = 620;
   figure.panel_height_px = 240;
   for (const auto& trace : summary.traces) {
-    plot::Points points;
-    points.series = static_cast<int>(figure.panels.size());
+    plot::Points right, wrong;
+    right.series = wrong.series = static_cast<int>(figure.panels.size());
     plot::Line line;
     line.series = plot::kNeutral;
     for (const auto& point : trace.points) {
+      const bool is_wrong = point.correct && !*point.correct;
+      auto& points = is_wrong ? wrong : right;
       points.x.push_back(point.trial_index + 1);
       points.y.push_back(point.level);
-      points.open.push_back(point.correct && !*point.correct);
+      points.open.push_back(is_wrong);
+      line.x.push_back(points.x.back());
+      line.y.push_back(points.y.back());
     }
-    line.x = points.x;
-    line.y = points.y;
+    if (!wrong.x.empty()) right.name = "right", wrong.name = "wrong";
     plot::Panel panel;
     panel.title = or_default(trace.procedure, "all trials");
-    panel.x = plot::fitted("Trial", points.x, 0.03);
-    panel.y = plot::fitted(summary.data.level_label, points.y, 0.1);
+    panel.x = plot::fitted("Trial", line.x, 0.03);
+    panel.y = plot::fitted(summary.data.level_label, line.y, 0.1);
     // Shuffled levels joined by a line would only cross: lines are for procedures that move step by step.
     double steps = 0;
     for (std::size_t i = 1; i < line.y.size(); ++i) steps += std::abs(line.y[i] - line.y[i - 1]);
     const bool smooth = line.y.size() > 1 &&
                         steps / static_cast<double>(line.y.size() - 1) < 0.2 * (panel.y.high - panel.y.low);
     if (smooth) panel.layers.push_back(line);
-    panel.layers.push_back(points);
+    panel.layers.push_back(right);
+    panel.layers.push_back(wrong);
+    figure.panels.push_back(std::move(panel));
+  }
+  if (figure.panels.empty()) return std::nullopt;
+  return figure;
+}
+
+std::optional<plot::Figure> settings_figure(const Summary& summary) {
+  plot::Figure figure;
+  figure.title = "Settings in the order made";
+  figure.panel_width_px = 620;
+  figure.panel_height_px = 260;
+  for (const auto& settings : summary.settings) {
+    plot::Points starts, ends;
+    starts.name = "start", starts.series = plot::kNeutral;
+    ends.name = "setting", ends.series = static_cast<int>(figure.panels.size());
+    for (std::size_t i = 0; i < settings.values.size(); ++i) {
+      starts.x.push_back(static_cast<double>(i + 1));
+      starts.y.push_back(settings.starts[i]);
+      starts.open.push_back(true);
+      ends.y.push_back(settings.values[i]);
+    }
+    ends.x = starts.x;
+    auto both = starts.y;
+    both.insert(both.end(), ends.y.begin(), ends.y.end());
+    plot::Panel panel;
+    panel.title = settings.procedure;
+    panel.x = plot::fitted("Setting", starts.x, 0.03);
+    panel.y = plot::fitted(summary.data.level_label, both, 0.1);
+    if (settings.mean)
+      panel.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, settings.mean->value, "mean"});
+    panel.layers.push_back(starts);
+    panel.layers.push_back(ends);
     figure.panels.push_back(std::move(panel));
   }
   if (figure.panels.empty()) return std::nullopt;
@@ -170,7 +210,7 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
       accuracies.push_back(interval.low);
     }
     for (const auto& cell : entry.cells) {
-      if (!cell.mean_correct_s) continue;
+      if (!cell.mean_correct_s || cell.answered < kFewestOfCell) continue;
       by_difficulty.x.push_back(*cell.mean_correct_s);
       by_difficulty.y.push_back(cell.proportion_correct);
       by_difficulty.low.push_back(cell.accuracy.low);
@@ -185,7 +225,9 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
     bin_line.x = bins.x, bin_line.y = bins.y;
     cell_line.x = by_difficulty.x, cell_line.y = by_difficulty.y;
     caf.layers.insert(caf.layers.end(), {bin_line, bins});
-    cells.layers.insert(cells.layers.end(), {cell_line, by_difficulty});
+    // An adaptive procedure leaves many levels: joined by a line they would only cross.
+    if (cell_line.x.size() <= kMostJoined) cells.layers.push_back(cell_line);
+    cells.layers.push_back(by_difficulty);
   }
   if (cell_times.empty()) return std::nullopt;
   const double lowest = std::min(0.45, *std::min_element(accuracies.begin(), accuracies.end()) - 0.03);

@@ -14,6 +14,8 @@ std::optional<plot::Figure> psychometric_figure(const Summary& summary);
 std::optional<plot::Figure> trace_figure(const Summary& summary);
 /// Response-time histograms, one panel an instruction on a common axis.
 std::optional<plot::Figure> response_time_figure(const Summary& summary);
+/// Settings of a slider in order of presentation beside where it started, with their mean.
+std::optional<plot::Figure> settings_figure(const Summary& summary);
 /// Accuracy against response time: conditional accuracy functions, and the trade by difficulty.
 std::optional<plot::Figure> trade_figure(const Summary& summary);
 

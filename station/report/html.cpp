@@ -95,6 +95,20 @@ std::string fit_table(const NamedFit& named, const SessionData& data) {
   return html + notes(named.fit.statements) + notes(named.bootstrap.statements);
 }
 
+std::string settings_section(const Summary& summary) {
+  std::string html = "<h2>Settings</h2>\n" + picture(settings_figure(summary));
+  if (summary.settings.empty()) return html + "<p class=\"note\">Nothing was set in this session.</p>\n";
+  for (const auto& settings : summary.settings) {
+    html += "<table><tr><th>" + escaped(settings.procedure) + "</th><td class=\"n\">" +
+            std::to_string(settings.values.size()) + " settings</td></tr>";
+    html += "<tr><td>Mean (point of subjective equality)</td>" + cell(settings.mean) + "</tr>";
+    html += "<tr><td>Scatter (SD)</td>" + cell(settings.sd) + "</tr>";
+    html += "<tr><td>Share of the start that remains</td>" + cell(settings.start_slope, 2) +
+            "</tr></table>\n" + notes(settings.statements);
+  }
+  return html + "<p class=\"soft\">95 % intervals: Student's t, chi squared.</p>\n";
+}
+
 std::string instruction_table(const analysis::Trade& trade) {
   std::string head = "<tr><th></th>";
   for (const auto& entry : trade.instructions)
@@ -199,6 +213,8 @@ std::string to_html(const Summary& summary) {
     html += "<h2>Psychometric function</h2>\n" + picture(psychometric_figure(summary));
     for (const auto& named : summary.fits) html += fit_table(named, data);
     html += trade_section(summary);
+  } else {
+    html += settings_section(summary);
   }
   html += course_section(summary);
   if (!data.health.empty()) html += "<h2>The station</h2>\n" + facts(data.health);

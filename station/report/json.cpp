@@ -114,6 +114,13 @@ std::string to_json(const Summary& summary) {
                     {"anticipations", n.anticipations}, {"aborted", n.aborted},   {"faults", n.faults}};
   json["fits"] = Json::array();
   for (const auto& named : summary.fits) json["fits"].push_back(fit_json(named));
+  for (const auto& settings : summary.settings)
+    json["settings"].push_back({{"procedure", settings.procedure},
+                                {"settings", settings.values.size()},
+                                {"mean", value(settings.mean)},
+                                {"sd", value(settings.sd)},
+                                {"start_slope", value(settings.start_slope)},
+                                {"statements", value(settings.statements)}});
   json["instructions"] = Json::array();
   for (const auto& entry : summary.trade.instructions)
     json["instructions"].push_back(instruction_json(entry));

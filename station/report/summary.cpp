@@ -93,7 +93,10 @@ Summary summarise(const SessionData& data) {
   summary.traces = analysis::traces(data.trials);
   summary.catch_trials = analysis::catch_accuracy(data.trials);
   summary.fatigue = analysis::fatigue(data.trials);
-  if (data.design == Design::adjustment) return summary;
+  if (data.design == Design::adjustment) {
+    summary.settings = analysis::settings(data.trials);
+    return summary;
+  }
   summary.bias = analysis::choice_bias(data.trials);
   analysis::TradeOptions options;
   options.exclusion = data.exclusion;

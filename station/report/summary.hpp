@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "station/analysis/course.hpp"
+#include "station/analysis/settings.hpp"
 #include "station/analysis/trade.hpp"
 #include "station/report/session_data.hpp"
 
@@ -27,6 +28,7 @@ struct Summary {
   std::optional<analysis::Proportion> catch_trials;
   analysis::Fatigue fatigue;
   analysis::Trade trade;
+  std::vector<analysis::Settings> settings;  ///< of an adjustment, one a procedure
 };
 
 /// The psychometric fits alone: of all trials, or of each instruction where there are several. With

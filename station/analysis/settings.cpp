@@ -1,0 +1,86 @@
+#include "station/analysis/settings.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numeric>
+
+#include "station/text/number.hpp"
+
+namespace turnpoint::analysis {
+
+namespace {
+
+constexpr double kTail = 0.025;
+constexpr std::size_t kFewest = 3;
+
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double squares_about(const std::vector<double>& values, double mean) {
+  return std::accumulate(values.begin(), values.end(), 0.0,
+                         [mean](double sum, double v) { return sum + (v - mean) * (v - mean); });
+}
+
+double student(double degrees) { return boost::math::quantile(boost::math::students_t(degrees), 1 - kTail); }
+
+Estimate around(double value, double half) { return {value, {value - half, value + half, 0.95}}; }
+
+/// Least squares of settings on starts; none where the starts do not differ or nothing is left to judge by.
+std::optional<Estimate> slope_on_starts(const Settings& s) {
+  const double n = static_cast<double>(s.values.size());
+  const double start = mean_of(s.starts), mean = mean_of(s.values), spread = squares_about(s.starts, start);
+  if (spread <= 0 || n < 5) return std::nullopt;
+  double product = 0;
+  for (std::size_t i = 0; i < s.values.size(); ++i) product += (s.starts[i] - start) * (s.values[i] - mean);
+  const double slope = product / spread;
+  const double left = std::max(squares_about(s.values, mean) - slope * product, 0.0);
+  return around(slope, student(n - 2) * std::sqrt(left / (n - 2) / spread));
+}
+
+void estimate(Settings& s) {
+  if (s.values.size() < kFewest) {
+    s.statements.push_back({"few-settings", std::to_string(s.values.size()) +
+                                                " settings are too few for a mean with an interval; at "
+                                                "least 3 are needed."});
+    return;
+  }
+  const double n = static_cast<double>(s.values.size());
+  const double mean = mean_of(s.values), squares = squares_about(s.values, mean);
+  const double sd = std::sqrt(squares / (n - 1));
+  s.mean = around(mean, student(n - 1) * sd / std::sqrt(n));
+  if (sd > 0) {
+    const boost::math::chi_squared law(n - 1);
+    s.sd = Estimate{sd,
+                    {std::sqrt(squares / boost::math::quantile(law, 1 - kTail)),
+                     std::sqrt(squares / boost::math::quantile(law, kTail)), 0.95}};
+  } else {
+    s.statements.push_back({"equal-settings", "All settings are equal: their scatter cannot be estimated."});
+  }
+  s.start_slope = slope_on_starts(s);
+  if (s.start_slope && s.start_slope->interval.low > 0)
+    s.statements.push_back({"follows-start", "Settings follow where the slider started (by " +
+                                                 text::number(100 * s.start_slope->value, 2) +
+                                                 " % of the way): their mean leans on the starts."});
+}
+
+}  // namespace
+
+std::vector<Settings> settings(const std::vector<TrialRecord>& trials) {
+  std::vector<Settings> all;
+  for (const auto& trial : trials) {
+    if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.setting)
+      continue;
+    auto found = std::find_if(all.begin(), all.end(),
+                              [&](const Settings& s) { return s.procedure == trial.procedure; });
+    if (found == all.end()) found = all.insert(all.end(), Settings{trial.procedure, {}, {}, {}, {}, {}, {}});
+    found->starts.push_back(trial.level.value_or(0));
+    found->values.push_back(*trial.setting);
+  }
+  for (auto& s : all) estimate(s);
+  return all;
+}
+
+}  // namespace turnpoint::analysis

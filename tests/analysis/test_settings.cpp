@@ -1,0 +1,69 @@
+#include "station/analysis/settings.hpp"
+
+#include <cmath>
+
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+analysis::TrialRecord set_to(double value, double start = 0) {
+  analysis::TrialRecord trial;
+  trial.procedure = "match";
+  trial.level = start;
+  trial.setting = value;
+  return trial;
+}
+
+}  // namespace
+
+TEST_CASE("Settings have their mean, scatter and intervals by Student and chi squared", "[analysis]") {
+  // Eight values; the 97.5 % points are t(7) = 2.364624 and chi2(7) = 16.012764 and 1.689869 (tables).
+  const std::vector<double> values{2, 4, 4, 4, 5, 5, 7, 9};
+  std::vector<analysis::TrialRecord> trials;
+  for (const double v : values) trials.push_back(set_to(v));
+  const auto all = analysis::settings(trials);
+  REQUIRE(all.size() == 1);
+  const double sd = std::sqrt(32.0 / 7);
+  REQUIRE(all[0].mean);
+  CHECK(all[0].mean->value == Approx(5));
+  CHECK(all[0].mean->interval.high == Approx(5 + 2.364624 * sd / std::sqrt(8.0)).epsilon(1e-6));
+  REQUIRE(all[0].sd);
+  CHECK(all[0].sd->value == Approx(sd));
+  CHECK(all[0].sd->interval.low == Approx(std::sqrt(32 / 16.012764)).epsilon(1e-6));
+  CHECK(all[0].sd->interval.high == Approx(std::sqrt(32 / 1.689869)).epsilon(1e-6));
+  CHECK_FALSE(all[0].start_slope);  // every slider began at one place
+}
+
+TEST_CASE("Settings that follow where the slider started are said to", "[analysis]") {
+  std::vector<analysis::TrialRecord> pulled, free;
+  for (int i = 0; i < 24; ++i) {
+    const double start = i % 2 ? 20 : -20, scatter = 3 * std::sin(1.7 * i);
+    pulled.push_back(set_to(0.3 * start + scatter, start));
+    free.push_back(set_to(scatter, start));
+  }
+  const auto follows = analysis::settings(pulled).front();
+  REQUIRE(follows.start_slope);
+  CHECK(follows.start_slope->interval.low < 0.3);
+  CHECK(follows.start_slope->interval.high > 0.3);
+  REQUIRE(follows.statements.size() == 1);
+  CHECK(follows.statements[0].code == "follows-start");
+  CHECK(analysis::settings(free).front().statements.empty());
+}
+
+TEST_CASE("Too few settings, equal ones and void trials give statements and no number", "[analysis]") {
+  auto timeout = set_to(9);
+  timeout.outcome = analysis::Outcome::timeout;
+  auto practice = set_to(9);
+  practice.type = analysis::TrialType::practice;
+  const auto two = analysis::settings({set_to(1), set_to(2), timeout, practice}).front();
+  CHECK(two.values.size() == 2);
+  CHECK_FALSE(two.mean);
+  CHECK(two.statements.at(0).code == "few-settings");
+  const auto equal = analysis::settings({set_to(3), set_to(3), set_to(3)}).front();
+  CHECK(equal.mean->value == 3);
+  CHECK_FALSE(equal.sd);
+  CHECK(equal.statements.at(0).code == "equal-settings");
+  CHECK(analysis::settings({timeout}).empty());
+}
