@@ -1,6 +1,7 @@
 #include "station/store/text_table.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <stdexcept>
 
 #include "station/text/number.hpp"
@@ -9,9 +10,18 @@ namespace turnpoint::store {
 
 namespace {
 
+/// The setting of a slider is kept as text, and is as harmless as the number that it is.
+bool is_number(const std::string& text) {
+  double value = 0;
+  const auto* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  return read.ec == std::errc{} && read.ptr == end;
+}
+
 std::string defused(const std::string& text) {
   static const std::string dangerous = "=+-@\t\r";
-  return dangerous.find(text.front()) == std::string::npos ? text : "'" + text;
+  const bool harmless = dangerous.find(text.front()) == std::string::npos || is_number(text);
+  return harmless ? text : "'" + text;
 }
 
 std::string quoted(const std::string& text) {

@@ -2,13 +2,14 @@
 
 #include <sqlite3.h>
 
+#include <atomic>
 #include <limits>
 #include <map>
 #include <stdexcept>
 
 namespace {
 
-std::int64_t left = std::numeric_limits<std::int64_t>::max();
+std::atomic<std::int64_t> left = std::numeric_limits<std::int64_t>::max();
 sqlite3_vfs* real = nullptr;
 sqlite3_vfs shim;
 int (*real_write)(sqlite3_file*, const void*, int, sqlite3_int64) = nullptr;

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 /// Makes SQLite write to a disk that fills up: a shim over the real file system, the default for connections
-/// opened while it lives. Not thread-safe.
+/// opened while it lives. One at a time; bytes_left() and space_again() from any thread.
 class FailingDisk {
  public:
   FailingDisk();

@@ -139,12 +139,13 @@ TEST_CASE("texts are quoted by RFC 4180, and none is a formula to a spreadsheet"
   table.row({cell("two\r\nlines"), cell("=HYPERLINK(\"x\")")});
   table.row({cell("+1"), cell(-1.5)});
   table.row({cell("@x"), cell("-x")});
+  table.row({cell("-7.5"), cell("-7+8")});
   table.row({cell(""), Cell{}});
   CHECK(table.text() ==
         "a,b\r\n\"say \"\"no\"\"\",\"a, "
-        "b\"\r\n\"two\r\nlines\",\"'=HYPERLINK(\"\"x\"\")\"\r\n'+1,-1.5\r\n'@x,'-x\r\n"
+        "b\"\r\n\"two\r\nlines\",\"'=HYPERLINK(\"\"x\"\")\"\r\n'+1,-1.5\r\n'@x,'-x\r\n-7.5,'-7+8\r\n"
         "n/a,n/a\r\n");
-  CHECK(table.rows() == 5);
+  CHECK(table.rows() == 6);
   TextTable bids({TableStyle::Kind::bids, '\t', '.'}, {"a"});
   bids.row({cell("a\tb\nc")});
   CHECK(bids.text() == "a\na b c\n");
