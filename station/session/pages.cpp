@@ -83,6 +83,8 @@ Page Pages::instructions(const protocol::Block& block, const Director& director)
   return page;
 }
 
+void Pages::add_mark(Page& page, const TrialSpec& first) const { page.mark_mm = mark_of(first); }
+
 Page Pages::of_phase(Phase phase, int interval, const TrialSpec& spec, const protocol::Block& block,
                      const trial::Result& result, const Director& director) const {
   auto page = blank(kind_of(phase), &block, &director);
@@ -150,7 +152,8 @@ Page Pages::paused(const Director& director) const {
 
 Page Pages::end(const Summary& summary) const {
   auto page = blank(PageKind::end, nullptr, nullptr);
-  page.title = word(Word::thanks, setup_.language);
+  const bool whole = summary.status == store::SessionStatus::completed;
+  page.title = word(whole ? Word::thanks : Word::thanks_early, setup_.language);
   page.trials_done = page.trials_total = summary.trials;
   page.summary = {{"Trials", std::to_string(summary.trials)},
                   {"Too late", std::to_string(summary.timeouts)},

@@ -16,6 +16,8 @@ class Pages {
 
   /// A block's instructions: its instruction's text where it has one, else the task's question.
   Page instructions(const protocol::Block& block, const Director& director) const;
+  /// Points at the mark that the block's first trial will ask about.
+  void add_mark(Page& page, const TrialSpec& first) const;
   /// The page of a phase of a trial.
   Page of_phase(trial::Phase phase, int interval, const TrialSpec& spec, const protocol::Block& block,
                 const trial::Result& result, const Director& director) const;

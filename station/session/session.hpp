@@ -35,7 +35,7 @@ struct Setup {
   std::string calibration_id, calibration_text;
   std::vector<drive::SoundLevel> sound;  ///< measured levels at full scale, rising in frequency
   std::string consent_version;  ///< of the consent form that the participant signed; "" where none was asked
-  /// The response device's own latency, stored with each answer, never subtracted.
+  /// The touch panel's own latency, stored with each answer by touch, never subtracted.
   double response_offset_s = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "station/session/sitting.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -56,10 +57,12 @@ Summary Sitting::run() {
 
 Sitting::Flow Sitting::run_block() {
   const auto block = *director_.block();
-  log_.begin_block(block_start(block, director_.block_index(), director_.attempt()));
-  if (const auto first = director_.next()) plans_.begin(*first);
+  keep([&] { log_.begin_block(block_start(block, director_.block_index(), director_.attempt())); });
+  const auto first = director_.next();
+  if (first) plans_.begin(*first);
   auto page = director_.attempt() > 0 && block.practice ? pages_.practice_again(block, director_)
                                                         : pages_.instructions(block, director_);
+  if (first) pages_.add_mark(page, *first);
   if (show_and_wait(std::move(page), 0) == Flow::stop) return Flow::stop;
   int trials = 0;
   while (const auto spec = director_.next()) {
@@ -85,8 +88,13 @@ Sitting::Flow Sitting::show_and_wait(Page page, double at_least_s) {
   const auto earliest = stage_->now_ns() + static_cast<std::int64_t>(at_least_s * 1e9);
   show(page);
   while (stage_->now_ns() < earliest)
-    if (auto input = stage_->wait_until(earliest))
-      if (handle_on_page(received(std::move(*input))) == Flow::stop) return Flow::stop;
+    if (auto waited = stage_->wait_until(earliest)) {
+      const auto input = received(std::move(*waited));
+      if (handle_on_page(input) == Flow::stop) return Flow::stop;
+      if (input.kind != InputKind::fault && input.kind != InputKind::disarm) continue;
+      page.remaining_s = std::max(0.0, 1e-9 * static_cast<double>(earliest - stage_->now_ns()));
+      show(page);
+    }
   if (at_least_s > 0) {
     page.remaining_s = 0;
     show(page);
@@ -119,7 +127,7 @@ void Sitting::finish(store::SessionStatus status, const std::string& reason) {
   summary_.reason = reason;
   summary_.duration_s = static_cast<double>(stage_->now_ns() - started_ns_) * 1e-9;
   if (scored_ > 0) summary_.accuracy = static_cast<double>(right_) / scored_;
-  log_.finish(status, reason);
+  keep([&] { log_.finish(status, reason); });
 }
 
 }  // namespace turnpoint::session

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -33,6 +34,7 @@ class Sitting {
     store::TrialRow row;
     std::optional<Slider> slider;  ///< in an adjustment
     bool decided = false;
+    bool by_button = false;  ///< answered so: the touch panel's latency is not in it
   };
   /// A stimulus that is on the surface, or was last.
   struct OnSurface {
@@ -58,7 +60,7 @@ class Sitting {
   Flow after_trial(const store::TrialRow& row);
   void check_plans(const TrialSpec& spec);
   void drive_trial(Running& trial);
-  void handle_in_trial(const Input& input, Running& trial);
+  void handle_in_trial(Input raw, Running& trial);
   void perform(const std::vector<trial::Action>& actions, Running& trial);
   void present(int interval, std::int64_t earliest_ns, Running& trial);
   void ask_observer(const Running& trial, std::int64_t onset_ns);
@@ -76,6 +78,8 @@ class Sitting {
   Input received(Input input);
   void note(const Input& input);
   void log(const Input& input);
+  void keep(const std::function<void()>& write);
+  bool space_again(const std::string& detail);
   bool armed() const;
   Flow until_armed(const Fault& why);
   Flow recover();

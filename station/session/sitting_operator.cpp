@@ -4,6 +4,7 @@
 
 #include "station/session/rows.hpp"
 #include "station/session/sitting.hpp"
+#include "station/store/error.hpp"
 
 namespace turnpoint::session {
 
@@ -34,7 +35,7 @@ Input Sitting::received(Input input) {
   }
   if (input.kind == InputKind::disarm) input.text = outcome(stage_->disarm(), "disarmed");
   log(input);
-  if (input.kind == InputKind::note && !input.text.empty()) log_.annotate(input.text);
+  if (input.kind == InputKind::note && !input.text.empty()) keep([&] { log_.annotate(input.text); });
   if (input.kind != InputKind::button) return input;
   const auto& names = stage_->buttons();
   const auto index = static_cast<std::size_t>(input.value);
@@ -69,6 +70,35 @@ void Sitting::note(const Input& input) {
     default:
       break;
   }
+}
+
+/// Makes rows durable before the session goes on. On a full disk the screen says so, nothing sounds, and the
+/// same rows are written once there is space; what the operator does meanwhile is kept in memory.
+void Sitting::keep(const std::function<void()>& write) {
+  for (;;) {
+    std::string detail;
+    try {
+      return write();
+    } catch (const store::StoreError& error) {
+      // Nobody stands before a simulated session who could make space.
+      if (error.fault() != store::Fault::disk_full || !setup_.observer.empty()) throw;
+      detail = error.what();
+    }
+    if (!space_again(detail)) throw store::StoreError(store::Fault::disk_full, detail);
+  }
+}
+
+/// Until somebody says that there is space again (true), or gives up (false).
+bool Sitting::space_again(const std::string& detail) {
+  stage_->close_amplifier();
+  show(pages_.fault(FaultKind::disk_full, detail, director_));
+  while (auto input = stage_->wait_until(kForever)) {
+    log(*input);
+    note(*input);
+    if (input->kind == InputKind::stop || input->kind == InputKind::failure) return false;
+    if (input->kind == InputKind::next) return true;
+  }
+  return false;
 }
 
 bool Sitting::armed() const {

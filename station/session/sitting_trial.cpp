@@ -40,13 +40,13 @@ Sitting::Flow Sitting::run_trial(const TrialSpec& spec) {
                 {}};
   if (spec.slider) trial.slider.emplace(*spec.slider, spec.level.value_or(spec.slider->low));
   if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block());
-  log_.presented(trial_index_, stage_->now_ns());
+  keep([&] { log_.presented(trial_index_, stage_->now_ns()); });
   drive_trial(trial);
   stage_->close_amplifier();
   if (!trial.decided) decide(trial);
   leave_surface();
   finish_row(trial);
-  log_.append(trial.row);
+  keep([&] { log_.append(trial.row); });
   count(spec, trial.row);
   if (monitor_ != nullptr) monitor_->trial_ended(spec, trial.row);
   ++trial_index_;
@@ -129,7 +129,7 @@ void Sitting::drive_trial(Running& trial) {
     const auto until = std::min(wake.value_or(kForever), follow_ns);
     auto input = stage_->wait_until(until);
     if (input)
-      handle_in_trial(received(std::move(*input)), trial);
+      handle_in_trial(std::move(*input), trial);
     else if (follow_ns <= until && follow_ns != kForever)
       glide(trial);
     else
@@ -137,10 +137,15 @@ void Sitting::drive_trial(Running& trial) {
   }
 }
 
-void Sitting::handle_in_trial(const Input& input, Running& trial) {
+void Sitting::handle_in_trial(Input raw, Running& trial) {
+  const bool by_button = raw.kind == InputKind::button;
+  const auto input = received(std::move(raw));
   note(input);
   const bool answers = input.kind == InputKind::answer || (trial.slider && input.kind == InputKind::next);
-  if (answers && !trial.machine.result().response) trial.row.response_time_quality = name(input.quality);
+  if (answers && !trial.machine.result().response) {
+    trial.row.response_time_quality = name(input.quality);
+    trial.by_button = by_button;
+  }
   if (const auto event = event_in_trial(input, trial)) perform(trial.machine.handle(*event), trial);
 }
 
@@ -229,7 +234,7 @@ void Sitting::finish_row(Running& trial) {
   auto& row = trial.row;
   fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_);
   if (trial.slider && row.response) row.response = text::exact(trial.slider->felt());
-  row.response_offset_s = setup_.response_offset_s;
+  row.response_offset_s = trial.by_button ? 0 : setup_.response_offset_s;
   if (const auto fit = stage_->clock_fit()) {
     row.clock_slope_ns_per_frame = fit->slope_ns_per_frame;
     row.clock_residual_ns = fit->residual_ns;

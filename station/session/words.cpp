@@ -30,6 +30,8 @@ constexpr std::array kWords{
     Entry{Word::paused, "Paused", "Angehalten", "一時停止"},
     Entry{Word::thanks, "Thank you. You have finished.", "Vielen Dank. Sie sind fertig.",
           "ありがとうございました。終了です。"},
+    Entry{Word::thanks_early, "Thank you. We stop here.", "Vielen Dank. Wir hören hier auf.",
+          "ありがとうございました。ここまでにします。"},
 };
 
 }  // namespace

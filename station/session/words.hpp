@@ -16,7 +16,8 @@ enum class Word {
   rest_text,
   fault,
   paused,
-  thanks
+  thanks,
+  thanks_early
 };
 
 /// In the language asked for (two-letter code), or in English where the station does not speak it.
