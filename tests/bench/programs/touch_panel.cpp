@@ -1,7 +1,7 @@
 // touch_panel WIDTH HEIGHT: a multitouch panel by uinput that does what standard input says, a line each:
 //   tap X Y | down SLOT X Y | move SLOT X Y | up SLOT | sleep MS | gone
-// Prints "device /dev/input/eventN" once, and "tapped NS" (CLOCK_MONOTONIC just before the touch is injected)
-// for taps.
+// Prints "device /dev/input/eventN" once, and "tapped BEFORE AFTER" (ns, CLOCK_MONOTONIC) for taps: the touch
+// was injected between these two.
 #include <fcntl.h>
 #include <linux/uinput.h>
 #include <sys/ioctl.h>
@@ -78,8 +78,10 @@ void obey(std::istringstream words) {
   int a = 0, b = 0, c = 0;
   words >> what >> a >> b >> c;
   if (what == "tap") {
-    std::cout << "tapped " << now_ns() << std::endl;
+    const auto before = now_ns();
     down(0, a, b);
+    const auto after = now_ns();
+    std::cout << "tapped " << before << ' ' << after << std::endl;
     sleep_ms(60);
     up(0);
   } else if (what == "down") {

@@ -8,9 +8,9 @@ for x in 100 300 500 700; do touch_do tap $x 240; touch_do sleep 50; done
 eventually 10 equals "grep -c" "^tapped panel.out" 4
 eventually 10 equals "grep -c" "^[0-9] times.txt" 4
 # Stamps have microseconds, and are taken when the report ends.
-paste -d ' ' <(awk '$1 == "tapped" { print $2 }' panel.out) <(grep '^[0-9]' times.txt) | tee pairs.txt
-awk '$2 < $1 - 1000 || $2 > $1 + 5e6 { bad++ } END { exit bad || NR != 4 }' pairs.txt ||
-  fail "a stamp is not within 5 ms of its touch (injected, stamp in ns)"
+paste -d ' ' <(awk '$1 == "tapped" { print $2, $3 }' panel.out) <(grep '^[0-9]' times.txt) | tee pairs.txt
+awk '$3 < $1 - 1000 || $3 > $2 + 1000 { bad++ } END { exit bad || NR != 4 }' pairs.txt ||
+  fail "a stamp is not that of its touch (injected between these two, stamp; ns)"
 
 touch_do down 0 100 100; touch_do down 1 700 400; touch_do up 0; touch_do up 1
 eventually 10 equals "grep -c" "^[0-9] times.txt" 5   # two fingers that overlap begin one touch
