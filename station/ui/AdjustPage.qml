@@ -12,6 +12,8 @@ Item {
     property bool leftHanded: false
     readonly property PageModel page: bridge.page
     readonly property real span: page.sliderMax - page.sliderMin
+    /// The time to feel is over: what is set now would be felt by nobody.
+    readonly property bool silent: page.answersOpen
     readonly property real step: page.sliderStep > 0 ? page.sliderStep : span / 100
     property real value: page.slider
 
@@ -31,7 +33,7 @@ Item {
     SurfaceDrawing {
         id: surface
         anchors { left: parent.left; right: parent.right; top: parent.top }
-        height: 0.38 * parent.height
+        height: 0.3 * parent.height
         lengthMm: root.page.lengthMm
         wideHalfWidthMm: root.page.wideHalfWidthMm
         narrowHalfWidthMm: root.page.narrowHalfWidthMm
@@ -44,7 +46,7 @@ Item {
     }
     Text {
         anchors { left: parent.left; right: parent.right; top: surface.bottom; bottom: slider.top; bottomMargin: root.theme.unit }
-        text: root.page.text
+        text: root.silent ? root.texts.pressDone : root.page.text
         color: root.theme.ink
         font { pixelSize: 1.1 * root.theme.textBody; weight: Font.Medium }
         fontSizeMode: Text.Fit
@@ -56,9 +58,10 @@ Item {
     Item {
         id: slider
         objectName: "slider"
-        readonly property real knob: Math.max(root.theme.targetMin * 0.75, 9 * root.theme.unit)
-        anchors { left: parent.left; right: parent.right; bottom: controls.top; bottomMargin: 2 * root.theme.unit }
-        height: knob
+        readonly property real knob: Math.max(root.theme.targetMin, 9 * root.theme.unit)
+        anchors { left: parent.left; right: parent.right; bottom: controls.top; bottomMargin: root.theme.unit }
+        opacity: root.silent ? 0.35 : 1
+        height: Math.max(0.6 * root.theme.targetMin, 6 * root.theme.unit)
         Rectangle {
             anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter }
             height: 1.4 * root.theme.unit
@@ -67,15 +70,15 @@ Item {
         }
         Rectangle {
             width: slider.knob
-            height: slider.knob
-            radius: width / 2
+            height: parent.height
+            radius: height / 2
             x: root.span > 0 ? (root.value - root.page.sliderMin) / root.span * (slider.width - width) : 0
             color: root.theme.action
             border { color: root.theme.raised; width: root.theme.stroke }
         }
         MouseArea {
             anchors.fill: parent
-            enabled: root.armed
+            enabled: root.armed && !root.silent
             function follow(x: real) {
                 root.moveTo(root.page.sliderMin + (x - slider.knob / 2) / (slider.width - slider.knob) * root.span)
             }
@@ -92,6 +95,8 @@ Item {
             spacing: root.theme.targetGap
             ActionButton {
                 objectName: "stepDown"
+                height: root.theme.targetMin
+                enabled: !root.silent
                 theme: root.theme
                 primary: false
                 armed: root.armed
@@ -100,6 +105,8 @@ Item {
             }
             ActionButton {
                 objectName: "stepUp"
+                height: root.theme.targetMin
+                enabled: !root.silent
                 theme: root.theme
                 primary: false
                 armed: root.armed
@@ -109,6 +116,7 @@ Item {
         }
         ActionButton {
             objectName: "proceed"
+            height: root.theme.targetMin
             width: Math.max(implicitWidth, 22 * root.theme.unit)
             theme: root.theme
             armed: root.armed

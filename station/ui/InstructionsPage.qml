@@ -36,10 +36,9 @@ Item {
         }
         text: root.page.text
         color: root.theme.ink
-        font.pixelSize: 1.1 * root.theme.textBody
+        font.pixelSize: root.theme.textBody
         fontSizeMode: Text.Fit
         minimumPixelSize: root.theme.textSmall
-        lineHeight: 1.25
         wrapMode: Text.Wrap
         horizontalAlignment: Text.AlignHCenter
         verticalAlignment: Text.AlignVCenter
@@ -48,7 +47,7 @@ Item {
         id: surface
         visible: root.page.lengthMm > 0
         anchors { left: parent.left; right: parent.right; bottom: go.top; bottomMargin: 2 * root.theme.unit }
-        height: 0.4 * parent.height
+        height: 0.32 * parent.height
         lengthMm: root.page.lengthMm
         wideHalfWidthMm: root.page.wideHalfWidthMm
         narrowHalfWidthMm: root.page.narrowHalfWidthMm

@@ -17,6 +17,14 @@ Window {
     readonly property bool asking: start.stage === StartController.Language || start.stage === StartController.Consent
                                    || start.stage === StartController.Code
 
+    /// What the operator's code is asked for: arming the amplifier, or the operator's view.
+    property bool toArm: false
+    function ask(arming: bool) {
+        toArm = arming
+        if (operatorCode !== "") gate.visible = true
+        else if (arming) participant.armable = true
+    }
+
     width: 1280
     height: 800
     visible: true
@@ -87,7 +95,8 @@ Window {
         hasReport: root.report.ready
         onClosed: root.start.close()
         onReportWanted: reportPage.wanted = true
-        onOperatorWanted: if (root.operatorCode !== "") gate.visible = true
+        onOperatorWanted: root.ask(false)
+        onArmingWanted: root.ask(true)
     }
     OperatorGate {
         id: gate
@@ -99,6 +108,10 @@ Window {
         onAbandoned: visible = false
         onPassed: {
             visible = false
+            if (root.toArm) {
+                participant.armable = true
+                return
+            }
             // The operator's view would cover a trial: a pause ends it first, and it comes again.
             if (participant.inTrial) root.bridge.pause()
             liveView.wanted = true

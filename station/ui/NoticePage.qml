@@ -1,35 +1,58 @@
 import QtQuick
 import Turnpoint
 
-// A fault or a pause: what happened, what is safe, what to do next. Ending asks once more.
+// A fault or a pause: what happened, what is safe, what to do next. Where the amplifier has to be armed first, only
+// an operator can go on. Ending asks once more.
 Item {
     id: root
     required property Theme theme
     required property Texts texts
     required property SessionBridge bridge
     property bool armed: true
+    property bool armable: false
     property bool asking: false
     readonly property PageModel page: bridge.page
     readonly property bool failed: page.kind === PageModel.Failed
     readonly property bool fault: page.kind === PageModel.Fault || failed
     readonly property bool explained: fault && !failed && page.safe !== ""
     signal closed()
+    signal armingWanted()
 
     onVisibleChanged: asking = false
 
+    Row {
+        id: banner
+        visible: root.explained
+        anchors { horizontalCenter: parent.horizontalCenter; top: parent.top }
+        height: visible ? implicitHeight : 0
+        spacing: 1.4 * root.theme.unit
+        Glyph {
+            height: 4.6 * root.theme.unit
+            anchors.verticalCenter: parent.verticalCenter
+            name: "alert"
+            color: root.theme.wrong
+        }
+        Text {
+            objectName: "headline"
+            anchors.verticalCenter: parent.verticalCenter
+            text: root.asking ? root.texts.reallyEnd : root.page.title !== "" ? root.page.title : root.texts.faultTitle
+            color: root.theme.ink
+            font { pixelSize: 0.8 * root.theme.textTitle; weight: Font.Bold }
+        }
+    }
     Column {
         id: head
-        anchors { left: parent.left; right: parent.right; top: parent.top; topMargin: root.explained ? 0 : root.theme.unit }
-        spacing: (root.explained ? 0.6 : 1.6) * root.theme.unit
+        visible: !root.explained
+        anchors { left: parent.left; right: parent.right; top: parent.top; topMargin: root.theme.unit }
+        spacing: 1.6 * root.theme.unit
         Glyph {
             anchors.horizontalCenter: parent.horizontalCenter
-            height: (root.explained ? 5.5 : 10) * root.theme.unit
+            height: 10 * root.theme.unit
             name: root.fault ? "alert" : "bars"
             color: root.fault ? root.theme.wrong : root.theme.ink
             weight: 0.08
         }
         Text {
-            objectName: "headline"
             width: parent.width
             text: root.asking ? root.texts.reallyEnd : root.page.title !== "" ? root.page.title
                 : root.failed ? root.texts.failedTitle : root.fault ? root.texts.faultTitle : root.texts.paused
@@ -39,7 +62,6 @@ Item {
             wrapMode: Text.Wrap
         }
         Text {
-            visible: !root.explained
             width: parent.width
             text: root.page.text !== "" ? root.page.text : root.texts.pausedText
             color: root.theme.quiet
@@ -47,6 +69,8 @@ Item {
             lineHeight: 1.2
             horizontalAlignment: Text.AlignHCenter
             wrapMode: Text.Wrap
+            maximumLineCount: 6
+            elide: Text.ElideRight
         }
         Text {
             width: parent.width
@@ -59,42 +83,42 @@ Item {
         }
     }
 
+    // Sign, heading and text side by side, so that three answers are found at a glance.
     component Line: Row {
         id: line
         property string glyph
         property string heading
         property string says
         property color tint: root.theme.ink
+        readonly property real textSize: Math.max(root.theme.textSmall, 0.84 * root.theme.textBody)
         width: parent.width
-        spacing: 1.6 * root.theme.unit
+        spacing: 1.2 * root.theme.unit
         Glyph {
             id: sign
-            height: 3.4 * root.theme.unit
+            height: 1.3 * line.textSize
             name: line.glyph
             color: line.tint
         }
-        Column {
-            width: line.width - sign.width - line.spacing
-            Text {
-                width: parent.width
-                text: line.heading
-                color: line.tint
-                font { pixelSize: root.theme.textSmall; weight: Font.Bold }
-            }
-            Text {
-                width: parent.width
-                text: line.says
-                color: root.theme.ink
-                font { pixelSize: root.theme.textBody; weight: Font.Medium }
-                fontSizeMode: Text.HorizontalFit
-                wrapMode: Text.Wrap
-            }
+        Text {
+            id: label
+            width: 0.24 * line.width
+            text: line.heading
+            color: line.tint
+            font { pixelSize: Math.max(root.theme.textSmall, 0.9 * line.textSize); weight: Font.Bold }
+            wrapMode: Text.Wrap
+        }
+        Text {
+            width: line.width - sign.width - label.width - 2 * line.spacing
+            text: line.says
+            color: root.theme.ink
+            font { pixelSize: line.textSize; weight: Font.Medium }
+            wrapMode: Text.Wrap
         }
     }
     Rectangle {
         visible: root.explained
         anchors {
-            left: parent.left; right: parent.right; top: head.bottom; topMargin: root.theme.unit
+            left: parent.left; right: parent.right; top: banner.bottom; topMargin: root.theme.unit
             bottom: buttons.top; bottomMargin: 1.2 * root.theme.unit
         }
         radius: root.theme.radius
@@ -102,8 +126,9 @@ Item {
         border { color: root.theme.line; width: Math.max(1, 0.5 * root.theme.stroke) }
         Column {
             id: lines
-            anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 2 * root.theme.unit }
-            spacing: Math.min(1.6 * root.theme.unit, Math.max(0.2 * root.theme.unit, (parent.height - 22 * root.theme.unit) / 4))
+            objectName: "explanation"
+            anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 1.8 * root.theme.unit }
+            spacing: 0.8 * root.theme.unit
             Line {
                 glyph: "alert"
                 heading: root.texts.whatHappened
@@ -127,7 +152,9 @@ Item {
                 width: parent.width
                 text: root.page.detail
                 color: root.theme.quiet
-                font.pixelSize: root.theme.textSmall
+                font.pixelSize: 0.9 * root.theme.textSmall
+                wrapMode: Text.Wrap
+                maximumLineCount: 2
                 elide: Text.ElideRight
             }
         }
@@ -149,7 +176,24 @@ Item {
             }
         }
         ActionButton {
+            objectName: "operatorArms"
+            visible: root.page.awaitsArming && !root.asking && !root.armable
+            theme: root.theme
+            armed: root.armed
+            text: root.texts.forOperator
+            onActivated: root.armingWanted()
+        }
+        ActionButton {
+            objectName: "holdToArm"
+            visible: root.page.awaitsArming && !root.asking && root.armable
+            theme: root.theme
+            holdMs: 900
+            text: root.texts.holdToArm
+            onActivated: root.bridge.arm()
+        }
+        ActionButton {
             objectName: "proceed"
+            visible: !root.page.awaitsArming || root.asking
             theme: root.theme
             width: Math.max(implicitWidth, 22 * root.theme.unit)
             primary: !root.asking

@@ -14,6 +14,9 @@ Rectangle {
     signal reportWanted()
     /// Somebody held the progress for long: an operator.
     signal operatorWanted()
+    /// An operator wants to arm the amplifier; armable says that it is one.
+    signal armingWanted()
+    property bool armable: false
 
     readonly property PageModel page: bridge.page
     readonly property int kind: page.kind
@@ -41,7 +44,10 @@ Rectangle {
         interval: 350
         running: true
     }
-    onKindChanged: arming.restart()
+    onKindChanged: {
+        arming.restart()
+        armable = false
+    }
 
     RunModeFrame {
         id: frame
@@ -130,7 +136,9 @@ Rectangle {
             texts: texts
             bridge: root.bridge
             armed: !arming.running
+            armable: root.armable
             onClosed: root.closed()
+            onArmingWanted: root.armingWanted()
         }
         EndPage {
             anchors.fill: parent

@@ -11,6 +11,7 @@ QtObject {
 
     readonly property string proceed: pick("Continue", "Weiter", "次へ")
     readonly property string done: pick("Done", "Fertig", "決定")
+    readonly property string pressDone: pick("Press Done.", "Bitte auf Fertig tippen.", "「決定」を押してください。")
     readonly property string pause: pick("Pause", "Pause", "休止")
     readonly property string getReady: pick("Get ready", "Gleich geht es los", "準備してください")
     readonly property string slideHere: pick("Slide your finger to and fro here", "Hier mit dem Finger hin und her gleiten",
@@ -21,8 +22,8 @@ QtObject {
     readonly property string wrong: pick("Wrong", "Falsch", "不正解")
     readonly property string noted: pick("Noted", "Notiert", "記録しました")
     readonly property string failedTitle: pick("The session had to stop", "Die Sitzung musste enden", "セッションを中断しました")
-    readonly property string failedText: pick("Every answer up to here is saved.", "Alle Antworten bis hierher sind gespeichert.",
-                                              "ここまでの回答はすべて保存されています。")
+    readonly property string failedText: pick("Whatever has been stored is safe.", "Was gespeichert wurde, ist sicher.",
+                                              "保存された内容は安全です。")
     readonly property string speed: pick("Fast", "Schnell", "速さ優先")
     readonly property string accuracy: pick("Accurate", "Genau", "正確さ優先")
     readonly property string breakTitle: pick("Time for a break", "Zeit für eine Pause", "休憩しましょう")
@@ -42,10 +43,10 @@ QtObject {
     readonly property string whatHappened: pick("What happened", "Was geschehen ist", "起きたこと")
     readonly property string whatIsSafe: pick("What is safe", "Was sicher ist", "安全なこと")
     readonly property string whatToDo: pick("What to do", "Was zu tun ist", "すること")
+    readonly property string holdToArm: pick("Hold to arm the amplifier", "Halten: Verstärker scharf schalten", "長押しでアンプを有効にする")
     readonly property string thanks: pick("Thank you!", "Vielen Dank!", "ありがとうございました")
-    readonly property string thanksText: pick("You have finished. All of your answers are saved.",
-                                              "Sie sind fertig. Alle Antworten sind gespeichert.",
-                                              "これで終わりです。回答はすべて保存されました。")
+    readonly property string thanksText: pick("All of your answers are saved.", "Alle Ihre Antworten sind gespeichert.",
+                                              "回答はすべて保存されました。")
     readonly property string forOperator: pick("For the experimenter", "Für die Versuchsleitung", "実験者用")
     readonly property string close: pick("Close", "Schließen", "閉じる")
     readonly property string consentTitle: pick("Before we begin", "Bevor wir beginnen", "始める前に")
@@ -55,8 +56,8 @@ QtObject {
     readonly property string consentYes: pick("Yes, I have", "Ja", "はい")
     readonly property string consentNo: pick("No", "Nein", "いいえ")
     readonly property string results: pick("Results", "Ergebnisse", "結果")
-    readonly property string rightHand: pick("Right hand", "Rechte Hand", "右手")
-    readonly property string leftHand: pick("Left hand", "Linke Hand", "左手")
+    readonly property string rightHand: pick("Tapping with\nright hand", "Es tippt die\nrechte Hand", "操作する手:\n右手")
+    readonly property string leftHand: pick("Tapping with\nleft hand", "Es tippt die\nlinke Hand", "操作する手:\n左手")
     readonly property string codeTitle: pick("Your participant code", "Ihr Teilnahme-Code", "参加者コード")
     readonly property string codeHelp: pick("Type the code that you were given. No names.", "Bitte den Code eingeben, den Sie erhalten haben. Keine Namen.",
                                             "渡されたコードを入力してください。名前は入力しないでください。")

@@ -9,13 +9,17 @@ namespace turnpoint::ui {
 FrameWatch::FrameWatch(Clock clock, QObject* parent) : QObject(parent), clock_(std::move(clock)) {}
 
 void FrameWatch::follow(QQuickWindow* window, double refresh_Hz) {
+  window_ = window;
   refresh_Hz_ = refresh_Hz > 0 ? refresh_Hz : 60;
   // On the rendering thread, whichever that is: the time is what counts.
   connect(
       window, &QQuickWindow::frameSwapped, this, [this] { swapped(); }, Qt::DirectConnection);
 }
 
-void FrameWatch::asked() { asked_ns_ = clock_(); }
+void FrameWatch::asked() {
+  asked_ns_ = clock_();
+  if (window_ != nullptr) window_->update();
+}
 
 void FrameWatch::swapped() {
   const auto asked = asked_ns_.exchange(0);

@@ -7,8 +7,9 @@
 
 namespace turnpoint::ui {
 
-/// Counts the frames by which a window was late: from the page asked for until it is on the screen, a
-/// participant should never wait longer than one refresh. Frames beyond that are counted.
+/// Counts the frames by which a window was late: from the page asked for, or the finger that pressed an
+/// answer, until that is on the screen, a participant should never wait longer than one refresh. Frames
+/// beyond that are counted.
 class FrameWatch : public QObject {
   Q_OBJECT
 
@@ -19,7 +20,8 @@ class FrameWatch : public QObject {
   /// GUI thread. Follows this window; `refresh_Hz` at or below 0 counts as 60.
   void follow(QQuickWindow* window, double refresh_Hz);
 
-  /// GUI thread: a page has been asked for; the next frame shows it.
+  /// GUI thread: something new is to be shown. The next frame shows it, and one is drawn even where it looks
+  /// the same, so that a later frame is never taken for this one.
   void asked();
 
   /// Frames lost since the last call.
@@ -32,6 +34,7 @@ class FrameWatch : public QObject {
   void swapped();
 
   Clock clock_;
+  QQuickWindow* window_ = nullptr;
   double refresh_Hz_ = 60;
   std::atomic<std::int64_t> asked_ns_{0};  ///< 0: nothing was
   std::atomic<int> lost_{0};

@@ -42,6 +42,7 @@ class PageModel : public QObject {
   Q_PROPERTY(QString safe READ safe NOTIFY changed)
   Q_PROPERTY(QString toDo READ to_do NOTIFY changed)
   Q_PROPERTY(QString detail READ detail NOTIFY changed)
+  Q_PROPERTY(bool awaitsArming READ awaits_arming NOTIFY changed)
   Q_PROPERTY(QStringList summaryLabels READ summary_labels NOTIFY changed)
   Q_PROPERTY(QStringList summaryValues READ summary_values NOTIFY changed)
 
@@ -99,6 +100,8 @@ class PageModel : public QObject {
   QString safe() const { return QString::fromStdString(page_.safe); }
   QString to_do() const { return QString::fromStdString(page_.to_do); }
   QString detail() const { return QString::fromStdString(page_.detail); }
+  /// Only an operator who arms the amplifier leads on from here.
+  bool awaits_arming() const { return page_.amplifier == "disarmed" || page_.amplifier == "faulted"; }
   QStringList summary_labels() const;
   QStringList summary_values() const;
 

@@ -53,6 +53,9 @@ class SessionBridge : public QObject, public session::Display {
   /// When the touch with this id began, as stamped by watch(); now for one that was not seen.
   std::int64_t began_ns(int touch_id) const;
 
+  /// A touch has just pressed an answer's button, which the next frame must show.
+  void pressed() { emit acknowledged(); }
+
   /// An answer that the touch field has judged: the touch that began at `time_ns` chose the answer `index`.
   void answer(int index, std::int64_t time_ns);
 
@@ -70,6 +73,7 @@ class SessionBridge : public QObject, public session::Display {
  signals:
   /// A page has been taken over (also when it equals the one before).
   void shown();
+  void acknowledged();
 
  protected:
   bool eventFilter(QObject* watched, QEvent* event) override;

@@ -31,6 +31,7 @@ SessionRunner::SessionRunner(QObject* parent)
     else
       frames_.asked();
   });
+  connect(&bridge_, &SessionBridge::acknowledged, &frames_, &FrameWatch::asked);
 }
 
 SessionRunner::~SessionRunner() {

@@ -105,11 +105,11 @@ void SurfaceDrawing::paint_strip(QPainter& painter, const Layout& at) const {
 
 void SurfaceDrawing::paint_scale(QPainter& painter, const Layout& at) const {
   QFont font = painter.font();
-  font.setPixelSize(std::max(10, static_cast<int>(1.6 * at.unit)));
+  font.setPixelSize(std::max(11, static_cast<int>(1.8 * at.unit)));
   painter.setFont(font);
   const QFontMetricsF metrics(font);
   const double y0 = at.axis_y + at.wide_half + 0.9 * at.unit;
-  const QColor colour = mixed(ink_, paper_, 0.25);
+  const QColor colour = mixed(ink_, paper_, 0.15);
   for (int i = 0; i * kTick_mm <= length_mm_ + 1e-9; ++i) {
     const double mm = i * kTick_mm;
     const bool labelled = std::fmod(mm, kLabel_mm) < 1e-9;
@@ -158,10 +158,9 @@ void SurfaceDrawing::paint_mark(QPainter& painter, const Layout& at) const {
 
 void SurfaceDrawing::paint_finger(QPainter& painter, const Layout& at) const {
   const double u = at.unit;
-  const double centre_mm = has_mark_ ? mark_mm_ : 0.5 * length_mm_;
-  // Beside the mark, so that neither hides the other; always towards the middle of the strip.
-  const double shift = (has_mark_ ? 9.0 : 0.0) * u * (at.x(centre_mm) > width() / 2 ? -1 : 1);
-  const double x = at.x(centre_mm) + shift, tip_y = at.axis_y - 1.4 * u, width_px = 5.0 * u;
+  // Under the mark and the same to both sides of it: where the finger lies must not favour an answer.
+  const double x = at.x(has_mark_ ? mark_mm_ : 0.5 * length_mm_);
+  const double tip_y = at.axis_y - (has_mark_ ? 0.2 : 1.4) * u, width_px = 5.0 * u;
 
   // The finger fades out below: it comes from the person, not from the drawing.
   const double bottom = height();

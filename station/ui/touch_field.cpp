@@ -57,6 +57,7 @@ void TouchField::update_pressed() {
   const int pressed = judge_.pressed();
   if (pressed == pressed_) return;
   pressed_ = pressed;
+  if (pressed_ >= 0) bridge_->pressed();
   emit pressedChanged();
 }
 

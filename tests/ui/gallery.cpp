@@ -104,6 +104,7 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
       {FaultKind::stimulus_missed, "384 frames lost"},
       {FaultKind::converter_rate, ""},
       {FaultKind::other, "the panel does not answer"},
+      {FaultKind::disarmed, ""},
   };
   for (const auto& [kind, detail] : faults) {
     Page page = base(words, PageKind::fault);
@@ -114,6 +115,9 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
     page.safe = text.safe;
     page.to_do = text.to_do;
     page.detail = detail;
+    if (kind == FaultKind::disarmed) page.amplifier = "disarmed";
+    if (kind == FaultKind::amplifier || kind == FaultKind::stop_pressed || kind == FaultKind::converter_gone)
+      page.amplifier = "faulted";
     all.push_back({std::string("fault-") + session::name(kind), page});
   }
 }
@@ -178,6 +182,8 @@ void add_starts(std::vector<Exhibit>& all, const Words& words) {
   adjust.slider_step = 1;
   adjust.slider = 31;
   all.push_back({"adjust", adjust});
+  adjust.answers_open = true;
+  all.push_back({"adjust-silent", adjust});
 }
 
 }  // namespace
@@ -188,6 +194,11 @@ std::vector<Exhibit> gallery(const std::string& language) {
   add_starts(all, words);
   add_trials(all, words);
   add_notices(all, words);
+  for (auto exhibit : std::vector<Exhibit>(all))
+    if (exhibit.name == "fault-amplifier" || exhibit.name == "adjust") {
+      exhibit.page.run_mode = "pilot";
+      all.push_back({exhibit.name + "-pilot", exhibit.page});
+    }
   Page pilot = boundary(words, PageKind::stimulus);
   pilot.run_mode = "pilot";
   all.push_back({"explore-pilot", pilot});

@@ -6,6 +6,7 @@
 
 #include "station/ui/screen.hpp"
 #include "tests/ui/operator_desk.hpp"
+#include "tests/ui/page_inspector.hpp"
 #include "tests/ui/real_session.hpp"
 #include "tests/ui/scripted_session.hpp"
 
@@ -19,6 +20,7 @@ class Setup : public QObject {
   void applicationAvailable() {
     script_ = new turnpoint::ui::ScriptedSession(QCoreApplication::instance());
     desk_ = new turnpoint::ui::OperatorDesk(*script_->bridge(), QCoreApplication::instance());
+    inspector_ = new turnpoint::ui::PageInspector(QCoreApplication::instance());
     sitting_ = new turnpoint::ui::RealSession(QCoreApplication::instance());
   }
 
@@ -28,12 +30,14 @@ class Setup : public QObject {
     engine->rootContext()->setContextProperty("script", script_);
     engine->rootContext()->setContextProperty("sitting", sitting_);
     engine->rootContext()->setContextProperty("desk", desk_);
+    engine->rootContext()->setContextProperty("inspector", inspector_);
   }
 
  private:
   turnpoint::ui::ScriptedSession* script_ = nullptr;
   turnpoint::ui::RealSession* sitting_ = nullptr;
   turnpoint::ui::OperatorDesk* desk_ = nullptr;
+  turnpoint::ui::PageInspector* inspector_ = nullptr;
 };
 
 QUICK_TEST_MAIN_WITH_SETUP(pages, Setup)

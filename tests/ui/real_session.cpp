@@ -4,36 +4,69 @@
 #include <chrono>
 
 #include "station/app/prepare.hpp"
+#include "station/panel/guarded_amplifier.hpp"
 #include "station/store/export.hpp"
 
 namespace turnpoint::ui {
+
+namespace {
+
+constexpr int kEnable = 0, kHeartbeat = 1, kFaultLine = 2, kStop = 3;
+
+/// Lines that the test moves while the amplifier's guard watches them.
+class SharedLines : public panel::Lines {
+ public:
+  explicit SharedLines(std::shared_ptr<panel::SimulatedLines> lines) : lines_(std::move(lines)) {}
+  std::optional<panel::Edge> wait(std::int64_t timeout_ns) override { return lines_->wait(timeout_ns); }
+  bool level(int index) override { return lines_->level(index); }
+  void drive(int index, int level) override { lines_->drive(index, level); }
+
+ private:
+  std::shared_ptr<panel::SimulatedLines> lines_;
+};
+
+}  // namespace
 
 RealSession::RealSession(QObject* parent)
     : QObject(parent),
       bridge_([] { return std::chrono::steady_clock::now().time_since_epoch().count(); },
               [this](session::Input input) { inputs_.push(std::move(input)); }) {}
 
-RealSession::~RealSession() {
+RealSession::~RealSession() { end(); }
+
+void RealSession::end() {
   session::Input input;
   input.time_ns = bridge_.now_ns();
   input.kind = session::InputKind::stop;
   inputs_.push(std::move(input));
+  if (thread_.joinable()) thread_.join();
 }
 
 void RealSession::start(const QString& protocol) {
+  if (thread_.joinable()) end();
+  inputs_.drain();
+  over_ = false;
+  failure_.clear();
+  ++sessions_;
+  protocol_ = protocol.section('.', 0, 0);
+  lines_ = std::make_shared<panel::SimulatedLines>(4);
   app::RunRequest request;
   request.protocol = TURNPOINT_SOURCE_DIR "/tests/ui/" + protocol.toStdString();
   request.rig = TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml";
   request.participant = "T1";
   request.database = database().toStdString();
-  thread_ = std::jthread([this, request] {
+  thread_ = std::jthread([this, request, number = sessions_] {
     QString failure;
     try {
-      session::run(app::prepare(request), &bridge_, inputs_);
+      session::Devices devices;
+      devices.amplifier = panel::guard_amplifier(std::make_unique<SharedLines>(lines_),
+                                                 {kEnable, kHeartbeat, kFaultLine, kStop, false, false});
+      session::run(app::prepare(request), &bridge_, inputs_, std::move(devices));
     } catch (const std::exception& error) {
       failure = error.what();
     }
-    QMetaObject::invokeMethod(this, [this, failure] {
+    QMetaObject::invokeMethod(this, [this, failure, number] {
+      if (number != sessions_) return;  // the news of a session that a later one has replaced
       over_ = true;
       failure_ = failure;
       emit ended();
@@ -41,15 +74,50 @@ void RealSession::start(const QString& protocol) {
   });
 }
 
+void RealSession::setStop(bool pressed) { lines_->set(kStop, pressed, bridge_.now_ns()); }
+void RealSession::setAmplifierFault(bool active) { lines_->set(kFaultLine, active, bridge_.now_ns()); }
+
+void RealSession::setDiskFull(bool full) {
+  if (full)
+    disk_.bytes_left(0);
+  else
+    disk_.space_again();
+}
+
+void RealSession::find(const QString& fault) {
+  using session::FaultKind;
+  session::Input input;
+  input.time_ns = bridge_.now_ns();
+  input.kind = session::InputKind::fault;
+  input.text = "found by a test";
+  for (const auto kind : {FaultKind::converter_gone, FaultKind::touch_gone, FaultKind::stimulus_missed})
+    if (fault == session::name(kind)) input.fault = kind;
+  inputs_.push(std::move(input));
+}
+
+QList<QStringList> RealSession::table(const QString& file) const {
+  const auto folder = folder_.filePath("export%1").arg(sessions_);
+  store::export_data(database().toStdString(), folder.toStdString(), {});
+  QFile csv(folder + "/" + protocol_ + "/" + file);
+  QList<QStringList> rows;
+  if (!csv.open(QIODevice::ReadOnly)) return rows;
+  while (!csv.atEnd()) rows += QString(csv.readLine()).trimmed().split(',');
+  return rows;
+}
+
 QString RealSession::column(const QString& name) const {
-  store::export_data(database().toStdString(), folder_.filePath("export").toStdString(), {});
-  QFile file(folder_.filePath("export/short/trials.csv"));
-  if (!file.open(QIODevice::ReadOnly)) return {};
-  const auto header = QString(file.readLine()).trimmed().split(',');
-  const auto index = header.indexOf(name);
+  const auto rows = table("trials.csv");
   QStringList values;
-  while (!file.atEnd()) values += QString(file.readLine()).trimmed().split(',').value(index);
-  return values.join(" ");
+  for (int row = 1; row < rows.size(); ++row) values += rows[row].value(rows[0].indexOf(name));
+  return values.join(' ');
+}
+
+QString RealSession::events(const QString& kind) const {
+  const auto rows = table("events.csv");
+  QStringList values;
+  for (int row = 1; row < rows.size(); ++row)
+    if (rows[row].contains(kind)) values += rows[row].value(rows[0].indexOf("value"));
+  return values.join(' ');
 }
 
 }  // namespace turnpoint::ui

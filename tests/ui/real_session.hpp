@@ -2,16 +2,19 @@
 #include <QObject>
 #include <QStringList>
 #include <QTemporaryDir>
-#include <atomic>
+#include <memory>
 #include <thread>
 
+#include "station/panel/simulated_lines.hpp"
 #include "station/session/session.hpp"
 #include "station/ui/session_bridge.hpp"
+#include "tests/store/failing_disk.hpp"
 
 namespace turnpoint::ui {
 
-/// For the test of a whole session: a real one (protocol file, physics, drive to null, SQLite) on its own
-/// thread, with a database in a folder that goes with it.
+/// For tests of whole sessions: real ones (protocol file, physics, drive to null, the amplifier's guard on
+/// simulated lines, SQLite on a disk that may fill up) on their own thread, one after another, each with a
+/// database of its own in a folder that goes with this.
 class RealSession : public QObject {
   Q_OBJECT
   Q_PROPERTY(turnpoint::ui::SessionBridge* bridge READ bridge CONSTANT)
@@ -20,24 +23,40 @@ class RealSession : public QObject {
 
  public:
   explicit RealSession(QObject* parent = nullptr);
-  ~RealSession() override;  ///< stops a session that is still running
+  ~RealSession() override;
   SessionBridge* bridge() { return &bridge_; }
   bool over() const { return over_; }
   QString failure() const { return failure_; }
 
   Q_INVOKABLE void start(const QString& protocol);
+  /// What happens in the room: the stop in the amplifier's supply, its fault line, the disk, and whatever
+  /// else the station may find ("touch_gone", ...), told as the device's thread would.
+  Q_INVOKABLE void setStop(bool pressed);
+  Q_INVOKABLE void setAmplifierFault(bool active);
+  Q_INVOKABLE void setDiskFull(bool full);
+  Q_INVOKABLE void find(const QString& fault);
+  Q_INVOKABLE void loseFrames(int frames) { bridge_.frames_lost(frames); }
   /// The values of one column of the exported trials.csv, in the order of its rows, between spaces.
   Q_INVOKABLE QString column(const QString& name) const;
+  /// The values of the events of a kind, likewise.
+  Q_INVOKABLE QString events(const QString& kind) const;
 
  signals:
   void ended();
 
  private:
-  QString database() const { return folder_.filePath("session.sqlite"); }
+  QString database() const { return folder_.filePath("session%1.sqlite").arg(sessions_); }
+  void end();  ///< stops a session that is still running
+
+  QList<QStringList> table(const QString& file) const;
 
   QTemporaryDir folder_;
+  FailingDisk disk_;
+  std::shared_ptr<panel::SimulatedLines> lines_;
   session::Inputs inputs_;
   SessionBridge bridge_;
+  int sessions_ = 0;
+  QString protocol_;
   bool over_ = false;
   QString failure_;
   std::jthread thread_;

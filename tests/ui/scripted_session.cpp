@@ -20,6 +20,12 @@ void ScriptedSession::show(const QString& name, const QString& language) {
   qFatal("no page %s in the gallery", qPrintable(name));
 }
 
+QStringList ScriptedSession::pages() {
+  QStringList names;
+  for (const auto& exhibit : gallery("en")) names += QString::fromStdString(exhibit.name);
+  return names;
+}
+
 void ScriptedSession::forget() {
   inputs_.clear();
   touches_ = 0;

@@ -13,12 +13,15 @@ class ScriptedSession : public QObject {
   Q_PROPERTY(turnpoint::ui::SessionBridge* bridge READ bridge CONSTANT)
   Q_PROPERTY(QStringList inputs READ inputs NOTIFY inputsChanged)
   Q_PROPERTY(int touches READ touches NOTIFY inputsChanged)
+  Q_PROPERTY(QStringList pages READ pages CONSTANT)
 
  public:
   explicit ScriptedSession(QObject* parent = nullptr);
   SessionBridge* bridge() { return &bridge_; }
   QStringList inputs() const { return inputs_; }
   int touches() const { return touches_; }
+  /// The names of all pages of the gallery.
+  static QStringList pages();
 
   Q_INVOKABLE void show(const QString& name, const QString& language);
   Q_INVOKABLE void forget();

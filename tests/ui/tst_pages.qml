@@ -187,7 +187,8 @@ Item {
         }
 
         function test_every_fault_says_what_happened_what_is_safe_and_what_to_do_data() {
-            return ["converter_gone", "amplifier", "stop_pressed", "touch_gone", "disk_full", "stimulus_missed"].map(kind => ({ tag: kind }))
+            return ["converter_gone", "amplifier", "stop_pressed", "touch_gone", "disk_full", "stimulus_missed"]
+                .map(kind => ({ tag: kind, arms: ["converter_gone", "amplifier", "stop_pressed"].includes(kind) }))
         }
         function test_every_fault_says_what_happened_what_is_safe_and_what_to_do(row) {
             show("fault-" + row.tag)
@@ -197,8 +198,38 @@ Item {
                 verify(findText(view, says), says)
             }
             untilArmed()
-            tap("proceed")
-            compare(script.inputs, ["next"])
+            if (!row.arms) {
+                tap("proceed")
+                compare(script.inputs, ["next"])
+                return
+            }
+            // Only an operator leads on: who touches the screen cannot arm by accident.
+            arming.clear()
+            tap("operatorArms")
+            compare(arming.count, 1)
+            compare(script.inputs, [])
+            view.armable = true
+            tap("holdToArm")
+            compare(script.inputs, [])
+            const hold = visibleItem("holdToArm")
+            mousePress(hold)
+            tryCompare(script, "inputs", ["arm"], 3000)
+            mouseRelease(hold)
+        }
+
+        SignalSpy { id: arming; target: view; signalName: "armingWanted" }
+
+        function test_the_left_handed_layout_moves_what_the_hand_needs_and_no_answer() {
+            show("explore")
+            const pause = visibleItem("pause")
+            const right = pause.mapToItem(stage, 0, 0).x
+            view.leftHanded = true
+            verify(pause.mapToItem(stage, 0, 0).x < right)
+            verify(item("answer0").mapToItem(stage, 0, 0).x < item("answer1").mapToItem(stage, 0, 0).x)
+            compare(item("answer0").children[0].text, script.bridge.page.answers[0])
+            mouseClick(item("answer0"))
+            tryCompare(script, "inputs", ["answer 0"])
+            view.leftHanded = false
         }
 
         function test_ending_asks_once_more() {
@@ -246,6 +277,27 @@ Item {
             const before = grabImage(view)
             wait(400)
             verify(grabImage(view).equals(before))
+        }
+        function test_what_moves_would_be_seen() {
+            show("rest")
+            const before = grabImage(view)
+            tryVerify(() => !grabImage(view).equals(before), 3000)
+        }
+
+        SignalSpy { id: frames; target: stage.Window.window; signalName: "frameSwapped" }
+        function test_the_next_frame_shows_that_an_answer_was_pressed() {
+            show("explore")
+            wait(50)
+            const button = item("answer0")
+            const edge = button.mapToItem(stage, button.width / 2, 0.1 * button.height)
+            const before = grabImage(stage).pixel(edge.x, edge.y)
+            frames.clear()
+            const touch = touchEvent(stage)
+            touch.press(1, button).commit()
+            frames.wait()
+            compare(frames.count, 1)
+            verify(grabImage(stage).pixel(edge.x, edge.y) !== before)
+            touch.release(1, button).commit()
         }
     }
 }

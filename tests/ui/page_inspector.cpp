@@ -1,0 +1,85 @@
+#include "tests/ui/page_inspector.hpp"
+
+#include <QImage>
+#include <QQuickWindow>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace turnpoint::ui {
+
+namespace {
+
+/// Relative luminance.
+double luminance(QRgb colour) {
+  const auto linear = [](int channel) {
+    const double c = channel / 255.0;
+    return c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+  };
+  return 0.2126 * linear(qRed(colour)) + 0.7152 * linear(qGreen(colour)) + 0.0722 * linear(qBlue(colour));
+}
+
+/// Between the darkest and the lightest pixel of a place: letters and what they stand on.
+double contrast(const QImage& image, const QRect& place) {
+  double darkest = 1, lightest = 0;
+  for (int y = place.top(); y <= place.bottom(); ++y)
+    for (int x = place.left(); x <= place.right(); ++x) {
+      const double here = luminance(image.pixel(x, y));
+      darkest = std::min(darkest, here), lightest = std::max(lightest, here);
+    }
+  return (lightest + 0.05) / (darkest + 0.05);
+}
+
+void each_text(const QQuickItem& item, const std::function<void(const QQuickItem&)>& look) {
+  if (!item.isVisible() || !item.isEnabled() || item.opacity() < 1) return;
+  const bool is_text = item.inherits("QQuickText");
+  if (is_text && !item.property("text").toString().trimmed().isEmpty()) look(item);
+  for (const auto* child : item.childItems()) each_text(*child, look);
+}
+
+/// Where the letters are, in pixels of the window.
+QRectF letters(const QQuickItem& text) {
+  const double width = text.property("contentWidth").toDouble();
+  const double height = text.property("contentHeight").toDouble();
+  const int across = text.property("horizontalAlignment").toInt();
+  const int along = text.property("verticalAlignment").toInt();
+  const double x = across == Qt::AlignHCenter ? (text.width() - width) / 2
+                   : across == Qt::AlignRight ? text.width() - width
+                                              : 0;
+  const double y = along == Qt::AlignVCenter  ? (text.height() - height) / 2
+                   : along == Qt::AlignBottom ? text.height() - height
+                                              : 0;
+  return text.mapRectToScene(QRectF(x, y, width, height));
+}
+
+}  // namespace
+
+QStringList PageInspector::faintTexts(QQuickItem* page, double least) const {
+  const QImage image = page->window()->grabWindow();
+  QStringList faint;
+  each_text(*page, [&](const QQuickItem& text) {
+    const auto place = letters(text).toAlignedRect().intersected(image.rect());
+    const double found = contrast(image, place);
+    if (found < least) faint += text.property("text").toString() + ": " + QString::number(found, 'f', 2);
+  });
+  return faint;
+}
+
+QStringList PageInspector::cutTexts(QQuickItem* page) const {
+  const QRectF room = page->mapRectToScene(page->boundingRect()).adjusted(-1, -1, 1, 1);
+  QStringList cut;
+  each_text(*page, [&](const QQuickItem& text) {
+    const bool too_high = text.property("contentHeight").toDouble() > text.height() + 1;
+    if (text.property("truncated").toBool() || too_high || !room.contains(letters(text)))
+      cut += text.property("text").toString();
+  });
+  return cut;
+}
+
+int PageInspector::texts(QQuickItem* page) const {
+  int count = 0;
+  each_text(*page, [&count](const QQuickItem&) { ++count; });
+  return count;
+}
+
+}  // namespace turnpoint::ui
