@@ -51,8 +51,13 @@ struct Rights {
   std::string note;  ///< why not, where something was denied
 };
 
+/// What a synchronous stream to `null:` does with its samples: computes them all the same, to measure them or
+/// the cost; or passes them by with the same events at the same frames, for sessions without a listener.
+enum class Samples : std::int32_t { rendered, passed };
+
 struct StreamConfig {
   OutputConfig output;
+  Samples samples = Samples::rendered;
   Precision precision = Precision::exact;
   SynthLimits limits;
   int fifo_priority = 70;
@@ -109,7 +114,8 @@ class SynchronousStream : public Stream {
   virtual void finish() = 0;
 };
 
-/// Throws as open_output, and std::invalid_argument for a format that cannot be synthesised.
+/// Throws as open_output, and std::invalid_argument for a format that cannot be synthesised or samples that
+/// would be missing from an output.
 std::unique_ptr<SynchronousStream> open_synchronous(const StreamConfig& config, std::int64_t origin_ns = 0);
 
 /// Opens the output and starts the audio thread: paced by ALSA, or by CLOCK_MONOTONIC for `null:` and `wav:`.

@@ -115,7 +115,7 @@ void EngineCore::report(const Event& event) noexcept {
   if (!events_->push(event)) atomics_.events_dropped.fetch_add(1);
 }
 
-void EngineCore::process(std::int64_t frame, std::span<std::int32_t> samples) noexcept {
+void EngineCore::take_commands() noexcept {
   while (commands_->pop(*incoming_)) {
     switch (incoming_->kind) {
       case CommandKind::start:
@@ -131,7 +131,10 @@ void EngineCore::process(std::int64_t frame, std::span<std::int32_t> samples) no
         break;
     }
   }
-  synth_.render(frame, samples);
+}
+
+// What the synth said up to `frame`.
+void EngineCore::report_until(std::int64_t frame) noexcept {
   for (const SynthEvent& event : synth_.events()) {
     const EventKind kind = event.kind == SynthEventKind::started ? EventKind::burst_started
                            : event.kind == SynthEventKind::ended ? EventKind::burst_ended
@@ -140,7 +143,19 @@ void EngineCore::process(std::int64_t frame, std::span<std::int32_t> samples) no
   }
   synth_.clear_events();
   atomics_.saturated.store(static_cast<std::int64_t>(synth_.saturated()));
-  atomics_.frames.store(frame + static_cast<std::int64_t>(samples.size()) / config_.output.channels);
+  atomics_.frames.store(frame);
+}
+
+void EngineCore::process(std::int64_t frame, std::span<std::int32_t> samples) noexcept {
+  take_commands();
+  synth_.render(frame, samples);
+  report_until(frame + static_cast<std::int64_t>(samples.size()) / config_.output.channels);
+}
+
+void EngineCore::pass(std::int64_t frame, std::int64_t frames) noexcept {
+  take_commands();
+  synth_.pass(frame, frames);
+  report_until(frame + frames);
 }
 
 }  // namespace turnpoint::drive

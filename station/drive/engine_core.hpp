@@ -22,6 +22,8 @@ class EngineCore {
 
   /// Takes the waiting commands and renders the frames from `frame`.
   void process(std::int64_t frame, std::span<std::int32_t> samples) noexcept;
+  /// The same without samples: commands and events alone.
+  void pass(std::int64_t frame, std::int64_t frames) noexcept;
   /// An event of the transport; counts it too.
   void report(const Event& event) noexcept;
 
@@ -40,6 +42,8 @@ class EngineCore {
         device_losses{0}, events_dropped{0};
   };
 
+  void take_commands() noexcept;
+  void report_until(std::int64_t frame) noexcept;
   void send(const Command& command);
   void gather();
   void check_room(const PreparedBurst& burst) const;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <stdexcept>
 #include <system_error>
 
 #include "station/drive/engine_core.hpp"
@@ -16,7 +17,10 @@ class Synchronous final : public SynchronousStream {
         core_(config),
         output_(open_output(config.output)),
         block_(static_cast<std::size_t>(config.output.channels) *
-               static_cast<std::size_t>(config.output.period_frames)) {}
+               static_cast<std::size_t>(config.output.period_frames)) {
+    if (config.samples == Samples::passed && config.output.uri != "null:")
+      throw std::invalid_argument(config.output.uri + " needs its samples; only null: can do without");
+  }
 
   std::uint32_t schedule(const Burst& burst) override { return core_.schedule(burst, frame_); }
   void change(std::uint32_t burst, const Change& change) override { core_.change(burst, change); }
@@ -44,6 +48,11 @@ class Synchronous final : public SynchronousStream {
   void advance(std::int64_t frames) override {
     while (frames > 0) {
       const std::int64_t count = std::min<std::int64_t>(frames, config_.output.period_frames);
+      if (config_.samples == Samples::passed) {
+        core_.pass(frame_, count);
+        frame_ += count, frames -= count;
+        continue;
+      }
       const auto samples = std::span(block_).first(static_cast<std::size_t>(count) *
                                                    static_cast<std::size_t>(config_.output.channels));
       core_.process(frame_, samples);

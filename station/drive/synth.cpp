@@ -44,14 +44,25 @@ struct Synth::State {
     }
   }
 
+  bool active() const noexcept {
+    return std::any_of(slots.begin(), slots.end(),
+                       [](const Slot& slot) { return slot.phase != Phase::unused; });
+  }
+
   void mix_block(std::int64_t frame, int frames) noexcept {
-    enter(frame);
     mix.frames = frames;
     for (std::size_t c = 0; c < static_cast<std::size_t>(format.channels); ++c) {
       std::fill_n(mix.samples[c].begin(), frames, 0.0);
       std::fill_n(mix.dithered[c].begin(), frames, std::uint8_t{0});
     }
     const auto width = precision == Precision::exact ? Voice::Width::wide : Voice::Width::narrow;
+    step(frame, frames, [&](Voice& voice, std::int64_t at) { voice.add(at, mix, scratch, *kernels, width); });
+  }
+
+  /// Takes every voice over these frames by `go(voice, frame of the burst)`, and says what began and ended.
+  template <class Go>
+  void step(std::int64_t frame, int frames, const Go& go) noexcept {
+    enter(frame);
     for (Slot& slot : slots) {
       if (slot.phase == Phase::unused) continue;
       const PreparedBurst& burst = slot.voice.burst();
@@ -60,7 +71,7 @@ struct Synth::State {
         slot.phase = Phase::sounding;
         report(SynthEventKind::started, burst.id, burst.start_frame);
       }
-      slot.voice.add(at, mix, scratch, *kernels, width);
+      go(slot.voice, at);
       if (at + frames >= slot.voice.end()) {
         if (slot.phase == Phase::sounding)
           report(SynthEventKind::ended, burst.id, burst.start_frame + slot.voice.end());
@@ -148,6 +159,11 @@ void Synth::render(std::int64_t frame, std::span<std::int32_t> samples) noexcept
   for (std::size_t done = 0; done < total; done += max_block) {
     const auto frames = static_cast<int>(std::min<std::size_t>(max_block, total - done));
     const std::int64_t at = frame + static_cast<std::int64_t>(done);
+    if (!state_->active()) {  // most of a session: digital silence
+      std::fill_n(samples.data() + done * channels, static_cast<std::size_t>(frames) * channels, 0);
+      state_->next_frame = at + frames;
+      continue;
+    }
     state_->mix_block(at, frames);
     state_->quantise(at, samples.data() + done * channels);
   }
@@ -165,15 +181,19 @@ void Synth::render(std::int64_t frame, std::span<double> samples) noexcept {
   }
 }
 
+void Synth::pass(std::int64_t frame, std::int64_t frames) noexcept {
+  for (std::int64_t done = 0; done < frames; done += max_block) {
+    const auto some = static_cast<int>(std::min<std::int64_t>(max_block, frames - done));
+    state_->step(frame + done, some, [some](Voice& voice, std::int64_t at) { voice.pass(at, some); });
+  }
+}
+
 std::span<const SynthEvent> Synth::events() const noexcept {
   return {state_->events.data(), state_->event_count};
 }
 void Synth::clear_events() noexcept { state_->event_count = 0; }
 
-bool Synth::active() const noexcept {
-  return std::any_of(state_->slots.begin(), state_->slots.end(),
-                     [](const State::Slot& slot) { return slot.phase != State::Phase::unused; });
-}
+bool Synth::active() const noexcept { return state_->active(); }
 
 std::uint64_t Synth::saturated() const noexcept { return state_->saturated; }
 

@@ -55,6 +55,9 @@ class Synth {
   void render(std::int64_t frame, std::span<std::int32_t> samples) noexcept;
   /// The same before dither and quantisation, as doubles, for measurement.
   void render(std::int64_t frame, std::span<double> samples) noexcept;
+  /// Goes on by so many frames without computing them: the same events, and the same samples afterwards
+  /// (masking noise excepted).
+  void pass(std::int64_t frame, std::int64_t frames) noexcept;
 
   /// Events since the last call, oldest first; valid until the next render.
   std::span<const SynthEvent> events() const noexcept;

@@ -199,6 +199,11 @@ void Voice::noise(std::int64_t at, int first, int last, Mix& mix, const Scratch&
   }
 }
 
+void Voice::pass(std::int64_t at, int frames) noexcept {
+  const std::int64_t last = std::min(end(), at + frames);
+  for (std::int64_t n = std::max<std::int64_t>(at, 0); n < last; n = next_boundary(n)) enter(n);
+}
+
 void Voice::add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kernels, Width width) noexcept {
   const int first = static_cast<int>(std::clamp<std::int64_t>(-at, 0, mix.frames));
   const int last = static_cast<int>(std::clamp<std::int64_t>(end() - at, first, mix.frames));

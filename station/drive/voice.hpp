@@ -44,6 +44,9 @@ class Voice {
   /// Adds frames [at, at + mix.frames) to the mix. `at` must not fall. May be negative (not begun).
   void add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kernels, Width width) noexcept;
 
+  /// Goes on by so many frames without computing them; the noise's filters stand still.
+  void pass(std::int64_t at, int frames) noexcept;
+
   std::int64_t end() const noexcept;  ///< first silent frame
   const PreparedBurst& burst() const noexcept { return burst_; }
 

@@ -63,6 +63,47 @@ TEST_CASE("10 000 onsets in a rendered stream are where they were asked for: jit
   std::remove(path.c_str());
 }
 
+TEST_CASE("frames that are passed by have the events of frames that are rendered", "[drive][stream]") {
+  StreamConfig passing;
+  passing.samples = Samples::passed;
+  const auto rendered = open_synchronous({}), passed = open_synchronous(passing);
+  std::uint64_t random = 7;
+  const auto draw = [&random](std::int64_t below) {
+    random = random * 6364136223846793005u + 1442695040888963407u;
+    return static_cast<std::int64_t>((random >> 33) % static_cast<std::uint64_t>(below));
+  };
+  int events = 0;
+  for (int k = 0; k < 300; ++k) {
+    Burst burst = one_tone(20000 + 10.0 * k, 0.2);
+    burst.start_frame = rendered->frame() + draw(3000);
+    burst.length_frames = 2000 + draw(8000);
+    burst.ramp.frames = draw(900);
+    if (k % 3 == 0) {
+      burst.change_count = 1;
+      burst.changes[0].at_frame = 500 + draw(500), burst.changes[0].frames = 1 + draw(900);
+      burst.changes[0].to = one_tone(30000, 0.1).tones;
+    }
+    const auto id = rendered->schedule(burst);
+    REQUIRE(passed->schedule(burst) == id);
+    const auto first = draw(4000), second = draw(9000);
+    for (auto* stream : {rendered.get(), passed.get()}) {
+      stream->advance(first);
+      if (k % 4 == 0) stream->stop(id, Ramp{RampShape::raised_cosine, 300});
+      stream->advance(second);
+    }
+    while (const auto event = rendered->poll()) {
+      const auto same = passed->poll();
+      REQUIRE(same);
+      CHECK((same->kind == event->kind && same->burst == event->burst && same->frame == event->frame));
+      ++events;
+    }
+    CHECK_FALSE(passed->poll());
+  }
+  CHECK(events >= 400);
+  passing.output.uri = "wav:" + scratch_file("never.wav");
+  CHECK_THROWS_AS(open_synchronous(passing), std::invalid_argument);
+}
+
 TEST_CASE("virtual time is frame over rate, exactly, at any age", "[drive][stream]") {
   const auto stream = open_synchronous({}, 1'000);
   CHECK(stream->time_of(192000LL * 86400 * 30) == 1'000 + 1'000'000'000LL * 86400 * 30);
