@@ -98,8 +98,7 @@ struct Answer {
 };
 
 void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector<Combination>& combinations,
-                std::size_t begin, std::size_t end, std::vector<Answer>& answers) {
-  scene::Planner planner(rig);
+                std::size_t begin, std::size_t end, scene::Planner& planner, std::vector<Answer>& answers) {
   std::set<std::string> explained;
   for (std::size_t i = begin; i < end; ++i) {
     const auto& combination = combinations[i];
@@ -115,15 +114,18 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
   }
 }
 
-// Combinations side by side differ least, and a planner remembers: so each of two threads takes a half.
+// Combinations side by side differ least, and a planner remembers: so each of two threads takes a half, after
+// the first combination has made the maps that all need.
 std::vector<Answer> plan_all(const Protocol& protocol, const rig::Rig& rig,
                              const std::vector<Combination>& combinations) {
   std::vector<Answer> answers(combinations.size());
-  const auto half = combinations.size() / 2;
-  auto second = std::async(std::launch::async, [&] {
-    plan_range(protocol, rig, combinations, half, combinations.size(), answers);
+  const auto count = combinations.size(), begun = std::min<std::size_t>(1, count), half = (count + begun) / 2;
+  scene::Planner planner(rig);
+  plan_range(protocol, rig, combinations, 0, begun, planner, answers);
+  auto second = std::async(std::launch::async, [&, other = planner]() mutable {
+    plan_range(protocol, rig, combinations, half, count, other, answers);
   });
-  plan_range(protocol, rig, combinations, 0, half, answers);
+  plan_range(protocol, rig, combinations, begun, half, planner, answers);
   second.get();
   return answers;
 }

@@ -68,7 +68,7 @@ struct Planner::State {
   rig::Rig rig;
   physics::Surface surface;
   physics::FrictionMap friction;
-  std::map<std::string, physics::BoundaryMap> maps;
+  std::map<std::string, std::shared_ptr<const physics::BoundaryMap>> maps;
   std::map<std::string, physics::ZoneDesign> designs;
   std::map<std::string, DrivePlan> plans;
   std::map<std::string, Solution> solutions;
@@ -100,9 +100,9 @@ const physics::BoundaryMap& Planner::State::map_for(const physics::Edge& edge) {
     options.edge = edge;
     options.band = {lowest_frequency(rig, 0),
                     highest_frequency(rig, kHighestShareOfRate * rig.output.rate_Hz)};
-    found = maps.emplace(key, physics::BoundaryMap(surface, options)).first;
+    found = maps.emplace(key, std::make_shared<const physics::BoundaryMap>(surface, options)).first;
   }
-  return found->second;
+  return *found->second;
 }
 
 double Planner::State::frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m) {
@@ -281,6 +281,7 @@ void Planner::State::refuse_beyond_limits(const DrivePlan& plan) const {
 Planner::Planner(const rig::Rig& rig) : state_(std::make_unique<State>(rig)) {}
 Planner::~Planner() = default;
 Planner::Planner(Planner&&) noexcept = default;
+Planner::Planner(const Planner& other) : state_(std::make_unique<State>(*other.state_)) {}
 const physics::Surface& Planner::surface() const { return state_->surface; }
 const physics::FrictionMap& Planner::friction() const { return state_->friction; }
 

@@ -69,6 +69,8 @@ class Planner {
   explicit Planner(const rig::Rig& rig);
   ~Planner();
   Planner(Planner&&) noexcept;
+  /// With what the other remembers, for another thread.
+  Planner(const Planner& other);
 
   /// The cheapest plan inside the scene's tolerance. Throws Unreachable where the surface, a transducer's
   /// band, the converter or the rig's limits do not allow the scene.
