@@ -59,7 +59,8 @@ class Sitting {
   Flow keep_limits(const TrialSpec& spec);
   Flow after_trial(const store::TrialRow& row);
   void check_plans(const TrialSpec& spec);
-  void drive_trial(Running& trial);
+  std::optional<trial::EventKind> open_again();
+  void drive_trial(Running& trial, std::optional<trial::EventKind> cut_by);
   void handle_in_trial(Input raw, Running& trial);
   void perform(const std::vector<trial::Action>& actions, Running& trial);
   void present(int interval, std::int64_t earliest_ns, Running& trial);
@@ -78,7 +79,8 @@ class Sitting {
   Input received(Input input);
   void note(const Input& input);
   void log(const Input& input);
-  void keep(const std::function<void()>& write);
+  enum class Kept { at_once, after_waiting };
+  Kept keep(const std::function<void()>& write);
   bool space_again(const std::string& detail);
   bool armed() const;
   Flow until_armed(const Fault& why);

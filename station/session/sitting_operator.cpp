@@ -74,11 +74,12 @@ void Sitting::note(const Input& input) {
 
 /// Makes rows durable before the session goes on. On a full disk the screen says so, nothing sounds, and the
 /// same rows are written once there is space; what the operator does meanwhile is kept in memory.
-void Sitting::keep(const std::function<void()>& write) {
-  for (;;) {
+Sitting::Kept Sitting::keep(const std::function<void()>& write) {
+  for (auto kept = Kept::at_once;; kept = Kept::after_waiting) {
     std::string detail;
     try {
-      return write();
+      write();
+      return kept;
     } catch (const store::StoreError& error) {
       // Nobody stands before a simulated session who could make space.
       if (error.fault() != store::Fault::disk_full || !setup_.observer.empty()) throw;

@@ -40,8 +40,8 @@ Sitting::Flow Sitting::run_trial(const TrialSpec& spec) {
                 {}};
   if (spec.slider) trial.slider.emplace(*spec.slider, spec.level.value_or(spec.slider->low));
   if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block());
-  keep([&] { log_.presented(trial_index_, stage_->now_ns()); });
-  drive_trial(trial);
+  const auto kept = keep([&] { log_.presented(trial_index_, stage_->now_ns()); });
+  drive_trial(trial, kept == Kept::after_waiting ? open_again() : std::nullopt);
   stage_->close_amplifier();
   if (!trial.decided) decide(trial);
   leave_surface();
@@ -75,6 +75,15 @@ Sitting::Flow Sitting::prepare_trial(const TrialSpec& spec) {
     if (recover() == Flow::stop) return Flow::stop;
   }
   return stop_asked_ ? Flow::stop : Flow::go_on;
+}
+
+/// The amplifier went off while a full disk held a trial up; whatever keeps it off now makes the trial void.
+std::optional<trial::EventKind> Sitting::open_again() {
+  if (stop_asked_) return trial::EventKind::abort;
+  if (!fault_)
+    if (const auto why_not = stage_->open_amplifier(); !why_not.empty())
+      fault_ = Fault{FaultKind::amplifier, why_not};
+  return fault_ ? std::optional(trial::EventKind::fault) : std::nullopt;
 }
 
 /// The interval between trials stretches as far as the rig's limits on duty and continuous time need.
@@ -120,9 +129,10 @@ Sitting::Flow Sitting::after_trial(const store::TrialRow& row) {
   return paused ? show_and_wait(pages_.paused(director_), 0) : Flow::go_on;
 }
 
-void Sitting::drive_trial(Running& trial) {
+void Sitting::drive_trial(Running& trial, std::optional<trial::EventKind> cut_by) {
   auto& machine = trial.machine;
   perform(machine.start(stage_->now_ns()), trial);
+  if (cut_by) perform(machine.handle({stage_->now_ns(), *cut_by, 0}), trial);
   while (!machine.done()) {
     const auto wake = machine.wake_ns();
     const auto follow_ns = trial.slider ? trial.slider->glide_due_ns().value_or(kForever) : kForever;
