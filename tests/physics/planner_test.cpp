@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 
 #include "physics/centre_line.hpp"
@@ -98,12 +99,19 @@ PlanRequest request_for(Normalise normalise) {
   return request;
 }
 
+/// TURNPOINT_SCENES=5000 makes a long run: that many scenes instead of the usual number.
+int scenes(int usual) {
+  const char* const asked = std::getenv("TURNPOINT_SCENES");
+  return asked ? std::stoi(asked) : usual;
+}
+
 }  // namespace
 
 TEST_CASE("the true error of every rung lies inside its bound on a thousand random scenes", "[physics]") {
   Draw draw(20260101);
+  const int count = scenes(1000);
   int compared = 0, violated = 0;
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < count; ++i) {
     const Surface s = random_surface(draw);
     const auto x0 = turning_point_m(s, frequency_Hz);
     if (!x0 || *x0 < 0.02 * s.length_m) continue;
@@ -126,7 +134,9 @@ TEST_CASE("the true error of every rung lies inside its bound on a thousand rand
       if (model == Model::mode) CHECK(inside);
     }
   }
-  CHECK(compared > 3000);
+  if (count > 1000)
+    WARN(compared << " comparisons on " << count << " scenes, " << violated << " outside their bound");
+  CHECK(compared > 3 * count);
   CHECK(violated <= compared / 1000);
 }
 
@@ -185,8 +195,9 @@ TEST_CASE("the second mode's resonances on lossless brass lie inside the mode's 
 TEST_CASE("the planner's choice is inside the tolerance, and the next cheaper rung mostly is not",
           "[physics]") {
   Draw draw(20260102);
+  const int count = scenes(400);
   int planned = 0, needed = 0, met = 0;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < count; ++i) {
     const Surface s = random_surface(draw);
     const auto x0 = turning_point_m(s, frequency_Hz);
     if (!x0 || *x0 < 0.02 * s.length_m) continue;
@@ -209,7 +220,9 @@ TEST_CASE("the planner's choice is inside the tolerance, and the next cheaper ru
     needed += best > *request.tolerance.amplitude ? 1 : 0;
   }
   CAPTURE(planned, met, needed);
-  CHECK(planned > 250);
+  if (count > 400)
+    WARN(planned << " planned, " << met << " inside the tolerance, " << needed << " needed the dearer rung");
+  CHECK(planned > 5 * count / 8);
   CHECK(met == planned);
   CHECK(needed > planned / 2);
 }
