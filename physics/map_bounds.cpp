@@ -12,6 +12,8 @@
 namespace turnpoint::physics {
 namespace {
 
+constexpr double strong_loss_below = 30;  // quality factor
+
 std::optional<double> position(const Surface& surface, const MapOptions& options, double f, Model model,
                                Wave wave, Losses losses) {
   try {
@@ -91,7 +93,13 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
   if (exact) bounds.equation_m = std::abs(*exact - x);
   if (bounds.equation_m < 1e-10) bounds.equation_m = 0;
   // The exact mode of a wedge needs no allowance for its equation; every other taper's best equation does.
-  const ModeBound mode = mode_bound(surface, f, 1);
+  std::optional<double> drawn_peak_m;  // only strong loss draws it far enough to matter
+  if (surface.quality_factor < strong_loss_below) {
+    MapOptions peak = options;
+    peak.edge = Edge::peak();
+    drawn_peak_m = position(surface, peak, f, Model::edge, Wave::exact, Losses::kept);
+  }
+  const ModeBound mode = mode_bound(surface, f, 1, drawn_peak_m);
   const bool wedge =
       std::holds_alternative<LinearTaper>(surface.taper) && !Dispersion(surface).clamped_bending();
   if (!wedge) bounds.equation_m += mode.equation_m;

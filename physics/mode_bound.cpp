@@ -89,7 +89,8 @@ double higher_mode_decay(const Surface& surface, double f, double x) {
   return std::exp(-ln);
 }
 
-ModeBound mode_bound(const Surface& surface, double f, double conditioning) {
+ModeBound mode_bound(const Surface& surface, double f, double conditioning,
+                     std::optional<double> last_peak_m) {
   ModeBound bound;
   const Dispersion dispersion(surface);
   const Taper taper(surface);
@@ -125,7 +126,7 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning) {
   // The outermost maximum lies about one Airy length before the turning point; where that is close to the
   // drive edge it is shallow, and a small share of the higher modes moves it far.
   const double airy_length = cut * std::cbrt(2 / (pi * pi * std::max(steepest, 1e-6)));
-  const double near = std::max(0.0, x0 - 1.1 * airy_length);
+  const double near = std::max(0.0, std::min(x0 - 1.1 * airy_length, last_peak_m.value_or(x0)));
   const double polluted = shallow * bound.higher_modes * higher_mode_decay(surface, f, near);
   // A straight clamped end close beyond the turning point cuts the curved wave fronts.
   const double end = taper.half_width_m(taper.length_m()) > 0.5 * cut ? end_shift * steepest * steepest : 0;

@@ -1,5 +1,7 @@
 #pragma once
 // How far the one-mode field can be from the two-dimensional one, before the latter is solved.
+#include <optional>
+
 #include "physics/surface.hpp"
 
 namespace turnpoint::physics {
@@ -16,8 +18,10 @@ struct ModeBound {
   double higher_modes = 0;  // share of `shape` that the drive edge's higher modes make
 };
 
-// `conditioning` is that of the first mode's v(0) (CentreLine::drive_conditioning).
-ModeBound mode_bound(const Surface& surface, double frequency_Hz, double conditioning);
+// `conditioning` is that of the first mode's v(0) (CentreLine::drive_conditioning); `last_peak_m` the mode's
+// own last maximum, where it is known: loss draws it towards the drive edge and its higher modes.
+ModeBound mode_bound(const Surface& surface, double frequency_Hz, double conditioning,
+                     std::optional<double> last_peak_m);
 
 // The same for the displacement of the higher modes at a position, relative to the drive edge's: they fall
 // beyond their own turning points.

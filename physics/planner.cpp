@@ -118,7 +118,8 @@ struct Reference {
 Reference reference(const Surface& surface, const PlanRequest& request, double f) {
   Probe mode = probe(surface, request, f, Model::mode);
   const double conditioning = mode.line->drive_conditioning(wavenumber_per_m(surface, f));
-  return {f, std::move(mode), conditioning, mode_bound(surface, f, conditioning)};
+  const auto bound = mode_bound(surface, f, conditioning, mode.peak);
+  return {f, std::move(mode), conditioning, bound};
 }
 
 RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {

@@ -124,6 +124,7 @@ TEST_CASE("the true error of every rung lies inside its bound on a thousand rand
       const auto error = true_error(s, model, *truth, normalise);
       if (!error) continue;
       ++compared;
+      CAPTURE(s.taper.index(), s.quality_factor, s.drive == DriveShape::piston, s.length_m, *x0);
       CAPTURE(i, name(model), error->amplitude, bound.amplitude_bound, error->boundary_m,
               bound.boundary_bound_m, error->level_dB, bound.level_bound_dB);
       const bool inside = error->amplitude <= bound.amplitude_bound &&
