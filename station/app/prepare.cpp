@@ -35,6 +35,12 @@ std::string choose_language(const std::string& wanted, const protocol::Protocol&
   return wanted;
 }
 
+/// What the panel's latency is, without any transducer's response, lets no live session drive one.
+bool has_response(const session::Setup& setup) {
+  return !setup.calibration_text.empty() &&
+         !calibration::parse(setup.calibration_text, "calibration").transducers.empty();
+}
+
 /// A live session needs what a pilot may do without: what the finger gets must have been measured.
 void check_live(const session::Setup& setup, const protocol::Survey& survey, std::vector<Problem>& problems) {
   const auto& rig = setup.rig;
@@ -46,7 +52,7 @@ void check_live(const session::Setup& setup, const protocol::Survey& survey, std
         "give [friction] a measured table_csv, or run with --mode pilot");
   if (rig.reproduction)
     add("this rig reproduces a historical one", "live sessions need a rig with reproduction = false");
-  if (setup.calibration_id.empty() && rig.amplifier_uri != "sim:")
+  if (!has_response(setup) && rig.amplifier_uri != "sim:")
     add("the rig has no calibration in force", "turnpoint calibrate --rig " + rig.path + " makes one");
   for (const auto& sight : survey.sights) {
     // However soft: whether the level is allowed is known only with each tone's amplitude, at its trial.
@@ -74,6 +80,8 @@ void take_calibration(const std::string& source, const std::string& path, sessio
   setup.rig = calibration::applied(calibration, std::move(setup.rig));
   setup.calibration_id = text::sha256(source);
   setup.calibration_text = source;
+  if (calibration.panel && calibration.panel->touch)
+    setup.response_offset_s = calibration.panel->touch->median_s;
   for (const auto& point : calibration.sound) setup.sound.push_back({point.frequency_Hz, point.level_dB});
 }
 

@@ -89,7 +89,8 @@ std::vector<std::string> problems(const Calibration& calibration, const std::str
   if (left > calibration.valid_days)
     found.push_back(
         fmt::format("the calibration of {} lies in the future of this clock", calibration.made_on));
-  if (calibration.transducers.empty()) found.push_back("the calibration holds no transducer's response");
+  if (calibration.transducers.empty() && !calibration.panel)
+    found.push_back("the calibration holds no transducer's response");
   return found;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "station/calibration/fits.hpp"
+#include "station/calibration/panel_latency.hpp"
 
 namespace turnpoint::calibration {
 
@@ -30,6 +31,7 @@ struct Calibration {
   std::optional<double> quality_factor;
   std::optional<FrictionFit> friction;
   std::vector<SoundPoint> sound;
+  std::optional<PanelLatency> panel;
 };
 
 /// Files with measurements; "" where there is none. Columns: sweep `frequency_Hz,displacement_um,phase_deg`
@@ -59,7 +61,7 @@ Calibration parse(const std::string& text, const std::string& path);
 /// Days that it is still valid on a date (YYYY-MM-DD); negative once it has expired, the count of days since.
 int days_left(const Calibration& calibration, const std::string& today);
 
-/// Why sessions on that rig must not use it on that day: another rig, expired, no response; empty: nothing.
+/// Why sessions on that rig must not use it on that day: another rig, expired, nothing measured; empty: none.
 std::vector<std::string> problems(const Calibration& calibration, const std::string& rig_sha256,
                                   const std::string& today);
 

@@ -55,6 +55,42 @@ std::string transducer_toml(const Calibration::Transducer& transducer) {
   return out + numbers("phase_deg", fit.points, [](const auto& p) { return p.phase_rad / degree; });
 }
 
+std::string delay_toml(const char* name, const std::optional<Delay>& delay) {
+  if (!delay) return "";
+  return fmt::format("{0}_s = {1}\n{0}_jitter_s = {2}\n{0}_pairs = {3}\n{0}_unmatched = {4}\n", name,
+                     exact(delay->median_s), exact(delay->sd_s), delay->pairs, delay->unmatched);
+}
+
+std::string panel_toml(const PanelLatency& panel) {
+  return fmt::format(
+             "\n[panel]                       # median and SD of its latency\nmade_on = {}\nquality = {}\n",
+             quoted(panel.made_on), quoted(panel.quality)) +
+         delay_toml("response_offset", panel.touch) + delay_toml("flash", panel.flash);
+}
+
+std::optional<Delay> read_delay(text::TableReader& reader, const std::string& name) {
+  const Range seconds{0, 1, Ends::closed, "s"};
+  const auto median_s = reader.maybe_number(name + "_s", seconds);
+  if (!median_s) return std::nullopt;
+  Delay delay;
+  delay.median_s = *median_s;
+  delay.sd_s = reader.number(name + "_jitter_s", seconds);
+  delay.pairs = reader.integer(name + "_pairs", 2, 1'000'000);
+  delay.unmatched = reader.integer(name + "_unmatched", 0, 1'000'000);
+  return delay;
+}
+
+PanelLatency read_panel(const text::Value& table, text::Findings& findings) {
+  text::TableReader reader(table, "panel", findings);
+  PanelLatency panel;
+  panel.made_on = reader.string("made_on", "the date, YYYY-MM-DD");
+  panel.quality = reader.word("quality", {"kernel", "toolkit"});
+  panel.touch = read_delay(reader, "response_offset");
+  panel.flash = read_delay(reader, "flash");
+  reader.finish();
+  return panel;
+}
+
 // Columns of equal length, or a problem.
 bool same_length(text::TableReader& reader, const char* key, std::size_t length, std::size_t wanted) {
   if (length == wanted) return true;
@@ -111,6 +147,8 @@ void read_tables(text::TableReader& reader, Calibration& calibration) {
     calibration.transducers.push_back(read_transducer(*table, findings));
   if (const text::Value* table = reader.maybe_table("boundary"))
     calibration.boundary = read_boundary(*table, findings);
+  if (const text::Value* table = reader.maybe_table("panel"))
+    calibration.panel = read_panel(*table, findings);
   if (const text::Value* table = reader.maybe_table("friction")) {
     text::TableReader inner(*table, "friction", findings);
     const auto u = inner.numbers("displacement_um", {0, 1e6}, 2);
@@ -153,6 +191,7 @@ std::string to_toml(const Calibration& c) {
     out += numbers("frequency_Hz", c.sound, [](const auto& p) { return p.frequency_Hz; });
     out += numbers("level_dB", c.sound, [](const auto& p) { return p.level_dB; });
   }
+  if (c.panel) out += panel_toml(*c.panel);
   for (const auto& transducer : c.transducers) out += transducer_toml(transducer);
   return out;
 }

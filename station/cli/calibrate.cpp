@@ -8,6 +8,7 @@
 #include "station/calibration/apply.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/run.hpp"
 #include "station/cli/write_file.hpp"
 #include "station/text/number.hpp"
 
@@ -23,7 +24,8 @@ struct Options {
   std::vector<std::string> sweeps;
   double full_scale = 1;
   int valid_days = 90;
-  bool sweep = false, arm = false;
+  bool sweep = false, arm = false, panel = false;
+  std::string reference = "button";
   app::SweepOptions plan;
 };
 
@@ -104,11 +106,50 @@ void sweep(const Options& options, const rig::Rig& rig, Context& context) {
   fmt::print(context.err, "{} tones, {} s, to {}\n", steps.size(), number(took_s, 4), options.sweep_out);
 }
 
+Json delay_json(const std::optional<calibration::Delay>& delay) {
+  if (!delay) return {};
+  return {{"median_s", delay->median_s},
+          {"jitter_s", delay->sd_s},
+          {"pairs", delay->pairs},
+          {"unmatched", delay->unmatched}};
+}
+
+void calibrate_panel(const Options& options, const rig::Rig& rig, Context& context) {
+  if (!context.screens) return become_ui(context);
+  const auto reference = options.reference == "photodiode" ? calibration::LatencyReference::photodiode
+                                                           : calibration::LatencyReference::button;
+  const auto measured = context.screens->latency({options.rig, reference});
+  if (!measured) throw std::runtime_error("calibrate --panel: nothing was kept, so nothing is written");
+  const auto made = app::with_panel(rig, *measured);
+  const auto out =
+      options.out.empty() ? calibration::file_for(options.rig, calibration::today()) : options.out;
+  write_file(out, calibration::to_toml(made));
+  if (context.json) {
+    const Json json{{"file", out},
+                    {"quality", measured->quality},
+                    {"response_offset", delay_json(made.panel->touch)},
+                    {"flash", delay_json(made.panel->flash)}};
+    context.out << json.dump(2) << "\n";
+    return;
+  }
+  const auto say = [&](const char* what, const std::optional<calibration::Delay>& delay) {
+    if (delay)
+      fmt::print(context.out, "{}: median {} ms, jitter (SD) {} ms, {} taps, {} unmatched\n", what,
+                 number(1e3 * delay->median_s, 4), number(1e3 * delay->sd_s, 3), delay->pairs,
+                 delay->unmatched);
+  };
+  say("response_offset", made.panel->touch);
+  say("flash", made.panel->flash);
+  fmt::print(context.out, "wrote {}\n", out);
+}
+
 void calibrate(const Options& options, Context& context) {
   const auto rig = rig::load(options.rig);
   if (options.sweep) return sweep(options, rig, context);
+  if (options.panel) return calibrate_panel(options, rig, context);
   const auto measurements = measurements_of(options);
-  const auto made = app::calibrate(rig, measurements, options.valid_days, options.note);
+  auto made = app::calibrate(rig, measurements, options.valid_days, options.note);
+  made.panel = app::known_panel(rig);
   const auto out = options.out.empty() ? calibration::file_for(options.rig, made.made_on) : options.out;
   const auto plots = options.plots.empty() ? out + ".svg" : options.plots;
   write_file(plots, plot::render(app::calibration_figure(made, measurements)));
@@ -145,6 +186,14 @@ void add_calibrate(CLI::App& app, Context& context) {
   command->add_option("--out", options->out,
                       "File; otherwise beside the rig, with the date, where `run` finds it");
   command->add_option("--plots", options->plots, "SVG of fits and residuals; otherwise beside the file");
+  command->add_flag("--panel", options->panel,
+                    "Measure the touch panel's latency on its screen, against one of the rig's button lines");
+  command
+      ->add_option(
+          "--reference", options->reference,
+          "button: under the tapping finger, tells the way in | photodiode: on the flash, the way out")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"button", "photodiode"}));
   command->add_flag("--sweep", options->sweep, "Print the stepped sweep to measure with, as CSV");
   command->add_option("--sweep-out", options->sweep_out, "With --sweep: play it to wav:FILE or alsa:NAME");
   command->add_flag("--arm", options->arm,

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "station/app/station_request.hpp"
+#include "station/app/panel_latency.hpp"
 #include "station/app/prepare.hpp"
 #include "station/app/preview.hpp"
+#include "station/app/station_request.hpp"
 
 namespace turnpoint::cli {
 
@@ -22,6 +23,8 @@ struct Screens {
   std::function<void(const app::StationRequest&)> station;
   /// The scenes of a protocol with sliders for their factors.
   std::function<void(const app::PreviewRequest&)> preview;
+  /// Taps against a reference, until the operator keeps what was measured; none where nothing was.
+  std::function<std::optional<calibration::PanelLatency>(const app::LatencyRequest&)> latency;
 };
 
 /// What every sub-command gets: where its document and its messages go, and whether JSON was asked for.

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "station/ui/latency_controller.hpp"
 #include "station/ui/operator_controller.hpp"
 #include "station/ui/platform.hpp"
 #include "station/ui/preview_controller.hpp"
@@ -189,6 +190,25 @@ void show_preview(const app::PreviewRequest& request) {
                        {"height", application.window_size().height()}});
   if (application.is_bare_panel()) window.showFullScreen();
   QGuiApplication::exec();
+}
+
+std::optional<calibration::PanelLatency> measure_latency(const app::LatencyRequest& request) {
+  const Application application;
+  LatencyController controller(request.reference);
+  app::LatencyDevices devices(rig::load(request.rig),
+                              [&controller](std::int64_t time_ns) { controller.edge(time_ns); });
+  if (devices.has_kernel_times())
+    controller.set_kernel_time(
+        [&devices](double x, double y, std::int64_t seen_ns) { return devices.claim(x, y, seen_ns); });
+  QQmlApplicationEngine engine;
+  auto& window = load(engine, "LatencyWindow.qml",
+                      {{"controller", QVariant::fromValue(&controller)},
+                       {"pixelsPerMm", pixels_per_mm(application.screen())},
+                       {"width", application.window_size().width()},
+                       {"height", application.window_size().height()}});
+  if (application.is_bare_panel()) window.showFullScreen();
+  QGuiApplication::exec();
+  return controller.kept();
 }
 
 }  // namespace turnpoint::ui

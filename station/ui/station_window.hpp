@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "station/app/panel_latency.hpp"
 #include "station/app/prepare.hpp"
 #include "station/app/preview.hpp"
 #include "station/app/station_request.hpp"
@@ -22,5 +23,8 @@ void run_station(const app::StationRequest& request);
 
 /// The scenes of a protocol with sliders for their factors.
 void show_preview(const app::PreviewRequest& request);
+
+/// Taps on the panel against the rig's reference line; what the operator keeps, none where the page was left.
+std::optional<calibration::PanelLatency> measure_latency(const app::LatencyRequest& request);
 
 }  // namespace turnpoint::ui

@@ -2,6 +2,7 @@
 
 #include <QDir>
 #include <QFile>
+#include <chrono>
 
 namespace turnpoint::ui {
 
@@ -21,6 +22,16 @@ OperatorDesk::OperatorDesk(SessionBridge& bridge, QObject* parent) : QObject(par
                                      " " + store::name(setup.run_mode));
     emit chosenChanged();
   });
+}
+
+void OperatorDesk::pressed(double ago_ms) {
+  const auto now_ns = std::chrono::steady_clock::now().time_since_epoch().count();
+  latency_.edge(now_ns - static_cast<std::int64_t>(ago_ms * 1e6));
+}
+
+double OperatorDesk::keptLatencyMs() const {
+  const auto kept = latency_.kept();
+  return kept && kept->touch ? 1e3 * kept->touch->median_s : 0;
 }
 
 void OperatorDesk::tellLive(const QString& heading) {

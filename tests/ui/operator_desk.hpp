@@ -3,6 +3,7 @@
 #include <QTemporaryDir>
 #include <memory>
 
+#include "station/ui/latency_controller.hpp"
 #include "station/ui/live_model.hpp"
 #include "station/ui/operator_controller.hpp"
 #include "station/ui/session_bridge.hpp"
@@ -15,15 +16,21 @@ class OperatorDesk : public QObject {
   Q_OBJECT
   Q_PROPERTY(turnpoint::ui::OperatorController* operating READ operating CONSTANT)
   Q_PROPERTY(turnpoint::ui::LiveModel* live READ live CONSTANT)
+  Q_PROPERTY(turnpoint::ui::LatencyController* latency READ latency CONSTANT)
   Q_PROPERTY(QString chosen READ chosen NOTIFY chosenChanged)
 
  public:
   explicit OperatorDesk(SessionBridge& bridge, QObject* parent = nullptr);
   OperatorController* operating() { return operating_.get(); }
   LiveModel* live() { return &live_; }
+  LatencyController* latency() { return &latency_; }
   /// "protocol participant language mode" of the session that the operator began, "" before.
   QString chosen() const { return chosen_; }
 
+  /// The reference button closed so long ago.
+  Q_INVOKABLE void pressed(double ago_ms);
+  /// Milliseconds of the latency that was kept, 0 before.
+  Q_INVOKABLE double keptLatencyMs() const;
   Q_INVOKABLE void tellLive(const QString& heading);
 
  signals:
@@ -33,6 +40,7 @@ class OperatorDesk : public QObject {
   QTemporaryDir folder_;
   std::unique_ptr<OperatorController> operating_;
   LiveModel live_;
+  LatencyController latency_{calibration::LatencyReference::button};
   QString chosen_;
 };
 

@@ -12,6 +12,7 @@
 #include <QTest>
 #include <cstdio>
 
+#include "station/ui/latency_controller.hpp"
 #include "station/ui/live_model.hpp"
 #include "station/ui/operator_controller.hpp"
 #include "station/ui/preview_controller.hpp"
@@ -175,6 +176,7 @@ int shoot_operator(const QString& out, const QStringList& sizes) {
   wait_for([&] { return !preview.busy() && !zones.busy(); });
   const auto live = ui::live_exhibit("boundary-adaptive", 40), live2 = ui::live_exhibit("friction-2ifc", 12);
   const auto report = ui::report_exhibit("speed-accuracy"), report2 = ui::report_exhibit("boundary-constant");
+  ui::LatencyController latency(calibration::LatencyReference::photodiode);
   int count = 0;
   for (const auto& size : sizes) {
     OperatorCamera camera(out, panel_of(size), size + "-operator-");
@@ -187,6 +189,7 @@ int shoot_operator(const QString& out, const QStringList& sizes) {
     camera.shoot_report(report2, "report-boundary");
     camera.shoot("PreviewPage.qml", "preview", {{"controller", QVariant::fromValue(&preview)}});
     camera.shoot("PreviewPage.qml", "preview-zone", {{"controller", QVariant::fromValue(&zones)}});
+    camera.shoot("LatencyPage.qml", "panel-latency", {{"controller", QVariant::fromValue(&latency)}});
     count += camera.count();
   }
   return count;

@@ -1,0 +1,105 @@
+import QtQuick
+import Turnpoint
+
+// The touch panel's latency, for the operator: tap the dark field, which answers with a flash. English, like the
+// command line.
+Rectangle {
+    id: root
+    required property LatencyController controller
+    required property real pixelsPerMm
+    signal closed()
+
+    color: look.paper
+
+    Theme {
+        id: look
+        width: root.width
+        height: root.height
+        pixelsPerMm: root.pixelsPerMm
+        dense: true
+    }
+
+    Column {
+        id: words
+        anchors { left: parent.left; right: parent.right; top: parent.top; margins: look.margin }
+        spacing: 0.6 * look.unit
+        Text {
+            text: "Latency of the touch panel"
+            color: look.ink
+            font { pixelSize: look.textTitle; weight: Font.Bold }
+        }
+        Text {
+            width: parent.width
+            text: root.controller.byButton
+                ? "Hold the button against the fingertip, so that each tap on the dark field also presses it. What is measured is the way in: from the finger to the time stamp of its answer."
+                : "Fix the photodiode on the square at the left, and tap the dark field. What is measured is the way out: from the time stamp of a touch to light."
+            color: look.ink
+            font.pixelSize: look.textBody
+            wrapMode: Text.Wrap
+        }
+        Text {
+            objectName: "result"
+            width: parent.width
+            text: root.controller.taps + " taps, " + root.controller.edges + " edges, " + root.controller.pairs + " pairs of the "
+                + root.controller.wanted + " or more that are needed; time stamps of the " + root.controller.quality
+                + (root.controller.result !== "" ? "\n" + root.controller.result : "\n ")
+            color: look.ink
+            font { pixelSize: look.textBody; weight: Font.DemiBold }
+            wrapMode: Text.Wrap
+        }
+    }
+    Rectangle {
+        id: field
+        objectName: "latencyField"
+        anchors { left: parent.left; right: parent.right; top: words.bottom; bottom: buttons.top; margins: look.margin }
+        radius: look.radius
+        color: flash.running ? "white" : "black"
+        border { color: look.ink; width: look.stroke }
+        Rectangle {
+            anchors { left: parent.left; verticalCenter: parent.verticalCenter; leftMargin: look.unit }
+            visible: !root.controller.byButton
+            width: 20 * root.pixelsPerMm
+            height: width
+            color: "transparent"
+            border { color: flash.running ? "black" : "white"; width: 1 }
+        }
+        Timer {
+            id: flash
+            interval: 200
+        }
+        MouseArea {
+            anchors.fill: parent
+            onPressed: mouse => {
+                flash.restart()
+                const place = mapToItem(root, mouse.x, mouse.y)
+                root.controller.tap(place.x / root.width, place.y / root.height)
+            }
+        }
+    }
+    Row {
+        id: buttons
+        anchors { right: parent.right; bottom: parent.bottom; margins: look.margin }
+        spacing: look.unit
+        ActionButton {
+            objectName: "latencyLeave"
+            theme: look
+            primary: false
+            text: "Leave"
+            onActivated: root.closed()
+        }
+        ActionButton {
+            objectName: "latencyAgain"
+            theme: look
+            primary: false
+            text: "Start over"
+            onActivated: root.controller.again()
+        }
+        ActionButton {
+            objectName: "latencyKeep"
+            theme: look
+            enabled: root.controller.pairs >= root.controller.wanted
+            text: "Keep this"
+            onActivated: root.controller.keep()
+        }
+    }
+}

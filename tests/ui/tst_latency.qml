@@ -1,0 +1,52 @@
+import QtQuick
+import QtTest
+import Turnpoint
+
+Item {
+    id: stage
+    width: 800
+    height: 480
+
+    LatencyPage {
+        id: page
+        anchors.fill: parent
+        controller: desk.latency
+        pixelsPerMm: 5.2
+    }
+
+    TestCase {
+        name: "Latency"
+        when: windowShown
+
+        function tap() {
+            const field = findChild(page, "latencyField")
+            mousePress(field)
+            mouseRelease(field)
+        }
+        function centre() {
+            const field = findChild(page, "latencyField")
+            const place = field.mapToItem(stage, field.width / 2, field.height / 2)
+            return grabImage(stage).pixel(place.x, place.y).toString()
+        }
+
+        function test_taps_flash_and_their_latency_is_kept_once_there_are_enough() {
+            const keep = findChild(page, "latencyKeep")
+            tryVerify(() => centre() === "#000000")
+            for (let k = 0; k < 10; ++k) {
+                compare(keep.enabled, false)
+                desk.pressed(50)
+                tap()
+                if (k === 0) tryVerify(() => centre() === "#ffffff")
+                wait(410)  // or the edge of one tap could belong to the next
+            }
+            tryCompare(desk.latency, "pairs", 10)
+            compare(inspector.cutTexts(page), [])
+            compare(inspector.faintTexts(page, 7), [])
+            compare(desk.keptLatencyMs(), 0)
+            mouseClick(keep)
+            verify(desk.keptLatencyMs() >= 50 && desk.keptLatencyMs() < 150, desk.keptLatencyMs())
+            mouseClick(findChild(page, "latencyAgain"))
+            compare(desk.latency.taps, 0)
+        }
+    }
+}
