@@ -240,6 +240,11 @@ Rectangle {
         id: footer
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom; margins: look.margin }
         height: 2 * look.controlHeight + root.gap
+        // The software renderer does not clip signs that scroll out of the sheet above: they end under this.
+        Rectangle {
+            anchors { fill: parent; topMargin: 1 - root.gap }
+            color: look.paper
+        }
         Row {
             id: first
             anchors { left: parent.left; top: parent.top }
