@@ -71,7 +71,13 @@ const char* spread_name(const analysis::FitOptions& options) {
 }
 
 void add_fits(const report::SessionData& data, const std::string& unit, Outcome& outcome) {
-  if (data.design == report::Design::adjustment) return;
+  if (data.design == report::Design::adjustment) {
+    for (const auto& settings : analysis::settings(data.trials))
+      if (settings.mean)
+        outcome.findings.push_back(
+            {of("settings", settings.procedure), "PSE", unit, settings.mean->value, settings.mean->interval});
+    return;
+  }
   for (const auto& named : report::fits_of(data)) {
     outcome.fits.emplace_back(named.name, named.fit.options);
     if (!named.fit.parameters) continue;
@@ -116,11 +122,12 @@ Outcome simulate(const protocol::Protocol& protocol, const PowerOptions& options
   const observer::Observer observer(options.observer);
   Outcome outcome;
   const auto seed = options.seed + static_cast<std::uint64_t>(session);
-  const auto rehearsal =
-      rehearse(protocol, session, seed, [&](const session::TrialSpec& trial, const observer::Question& q) {
-        outcome.expected.add(protocol, trial, q, observer);
-        return observer.answer(q);
-      });
+  auto sits = rehearser(observer);
+  sits.answer = [&](const session::TrialSpec& trial, const observer::Question& q) {
+    outcome.expected.add(protocol, trial, q, observer);
+    return observer.answer(q);
+  };
+  const auto rehearsal = rehearse(protocol, session, seed, sits);
   report::SessionData data;
   add_trials(rehearsal.blocks, protocol, protocol.languages.front(), data);
   data.seed = seed;
@@ -157,6 +164,9 @@ class Truths {
     for (const auto& spec : protocol.procedures)
       if (const auto level = settled_level(protocol, spec, observer))
         add("procedure " + spec.name, "threshold", *level);
+    for (const auto& spec : protocol.procedures)
+      if (spec.kind == procedure::Kind::adjustment)
+        add(of("settings", spec.name), "PSE", options.observer.bias);
     add_fits(outcomes);
     add_differences_of_all(protocol, outcomes);
   }

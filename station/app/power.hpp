@@ -48,7 +48,7 @@ struct Power {
 };
 
 /// Simulates sessions and analyses each as its report would. The same options give the same result with any
-/// number of threads. Throws std::invalid_argument for options out of range and for adjustment.
+/// number of threads. Throws std::invalid_argument for options out of range.
 Power power(const protocol::Protocol& protocol, const PowerOptions& options);
 
 }  // namespace turnpoint::app

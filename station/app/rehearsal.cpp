@@ -5,7 +5,9 @@
 #include <stdexcept>
 
 #include "station/session/rows.hpp"
+#include "station/session/slider.hpp"
 #include "station/session/trial_plan.hpp"
+#include "station/text/number.hpp"
 #include "station/trial/trial.hpp"
 
 namespace turnpoint::app {
@@ -88,13 +90,31 @@ class Bench {
   std::optional<trial::Event> answer_;
 };
 
+/// What the participant does in a trial: an answer, or a setting and when it is done.
+struct Doing {
+  observer::Reply reply;
+  std::optional<double> setting;
+};
+
+Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol::Protocol& protocol,
+              std::uint64_t seed) {
+  if (!spec.slider) return {rehearser.answer(spec, session::question_of(spec, protocol, seed)), {}};
+  const auto set = rehearser.adjust(spec, session::adjustment_of(spec, seed));
+  session::Slider slider(*spec.slider, spec.level.value_or(spec.slider->low));
+  // What is set in silence is not felt.
+  const double sounds_s = session::interval_times(protocol, spec).back().length_s;
+  for (const auto& move : set.moves)
+    if (move.time_s < sounds_s) slider.move(move.value);
+  Doing doing;
+  doing.reply.choice = 0, doing.reply.response_time_s = set.done_s;
+  doing.setting = slider.setting();
+  return doing;
+}
+
 }  // namespace
 
 Rehearsal rehearse(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed,
-                   const Answerer& answerer) {
-  if (protocol.task.kind == protocol::TaskKind::adjustment)
-    throw std::invalid_argument(protocol.path +
-                                ": an adjustment has no answers to simulate; allowed are tasks with choices");
+                   const Rehearser& rehearser) {
   Rehearsal rehearsal;
   session::Director director(protocol, sequence_index, seed);
   std::int64_t now_ns = 0;
@@ -105,9 +125,15 @@ Rehearsal rehearse(const protocol::Protocol& protocol, int sequence_index, std::
     while (const auto spec = director.next()) {
       auto row = session::row_of(*spec, protocol, rehearsal.trials);
       Bench bench(protocol, *block, *spec, now_ns);
-      const auto& result = bench.run(answerer(*spec, session::question_of(*spec, protocol, seed)));
+      const auto doing = done_by(rehearser, *spec, protocol, seed);
+      const auto& result = bench.run(doing.reply);
       session::fill_result(row, result, *spec, protocol, 0);
-      director.record({row.outcome, result.response, row.correct});
+      session::TrialEnd end{row.outcome, result.response, row.correct, {}};
+      if (doing.setting && result.response) {
+        end.setting = doing.setting;
+        row.response = text::exact(*doing.setting);
+      }
+      director.record(end);
       now_ns = bench.now_ns();
       record.trials.push_back(std::move(row));
       if (++rehearsal.trials > most_trials)
@@ -120,10 +146,10 @@ Rehearsal rehearse(const protocol::Protocol& protocol, int sequence_index, std::
   return rehearsal;
 }
 
-Answerer answerer(const observer::Observer& observer) {
-  return [observer](const session::TrialSpec&, const observer::Question& question) {
-    return observer.answer(question);
-  };
+Rehearser rehearser(const observer::Observer& observer) {
+  return {
+      [observer](const session::TrialSpec&, const observer::Question& q) { return observer.answer(q); },
+      [observer](const session::TrialSpec&, const observer::Adjustment& a) { return observer.adjust(a); }};
 }
 
 }  // namespace turnpoint::app

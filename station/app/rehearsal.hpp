@@ -12,6 +12,14 @@ namespace turnpoint::app {
 
 /// Who answers a trial; the trial is complete, and the reply's time counts from response_zero.
 using Answerer = std::function<observer::Reply(const session::TrialSpec&, const observer::Question&)>;
+/// Who sets a slider; times count from its onset.
+using Adjuster = std::function<observer::Setting(const session::TrialSpec&, const observer::Adjustment&)>;
+
+/// Who sits a rehearsal; `adjust` is asked in an adjustment alone, `answer` in every other task.
+struct Rehearser {
+  Answerer answer;
+  Adjuster adjust;
+};
 
 /// A session that was never driven: the rows that `run` would have stored, without tones.
 struct Rehearsal {
@@ -23,12 +31,11 @@ struct Rehearsal {
 
 /// Runs a whole session in memory: director, trial machine and scoring are those of `run`, only drive, screen
 /// and database are missing, so that a trial takes microseconds. Levels, answers and response times equal
-/// those of `run --observer` with the same seed and sequence index. Adjustment has no answers to choose from:
-/// throws std::invalid_argument. Thread-safe on a shared protocol.
+/// those of `run --observer` with the same seed and sequence index. Thread-safe on a shared protocol.
 Rehearsal rehearse(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed,
-                   const Answerer& answerer);
+                   const Rehearser& rehearser);
 
 /// The simulated observer of `run --observer`.
-Answerer answerer(const observer::Observer& observer);
+Rehearser rehearser(const observer::Observer& observer);
 
 }  // namespace turnpoint::app

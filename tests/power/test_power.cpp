@@ -41,11 +41,12 @@ app::PowerOptions options(const std::string& observer, int observers, int interv
 }  // namespace
 
 TEST_CASE("a rehearsed session has the trials, answers and times of one that ran", "[power]") {
+  const auto* protocol = GENERATE("demo", "boundary-adjustment");
   const auto folder = fs::temp_directory_path() / ("turnpoint-power-" + std::to_string(::getpid()));
   fs::create_directories(folder);
   session::Setup setup;
   setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml");
-  setup.protocol = shipped("demo");
+  setup.protocol = shipped(protocol);
   setup.participant = "P01";
   setup.database = (folder / "a.sqlite").string();
   setup.run_mode = store::RunMode::simulated;
@@ -55,7 +56,7 @@ TEST_CASE("a rehearsed session has the trials, answers and times of one that ran
   session::Inputs inputs;
   const auto summary = session::run(setup, nullptr, inputs);
   const auto stored = store::read_session(setup.database, summary.session_id);
-  const auto rehearsed = app::rehearse(setup.protocol, 0, 7, app::answerer(observer::Observer({})));
+  const auto rehearsed = app::rehearse(setup.protocol, 0, 7, app::rehearser(observer::Observer({})));
   fs::remove_all(folder);
   REQUIRE(rehearsed.blocks.size() == stored.blocks.size());
   REQUIRE(rehearsed.trials == summary.trials);
@@ -118,8 +119,20 @@ TEST_CASE("the number of threads changes nothing", "[power]") {
     CHECK(a.recoveries[i].estimates == b.recoveries[i].estimates);
 }
 
-TEST_CASE("an adjustment is refused, and so are options out of range", "[power]") {
-  CHECK_THROWS_AS(app::power(shipped("boundary-adjustment"), options("sim", 1)), std::invalid_argument);
+TEST_CASE("settings find the observer's bias, with intervals that hold it", "[power]") {
+  const auto power =
+      app::power(shipped("boundary-adjustment"), options("sim:threshold=4,bias=3,lapse=0", 300, 300));
+  REQUIRE(power.recoveries.size() == 1);
+  const auto& pse = power.recoveries.front();
+  CHECK(pse.parameter == "PSE");
+  REQUIRE(pse.truth);
+  CHECK(*pse.truth == 3);
+  CHECK(std::abs(*pse.bias) < 0.3);
+  REQUIRE(pse.coverage);
+  CHECK(pse.coverage->value > 0.9);
+}
+
+TEST_CASE("options out of range are refused", "[power]") {
   CHECK_THROWS_AS(app::power(shipped("demo"), options("sim", 0)), std::invalid_argument);
 }
 
