@@ -342,13 +342,14 @@ TEST_CASE("the interval between trials stretches to keep the duty, and the log s
   CHECK(first.trials == 1);
   // The same participant at once, in a new session: the database remembers.
   Room again;
+  std::jthread stops;  // ends before the room that it speaks into
   again.reacts = [&](const auto& page) {
     if (page.kind == PageKind::instructions) {
       again.push(InputKind::next);
-      std::thread([&again] {
+      stops = std::jthread([&again] {
         drive::sleep_until_ns(drive::monotonic_ns() + 300'000'000);
         again.push(InputKind::stop);
-      }).detach();
+      });
       return;
     }
     again.cooperate(page);
