@@ -2,8 +2,8 @@
 # suite: core
 # timeout: 240
 loopback
-sed '/^rate_Hz/a period_frames = 1920' "$SOURCE/deploy/rigs/simulated.toml" >rig.toml
-record 4 heard.raw; recorder=$!
+sed '/^rate_Hz/a period_frames = 1920\nperiods = 64' "$SOURCE/deploy/rigs/simulated.toml" >rig.toml
+record 8 heard.raw; recorder=$!
 # 2 um of 4 um full scale: half of it, -6.02 dB
 turnpoint synth --rig rig.toml --tone 40123.4:2 --seconds 1.5 --out alsa:hw:Loopback,0 --json >report.json
 cat report.json
