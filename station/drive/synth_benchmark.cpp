@@ -1,6 +1,7 @@
 #include "station/drive/synth_benchmark.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <complex>
@@ -13,16 +14,22 @@
 namespace turnpoint::drive {
 namespace {
 
-constexpr int block = 384;
+constexpr std::size_t block = 384;
 constexpr double two_pi = 2 * std::numbers::pi;
 
-// Fills a block that begins at a frame. What keeps a state is brought there by `advance`, frame by frame as
-// in use.
+// What a method fills, each in the width that it works in, so that no conversion is timed with it.
+struct Block {
+  std::array<double, block> wide;
+  std::array<float, block> narrow;
+};
+
+// Fills a block that begins at a frame.
 struct Method {
   std::string name;
-  std::function<void(std::int64_t frame, double* out)> render;
+  std::function<void(std::int64_t frame, Block& out)> render;
   bool free_running =
       false;  ///< its error grows with the frames that it has made, not with the frame's number
+  bool narrow = false;
 };
 
 // The frequency that the increment stands for, so that methods are judged by their arithmetic, not by the
@@ -34,28 +41,28 @@ double exact_sine(std::uint64_t increment, std::int64_t frame) {
 }
 
 Method ours(std::uint64_t increment) {
-  return {"integer phase, polynomial, double", [=](std::int64_t frame, double* out) {
-            std::fill_n(out, block, 0.0);
-            best_kernels().steady(out, block,
+  return {"integer phase, polynomial, double", [=](std::int64_t frame, Block& out) {
+            out.wide.fill(0);
+            best_kernels().steady(out.wide.data(), block,
                                   {increment * static_cast<std::uint64_t>(frame), increment, 0, 1, 0});
           }};
 }
 
 Method ours_float(std::uint64_t increment) {
   return {"integer phase, polynomial, float",
-          [=, sum = std::vector<float>(block)](std::int64_t frame, double* out) mutable {
-            std::fill(sum.begin(), sum.end(), 0.0F);
-            best_kernels().steady_float(sum.data(), block,
+          [=](std::int64_t frame, Block& out) {
+            out.narrow.fill(0);
+            best_kernels().steady_float(out.narrow.data(), block,
                                         {increment * static_cast<std::uint64_t>(frame), increment, 0, 1, 0});
-            std::copy(sum.begin(), sum.end(), out);
-          }};
+          },
+          false, true};
 }
 
 Method libm(std::uint64_t increment) {
-  return {"integer phase, libm", [=](std::int64_t frame, double* out) {
-            for (int n = 0; n < block; ++n) {
-              const auto phase = static_cast<std::int64_t>(increment * static_cast<std::uint64_t>(frame + n));
-              out[n] = std::sin(static_cast<double>(phase) * (0x1p-64 * two_pi));
+  return {"integer phase, libm", [=](std::int64_t frame, Block& out) {
+            for (std::size_t n = 0; n < block; ++n) {
+              const auto phase = static_cast<std::int64_t>(increment * (static_cast<std::uint64_t>(frame) + n));
+              out.wide[n] = std::sin(static_cast<double>(phase) * (0x1p-64 * two_pi));
             }
           }};
 }
@@ -64,42 +71,43 @@ Method table(std::uint64_t increment, int bits) {
   std::vector<double> values;
   for (int k = 0; k <= 1 << bits; ++k) values.push_back(std::sin(two_pi * k / (1 << bits)));
   return {"table of " + std::to_string(1 << bits) + ", linear",
-          [=, values = std::move(values)](std::int64_t frame, double* out) {
-            for (int n = 0; n < block; ++n) {
-              const std::uint64_t phase = increment * static_cast<std::uint64_t>(frame + n);
+          [=, values = std::move(values)](std::int64_t frame, Block& out) {
+            for (std::size_t n = 0; n < block; ++n) {
+              const std::uint64_t phase = increment * (static_cast<std::uint64_t>(frame) + n);
               const auto k = static_cast<std::size_t>(phase >> (64 - bits));
               const double u = static_cast<double>((phase << bits) >> 11) * 0x1p-53;
-              out[n] = values[k] + u * (values[k + 1] - values[k]);
+              out.wide[n] = values[k] + u * (values[k + 1] - values[k]);
             }
           }};
 }
 
 Method growing_time(double frequency_Hz, int rate_Hz) {
   return {"sin(2 pi f t), t += dt, double",
-          [=, t = 0.0](std::int64_t, double* out) mutable {
-            for (int n = 0; n < block; ++n, t += 1.0 / rate_Hz) out[n] = std::sin(two_pi * frequency_Hz * t);
+          [=, t = 0.0](std::int64_t, Block& out) mutable {
+            for (std::size_t n = 0; n < block; ++n, t += 1.0 / rate_Hz) out.wide[n] = std::sin(two_pi * frequency_Hz * t);
           },
           true};
 }
 
 Method growing_float_time(double frequency_Hz, int rate_Hz) {
-  return {"sin(2 pi f t), float", [=](std::int64_t frame, double* out) {
+  return {"sin(2 pi f t), float", [=](std::int64_t frame, Block& out) {
             const auto w = static_cast<float>(two_pi * frequency_Hz);
-            for (int n = 0; n < block; ++n) {
-              const auto t = static_cast<float>(static_cast<double>(frame + n) / rate_Hz);
-              out[n] = static_cast<double>(std::sin(w * t));
+            for (std::size_t n = 0; n < block; ++n) {
+              const auto t = static_cast<float>((static_cast<double>(frame) + static_cast<double>(n)) / rate_Hz);
+              out.narrow[n] = std::sin(w * t);
             }
-          }};
+          },
+          false, true};
 }
 
 Method rotation(std::uint64_t increment) {
   const double angle = static_cast<double>(increment) * 0x1p-64 * two_pi;
   return {
       "rotation, free running",
-      [=, z = std::complex<double>(1, 0), step = std::polar(1.0, angle)](std::int64_t, double* out) mutable {
-        for (int n = 0; n < block; ++n, z = {z.real() * step.real() - z.imag() * step.imag(),
+      [=, z = std::complex<double>(1, 0), step = std::polar(1.0, angle)](std::int64_t, Block& out) mutable {
+        for (std::size_t n = 0; n < block; ++n, z = {z.real() * step.real() - z.imag() * step.imag(),
                                              z.real() * step.imag() + z.imag() * step.real()})
-          out[n] = z.imag();
+          out.wide[n] = z.imag();
       },
       true};
 }
@@ -107,23 +115,25 @@ Method rotation(std::uint64_t increment) {
 Method reseeded_rotation(std::uint64_t increment) {
   const double angle = static_cast<double>(increment) * 0x1p-64 * two_pi;
   return {"rotation, reseeded each block",
-          [=, step = std::polar(1.0, angle)](std::int64_t frame, double* out) {
+          [=, step = std::polar(1.0, angle)](std::int64_t frame, Block& out) {
             const std::uint64_t phase = increment * static_cast<std::uint64_t>(frame);
             std::complex<double> z(sine_of_phase(phase + quarter_cycle), sine_of_phase(phase));
-            for (int n = 0; n < block; ++n, z = {z.real() * step.real() - z.imag() * step.imag(),
+            for (std::size_t n = 0; n < block; ++n, z = {z.real() * step.real() - z.imag() * step.imag(),
                                                  z.real() * step.imag() + z.imag() * step.real()})
-              out[n] = z.imag();
+              out.wide[n] = z.imag();
           }};
 }
 
-double error_dB(const double* samples, std::uint64_t increment, std::int64_t frame) {
+double error_dB(const Block& made, bool narrow, std::uint64_t increment, std::int64_t frame) {
   double worst = 1e-20;
-  for (int n = 0; n < block; ++n)
-    worst = std::max(worst, std::abs(samples[n] - exact_sine(increment, frame + n)));
+  for (std::size_t n = 0; n < block; ++n) {
+    const double sample = narrow ? static_cast<double>(made.narrow[n]) : made.wide[n];
+    worst = std::max(worst, std::abs(sample - exact_sine(increment, frame + static_cast<std::int64_t>(n))));
+  }
   return 20 * std::log10(worst);
 }
 
-double cost_ns(Method& method, double* out) {
+double cost_ns(Method& method, Block& out) {
   double best = 1e9;
   for (int repeat = 0; repeat < 5; ++repeat) {
     const auto before = std::chrono::steady_clock::now();
@@ -150,7 +160,7 @@ SynthBenchmark benchmark_synthesis(double frequency_Hz, int rate_Hz) {
                                growing_time(frequency_Hz, rate_Hz),
                                growing_float_time(frequency_Hz, rate_Hz)};
   };
-  std::vector<double> samples(block);
+  Block samples;
   auto timed = methods();
   for (Method& method : methods()) {
     SynthMethod row;
@@ -161,12 +171,12 @@ SynthBenchmark benchmark_synthesis(double frequency_Hz, int rate_Hz) {
       // A free-running method has to be run; a day of that would take minutes, so it is run for a minute at
       // most.
       if (method.free_running && time_s > 60) break;
-      for (; method.free_running && made < frame; made += block) method.render(made, samples.data());
-      method.render(frame, samples.data());
+      for (; method.free_running && made < frame; made += block) method.render(made, samples);
+      method.render(frame, samples);
       made = frame + block;
-      row.error_dB.push_back(error_dB(samples.data(), increment, frame));
+      row.error_dB.push_back(error_dB(samples, method.narrow, increment, frame));
     }
-    row.ns_per_tone_frame = cost_ns(timed[result.methods.size()], samples.data());
+    row.ns_per_tone_frame = cost_ns(timed[result.methods.size()], samples);
     result.methods.push_back(std::move(row));
   }
   return result;
