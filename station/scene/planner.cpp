@@ -29,6 +29,12 @@ constexpr double kHighestShareOfRate = 0.45;
 
 constexpr std::size_t kRemembered = 512, kSolutions = 128;
 
+// Planned tones lie on a grid: processors and C libraries differ in the last bits of sines and logarithms, and
+// the same session must give the same samples on all of them. It is far below what matters: 1 uHz, 1 fm
+// (-180 dB of 1 um), 1 nrad.
+constexpr double kGridPerHz = 1e6, kGridPerMetre = 1e15, kGridPerRadian = 1e9;
+double on_grid(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
+
 double mm(double m) { return m * 1e3; }
 
 /// Everything in a scene that its plan depends on.
@@ -300,6 +306,7 @@ DrivePlan Planner::make(const Scene& scene) {
   // Positions come from the validated table, which is both the cheapest and the most exact there is; the
   // choice of a model is about the profile.
   auto tones = state_->tones_for(scene, plan);
+  for (auto& tone : tones) tone.frequency_Hz = on_grid(tone.frequency_Hz, kGridPerHz);
   const Solution& solution = state_->solution_for(scene, tones);
   const auto& choice = solution.choice;
   plan.model = choice.model;
@@ -312,6 +319,10 @@ DrivePlan Planner::make(const Scene& scene) {
   if (scene.boundary_m && !plan.boundary_m) plan.boundary_m = scene.boundary_m;
   state_->equalise(tones, solution);
   physics::assign_phases(tones);
+  for (auto& tone : tones) {
+    tone.amplitude_m = on_grid(tone.amplitude_m, kGridPerMetre);
+    tone.phase_rad = on_grid(tone.phase_rad, kGridPerRadian);
+  }
   plan.crest_factor = physics::crest_factor(tones);
   plan.audible_products = physics::audible_products(tones);
   plan.warnings = physics::surface_warnings(state_->surface);
