@@ -80,8 +80,10 @@ void take_calibration(const std::string& source, const std::string& path, sessio
   setup.rig = calibration::applied(calibration, std::move(setup.rig));
   setup.calibration_id = text::sha256(source);
   setup.calibration_text = source;
-  if (calibration.panel && calibration.panel->touch)
+  if (calibration.panel && calibration.panel->touch) {
     setup.response_offset_s = calibration.panel->touch->median_s;
+    setup.response_offset_quality = calibration.panel->quality;
+  }
   for (const auto& point : calibration.sound) setup.sound.push_back({point.frequency_Hz, point.level_dB});
 }
 

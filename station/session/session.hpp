@@ -37,6 +37,9 @@ struct Setup {
   std::string consent_version;  ///< of the consent form that the participant signed; "" where none was asked
   /// The touch panel's own latency, stored with each answer by touch, never subtracted.
   double response_offset_s = 0;
+  /// Of the time stamps that it was found for (kernel | toolkit): answers with others do not get it; "" all
+  /// do.
+  std::string response_offset_quality;
 };
 
 /// How a sitting ended, for people and for --json.

@@ -244,7 +244,9 @@ void Sitting::finish_row(Running& trial) {
   auto& row = trial.row;
   fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_);
   if (trial.slider && row.response) row.response = text::exact(trial.slider->felt());
-  row.response_offset_s = trial.by_button ? 0 : setup_.response_offset_s;
+  const auto& found_for = setup_.response_offset_quality;
+  const bool applies = !trial.by_button && (found_for.empty() || found_for == row.response_time_quality);
+  row.response_offset_s = applies ? setup_.response_offset_s : 0;
   if (const auto fit = stage_->clock_fit()) {
     row.clock_slope_ns_per_frame = fit->slope_ns_per_frame;
     row.clock_residual_ns = fit->residual_ns;

@@ -244,5 +244,10 @@ TEST_CASE("the response device's latency and the consent form are stored, and no
   const auto a = trials_of(folder / "a.sqlite", summary.session_id);
   const auto b = trials_of(folder / "b.sqlite", plain.session_id);
   CHECK(a.front().response_offset_s == 0.0625);
+  // Found for the kernel's time stamps, it says nothing of others.
+  setup.response_offset_quality = "kernel";
+  setup.database = folder / "c.sqlite";
+  const auto other = session::run(setup, nullptr, inputs);
+  CHECK(trials_of(folder / "c.sqlite", other.session_id).front().response_offset_s == 0);
   CHECK(a.front().response_time_s == b.front().response_time_s);
 }
