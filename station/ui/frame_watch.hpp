@@ -1,15 +1,37 @@
 #pragma once
 #include <QObject>
 #include <QQuickWindow>
+#include <QTimer>
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <mutex>
 
 namespace turnpoint::ui {
 
-/// Counts the frames by which a window was late: from the page asked for, or the finger that pressed an
-/// answer, until that is on the screen, a participant should never wait longer than one refresh. Frames
-/// beyond that are counted.
+/// How late a screen was. Pure; times are CLOCK_MONOTONIC, spans may overlap: no frame is counted twice.
+class LateFrames {
+ public:
+  /// `refresh_Hz` at or below 0 counts as 60.
+  explicit LateFrames(double refresh_Hz) : refresh_Hz_(refresh_Hz > 0 ? refresh_Hz : 60) {}
+
+  /// Nothing new could be seen from `from_ns` to `to_ns`.
+  void waited(std::int64_t from_ns, std::int64_t to_ns);
+  int count() const { return count_; }
+
+  /// The frames lost by a wait: whole refreshes beyond the first.
+  static int lost(std::int64_t waited_ns, double refresh_Hz);
+
+ private:
+  double refresh_Hz_;
+  std::int64_t counted_ns_ = 0;  ///< up to here all is counted
+  int count_ = 0;
+};
+
+/// Counts the frames by which a window was late during a trial. From the page asked for, or the finger that
+/// pressed an answer, until that is on the screen, a participant should never wait longer than one refresh;
+/// and a loop of events that stands still can neither show a page nor take a touch, so it has to turn once a
+/// refresh. Frames beyond that are counted. GUI thread only.
 class FrameWatch : public QObject {
   Q_OBJECT
 
@@ -17,27 +39,30 @@ class FrameWatch : public QObject {
   using Clock = std::function<std::int64_t()>;
   FrameWatch(Clock clock, QObject* parent = nullptr);
 
-  /// GUI thread. Follows this window; `refresh_Hz` at or below 0 counts as 60.
+  /// Follows this window; `refresh_Hz` at or below 0 counts as 60.
   void follow(QQuickWindow* window, double refresh_Hz);
 
-  /// GUI thread: something new is to be shown. The next frame shows it, and one is drawn even where it looks
-  /// the same, so that a later frame is never taken for this one.
+  /// Something new is to be shown. The next frame shows it, and one is drawn even where it looks the same, so
+  /// that a later frame is never taken for this one. The first call begins the count.
   void asked();
 
-  /// Frames lost since the last call.
-  int take() { return lost_.exchange(0); }
-
-  /// The frames lost where a page took `waited_ns`: whole refreshes beyond the first.
-  static int lost(std::int64_t waited_ns, double refresh_Hz);
+  /// Ends the count, and tells it; 0 where none had begun.
+  int end();
 
  private:
-  void swapped();
+  void begin();
+  void beat();
+  void swapped();  ///< on the rendering thread
+  void waited(std::int64_t from_ns);
 
   Clock clock_;
   QQuickWindow* window_ = nullptr;
   double refresh_Hz_ = 60;
+  QTimer timer_;
+  std::int64_t beat_ns_ = 0;
   std::atomic<std::int64_t> asked_ns_{0};  ///< 0: nothing was
-  std::atomic<int> lost_{0};
+  std::mutex mutex_;
+  LateFrames late_{60};  ///< under the mutex
 };
 
 }  // namespace turnpoint::ui

@@ -94,7 +94,12 @@ void SessionBridge::annotate(const QString& text) {
 }
 
 void SessionBridge::frames_lost(int frames) {
-  if (frames > 0) push(session::InputKind::frames_lost, frames);
+  if (frames <= 0) return;
+  session::Input input;  // not by push(): nobody has pressed anything
+  input.time_ns = clock_();
+  input.kind = session::InputKind::frames_lost;
+  input.value = frames;
+  sink_(std::move(input));
 }
 
 void SessionBridge::push(session::InputKind kind, int value, double number) {

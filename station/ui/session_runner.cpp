@@ -16,6 +16,13 @@ std::int64_t now_ns() {
   return std::chrono::steady_clock::now().time_since_epoch().count();
 }
 
+/// Pages on which a late frame could be felt, and is counted.
+bool is_trial(PageModel::Kind kind) {
+  using Kind = PageModel::Kind;
+  return kind == Kind::Cue || kind == Kind::Stimulus || kind == Kind::Pause || kind == Kind::Response ||
+         kind == Kind::Feedback || kind == Kind::Adjust;
+}
+
 }  // namespace
 
 SessionRunner::SessionRunner(QObject* parent)
@@ -25,13 +32,14 @@ SessionRunner::SessionRunner(QObject* parent)
       frames_(now_ns) {
   connect(&bridge_, &SessionBridge::shown, this, [this] {
     const auto kind = bridge_.page()->kind();
-    // Between trials nothing is at stake: there the frames lost before are counted.
-    if (kind == PageModel::Kind::Interval)
-      bridge_.frames_lost(frames_.take());
-    else
-      frames_.asked();
+    if (is_trial(kind)) return frames_.asked();
+    const int lost = frames_.end();
+    // Each trial that counts ends in an interval; what a fault or a pause has cut off comes again.
+    if (kind == PageModel::Kind::Interval) bridge_.frames_lost(lost);
   });
-  connect(&bridge_, &SessionBridge::acknowledged, &frames_, &FrameWatch::asked);
+  connect(&bridge_, &SessionBridge::acknowledged, this, [this] {
+    if (is_trial(bridge_.page()->kind())) frames_.asked();
+  });
 }
 
 SessionRunner::~SessionRunner() {
