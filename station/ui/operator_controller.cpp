@@ -51,14 +51,15 @@ void OperatorController::refresh() {
 }
 
 /// The job runs on the worker; what it returns runs here, unless something newer was asked for meanwhile.
-void OperatorController::work(std::function<std::function<void()>()> job) {
+void OperatorController::work(std::function<std::function<void()>()> job,
+                              void (OperatorController::*failed)(std::vector<std::string>)) {
   const int generation = ++generation_;
-  worker_ = std::jthread([this, generation, job = std::move(job)] {
+  worker_ = std::jthread([this, generation, failed, job = std::move(job)] {
     std::function<void()> then;
     try {
       then = job();
     } catch (const std::exception& error) {
-      then = [this, lines = lines_of(error)] { fail(lines); };
+      then = [this, failed, lines = lines_of(error)] { (this->*failed)(lines); };
     }
     QMetaObject::invokeMethod(
         this,
@@ -75,6 +76,13 @@ void OperatorController::fail(std::vector<std::string> problems) {
   emit changed();
 }
 
+/// What is chosen cannot begin so; something else of the same protocol may.
+void OperatorController::refuse(std::vector<std::string> reasons) {
+  refused_ = std::move(reasons);
+  preparing_ = false;
+  emit changed();
+}
+
 const app::ProtocolEntry* OperatorController::entry() const {
   return selected_ >= 0 && selected_ < static_cast<int>(protocols_.size())
              ? &protocols_[static_cast<std::size_t>(selected_)]
@@ -86,32 +94,38 @@ void OperatorController::select(int index) {
   selected_ = index;
   language_ = -1;
   words_ = {};
+  refused_.clear();
   if (!entry()->problem.empty()) return fail({entry()->problem});
   checking_ = true;
   emit changed();
-  work([this, path = entry()->path, rig = request_.rig]() -> std::function<void()> {
-    auto words = app::words_of(app::check(path, rig, {kSessions}));
-    return [this, words = std::move(words)] {
-      words_ = words;
-      checking_ = false;
-      emit changed();
-    };
-  });
+  work(
+      [this, path = entry()->path, rig = request_.rig]() -> std::function<void()> {
+        auto words = app::words_of(app::check(path, rig, {kSessions}));
+        return [this, words = std::move(words)] {
+          words_ = words;
+          checking_ = false;
+          emit changed();
+        };
+      },
+      &OperatorController::fail);
 }
 
 void OperatorController::chooseLanguage(int index) {
   if (index < -1 || index >= languages().size()) return;
   language_ = index;
+  refused_.clear();
   emit changed();
 }
 
 void OperatorController::enterParticipant(const QString& code) {
   participant_ = code;
+  refused_.clear();
   emit changed();
 }
 
 void OperatorController::setLive(bool live) {
   live_ = live;
+  refused_.clear();
   emit changed();
 }
 
@@ -137,33 +151,39 @@ void OperatorController::begin() {
   request.participant = ask_code ? kCodeToCome : participant_.toStdString();
   if (language_ >= 0) request.language = languages()[language_].toStdString();
   preparing_ = true;
+  refused_.clear();
   emit changed();
-  work([this, request, ask_code, ask_language, arm = armed_]() -> std::function<void()> {
-    ChosenSession session{app::prepare(request), ask_language, ask_code, arm};
-    return [this, session] {
-      preparing_ = false;
-      emit changed();
-      emit chosen(session);
-    };
-  });
+  work(
+      [this, request, ask_code, ask_language, arm = armed_]() -> std::function<void()> {
+        ChosenSession session{app::prepare(request), ask_language, ask_code, arm};
+        return [this, session] {
+          preparing_ = false;
+          emit changed();
+          emit chosen(session);
+        };
+      },
+      &OperatorController::refuse);
 }
 
 void OperatorController::resume() {
   if (preparing_ || !interrupted_) return;
   preparing_ = true;
+  refused_.clear();
   emit changed();
-  work([this, arm = armed_]() -> std::function<void()> {
-    std::ostringstream messages;
-    app::ResumeRequest request;
-    request.database = request_.database;
-    request.session_id = interrupted_->session_id;
-    const auto setup = app::prepare_resume(request, messages);
-    return [this, setup, arm] {
-      preparing_ = false;
-      emit changed();
-      if (setup) emit chosen({*setup, false, false, arm});
-    };
-  });
+  work(
+      [this, arm = armed_]() -> std::function<void()> {
+        std::ostringstream messages;
+        app::ResumeRequest request;
+        request.database = request_.database;
+        request.session_id = interrupted_->session_id;
+        const auto setup = app::prepare_resume(request, messages);
+        return [this, setup, arm] {
+          preparing_ = false;
+          emit changed();
+          if (setup) emit chosen({*setup, false, false, arm});
+        };
+      },
+      &OperatorController::refuse);
 }
 
 QVariantList OperatorController::protocols() const {
@@ -178,7 +198,7 @@ QVariantList OperatorController::protocols() const {
 }
 
 QVariantList OperatorController::facts() const { return to_list(words_.facts); }
-QStringList OperatorController::problems() const { return to_list(words_.problems); }
+QStringList OperatorController::problems() const { return to_list(words_.problems) + to_list(refused_); }
 QStringList OperatorController::warnings() const { return to_list(words_.warnings); }
 
 QVariantList OperatorController::cues() const {

@@ -86,8 +86,10 @@ class OperatorController : public QObject {
   void chosen(const turnpoint::ui::ChosenSession& session);
 
  private:
-  void work(std::function<std::function<void()>()> job);
+  void work(std::function<std::function<void()>()> job,
+            void (OperatorController::*failed)(std::vector<std::string>));
   void fail(std::vector<std::string> problems);
+  void refuse(std::vector<std::string> reasons);
   const app::ProtocolEntry* entry() const;
 
   app::StationRequest request_;
@@ -95,6 +97,7 @@ class OperatorController : public QObject {
   QStringList participants_;
   std::optional<app::InterruptedNote> interrupted_;
   app::CheckWords words_;
+  std::vector<std::string> refused_;  ///< why the last session chosen did not begin
   int selected_ = -1, language_ = -1;
   QString participant_;
   bool live_ = false, armed_ = false, checking_ = false, preparing_ = false;
