@@ -10,6 +10,7 @@ Item {
     readonly property PageModel page: bridge.page
     readonly property bool hasNumbers: page.summaryLabels.length > 0
     property bool hasReport: false
+    /// The numbers are shown: only somebody who knows the operator's code wants that.
     property bool counting: false
     signal closed()
     signal reportWanted()
@@ -53,7 +54,7 @@ Item {
             quiet: true
             visible: root.hasReport || root.hasNumbers
             text: root.texts.forOperator
-            onActivated: root.hasReport ? root.reportWanted() : root.counting = true
+            onActivated: root.reportWanted()
         }
         ActionButton {
             objectName: "close"

@@ -17,12 +17,28 @@ Window {
     readonly property bool asking: start.stage === StartController.Language || start.stage === StartController.Consent
                                    || start.stage === StartController.Code
 
-    /// What the operator's code is asked for: arming the amplifier, or the operator's view.
-    property bool toArm: false
-    function ask(arming: bool) {
-        toArm = arming
+    /// What somebody who knows the operator's code may do on the participant's screen: "view" the running session,
+    /// "arm" the amplifier, read the "report", "leave" for the operator's page. Without a code there is no view.
+    property string wish
+    function ask(what: string) {
+        wish = what
         if (operatorCode !== "") gate.visible = true
-        else if (arming) participant.armable = true
+        else if (what !== "view") grant()
+    }
+    function grant() {
+        if (wish === "arm") participant.armable = true
+        if (wish === "report" && report.ready) reportPage.wanted = true
+        else if (wish === "report") participant.counting = true
+        if (wish === "leave") start.close()
+        if (wish !== "view") return
+        // The operator's view would cover a trial: a pause ends it first, and it comes again.
+        if (participant.inTrial) bridge.pause()
+        liveView.wanted = true
+    }
+    /// Without an operator's page behind it, leaving opens nothing.
+    function leave() {
+        if (operating !== null) ask("leave")
+        else start.close()
     }
 
     width: 1280
@@ -68,7 +84,7 @@ Window {
             texts: texts
             version: root.start.consentVersion
             onAgreed: root.start.consent()
-            onDeclined: root.start.close()
+            onDeclined: root.leave()
         }
         CodePage {
             id: codePage
@@ -93,10 +109,10 @@ Window {
         pixelsPerMm: root.pixelsPerMm
         leftHanded: root.leftHanded
         hasReport: root.report.ready
-        onClosed: root.start.close()
-        onReportWanted: reportPage.wanted = true
-        onOperatorWanted: root.ask(false)
-        onArmingWanted: root.ask(true)
+        onClosed: root.leave()
+        onReportWanted: root.ask("report")
+        onOperatorWanted: root.ask("view")
+        onArmingWanted: root.ask("arm")
     }
     OperatorGate {
         id: gate
@@ -108,13 +124,7 @@ Window {
         onAbandoned: visible = false
         onPassed: {
             visible = false
-            if (root.toArm) {
-                participant.armable = true
-                return
-            }
-            // The operator's view would cover a trial: a pause ends it first, and it comes again.
-            if (participant.inTrial) root.bridge.pause()
-            liveView.wanted = true
+            root.grant()
         }
     }
 

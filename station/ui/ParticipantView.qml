@@ -10,6 +10,8 @@ Rectangle {
     property bool leftHanded: false
     /// The report of the session that has ended can be had from the end page.
     property bool hasReport: false
+    /// On the end page: the session's numbers, for as long as there is no report.
+    property alias counting: endPage.counting
     signal closed()
     signal reportWanted()
     /// Somebody held the progress for long: an operator.
@@ -141,6 +143,7 @@ Rectangle {
             onArmingWanted: root.armingWanted()
         }
         EndPage {
+            id: endPage
             anchors.fill: parent
             visible: root.kind === PageModel.End
             theme: theme
