@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "station/cli/command.hpp"
-#include "station/ui/station_window.hpp"
+#include "station/ui/screens.hpp"
 
 Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
 

@@ -1,30 +1,57 @@
 #pragma once
+#include <QObject>
+#include <QQmlApplicationEngine>
+#include <QQuickWindow>
+#include <QSize>
 #include <optional>
+#include <string>
 
-#include "station/app/panel_latency.hpp"
-#include "station/app/prepare.hpp"
-#include "station/app/preview.hpp"
-#include "station/app/station_request.hpp"
-#include "station/session/session.hpp"
+#include "station/ui/operator_controller.hpp"
+#include "station/ui/session_runner.hpp"
+#include "station/ui/start_controller.hpp"
 
 namespace turnpoint::ui {
 
-// What the program does with a screen. Each makes the application object, so one call a process; each returns
-// when its window is closed, and throws std::invalid_argument where there is no screen to open.
+/// The station's one window: the participant's pages, before them the operator's where there is one; and the
+/// sessions behind them, one after another. GUI thread only.
+class StationWindow : public QObject {
+  Q_OBJECT
 
-/// Runs one session: asks for what the request leaves open (language, consent, participant's code), shows the
-/// session's pages and takes its inputs. The session runs on a thread of its own; what it throws is shown as
-/// a fault page and thrown again from here. Throws text::BadInput for files that do not fit. `prepared` is a
-/// session that goes on: it asks nothing, and `request` gives only the operator's code.
-session::Summary run_on_screen(app::RunRequest request, std::optional<session::Setup> prepared);
+ public:
+  struct Place {
+    double pixels_per_mm = 4;
+    QSize size;
+    bool bare_panel = false;  ///< the window fills the screen
+  };
 
-/// The operator's start page, and the sessions begun there.
-void run_station(const app::StationRequest& request);
+  /// `operating` (null: no operator's page) must outlive this. `operator_code` opens the operator's view from
+  /// the participant's pages; "" keeps it shut.
+  StationWindow(const Place& place, OperatorController* operating, const std::string& database,
+                const std::string& operator_code);
 
-/// The scenes of a protocol with sliders for their factors.
-void show_preview(const app::PreviewRequest& request);
+  /// Asks the participant what is open, then runs the session.
+  void ask(const ChosenSession& chosen);
 
-/// Taps on the panel against the rig's reference line; what the operator keeps, none where the page was left.
-std::optional<calibration::PanelLatency> measure_latency(const app::LatencyRequest& request);
+  /// The operator's view on a screen of its own, for as long as this lives.
+  QQuickWindow& show_live_window(QScreen& screen);
+
+  /// Until the window is closed. Throws what ended the last session; none where none has begun.
+  std::optional<session::Summary> run();
+
+  QQuickWindow& window() { return *window_; }
+  SessionRunner& runner() { return runner_; }
+
+ private:
+  void begin();
+  void close();
+
+  OperatorController* operating_;
+  session::Setup setup_;
+  bool arm_ = false;
+  SessionRunner runner_;
+  StartController start_;
+  QQmlApplicationEngine engine_, live_engine_;
+  QQuickWindow* window_ = nullptr;
+};
 
 }  // namespace turnpoint::ui

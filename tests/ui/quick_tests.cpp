@@ -9,6 +9,7 @@
 #include "tests/ui/page_inspector.hpp"
 #include "tests/ui/real_session.hpp"
 #include "tests/ui/scripted_session.hpp"
+#include "tests/ui/station_room.hpp"
 
 Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
 
@@ -22,6 +23,7 @@ class Setup : public QObject {
     desk_ = new turnpoint::ui::OperatorDesk(*script_->bridge(), QCoreApplication::instance());
     inspector_ = new turnpoint::ui::PageInspector(QCoreApplication::instance());
     sitting_ = new turnpoint::ui::RealSession(QCoreApplication::instance());
+    room_ = new turnpoint::ui::StationRoom(QCoreApplication::instance());
   }
 
   void qmlEngineAvailable(QQmlEngine* engine) {
@@ -31,6 +33,7 @@ class Setup : public QObject {
     engine->rootContext()->setContextProperty("sitting", sitting_);
     engine->rootContext()->setContextProperty("desk", desk_);
     engine->rootContext()->setContextProperty("inspector", inspector_);
+    engine->rootContext()->setContextProperty("room", room_);
   }
 
  private:
@@ -38,6 +41,7 @@ class Setup : public QObject {
   turnpoint::ui::RealSession* sitting_ = nullptr;
   turnpoint::ui::OperatorDesk* desk_ = nullptr;
   turnpoint::ui::PageInspector* inspector_ = nullptr;
+  turnpoint::ui::StationRoom* room_ = nullptr;
 };
 
 QUICK_TEST_MAIN_WITH_SETUP(pages, Setup)

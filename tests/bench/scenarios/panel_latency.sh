@@ -1,12 +1,15 @@
-# proves: the calibration page finds a panel's latency and jitter against a button, and sessions keep it with touches
+# proves: the panel's latency, found on its calibration page, stands beside a live session's answers by touch
 # needs: screen
-# timeout: 500
-gpio_sim BTN_L BTN_R
-pull BTN_L down; pull BTN_R down
+# timeout: 900
+gpio_sim BTN_L BTN_R AMP_EN AMP_FAULT STOP AMP_HB
+for line in BTN_L BTN_R AMP_EN AMP_FAULT STOP AMP_HB; do pull $line down; done
+loopback
 panel_begin
 screen_begin
 export TURNPOINT_DPI=132 QT_LOGGING_RULES=turnpoint.startup=true
 sed -e "/^\[buttons\]/,/^uri/ s|^uri.*|uri = \"gpio:left=BTN_L,right=BTN_R\"|" \
+  -e "/^\[amplifier\]/,/^uri/ s|^uri.*|uri = \"gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB\"|" \
+  -e "/^\[output\]/,/^uri/ s|^uri.*|uri = \"alsa:hw:Loopback,0\"\nperiod_frames = 1920\nperiods = 64|" \
   -e "/^\[touch\]/,/^uri/ s|^uri.*|uri = \"evdev:$PANEL\"|" "$SOURCE/deploy/rigs/simulated.toml" >rig.toml
 turnpoint calibrate --rig rig.toml --panel --json >result.json 2>page.log & page=$!
 shown() { [ "$(pixel 20 460)" = eef4f6 ]; }
@@ -29,3 +32,53 @@ truth=$(awk '{ v[NR] = $1 } END { print (v[6] + v[7]) / 2 }' truth.txt)
 stored=$(awk '$1 == "response_offset_s" { print $3 }' rig.calibration-*.toml)
 near "response_offset_s" "$stored" "$truth" 0.0001
 [ "$(awk '$1 == "response_offset_unmatched" { print $3 }' rig.calibration-*.toml)" = 0 ] || fail "a tap was not matched"
+
+# The rest of the calibration; what was found of the panel stays in it.
+awk 'BEGIN { print "frequency_Hz,displacement_um,phase_deg"
+  for (f = 20000; f <= 50000; f += 500) print f "," 0.3 + 4e-6 * f ",-20" }' >sweep.csv
+printf 'displacement_um,relative_friction\n0,1\n0.5,0.6\n1,0.4\n2,0.2\n4,0.15\n' >friction.csv
+printf 'frequency_Hz,level_dB\n20000,60\n30000,70\n50000,80\n' >sound.csv
+turnpoint calibrate --rig rig.toml --response main=sweep.csv --full-scale 0.1 --friction friction.csv --sound sound.csv
+near "response_offset_s, calibrated again" "$(awk '$1 == "response_offset_s" { print $3 }' rig.calibration-*.toml)" "$truth" 0.0001
+
+# A live session: three answers by touch, one by a button, the amplifier on while there is something to feel.
+sed -e 's/device = "touch"/device = "either"/' "$SOURCE/tests/ui/short.toml" >short.toml
+turnpoint run short.toml --rig rig.toml --db lab.sqlite --mode live --participant L1 --language en --json \
+  >summary.json 2>session.log & session=$!
+action=5c3d0f
+answers_open() { [ "$(pixel 60 400)" = $action ] && [ "$(pixel 740 400)" = $action ]; }
+continues() { [ "$(pixel 290 390)" = $action ] && [ "$(pixel 60 400)" != $action ]; }
+trials() { sqlite3 lab.sqlite "SELECT count(*) FROM trial" 2>/dev/null || echo 0; }
+touch_answer() { touch_do tap "$1" 370; }
+press() { gpio_line press "$(pull_file "$1")" 50 >/dev/null; }
+eventually 60 continues
+[ "$(level AMP_EN)" = 0 ] || fail "the amplifier is on before there is anything to feel"
+screenshot live
+done=0
+for answer in "touch_answer 200" "press BTN_R" "touch_answer 600" "touch_answer 200"; do
+  sleep 0.5                       # a page reacts once it can have been read
+  ! continues || { touch_do tap 400 390; sleep 0.2; }
+  eventually 30 answers_open
+  [ "$(level AMP_EN)" = 1 ] || fail "a stimulus, and the amplifier is off"
+  sleep 0.2
+  $answer
+  done=$((done + 1))
+  eventually 10 equals trials "" $done
+  [ $done != 2 ] || eventually 10 continues
+done
+page_is_clear() { [ "$(pixel 60 400)" != $action ]; }
+eventually 20 page_is_clear
+sleep 1; touch_do tap 560 390     # Close
+status=0; wait $session || status=$?
+cat summary.json session.log
+[ $status = 0 ] && has summary.json '"completed"' || fail "the session ended with $status"
+[ "$(level AMP_EN)" = 0 ] || fail "the amplifier is still on"
+turnpoint export --db lab.sqlite --out export >/dev/null
+column() { awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) at = i; next } { printf "%s ", $at }' export/short/trials.csv; }
+column run_mode; column response; column response_time_quality; column response_offset_s; column xruns
+[ "$(column run_mode)" = "live live live live " ] || fail "not a live session: $(column run_mode)"
+[ "$(column response)" = "left right right left " ] || fail "answers: $(column response)"
+[ "$(column response_time_quality)" = "kernel kernel kernel kernel " ] || fail "an answer without its kernel time"
+read -r touch1 button touch2 touch3 <<<"$(column response_offset_s)"
+near "offset of the button" "$button" 0 0
+for offset in "$touch1" "$touch2" "$touch3"; do near "offset of a touch" "$offset" "$truth" 0.0001; done

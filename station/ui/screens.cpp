@@ -1,0 +1,93 @@
+#include "station/ui/screens.hpp"
+
+#include <QQmlApplicationEngine>
+#include <stdexcept>
+
+#include "station/ui/latency_controller.hpp"
+#include "station/ui/load_page.hpp"
+#include "station/ui/operator_controller.hpp"
+#include "station/ui/platform.hpp"
+#include "station/ui/preview_controller.hpp"
+#include "station/ui/screen.hpp"
+#include "station/ui/station_window.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+/// Stands in for a code that the keypad will ask for, so that everything else is checked before a window
+/// opens.
+constexpr const char* kCodeToCome = "keypad";
+
+StationWindow::Place place_on(const Application& application) {
+  return {pixels_per_mm(application.screen()), application.window_size(), application.is_bare_panel()};
+}
+
+void use_second_screen(const Application& application, StationWindow& window) {
+  if (auto* second = application.second_screen()) window.show_live_window(*second);
+}
+
+}  // namespace
+
+session::Summary run_on_screen(app::RunRequest request, std::optional<session::Setup> prepared) {
+  ChosenSession chosen;
+  chosen.ask_code = !prepared && request.participant.empty();
+  if (chosen.ask_code) request.participant = kCodeToCome;
+  chosen.setup = prepared ? std::move(*prepared) : app::prepare(request);
+  chosen.ask_language = !prepared && request.language.empty() && chosen.setup.protocol.languages.size() > 1;
+  chosen.arm = true;  // the command was the operator's
+  const Application application;
+  StationWindow window(place_on(application), nullptr, chosen.setup.database, request.operator_code);
+  use_second_screen(application, window);
+  window.ask(chosen);
+  const auto summary = window.run();
+  if (!summary)
+    throw std::runtime_error("the window was closed before the session began; nothing was recorded");
+  return *summary;
+}
+
+void run_station(const app::StationRequest& request) {
+  const Application application;
+  OperatorController operating(request);
+  StationWindow window(place_on(application), &operating, request.database, request.operator_code);
+  use_second_screen(application, window);
+  try {
+    window.run();
+  } catch (const std::exception&) {
+    // What ended a session stood on the screen; leaving the station afterwards is no failure.
+  }
+}
+
+void show_preview(const app::PreviewRequest& request) {
+  const Application application;
+  PreviewController controller(request);
+  QQmlApplicationEngine engine;
+  auto& window = load_page(engine, "PreviewWindow.qml",
+                           {{"controller", QVariant::fromValue(&controller)},
+                            {"pixelsPerMm", pixels_per_mm(application.screen())},
+                            {"width", application.window_size().width()},
+                            {"height", application.window_size().height()}});
+  if (application.is_bare_panel()) window.showFullScreen();
+  QGuiApplication::exec();
+}
+
+std::optional<calibration::PanelLatency> measure_latency(const app::LatencyRequest& request) {
+  const Application application;
+  LatencyController controller(request.reference);
+  app::LatencyDevices devices(rig::load(request.rig),
+                              [&controller](std::int64_t time_ns) { controller.edge(time_ns); });
+  if (devices.has_kernel_times())
+    controller.set_kernel_time(
+        [&devices](double x, double y, std::int64_t seen_ns) { return devices.claim(x, y, seen_ns); });
+  QQmlApplicationEngine engine;
+  auto& window = load_page(engine, "LatencyWindow.qml",
+                           {{"controller", QVariant::fromValue(&controller)},
+                            {"pixelsPerMm", pixels_per_mm(application.screen())},
+                            {"width", application.window_size().width()},
+                            {"height", application.window_size().height()}});
+  if (application.is_bare_panel()) window.showFullScreen();
+  QGuiApplication::exec();
+  return controller.kept();
+}
+
+}  // namespace turnpoint::ui

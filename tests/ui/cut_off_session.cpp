@@ -1,0 +1,60 @@
+// cut_off_session PROTOCOL RIG DATABASE MODE: a session of participant T1 whose process is killed (SIGKILL)
+// in the middle of its third trial's stimulus, as by a cut of the power. It answers the second choice before
+// that.
+#include <signal.h>
+
+#include <chrono>
+#include <cstdio>
+#include <exception>
+
+#include "station/app/prepare.hpp"
+#include "station/session/session.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+class Room : public session::Display {
+ public:
+  session::Inputs inputs;
+
+  void show(const session::Page& page) override {
+    using session::PageKind;
+    if (page.kind == PageKind::fault) push(session::InputKind::arm);  // a live session begins disarmed
+    if (page.kind == PageKind::instructions) push(session::InputKind::next);
+    if (page.kind == PageKind::rest && page.remaining_s == 0) push(session::InputKind::next);
+    if (page.kind != PageKind::stimulus || !page.answers_open) return;
+    if (page.trials_done == 2) ::raise(SIGKILL);
+    push(session::InputKind::answer, 1);
+  }
+
+ private:
+  void push(session::InputKind kind, int value = 0) {
+    session::Input input;
+    input.time_ns = std::chrono::steady_clock::now().time_since_epoch().count();
+    // Long enough after the page for it to have been read.
+    if (kind == session::InputKind::answer) input.time_ns += 300'000'000;
+    input.kind = kind;
+    input.value = value;
+    inputs.push(input);
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  if (argc != 5) return 2;
+  app::RunRequest request;
+  request.protocol = argv[1];
+  request.rig = argv[2];
+  request.participant = "T1";
+  request.database = argv[3];
+  request.mode = argv[4];
+  Room room;
+  session::run(app::prepare(request), &room, room.inputs);
+  std::fprintf(stderr, "cut_off_session: nobody cut it off\n");
+  return 1;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "cut_off_session: %s\n", error.what());
+  return 1;
+}

@@ -1,0 +1,160 @@
+#include "tests/ui/station_room.hpp"
+
+#include <QDir>
+#include <QFile>
+#include <QGuiApplication>
+#include <QProcess>
+#include <QScreen>
+#include <chrono>
+#include <fstream>
+
+#include "station/app/calibrate.hpp"
+#include "station/app/panel_latency.hpp"
+#include "station/app/prepare.hpp"
+#include "station/calibration/apply.hpp"
+#include "station/store/export.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+std::int64_t now_ns() { return std::chrono::steady_clock::now().time_since_epoch().count(); }
+
+void write(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
+
+}  // namespace
+
+StationRoom::StationRoom(QObject* parent) : QObject(parent) {
+  beat_.setTimerType(Qt::PreciseTimer);
+  beat_.setInterval(16);
+  connect(&beat_, &QTimer::timeout, this, [this] {
+    const double late_ms = 1e-6 * static_cast<double>(now_ns() - beat_ns_);
+    beat_ns_ = now_ns();
+    if (late_ms > 20) stalls_ += static_cast<int>(late_ms / (1e3 / 60));
+  });
+}
+
+StationRoom::~StationRoom() { close(); }
+
+void StationRoom::open(const QString& code) {
+  close();
+  folder_ = std::make_unique<QTemporaryDir>();
+  QDir(folder_->path()).mkdir("protocols");
+  QFile::copy(TURNPOINT_SOURCE_DIR "/tests/ui/short.toml", folder_->filePath("protocols/short.toml"));
+  QFile::copy(TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml", folder_->filePath("rig.toml"));
+  latency_.again();
+  reopen(code);
+}
+
+void StationRoom::reopen(const QString& code) {
+  close();
+  operating_ = std::make_unique<OperatorController>(
+      app::StationRequest{path("protocols"), path("rig.toml"), path("lab.sqlite"), code.toStdString()});
+  station_ = std::make_unique<StationWindow>(StationWindow::Place{5.9, QSize(1280, 800), false},
+                                             operating_.get(), path("lab.sqlite"), code.toStdString());
+  emit opened();
+}
+
+void StationRoom::close() {
+  second_ = nullptr;
+  station_.reset();
+  operating_.reset();
+  emit opened();
+}
+
+void StationRoom::addSecondScreen() {
+  second_ = &station_->show_live_window(*QGuiApplication::primaryScreen());
+  emit opened();
+}
+
+void StationRoom::calibrate() {
+  std::string sweep = "frequency_Hz,displacement_um,phase_deg\n";
+  for (int frequency_Hz = 20000; frequency_Hz <= 50000;
+       frequency_Hz += 500)  // without a resonance of its own
+    sweep += std::to_string(frequency_Hz) + "," + std::to_string(0.3 + 4e-6 * frequency_Hz) + ",-20\n";
+  write(path("sweep.csv"), sweep);
+  write(path("friction.csv"), "displacement_um,relative_friction\n0,1\n0.5,0.6\n1,0.4\n2,0.2\n4,0.15\n");
+  write(path("sound.csv"), "frequency_Hz,level_dB\n20000,60\n30000,70\n50000,80\n");
+  calibration::Measurements measurements;
+  measurements.sweeps = {{"main", path("sweep.csv"), 0.1}};
+  measurements.friction_csv = path("friction.csv");
+  measurements.sound_csv = path("sound.csv");
+  const auto rig = rig::load(path("rig.toml"));
+  auto made = app::calibrate(rig, measurements, 30, "");
+  made.panel = app::known_panel(rig);
+  write(calibration::file_for(rig.path, made.made_on), calibration::to_toml(made));
+}
+
+void StationRoom::pressed(double ago_ms) {
+  latency_.edge(now_ns() - static_cast<std::int64_t>(ago_ms * 1e6));
+}
+
+double StationRoom::keepLatency() {
+  latency_.keep();
+  const auto kept = latency_.kept();
+  if (!kept) return 0;
+  const auto rig = rig::load(path("rig.toml"));
+  write(calibration::file_for(rig.path, calibration::today()),
+        calibration::to_toml(app::with_panel(rig, *kept)));
+  return kept->touch->median_s;
+}
+
+int StationRoom::cutOffSession(const QString& mode) {
+  QProcess process;
+  process.setProcessChannelMode(QProcess::ForwardedErrorChannel);
+  process.start(CUT_OFF_SESSION, {folder_->filePath("protocols/short.toml"), folder_->filePath("rig.toml"),
+                                  folder_->filePath("lab.sqlite"), mode});
+  if (!process.waitForFinished(60'000)) return -1;
+  return process.exitStatus() == QProcess::CrashExit ? 9 : process.exitCode();
+}
+
+void StationRoom::lookOn() {
+  stalls_ = 0;
+  beat_ns_ = now_ns();
+  beat_.start();
+}
+
+int StationRoom::stallsSeen() {
+  beat_.stop();
+  return stalls_;
+}
+
+void StationRoom::block(int ms) {
+  const auto until = now_ns() + std::int64_t{1'000'000} * ms;
+  while (now_ns() < until) {
+  }
+}
+
+QStringList StationRoom::plannedLevels() const {
+  app::RunRequest request;
+  request.protocol = path("protocols/short.toml");
+  request.rig = path("rig.toml");
+  request.participant = "T1";
+  request.database = path("unbroken.sqlite");
+  request.observer = "sim";
+  session::Inputs inputs;
+  session::run(app::prepare(request), nullptr, inputs);
+  return read(request.database, "trials.csv", "level", {}, {});
+}
+
+QStringList StationRoom::column(const QString& file, const QString& name, const QString& where,
+                                const QString& is) const {
+  return read(path("lab.sqlite"), file, name, where, is);
+}
+
+QStringList StationRoom::read(const std::string& database, const QString& file, const QString& name,
+                              const QString& where, const QString& is) const {
+  const QTemporaryDir out;
+  store::export_data(database, out.path().toStdString(), {});
+  QFile csv(out.filePath("short/" + file));
+  if (!csv.open(QIODevice::ReadOnly)) return {"no " + file};
+  const auto header = QString(csv.readLine()).trimmed().split(',');
+  QStringList values;
+  while (!csv.atEnd()) {
+    const auto row = QString(csv.readLine()).trimmed().split(',');
+    if (where.isEmpty() || row.value(header.indexOf(where)) == is) values += row.value(header.indexOf(name));
+  }
+  return values;
+}
+
+}  // namespace turnpoint::ui

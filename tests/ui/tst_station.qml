@@ -1,0 +1,310 @@
+import QtQuick
+import QtTest
+import Turnpoint
+
+// The whole program in its own window, as a laboratory's day goes: operator's page, participant's pages, real sessions
+// and their rows.
+Item {
+    id: stage
+    width: 800
+    height: 480
+
+    LatencyPage {
+        id: latencyPage
+        anchors.fill: parent
+        visible: false
+        controller: room.latency
+        pixelsPerMm: 5.2
+    }
+
+    TestCase {
+        name: "Station"
+        when: windowShown
+
+        readonly property PageModel page: room.page
+        readonly property OperatorController operating: room.operating
+
+        function cleanup() { room.close() }
+
+        function find(parent, name) {
+            for (let i = 0; parent && i < parent.children.length; ++i) {
+                const child = parent.children[i]
+                if (!child.visible) continue
+                const found = child.objectName === name ? child : find(child, name)
+                if (found) return found
+            }
+            return null
+        }
+        function shown(name, parent = room.screen) { return find(parent, name) !== null }
+        function appears(name, parent = room.screen) {
+            tryVerify(() => shown(name, parent), 20000, name)
+            wait(60)
+            // A page reacts once it can have been read.
+            tryVerify(() => shown(name, parent) && find(parent, name).armed !== false, 5000, name + " reacts")
+            return find(parent, name)
+        }
+        function tap(name, parent = room.screen) {
+            const button = appears(name, parent)
+            mouseClick(button, button.width / 2, button.height / 2)
+        }
+        function hold(name, ms, parent = room.screen) {
+            const button = appears(name, parent)
+            mousePress(button, button.width / 2, button.height / 2)
+            wait(ms)
+            mouseRelease(button, button.width / 2, button.height / 2)
+        }
+        function type(code) {
+            for (const digit of code) tap("digit" + digit)
+        }
+        /// One finger on an answer of the participant's screen.
+        function answer(choice) {
+            tryCompare(page, "answersOpen", true, 20000)
+            wait(150)
+            const button = find(room.screen, "answer" + choice)
+            const touch = touchEvent(button)
+            touch.press(1, button).commit()
+            touch.release(1, button).commit()
+            tryCompare(page, "answersOpen", false, 5000)
+        }
+        function begin(participant) {
+            tryVerify(() => operating.mayBegin, 20000)
+            tap("language0")
+            tap("enterCode")
+            for (const key of participant) tap("key" + key)
+            tap("accept")
+            tap("begin")
+        }
+        function rest() {
+            tryCompare(page, "kind", PageModel.Rest, 20000)
+            tryCompare(page, "remainingSeconds", 0, 5000)
+            tap("proceed")
+        }
+        function ends() { tryCompare(page, "kind", PageModel.End, 20000) }
+        /// As an operator who stands at the participant's screen.
+        function arm() {
+            tryCompare(page, "awaitsArming", true, 20000)
+            tap("operatorArms")
+            type("2468")
+            hold("holdToArm", 1200)
+            tryCompare(page, "awaitsArming", false, 5000)
+        }
+
+        function measurePanel() {
+            latencyPage.visible = true
+            const field = findChild(latencyPage, "latencyField")
+            for (let k = 0; k < 10; ++k) {
+                room.pressed(50)
+                mousePress(field)
+                mouseRelease(field)
+                wait(410)  // or the edge of one tap could belong to the next
+            }
+            tryCompare(room.latency, "pairs", 10)
+            const offset = room.keepLatency()
+            latencyPage.visible = false
+            return offset
+        }
+
+        function test_a_live_session_on_the_screen_from_calibration_to_report() {
+            room.open("2468")
+            tryVerify(() => operating.mayBegin, 20000)
+            tap("live")
+            tap("begin")
+            tryVerify(() => operating.problems.length > 0, 20000)
+            verify(operating.problems[0].includes("friction is the illustrative curve"), operating.problems[0])
+            tap("pilot")                                             // which the reason does not concern
+            compare(operating.problems, [])
+            compare(operating.mayBegin, true)
+
+            const offset = measurePanel()
+            verify(offset >= 0.05 && offset < 0.15, offset)
+            room.calibrate()
+            tap("live")
+            begin("T7")
+
+            // Nobody has armed: the participant can neither go on nor arm.
+            tryCompare(page, "kind", PageModel.Fault, 20000)
+            compare(page.runMode, "live")
+            verify(!shown("proceed") && !shown("holdToArm"))
+            tap("operatorArms")
+            type("1111")
+            verify(shown("gate") && !shown("holdToArm"))
+            tap("gateLeave")
+            verify(!shown("holdToArm"))
+            arm()
+
+            tryCompare(page, "kind", PageModel.Instructions, 20000)
+            tap("proceed")
+            answer(0)
+            answer(1)
+            rest()
+            answer(1)
+            answer(0)
+            ends()
+            tap("results")
+            type("2468")
+            appears("reportPage")
+            tap("closeReport")
+            tap("close")
+            type("2468")
+            appears("operatorPage")
+            compare(operating.participants, ["T7"])
+            compare(operating.armed, false)
+
+            compare(room.column("trials.csv", "run_mode"), ["live", "live", "live", "live"])
+            compare(room.column("trials.csv", "response"), ["left", "right", "right", "left"])
+            compare(room.column("trials.csv", "outcome"), ["answered", "answered", "answered", "answered"])
+            compare(room.column("trials.csv", "response_time_quality"), ["toolkit", "toolkit", "toolkit", "toolkit"])
+            compare(room.column("events.csv", "value", "kind", "arm"), ["armed"])
+            compare(room.column("sessions.csv", "status"), ["completed"])
+            // The panel's latency stands beside each answer that it concerns, and in no response time.
+            for (const stored of room.column("trials.csv", "response_offset_s"))
+                fuzzyCompare(Number(stored), offset, 1e-6)
+            const hashes = room.column("trials.csv", "calibration_id")
+            verify(/^[0-9a-f]{64}$/.test(hashes[0]), hashes[0])
+        }
+
+        /// Four trials, the second with the pages' thread blocked for so long: {trial: frames lost}, and in `seen`
+        /// what a beat of the test's own has found.
+        function framesLost(blocked_ms) {
+            room.open("2468")
+            begin("T2")
+            tap("proceed")
+            room.lookOn()
+            answer(0)
+            tryVerify(() => page.kind === PageModel.Stimulus && page.answersOpen, 20000)
+            room.block(blocked_ms)
+            answer(0)
+            rest()
+            answer(1)
+            answer(1)
+            ends()
+            const lost = { seen: room.stallsSeen(), total: 0 }
+            const trials = room.column("events.csv", "trial_index", "kind", "frames_lost")
+            const frames = room.column("events.csv", "value", "kind", "frames_lost")
+            for (let k = 0; k < trials.length; ++k) {
+                lost[trials[k]] = Number(frames[k])
+                lost.total += lost[trials[k]]
+            }
+            return lost
+        }
+
+        function test_frames_that_are_late_in_a_trial_are_counted_in_its_events() {
+            const lost = framesLost(100)
+            verify(lost["1"] >= 4, JSON.stringify(lost))             // 100 ms are six at 60 Hz, and one may pass
+            verify(lost.total <= lost.seen, JSON.stringify(lost))
+        }
+
+        function test_a_session_whose_pages_are_in_time_counts_no_late_frame() {
+            const lost = framesLost(0)
+            verify(lost.total <= lost.seen, JSON.stringify(lost))    // seen: none, where this machine is not busy
+        }
+
+        function test_a_session_that_was_cut_off_goes_on_at_its_very_trial() {
+            room.open("2468")
+            room.calibrate()
+            compare(room.cutOffSession("live"), 9)
+            room.reopen("2468")
+            tryVerify(() => operating.interrupted.startsWith("T1, short: 2 trials done"), 20000, operating.interrupted)
+            tap("resume")
+            arm()                                                    // as after any start of a live session
+            tap("proceed")
+            compare(page.trialsDone, 2)
+            compare(page.runMode, "live")
+            answer(0)
+            answer(0)
+            ends()
+            tap("close")
+            type("2468")
+            appears("operatorPage")
+            compare(operating.interrupted, "")
+            compare(room.column("trials.csv", "trial_index"), ["0", "1", "2", "3"])
+            compare(room.column("trials.csv", "response"), ["right", "right", "left", "left"])
+            compare(room.column("trials.csv", "run_mode"), ["live", "live", "live", "live"])
+            compare(room.column("trials.csv", "level"), room.plannedLevels())
+            // The trial that the cut hit had been presented, and was presented again.
+            const presented = room.column("events.csv", "trial_index", "kind", "presented")
+            compare(presented, ["0", "1", "2", "2", "3"])
+            compare(room.column("sessions.csv", "status"), ["completed"])
+        }
+
+        function test_the_second_screen_is_the_operators_alone() {
+            room.open("2468")
+            room.addSecondScreen()
+            room.calibrate()
+            tryVerify(() => operating.mayBegin, 20000)
+            tap("live")
+            begin("T3")
+            tryCompare(page, "awaitsArming", true, 20000)
+            hold("liveArm", 1200, room.second)
+            tryCompare(page, "kind", PageModel.Instructions, 5000)
+            tap("proceed")
+            tryVerify(() => page.answersOpen, 20000)
+            tap("livePause", room.second)
+            tryCompare(page, "kind", PageModel.Paused, 5000)
+            verify(!shown("liveView"))
+            tap("livePause", room.second)                            // goes on
+            tryVerify(() => page.answersOpen, 20000)
+            compare(page.trialsDone, 0)
+            answer(1)
+            tap("liveNote", room.second)
+            tap("quickNote0", room.second)
+            tap("keepNote", room.second)
+            tap("liveStop", room.second)
+            compare(page.kind === PageModel.End, false)
+            tap("liveStop", room.second)
+            ends()
+            compare(room.column("trials.csv", "outcome")[1], "answered")
+            compare(room.column("sessions.csv", "status"), ["interrupted"])
+            compare(inspector.cutTexts(room.second), [])
+        }
+
+        function test_no_participant_gets_to_the_operators_pages() {
+            room.open("2468")
+            begin("T4")
+            hold("operatorCorner", 300)
+            verify(!shown("gate"))                                   // a tap is not enough
+            hold("operatorCorner", 2300)
+            appears("gate")
+            type("2469")
+            type("8642")
+            verify(shown("gate") && !shown("liveView"))
+            tap("gateLeave")
+            verify(!shown("gate") && !shown("liveView"))
+            compare(page.kind, PageModel.Instructions)               // nothing has happened to the session
+            tap("proceed")
+            tryVerify(() => page.kind === PageModel.Stimulus, 20000)
+            compare(find(room.screen, "operatorCorner").enabled, false)
+            answer(0)
+            tap("pause")
+            tryCompare(page, "kind", PageModel.Paused, 5000)
+            hold("operatorCorner", 2300)
+            type("2468")
+            appears("liveView")                                      // the right code does
+            tap("liveClose")
+            verify(!shown("liveView"))
+            tap("end")
+            tap("end")
+            ends()
+
+            // What the thanks lead to is the operator's as well.
+            for (const way of ["results", "close"]) {
+                tap(way)
+                type("1234")
+                verify(!shown("reportPage") && !shown("operatorPage"))
+                tap("gateLeave")
+                compare(page.kind, PageModel.End)
+            }
+            tap("close")
+            type("2468")
+            appears("operatorPage")
+        }
+
+        function test_without_a_code_nothing_opens_the_operators_view() {
+            room.open("")
+            begin("T5")
+            hold("operatorCorner", 2300)
+            verify(!shown("gate") && !shown("liveView"))
+            compare(page.kind, PageModel.Instructions)
+        }
+    }
+}
