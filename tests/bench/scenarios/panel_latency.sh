@@ -1,6 +1,6 @@
 # proves: the panel's latency, found on its calibration page, stands beside a live session's answers by touch
 # needs: screen
-# timeout: 900
+# timeout: 1200
 gpio_sim BTN_L BTN_R AMP_EN AMP_FAULT STOP AMP_HB
 for line in BTN_L BTN_R AMP_EN AMP_FAULT STOP AMP_HB; do pull $line down; done
 loopback
