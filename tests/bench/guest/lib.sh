@@ -63,9 +63,10 @@ disk_begin() {
 }
 
 # panel_begin: a touch panel of 800 x 480 at $PANEL; `touch_do COMMAND...` makes it do something (touch_panel.cpp).
+# After `touch_do gone`, it plugs it in again.
 panel_begin() {
   modprobe uinput; modprobe evdev
-  mkfifo panel.in
+  [ -p panel.in ] || mkfifo panel.in
   touch_panel 800 480 <panel.in >panel.out &
   exec 9>panel.in
   eventually 10 has panel.out ^device

@@ -1,0 +1,24 @@
+"""bursts.py FILE PREFIX: from a recording (S32_LE stereo, 192 kHz) each burst on channel 0, without its ramps, as
+PREFIX0.raw, PREFIX1.raw, ..."""
+import array
+import sys
+
+RATE, STEP = 192000, 960  # looks every 5 ms
+FRAME = 8                 # bytes
+QUIET = 1 << 20
+
+with open(sys.argv[1], "rb") as file:
+    data = file.read()
+frames = len(data) // FRAME
+begin, count = None, 0
+for at in range(0, frames - 32, STEP):
+    loud = max(map(abs, array.array("i", data[at * FRAME:(at + 32) * FRAME])[::2])) > QUIET
+    if loud and begin is None:
+        begin = at
+    if begin is not None and (not loud or at + STEP >= frames - 32):
+        if at - begin > RATE // 2:
+            middle = data[(begin + RATE // 5) * FRAME:(at - RATE // 5) * FRAME]
+            with open(f"{sys.argv[2]}{count}.raw", "wb") as out:
+                out.write(middle)
+            count += 1
+        begin = None

@@ -1,0 +1,132 @@
+# proves: under the installed unit a session by buttons drives what its database says; stop, clock jump, lost sound card, full disk, lost GPIO chip and a kill keep every stored trial, and nothing arms by itself
+# needs: installed
+# timeout: 900
+gpio_sim AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R
+for line in AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R; do pull $line down; done
+loopback
+udevadm settle
+data=/var/lib/turnpoint db=/var/lib/turnpoint/lab.sqlite log=/run/session.log
+mount -t tmpfs -o size=24M,mode=0750,uid="$(id -u turnpoint)",gid="$(id -g turnpoint)" data $data
+rows() { sqlite3 -separator ' ' "file:$db?mode=ro" "$1"; }
+section() { sed -i "/^\[$1\]/,/^uri/ s|^uri.*|uri = \"$2\"|" /etc/turnpoint/rig.toml; }
+sed '/^rate_Hz/a period_frames = 1920\nperiods = 64' /usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
+section output alsa:hw:Loopback,0
+section amplifier gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB
+section buttons gpio:left=BTN_L,right=BTN_R
+
+# station ARGUMENTS: starts the unit as it is installed, with buttons and the operator's typing instead of the screen.
+mkfifo /run/operator; exec 8<>/run/operator
+drop_in=/run/systemd/system/turnpoint.service.d/bench.conf
+mkdir ${drop_in%/*}
+station() {
+  printf '[Service]\nType=exec\nWatchdogSec=0\nRestart=no\nStandardInput=file:/run/operator\nStandardError=append:%s\nExecStart=\nExecStart=/usr/bin/turnpoint %s\n' \
+    $log "$*" >$drop_in
+  systemctl daemon-reload
+  systemctl start turnpoint
+}
+lasts() { [ "$(systemctl show -P ActiveState turnpoint)" = active ]; }
+# says TEXT: waits until the station has said it, after what was waited for before.
+read_so_far=0
+said() {
+  lasts || { cat $log; fail "the session ended, waiting for: $1"; }
+  local line; line=$(tail -n +$((read_so_far + 1)) $log | grep -n -m1 "$1" | cut -d: -f1)
+  [ -n "$line" ] && read_so_far=$((read_so_far + line))
+}
+says() { eventually 60 said "$1"; }
+operator() { echo "$1" >&8; }
+on() { [ "$(level AMP_EN)" = 1 ]; }
+off() { [ "$(level AMP_EN)" = 0 ]; }
+press() { gpio_line press "$(pull_file "$1")" 50 >/dev/null; }
+stored() { [ "$(rows "SELECT count(*) FROM trial")" = "$1" ]; }
+stimulus() { says "^stimulus"; eventually 5 on; sleep 1; }
+answer() { press BTN_R; eventually 5 off; }
+armed() { operator arm; sleep 0.5; said "$1"; }   # refused for as long as the reason lasts
+
+record 120 heard0.raw; recorder=$!
+station run /usr/share/turnpoint/protocols/demo.toml --participant P01 --db $db --buttons-only --seed 3
+says "arm or stop"
+off || fail "on before anybody armed"
+operator arm
+says "^instructions"
+sleep 0.7; press BTN_L
+stimulus; answer
+eventually 20 stored 1
+date -s "+2 hours" >/dev/null
+
+say "the stop"
+stimulus
+near "stop to enable low (us)" "$(($(gpio_line until-low "$(pull_file STOP)" "$(line_of AMP_EN)/value") / 1000))" 0 1000
+says "^fault: The stop"
+eventually 20 stored 2
+off || fail "on while the stop is pressed"
+pull STOP down
+operator arm; says "^paused"; operator next
+
+say "the sound card is unplugged, and comes back"
+stimulus
+echo snd_aloop.0 >/sys/bus/platform/drivers/snd_aloop/unbind
+eventually 1 off
+says "^fault: .*converter"
+eventually 20 stored 3
+operator arm; sleep 0.5; off || fail "on without a sound card"
+kill $recorder 2>/dev/null || true; wait $recorder || true
+echo snd_aloop.0 >/sys/bus/platform/drivers/snd_aloop/bind
+eventually 5 test -e /dev/snd/pcmC0D1c
+record 120 heard1.raw; recorder=$!
+eventually 30 armed "^paused"
+operator next
+
+say "the disk is full, and then it is not"
+stimulus
+dd if=/dev/zero of=$data/filler bs=4k status=none 2>/dev/null || true
+answer
+says "^fault: The disk is full"
+off || fail "on while the disk is full"
+stored 3 || fail "stored on a full disk"
+rm $data/filler
+operator next
+eventually 20 stored 4
+
+say "a second station on the same database, and a kill in a stimulus"
+stimulus
+fails 1 turnpoint run /usr/share/turnpoint/protocols/demo.toml --rig /usr/share/turnpoint/rigs/simulated.toml --participant P02 \
+  --db $db --headless --observer sim
+has refusal.txt "pid $(systemctl show -P MainPID turnpoint)" || fail "it does not say who has the database"
+systemctl kill -s KILL turnpoint
+eventually 1 off
+kill $recorder; wait $recorder || true
+[ "$(rows "PRAGMA integrity_check")" = ok ] || fail "the database is damaged"
+[ "$(rows "SELECT group_concat(outcome, ' ') FROM trial")" = "answered fault fault answered" ] || fail "$(rows "SELECT * FROM trial")"
+near "clock jumps logged" "$(rows "SELECT count(*) FROM event WHERE value LIKE '%wall clock was set by +7%'")" 1 0
+[[ "$(rows "SELECT realtime_rights FROM session")" == "fifo 70, memory locked"* ]] || fail "$(rows "SELECT realtime_rights FROM session")"
+
+# Each stimulus that was heard against its row: the tones in the order of presentation.
+rows "SELECT tone.frequency_Hz FROM tone ORDER BY trial_index" >frequencies.txt
+for k in 0 1; do python3 "$BENCH_SOURCE/guest/bursts.py" heard$k.raw burst$k; done
+ls burst*.raw | head -4 | paste -d ' ' - frequencies.txt >pairs.txt
+near "stimuli heard, with the one that was killed" "$(ls burst*.raw | wc -l)" 5 0
+near "stimuli in the database" "$(wc -l <frequencies.txt)" 4 0
+while read -r burst frequency; do
+  read -r measured _ residual <<<"$(measure_tone "$burst" 192000 2 0)"
+  near "$burst (Hz, residual $residual dB)" "$measured" "$frequency" 0.02
+done <pairs.txt
+
+say "resumed: unarmed; then the GPIO chip is gone"
+systemctl reset-failed turnpoint
+station resume --db $db --headless
+says "arm or stop"
+off || fail "a resumed session armed by itself"
+operator arm
+says "^instructions"
+sleep 0.7; press BTN_L
+stimulus; answer
+eventually 20 stored 5
+says "^stimulus"
+echo 0 >/sys/kernel/config/gpio-sim/bench/live
+says "^fault"
+eventually 20 stored 6
+operator stop
+ended() { [ "$(systemctl show -P ActiveState turnpoint)" != active ]; }
+eventually 30 ended
+cat $log
+[ "$(rows "PRAGMA integrity_check")" = ok ] || fail "the database is damaged"
