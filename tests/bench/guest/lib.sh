@@ -55,11 +55,12 @@ loopback() { modprobe snd-aloop pcm_substreams=1; eventually 5 test -e /dev/snd/
 # record SECONDS FILE [RATE]: in the background, raw S32_LE stereo; its process is $!.
 record() { arecord -q -D hw:Loopback,1 -t raw -f S32_LE -c 2 -r "${3:-192000}" --period-size=1920 --buffer-size=192000 -d "$1" "$2" & }
 
-# disk_begin: the `disk`, empty, on /run/disk. What is written there is judged by NAME.after with power_cuts.py.
+# disk_begin [WHERE]: the `disk`, empty, on /run/disk or there. What is written there is judged by NAME.after with
+# power_cuts.py.
 disk_begin() {
   modprobe virtio_blk; eventually 5 test -b /dev/vda
-  mkdir -p /run/disk
-  mount -t ext4 -o noatime /dev/vda /run/disk
+  mkdir -p "${1:-/run/disk}"
+  mount -t ext4 -o noatime /dev/vda "${1:-/run/disk}"
 }
 
 # panel_begin: a touch panel of 800 x 480 at $PANEL; `touch_do COMMAND...` makes it do something (touch_panel.cpp).
