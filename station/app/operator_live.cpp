@@ -223,8 +223,8 @@ void LiveView::take(const News& news) {
   const auto& procedures = preview_.protocol().procedures;
   const auto trace = live_trace(trials_, procedures.empty() ? "Level" : procedures.front().level);
   const auto times = live_times(trials_);
-  state_.trace = trace ? plot::render(*trace) : "";
-  state_.times = times ? plot::render(*times) : "";
+  state_.trace = trace ? drawing_of(*trace) : Drawing();
+  state_.times = times ? drawing_of(*times) : Drawing();
 }
 
 void LiveView::plan(const Begun& begun) {
@@ -235,11 +235,12 @@ void LiveView::plan(const Begun& begun) {
   state_.surfaces.clear();
   for (const auto& interval : spec.intervals) {
     looks_.push_back(preview_.look(interval.back(), spec.factors));
-    if (looks_.back().problem.empty()) state_.surfaces.push_back(surface_svg(looks_.back(), preview_.rig()));
+    if (looks_.back().problem.empty())
+      state_.surfaces.push_back(drawing_of_surface(looks_.back(), preview_.rig()));
   }
   const auto& last = looks_.back();
   state_.scene = last.problem.empty() ? last.facts : Facts{{"Problem", last.problem}};
-  state_.profile = last.problem.empty() ? plot::render(profile_figure(last)) : "";
+  state_.profile = last.problem.empty() ? drawing_of(profile_figure(last)) : Drawing();
 }
 
 void LiveView::tell() {

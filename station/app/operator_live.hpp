@@ -11,17 +11,18 @@
 #include <vector>
 
 #include "station/app/preview.hpp"
+#include "station/app/scene_figures.hpp"
 #include "station/plot/chart.hpp"
 #include "station/session/monitor.hpp"
 
 namespace turnpoint::app {
 
-/// A running session as the operator sees it: words and pictures (SVG documents), ready to be shown.
+/// A running session as the operator sees it: words and pictures, ready to be shown.
 struct LiveState {
   std::string heading;                                                     ///< which trial, at which level
   std::vector<std::pair<std::string, std::string>> scene, course, limits;  ///< (label, value)
-  std::vector<std::string> surfaces;  ///< one an interval, in the order presented
-  std::string profile, trace, times;  ///< of the last interval; levels; response times. "" where none
+  std::vector<Drawing> surfaces;  ///< one an interval, in the order presented
+  Drawing profile, trace, times;  ///< of the last interval; levels; response times. Empty where none
 };
 
 /// What is kept of a trial that has ended.

@@ -24,7 +24,9 @@ std::string with(const std::optional<Estimate>& estimate, const std::string& uni
   return with(estimate->value, estimate->interval) + (unit.empty() ? "" : " " + unit);
 }
 
-std::string svg(const std::optional<plot::Figure>& figure) { return figure ? plot::render(*figure) : ""; }
+Drawing drawing(const std::optional<plot::Figure>& figure) {
+  return figure ? drawing_of(*figure) : Drawing();
+}
 
 void add_outcomes(const report::Summary& summary, ReportPages& pages) {
   const auto& counts = summary.outcomes;
@@ -61,15 +63,15 @@ void add_trade(const report::Summary& summary, ReportPages& pages) {
   const auto& trade = summary.trade;
   for (const auto& result : trade.instructions) {
     const auto prefix = result.instruction.empty() ? "" : result.instruction + ": ";
-    pages.trade.emplace_back(prefix + "proportion right", with(result.proportion_correct, ""));
-    pages.trade.emplace_back(prefix + "median response time", with(result.median_s, "s"));
+    pages.speed_accuracy.emplace_back(prefix + "proportion right", with(result.proportion_correct, ""));
+    pages.speed_accuracy.emplace_back(prefix + "median response time", with(result.median_s, "s"));
     for (const auto& statement : result.statements) pages.statements.push_back(prefix + statement.text);
   }
   for (const auto& difference : trade.differences)
     if (difference.estimate)
-      pages.trade.emplace_back(trade.instructions[1].instruction + " \u2212 " +
-                                   trade.instructions[0].instruction + ": " + difference.measure,
-                               with(difference.estimate, difference.unit));
+      pages.speed_accuracy.emplace_back(trade.instructions[1].instruction + " \u2212 " +
+                                            trade.instructions[0].instruction + ": " + difference.measure,
+                                        with(difference.estimate, difference.unit));
   for (const auto& statement : trade.statements) pages.statements.push_back(statement.text);
 }
 
@@ -86,10 +88,10 @@ ReportPages report_pages(const report::Summary& summary) {
   if (summary.bias)
     for (const auto& statement : summary.bias->statements) pages.statements.push_back(statement.text);
   for (const auto& statement : summary.fatigue.statements) pages.statements.push_back(statement.text);
-  pages.trade_svg = svg(report::trade_figure(summary));
-  pages.fit_svg = svg(report::psychometric_figure(summary));
-  pages.trace_svg = svg(report::trace_figure(summary));
-  pages.times_svg = svg(report::response_time_figure(summary));
+  pages.trade = drawing(report::trade_figure(summary));
+  pages.fits = drawing(report::psychometric_figure(summary));
+  pages.levels = drawing(report::trace_figure(summary));
+  pages.times = drawing(report::response_time_figure(summary));
   return pages;
 }
 

@@ -3,16 +3,17 @@
 #include <utility>
 #include <vector>
 
+#include "station/app/scene_figures.hpp"
 #include "station/report/summary.hpp"
 
 namespace turnpoint::app {
 
-/// A session's report as pages of a screen: words and pictures (SVG documents).
+/// A session's report as pages of a screen: words and pictures.
 struct ReportPages {
   std::string title;
-  std::vector<std::pair<std::string, std::string>> outcomes, fit, trade, health;  ///< (label, value)
-  std::vector<std::string> statements;                   ///< what must be said beside the numbers
-  std::string trade_svg, fit_svg, trace_svg, times_svg;  ///< "" where there is nothing to show
+  std::vector<std::pair<std::string, std::string>> outcomes, fit, speed_accuracy, health;  ///< (label, value)
+  std::vector<std::string> statements;  ///< what must be said beside the numbers
+  Drawing trade, fits, levels, times;   ///< pictures; empty where there is nothing to show
 };
 
 /// Of a stored session; as report_data() and report::summarise(), about 0.3 s.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "physics/surface.hpp"
 #include "station/plot/palette.hpp"
@@ -19,6 +20,9 @@ plot::Paint stroke(const std::string& colour, double width, const std::string& d
   return {colour, "", width, dash, 1};
 }
 plot::Paint fill(const std::string& colour, double opacity = 1) { return {"", colour, 1, "", opacity}; }
+
+/// From this height on a drawing of the surface says what it shows.
+constexpr double kCaptionFrom_px = 165;
 
 void require_plan(const Look& look) {
   if (!look.problem.empty() || look.profile.x_m.size() < 2)
@@ -52,9 +56,10 @@ struct Place {
 };
 
 Place place_on(const rig::Rig& rig, double width_px, double height_px) {
+  const bool low = height_px < kCaptionFrom_px;
   Place at{30,
            width_px - 30,
-           0.46 * height_px,
+           low ? 0.5 * height_px : 0.46 * height_px,
            1,
            rig.surface.length_m,
            rig.surface.wide_end == rig::WideEnd::left,
@@ -63,7 +68,9 @@ Place place_on(const rig::Rig& rig, double width_px, double height_px) {
   for (int i = 0; i <= 20; ++i)
     widest = std::max(widest, physics::half_width_m(at.surface, at.length_m * i / 20));
   const double to_scale = (at.right - at.left) / at.length_m;
-  at.across = std::clamp(to_scale, 0.18 * height_px / widest, 0.24 * height_px / widest);
+  // Above and below there has to be room for labels, whatever is left.
+  const double most_px = std::min(0.24 * height_px, 0.5 * height_px - (low ? 30 : 46));
+  at.across = std::clamp(to_scale, 0.75 * most_px / widest, most_px / widest);
   return at;
 }
 
@@ -122,6 +129,25 @@ void draw_boundary(plot::Svg& svg, const Look& look, const Place& at) {
 
 }  // namespace
 
+Drawing drawing_of(plot::Figure figure) {
+  return [figure = std::move(figure)](double width_px, double height_px) {
+    try {
+      return plot::render(plot::laid_out(figure, width_px, height_px));
+    } catch (const std::invalid_argument&) {
+      return plot::render(figure);  // a legend too long for that size: as it was made, then shown smaller
+    }
+  };
+}
+
+Drawing drawing_of_surface(const Look& look, const rig::Rig& rig) {
+  require_plan(look);
+  return [look, rig](double width_px, double height_px) {
+    // Below that its scale and its labels have no room.
+    const double larger = std::max({1.0, 240 / width_px, 84 / height_px});
+    return surface_svg(look, rig, larger * width_px, larger * height_px);
+  };
+}
+
 std::string surface_svg(const Look& look, const rig::Rig& rig, double width_px, double height_px) {
   require_plan(look);
   plot::Svg svg(width_px, height_px, "Surface from above, scene " + look.scene);
@@ -131,6 +157,7 @@ std::string surface_svg(const Look& look, const rig::Rig& rig, double width_px, 
   draw_heat(svg, look, at);
   draw_scale(svg, at);
   draw_boundary(svg, look, at);
+  if (height_px < kCaptionFrom_px) return svg.finish();
   svg.text({width_px / 2, height_px - 10}, "mm from the wide end; darker moves more", 12,
            plot::Anchor::middle, kQuiet);
   return svg.finish();

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -9,6 +10,13 @@ namespace turnpoint::app {
 
 // Pictures of a planned scene, the same on the screen and in files. All throw std::invalid_argument for a
 // look that has a problem instead of a plan.
+
+/// A picture that lays itself out for the size at which it is shown: an SVG document of about that size, with
+/// text of 12 px.
+using Drawing = std::function<std::string(double width_px, double height_px)>;
+Drawing drawing_of(plot::Figure figure);
+/// The same of surface_svg().
+Drawing drawing_of_surface(const Look& look, const rig::Rig& rig);
 
 /// The surface from above, to scale along its length: a heat map of the displacement, the boundary with its
 /// model error, turning points of the tones, and a mark where one is asked about. An SVG document.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 #include <stdexcept>
 
@@ -265,7 +266,8 @@ std::vector<Tick> ticks_with_room(const Axis& axis, double width) {
 }
 
 void draw_panel(Svg& svg, const Panel& panel, double left, double top, double width, double height) {
-  const auto up = ticks(panel.y, 5);
+  // What title, legend and the axis below leave, at a line of text and a half a tick.
+  const auto up = ticks(panel.y, std::clamp(static_cast<int>((height - 110) / 18), 2, 5));
   double labels = 0;
   for (const auto& tick : up) labels = std::max(labels, text_width(tick.label, kText));
   const double title = panel.title.empty() ? 4 : 26;
@@ -323,6 +325,29 @@ std::string render(const Figure& figure) {
     y += kCaptionLine;
   }
   return svg.finish();
+}
+
+Figure laid_out(Figure figure, double width_px, double height_px) {
+  check(width_px > 0 && height_px > 0, "a figure needs a size above 0");
+  constexpr double best = 1.5, least_width = 200, least_height = 165;
+  const auto count = static_cast<int>(figure.panels.size());
+  Figure chosen = figure;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int columns = 1; columns <= count; ++columns) {
+    const int rows = (count + columns - 1) / columns;
+    const double larger = std::max({1.0, least_width * columns / width_px, least_height * rows / height_px});
+    const double width = width_px * larger;
+    const auto caption = static_cast<double>(caption_lines(figure.caption, width - 4 * kPad).size());
+    figure.columns = columns;
+    figure.panel_width_px = width / columns;
+    figure.panel_height_px = std::max(
+        least_height, (height_px * larger - (caption > 0 ? kPad + kCaptionLine * caption : 0)) / rows);
+    // What has to be made smaller to fit counts as much as what is drawn out of proportion.
+    const double off =
+        std::abs(std::log(figure.panel_width_px / figure.panel_height_px / best)) + 2 * std::log(larger);
+    if (off < nearest) nearest = off, chosen = figure;
+  }
+  return chosen;
 }
 
 Histogram histogram(const std::vector<double>& values, double low, double high, int bins) {

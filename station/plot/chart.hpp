@@ -79,6 +79,11 @@ struct Figure {
 /// lengths do not agree, axes without a range, or no panel.
 std::string render(const Figure& figure);
 
+/// The figure laid out for a document of this size: as many columns as give its panels the best proportions.
+/// Where there is no room the document is larger than asked for, in the same proportions; text keeps its
+/// size.
+Figure laid_out(Figure figure, double width_px, double height_px);
+
 /// Counts of `values` in equal bins between the nice ends of their range; at most `bins`.
 Histogram histogram(const std::vector<double>& values, double low, double high, int bins);
 

@@ -11,6 +11,9 @@ Rectangle {
     property bool closable: false
     property bool noting: false
     property bool stopping: false
+    property int shown: 0
+    /// Text in the pictures.
+    readonly property real small: Math.max(0.8 * look.textSmall, 2 * pixelsPerMm)
     readonly property bool waiting: bridge.page.kind === PageModel.Paused || bridge.page.kind === PageModel.Fault
     readonly property bool over: bridge.page.kind === PageModel.End || bridge.page.kind === PageModel.Failed
     readonly property var notes: ["participant asked", "noise in the room", "hand moved away", "surface wiped"]
@@ -46,7 +49,8 @@ Rectangle {
         height: look.controlHeight
         Text {
             anchors { left: parent.left; right: buttons.left; verticalCenter: parent.verticalCenter; rightMargin: look.unit }
-            text: root.live.heading !== "" ? root.live.heading : "No trial yet"
+            // Only this page says so: a live session's other pages carry nothing that a participant need not see.
+            text: (root.bridge.page.runMode === "live" ? "LIVE   " : "") + (root.live.heading !== "" ? root.live.heading : "No trial yet")
             color: look.ink
             font { pixelSize: look.textBody; weight: Font.Bold }
             maximumLineCount: 2
@@ -118,38 +122,72 @@ Rectangle {
     Column {
         id: surfaces
         anchors { left: parent.left; right: side.left; top: header.bottom; leftMargin: look.margin; rightMargin: look.unit; topMargin: look.unit }
-        height: (root.live.surfaces.length > 1 ? 0.44 : 0.3) * (root.height - header.height - frame.band)
+        height: (root.live.surfaces.length > 1 ? 0.4 : 0.24) * (root.height - header.height - frame.band)
         spacing: 0.4 * look.unit
         Repeater {
             model: root.live.surfaces
             FigureView {
-                required property string modelData
+                required property var modelData
                 width: surfaces.width
                 height: (surfaces.height - (root.live.surfaces.length - 1) * surfaces.spacing) / Math.max(1, root.live.surfaces.length)
-                svg: modelData
+                textPixels: root.small
+                picture: modelData
             }
         }
     }
     Item {
         id: pictures
         anchors { left: surfaces.left; right: surfaces.right; top: surfaces.bottom; bottom: parent.bottom; topMargin: 0.6 * look.unit; bottomMargin: frame.edge + look.unit }
-        readonly property real cell: (height - 0.6 * look.unit) / 2
-        FigureView {
-            anchors { left: parent.left; right: parent.right; top: parent.top }
-            height: pictures.cell
-            svg: root.live.profile
+        // Three pictures where each has room to be read, else one, and buttons to choose it.
+        readonly property real cell: 0.45 * (height - 0.6 * look.unit)  // the lower two have legends
+        readonly property bool single: cell < 12.5 * root.small
+        readonly property real half: (width - 0.6 * look.unit) / 2
+        Row {
+            id: choices
+            visible: pictures.single
+            height: visible ? look.controlHeight : 0
+            spacing: 0.6 * look.unit
+            Repeater {
+                model: ["Profile", "Levels", "Response times"]
+                ActionButton {
+                    required property int index
+                    required property string modelData
+                    objectName: "livePicture" + index
+                    theme: look
+                    primary: root.shown === index
+                    quiet: root.shown !== index
+                    size: look.textSmall
+                    text: modelData
+                    onActivated: root.shown = index
+                }
+            }
+        }
+        Item {
+            id: place
+            anchors { fill: parent; topMargin: pictures.single ? choices.height + 0.6 * look.unit : 0 }
         }
         FigureView {
-            anchors { left: parent.left; bottom: parent.bottom }
-            width: (parent.width - look.unit) / 2
-            height: pictures.cell
-            svg: root.live.trace
+            visible: !pictures.single || root.shown === 0
+            anchors { left: place.left; right: place.right; top: place.top }
+            height: pictures.single ? place.height : pictures.cell
+            textPixels: root.small
+            picture: root.live.profile
         }
         FigureView {
-            anchors { right: parent.right; bottom: parent.bottom }
-            width: (parent.width - look.unit) / 2
-            height: pictures.cell
-            svg: root.live.times
+            visible: !pictures.single || root.shown === 1
+            anchors { left: place.left; bottom: place.bottom }
+            width: pictures.single ? place.width : pictures.half
+            height: pictures.single ? place.height : place.height - pictures.cell - 0.6 * look.unit
+            textPixels: root.small
+            picture: root.live.trace
+        }
+        FigureView {
+            visible: !pictures.single || root.shown === 2
+            anchors { right: place.right; bottom: place.bottom }
+            width: pictures.single ? place.width : pictures.half
+            height: pictures.single ? place.height : place.height - pictures.cell - 0.6 * look.unit
+            textPixels: root.small
+            picture: root.live.times
         }
     }
     Rectangle {

@@ -138,17 +138,20 @@ Rectangle {
             id: surface
             anchors { left: parent.left; right: parent.right; top: parent.top }
             height: 0.3 * parent.height
-            svg: root.controller.surface
+            textPixels: Math.max(0.8 * look.textSmall, 2 * root.pixelsPerMm)
+            picture: root.controller.surface
         }
         FigureView {
             id: profile
             anchors { left: parent.left; right: parent.right; top: surface.bottom; topMargin: 0.6 * look.unit }
             height: 0.38 * parent.height
-            svg: root.controller.profile
+            textPixels: Math.max(0.8 * look.textSmall, 2 * root.pixelsPerMm)
+            picture: root.controller.profile
         }
         FigureView {
             anchors { left: parent.left; right: parent.right; top: profile.bottom; bottom: parent.bottom; topMargin: 0.6 * look.unit }
-            svg: root.controller.spectrum
+            textPixels: Math.max(0.8 * look.textSmall, 2 * root.pixelsPerMm)
+            picture: root.controller.spectrum
         }
         Row {
             visible: root.controller.problem !== ""

@@ -70,7 +70,8 @@ Rectangle {
     FigureView {
         objectName: "picture"
         anchors { left: parent.left; right: side.left; top: tabs.bottom; bottom: parent.bottom; leftMargin: look.margin; rightMargin: look.unit; topMargin: look.unit; bottomMargin: frame.edge + look.unit }
-        svg: root.report.pictures[Math.min(root.shown, root.report.pictures.length - 1)] ?? ""
+        textPixels: Math.max(0.85 * look.textSmall, 2 * root.pixelsPerMm)
+        picture: root.report.pictures[Math.min(root.shown, root.report.pictures.length - 1)] ?? ""
     }
     Rectangle {
         id: side

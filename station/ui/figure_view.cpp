@@ -2,12 +2,14 @@
 
 #include <QPainter>
 #include <QRegularExpression>
+#include <QSvgRenderer>
 
 namespace turnpoint::ui {
 
 namespace {
 
 constexpr double kMargin = 6;
+constexpr double kDrawnText_px = 12;  // of every drawing
 
 /// Qt draws what a clip path holds instead of clipping by it.
 QString without_clips(QString svg) {
@@ -18,28 +20,28 @@ QString without_clips(QString svg) {
 
 }  // namespace
 
-FigureView::FigureView(QQuickItem* parent) : QQuickPaintedItem(parent) {
-  setAntialiasing(true);
-  renderer_.setAspectRatioMode(Qt::KeepAspectRatio);
-}
+QVariant to_variant(const app::Drawing& drawing) { return QVariant::fromValue(Picture{drawing}); }
 
-void FigureView::set_svg(const QString& svg) {
-  if (svg == svg_) return;
-  svg_ = svg;
-  renderer_.load(without_clips(svg_).toUtf8());
-  renderer_.setAspectRatioMode(Qt::KeepAspectRatio);
-  emit svgChanged();
+FigureView::FigureView(QQuickItem* parent) : QQuickPaintedItem(parent) { setAntialiasing(true); }
+
+void FigureView::set_picture(const QVariant& picture) {
+  picture_ = picture.value<Picture>();
+  emit pictureChanged();
   update();
 }
 
 void FigureView::paint(QPainter* painter) {
-  if (svg_.isEmpty() || !renderer_.isValid()) return;
+  const QRectF card(0, 0, width(), height()), inside = card.adjusted(kMargin, kMargin, -kMargin, -kMargin);
+  if (!picture_.draw || inside.width() < 1 || inside.height() < 1) return;
+  const double scale = text_pixels_ / kDrawnText_px;
+  const auto svg = QString::fromStdString(picture_.draw(inside.width() / scale, inside.height() / scale));
+  QSvgRenderer renderer(without_clips(svg).toUtf8());
+  renderer.setAspectRatioMode(Qt::KeepAspectRatio);
   // A card in the pictures' own white, so that those of other proportions make one page.
-  const QRectF card(0, 0, width(), height());
   painter->setPen(Qt::NoPen);
   painter->setBrush(Qt::white);
   painter->drawRoundedRect(card, kMargin, kMargin);
-  renderer_.render(painter, card.adjusted(kMargin, kMargin, -kMargin, -kMargin));
+  renderer.render(painter, inside);
 }
 
 }  // namespace turnpoint::ui

@@ -1,27 +1,41 @@
 #pragma once
 #include <QQuickPaintedItem>
-#include <QSvgRenderer>
+
+#include "station/app/scene_figures.hpp"
 
 namespace turnpoint::ui {
 
-/// Shows one SVG document as large as it fits, its proportions kept. Still: it draws once a document.
+/// A drawing as QML passes it on.
+struct Picture {
+  Q_GADGET
+
+ public:
+  app::Drawing draw;
+};
+
+/// The same as a property's value.
+QVariant to_variant(const app::Drawing& drawing);
+
+/// Shows one picture, laid out for this item's size with text of `textPixels`. Still: it draws once a
+/// picture.
 class FigureView : public QQuickPaintedItem {
   Q_OBJECT
   QML_ELEMENT
-  Q_PROPERTY(QString svg READ svg WRITE set_svg NOTIFY svgChanged)
+  Q_PROPERTY(QVariant picture READ picture WRITE set_picture NOTIFY pictureChanged)
+  Q_PROPERTY(double textPixels MEMBER text_pixels_)
 
  public:
   explicit FigureView(QQuickItem* parent = nullptr);
-  QString svg() const { return svg_; }
-  void set_svg(const QString& svg);  // NOLINT: the setter of a QML property
+  QVariant picture() const { return QVariant::fromValue(picture_); }
+  void set_picture(const QVariant& picture);  // NOLINT: the setter of a QML property
   void paint(QPainter* painter) override;
 
  signals:
-  void svgChanged();
+  void pictureChanged();
 
  private:
-  QString svg_;
-  QSvgRenderer renderer_;
+  Picture picture_;
+  double text_pixels_ = 12;
 };
 
 }  // namespace turnpoint::ui

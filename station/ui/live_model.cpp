@@ -37,6 +37,10 @@ void LiveModel::hold_or_show() {
 QVariantList LiveModel::scene() const { return to_list(state_.scene); }
 QVariantList LiveModel::course() const { return to_list(state_.course); }
 QVariantList LiveModel::limits() const { return to_list(state_.limits); }
-QStringList LiveModel::surfaces() const { return to_list(state_.surfaces); }
+QVariantList LiveModel::surfaces() const {
+  QVariantList list;
+  for (const auto& surface : state_.surfaces) list += to_variant(surface);
+  return list;
+}
 
 }  // namespace turnpoint::ui

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "station/app/operator_live.hpp"
+#include "station/ui/figure_view.hpp"
 #include "station/ui/session_bridge.hpp"
 
 namespace turnpoint::ui {
@@ -18,10 +19,10 @@ class LiveModel : public QObject {
   Q_PROPERTY(QVariantList scene READ scene NOTIFY changed)
   Q_PROPERTY(QVariantList course READ course NOTIFY changed)
   Q_PROPERTY(QVariantList limits READ limits NOTIFY changed)
-  Q_PROPERTY(QStringList surfaces READ surfaces NOTIFY changed)
-  Q_PROPERTY(QString profile READ profile NOTIFY changed)
-  Q_PROPERTY(QString trace READ trace NOTIFY changed)
-  Q_PROPERTY(QString times READ times NOTIFY changed)
+  Q_PROPERTY(QVariantList surfaces READ surfaces NOTIFY changed)
+  Q_PROPERTY(QVariant profile READ profile NOTIFY changed)
+  Q_PROPERTY(QVariant trace READ trace NOTIFY changed)
+  Q_PROPERTY(QVariant times READ times NOTIFY changed)
   Q_PROPERTY(bool held READ held NOTIFY heldChanged)
 
  public:
@@ -34,10 +35,10 @@ class LiveModel : public QObject {
   QVariantList scene() const;
   QVariantList course() const;
   QVariantList limits() const;
-  QStringList surfaces() const;
-  QString profile() const { return QString::fromStdString(state_.profile); }
-  QString trace() const { return QString::fromStdString(state_.trace); }
-  QString times() const { return QString::fromStdString(state_.times); }
+  QVariantList surfaces() const;
+  QVariant profile() const { return to_variant(state_.profile); }
+  QVariant trace() const { return to_variant(state_.trace); }
+  QVariant times() const { return to_variant(state_.times); }
   /// A stimulus runs or answers are open: nothing new is shown.
   bool held() const { return held_; }
 

@@ -93,9 +93,9 @@ PreviewController::Drawn PreviewController::draw(const Wanted& wanted) {
     drawn.look.problem = error.what();
   }
   if (!drawn.look.problem.empty()) return drawn;
-  drawn.surface = QString::fromStdString(app::surface_svg(drawn.look, preview_.rig()));
-  drawn.profile = QString::fromStdString(plot::render(app::profile_figure(drawn.look)));
-  drawn.spectrum = QString::fromStdString(plot::render(app::spectrum_figure(drawn.look)));
+  drawn.surface = to_variant(app::drawing_of_surface(drawn.look, preview_.rig()));
+  drawn.profile = to_variant(app::drawing_of(app::profile_figure(drawn.look)));
+  drawn.spectrum = to_variant(app::drawing_of(app::spectrum_figure(drawn.look)));
   return drawn;
 }
 

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "station/app/preview.hpp"
+#include "station/ui/figure_view.hpp"
 
 namespace turnpoint::ui {
 
@@ -28,9 +29,9 @@ class PreviewController : public QObject {
   Q_PROPERTY(QString problem READ problem NOTIFY changed)
   Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
   Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
-  Q_PROPERTY(QString surface READ surface NOTIFY changed)
-  Q_PROPERTY(QString profile READ profile NOTIFY changed)
-  Q_PROPERTY(QString spectrum READ spectrum NOTIFY changed)
+  Q_PROPERTY(QVariant surface READ surface NOTIFY changed)
+  Q_PROPERTY(QVariant profile READ profile NOTIFY changed)
+  Q_PROPERTY(QVariant spectrum READ spectrum NOTIFY changed)
 
  public:
   /// Throws text::BadInput, std::invalid_argument for a scene or a factor that the protocol does not have.
@@ -46,9 +47,9 @@ class PreviewController : public QObject {
   QString problem() const { return QString::fromStdString(look_.problem); }
   QVariantList facts() const;
   QVariantList cues() const;
-  QString surface() const { return surface_; }
-  QString profile() const { return profile_; }
-  QString spectrum() const { return spectrum_; }
+  QVariant surface() const { return surface_; }
+  QVariant profile() const { return profile_; }
+  QVariant spectrum() const { return spectrum_; }
 
   Q_INVOKABLE void choose(int scene);
   Q_INVOKABLE void set(const QString& factor, double value);
@@ -61,7 +62,7 @@ class PreviewController : public QObject {
   /// A look with its pictures, as the worker makes it.
   struct Drawn {
     app::Look look;
-    QString surface, profile, spectrum;
+    QVariant surface, profile, spectrum;
   };
   struct Wanted {
     std::string scene;
@@ -78,7 +79,7 @@ class PreviewController : public QObject {
   int scene_ = 0;
   bool busy_ = false;
   app::Look look_;
-  QString surface_, profile_, spectrum_;
+  QVariant surface_, profile_, spectrum_;
   std::mutex mutex_;
   std::condition_variable_any arrived_;
   std::optional<Wanted> wanted_;

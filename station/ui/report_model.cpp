@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "station/ui/facts.hpp"
+#include "station/ui/figure_view.hpp"
 
 namespace turnpoint::ui {
 
@@ -25,32 +26,32 @@ void ReportModel::clear() {
 
 QVariantList ReportModel::outcomes() const { return to_list(pages_.outcomes); }
 QVariantList ReportModel::fit() const { return to_list(pages_.fit); }
-QVariantList ReportModel::trade() const { return to_list(pages_.trade); }
+QVariantList ReportModel::trade() const { return to_list(pages_.speed_accuracy); }
 QVariantList ReportModel::health() const { return to_list(pages_.health); }
 QStringList ReportModel::statements() const { return to_list(pages_.statements); }
 
-std::vector<std::pair<QString, QString>> ReportModel::all_pictures() const {
-  std::vector<std::pair<QString, QString>> list;
-  const auto add = [&list](const char* name, const std::string& svg) {
-    if (!svg.empty()) list.emplace_back(name, QString::fromStdString(svg));
+std::vector<std::pair<QString, app::Drawing>> ReportModel::all_pictures() const {
+  std::vector<std::pair<QString, app::Drawing>> list;
+  const auto add = [&list](const char* name, const app::Drawing& drawing) {
+    if (drawing) list.emplace_back(name, drawing);
   };
-  add("Speed and accuracy", pages_.trade_svg);
-  add("Fit", pages_.fit_svg);
-  add("Levels", pages_.trace_svg);
-  add("Response times", pages_.times_svg);
+  add("Speed and accuracy", pages_.trade);
+  add("Fit", pages_.fits);
+  add("Levels", pages_.levels);
+  add("Response times", pages_.times);
   return list;
 }
 
 QStringList ReportModel::picture_names() const {
   QStringList names;
-  for (const auto& [name, svg] : all_pictures()) names += name;
+  for (const auto& [name, drawing] : all_pictures()) names += name;
   return names;
 }
 
-QStringList ReportModel::pictures() const {
-  QStringList documents;
-  for (const auto& [name, svg] : all_pictures()) documents += svg;
-  return documents;
+QVariantList ReportModel::pictures() const {
+  QVariantList list;
+  for (const auto& [name, drawing] : all_pictures()) list += to_variant(drawing);
+  return list;
 }
 
 }  // namespace turnpoint::ui

@@ -18,9 +18,9 @@ class ReportModel : public QObject {
   Q_PROPERTY(QVariantList trade READ trade NOTIFY changed)
   Q_PROPERTY(QVariantList health READ health NOTIFY changed)
   Q_PROPERTY(QStringList statements READ statements NOTIFY changed)
-  /// Names and SVG documents of the pictures that there are, the trade first.
+  /// Names and drawings of the pictures that there are, the trade first.
   Q_PROPERTY(QStringList pictureNames READ picture_names NOTIFY changed)
-  Q_PROPERTY(QStringList pictures READ pictures NOTIFY changed)
+  Q_PROPERTY(QVariantList pictures READ pictures NOTIFY changed)
 
  public:
   using QObject::QObject;
@@ -37,13 +37,13 @@ class ReportModel : public QObject {
   QVariantList health() const;
   QStringList statements() const;
   QStringList picture_names() const;
-  QStringList pictures() const;
+  QVariantList pictures() const;
 
  signals:
   void changed();
 
  private:
-  std::vector<std::pair<QString, QString>> all_pictures() const;
+  std::vector<std::pair<QString, app::Drawing>> all_pictures() const;
   app::ReportPages pages_;
   bool ready_ = false;
 };

@@ -92,6 +92,34 @@ TEST_CASE("Each series differs from every other by colour, by marker, and lines 
   CHECK(style(6).colour == style(0).colour);
 }
 
+TEST_CASE("A figure laid out for a place fills it, in the arrangement that suits its panels", "[plot]") {
+  Figure figure;
+  figure.title = "Two";
+  Panel panel;
+  panel.x = {"x", 0, 1};
+  panel.y = {"y", 0, 1};
+  panel.layers.push_back(Line{{0, 1}, {0, 1}, 0, ""});
+  figure.panels = {panel, panel};
+  const auto wide = laid_out(figure, 640, 200);
+  CHECK(wide.columns == 2);
+  CHECK(wide.panel_width_px == 320);
+  CHECK(wide.panel_height_px == 200);
+  const auto high = laid_out(figure, 400, 540);
+  CHECK(high.columns == 1);
+  CHECK(high.panel_width_px == 400);
+  CHECK(high.panel_height_px == 270);
+  // With a caption below, the whole still fits.
+  figure.caption = "Bars show what nineteen of twenty repetitions would lie between.";
+  const auto told = laid_out(figure, 640, 240);
+  CHECK(told.panel_height_px < 240);
+  CHECK(render(told).find("height=\"240\"") != std::string::npos);
+  // Where there is no room the document grows instead of the text shrinking to nothing.
+  figure.caption.clear();
+  const auto tiny = laid_out(figure, 100, 40);
+  CHECK(tiny.panel_height_px >= 165);
+  CHECK_NOTHROW(render(tiny));
+}
+
 TEST_CASE("Lists whose lengths differ are refused", "[plot]") {
   auto figure = example();
   figure.panels[0].layers = {Line{{1, 2}, {1}, 0, ""}};

@@ -80,6 +80,9 @@ class Camera {
 
   void shoot(const turnpoint::session::Page& page, const QString& name) {
     bridge_.show(page);
+    QGuiApplication::processEvents();
+    // The numbers that only the operator opens.
+    window_->findChild<QQuickItem*>("participantView")->setProperty("counting", name == "end-operator");
     shoot(name);
   }
 
