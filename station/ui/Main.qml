@@ -41,6 +41,11 @@ Window {
         else start.close()
     }
 
+    /// The first page does not wait for the session's: they are made once it is on the screen.
+    property bool begun: false
+    readonly property ParticipantView participant: session.item as ParticipantView
+    onFrameSwapped: begun = true
+
     width: 1280
     height: 800
     visible: true
@@ -100,19 +105,22 @@ Window {
             onAccepted: code => root.start.enterCode(code)
         }
     }
-    ParticipantView {
-        id: participant
-        objectName: "participantView"
+    Loader {
+        id: session
         anchors.fill: parent
         visible: root.start.stage === StartController.Session
-        bridge: root.bridge
-        pixelsPerMm: root.pixelsPerMm
-        leftHanded: root.leftHanded
-        hasReport: root.report.ready
-        onClosed: root.leave()
-        onReportWanted: root.ask("report")
-        onOperatorWanted: root.ask("view")
-        onArmingWanted: root.ask("arm")
+        active: root.begun || visible
+        sourceComponent: ParticipantView {
+            objectName: "participantView"
+            bridge: root.bridge
+            pixelsPerMm: root.pixelsPerMm
+            leftHanded: root.leftHanded
+            hasReport: root.report.ready
+            onClosed: root.leave()
+            onReportWanted: root.ask("report")
+            onOperatorWanted: root.ask("view")
+            onArmingWanted: root.ask("arm")
+        }
     }
     OperatorGate {
         id: gate
@@ -145,7 +153,7 @@ Window {
         // Going on closes it: nothing of it may be seen in a trial.
         Connections {
             target: root.bridge
-            function onShown() { if (participant.inTrial) liveView.wanted = false }
+            function onShown() { if (root.participant?.inTrial ?? false) liveView.wanted = false }
         }
     }
     Loader {
