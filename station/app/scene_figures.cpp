@@ -185,7 +185,7 @@ plot::Figure profile_figure(const Look& look) {
   figure.panels.push_back(
       panel("Displacement", {"Displacement (\u00b5m)", 0, most > 0 ? 1.15 * most : 1}, um, 0));
   figure.panels.push_back(
-      panel("Friction under a fingertip", {"Friction, relative", 0, 1.05}, look.profile.friction, 1));
+      panel("Friction under a fingertip", {"Friction, relative", 0, 1.2}, look.profile.friction, 1));
   figure.columns = 2;
   figure.panel_width_px = 430, figure.panel_height_px = 260;
   return figure;
