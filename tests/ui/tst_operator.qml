@@ -145,6 +145,21 @@ Item {
             liveView.visible = false
         }
 
+        function test_where_three_pictures_have_no_room_buttons_choose_one() {
+            liveView.visible = true
+            verify(find(liveView, "livePicture1") === null)
+            stage.width = 800
+            stage.height = 480
+            tryVerify(() => find(liveView, "livePicture1") !== null)
+            compare(liveView.shown, 0)
+            tap(liveView, "livePicture1")
+            compare(liveView.shown, 1)
+            compare(inspector.cutTexts(liveView), [])
+            stage.width = 1280
+            stage.height = 800
+            liveView.visible = false
+        }
+
         function test_nothing_new_is_shown_to_the_operator_while_a_stimulus_runs() {
             const shown = spy.count
             script.show("explore", "en")

@@ -35,6 +35,14 @@ Item {
             }
             return null
         }
+        function says(parent, wanted) {
+            for (let i = 0; i < parent.children.length; ++i) {
+                const child = parent.children[i]
+                if (!child.visible) continue
+                if ((child.text ?? "").toString().includes(wanted) || says(child, wanted)) return true
+            }
+            return false
+        }
         function shown(name, parent = room.screen) { return find(parent, name) !== null }
         function appears(name, parent = room.screen) {
             tryVerify(() => shown(name, parent), 20000, name)
@@ -239,6 +247,7 @@ Item {
             tryCompare(page, "kind", PageModel.Instructions, 5000)
             tap("proceed")
             tryVerify(() => page.answersOpen, 20000)
+            verify(says(room.second, "LIVE") && !says(room.screen, "LIVE"))
             tap("livePause", room.second)
             tryCompare(page, "kind", PageModel.Paused, 5000)
             verify(!shown("liveView"))
