@@ -103,7 +103,7 @@ std::shared_ptr<app::RunRequest> add_run_options(CLI::App& command) {
       "Version of the consent form; the screen asks the participant to confirm having signed it");
   command
       .add_option("--operator-code", request->operator_code,
-                  "Digits that open the operator's view on the participant's screen")
+                  "Digits that open the operator's view, arming and the report on the participant's screen")
       ->capture_default_str();
   command.add_flag("--headless", request->headless, "No screen");
   command.add_flag("--buttons-only", request->buttons_only,

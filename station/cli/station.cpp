@@ -16,7 +16,7 @@ void add_station(CLI::App& app, Context& context) {
   command->add_option("--db", request->database, "Database; otherwise one in the user's data folder");
   command
       ->add_option("--operator-code", request->operator_code,
-                   "Digits that open the operator's view on the participant's screen")
+                   "Digits that open the operator's pages, arming and the report on the participant's screen")
       ->capture_default_str();
   command->footer("Example: turnpoint station --db lab.sqlite");
   command->callback([request, &context] {
