@@ -1,5 +1,6 @@
 #include "station/app/report.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "station/app/records.hpp"
@@ -9,6 +10,14 @@
 namespace turnpoint::app {
 
 namespace {
+
+/// How late the participant's screen was, as the log has it.
+std::string late_frames(const std::vector<store::EventRow>& events) {
+  int frames = 0, trials = 0;
+  for (const auto& event : events)
+    if (event.kind == "frames_lost") frames += std::stoi(event.value), ++trials;
+  return frames == 0 ? "none" : std::to_string(frames) + " in " + std::to_string(trials) + " trials";
+}
 
 void add_health(const store::StoredSession& stored, report::SessionData& data) {
   int xruns = 0, extra = 0, trials = 0;
@@ -20,7 +29,7 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
       xruns += row.xruns;
       extra += row.extra_touches;
       if (row.response_time_s) ++quality[row.response_time_quality];
-      offset_s = row.response_offset_s;
+      offset_s = std::max(offset_s, row.response_offset_s);  // answers by button have none
     }
   std::string qualities;
   for (const auto& [name, count] : quality)
@@ -31,6 +40,7 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
   data.health = {{"Trials stored", std::to_string(trials)},
                  {"Underruns and overruns", std::to_string(xruns)},
                  {"Touches that no answer claimed", std::to_string(extra)},
+                 {"Frames that the screen was late by", late_frames(stored.events)},
                  {"Times the session was resumed", std::to_string(stored.session.segments - 1)},
                  {"Blocks begun again", std::to_string(attempts)},
                  {"Response times by", qualities.empty() ? "none" : qualities},

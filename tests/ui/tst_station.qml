@@ -200,6 +200,10 @@ Item {
             const lost = framesLost(100)
             verify(lost["1"] >= 4, JSON.stringify(lost))             // 100 ms are six at 60 Hz, and one may pass
             verify(lost.total <= lost.seen, JSON.stringify(lost))
+            tap("results")
+            type("2468")
+            appears("reportPage")
+            tryVerify(() => says(room.screen, lost.total + " in "), 20000)
         }
 
         function test_a_session_whose_pages_are_in_time_counts_no_late_frame() {
