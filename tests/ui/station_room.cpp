@@ -30,7 +30,7 @@ StationRoom::StationRoom(QObject* parent) : QObject(parent) {
   connect(&beat_, &QTimer::timeout, this, [this] {
     const double late_ms = 1e-6 * static_cast<double>(now_ns() - beat_ns_);
     beat_ns_ = now_ns();
-    if (late_ms > 20) stalls_ += static_cast<int>(late_ms / (1e3 / 60));
+    if (late_ms > 25) stalls_ += static_cast<int>(late_ms / (1e3 / 60));
   });
 }
 

@@ -172,7 +172,7 @@ Item {
         }
 
         /// Four trials, the second with the pages' thread blocked for so long: {trial: frames lost}, and in `seen`
-        /// what a beat of the test's own has found.
+        /// what a beat of the test's own has found (which may not see a wait that two of its turns have shared).
         function framesLost(blocked_ms) {
             room.open("2468")
             begin("T2")
@@ -199,7 +199,7 @@ Item {
         function test_frames_that_are_late_in_a_trial_are_counted_in_its_events() {
             const lost = framesLost(100)
             verify(lost["1"] >= 4, JSON.stringify(lost))             // 100 ms are six at 60 Hz, and one may pass
-            verify(lost.total <= lost.seen, JSON.stringify(lost))
+            verify(lost.total <= lost.seen + 1, JSON.stringify(lost))
             tap("results")
             type("2468")
             appears("reportPage")
@@ -208,7 +208,7 @@ Item {
 
         function test_a_session_whose_pages_are_in_time_counts_no_late_frame() {
             const lost = framesLost(0)
-            verify(lost.total <= lost.seen, JSON.stringify(lost))    // seen: none, where this machine is not busy
+            verify(lost.total <= lost.seen + 1, JSON.stringify(lost))  // what this machine was late by, and no more
         }
 
         function test_a_session_that_was_cut_off_goes_on_at_its_very_trial() {
