@@ -39,14 +39,16 @@ RecoveryAction Recovery::transferred(const DeviceReport& report) noexcept {
 
 RecoveryAction Recovery::acted(const DeviceReport& report) noexcept {
   if (report.disconnected || report.error == -ENODEV) return lose();
+  if (state_ == State::resuming) {
+    if (report.error == -EAGAIN && ++resumes_ < most_resumes) return RecoveryAction::wait;
+    // Many drivers cannot resume (ENOSYS). One that can has frames and times in a new relation, and the rest
+    // of a stimulus from before the sleep in its buffer: it starts anew as well.
+    state_ = State::restarting;
+    return RecoveryAction::restart;
+  }
   if (report.error == 0) {
     state_ = State::running;
     return RecoveryAction::go_on;
-  }
-  if (state_ == State::resuming) {
-    if (report.error == -EAGAIN && ++resumes_ < most_resumes) return RecoveryAction::wait;
-    state_ = State::restarting;  // many drivers cannot resume (ENOSYS): start anew
-    return RecoveryAction::restart;
   }
   return lose();
 }

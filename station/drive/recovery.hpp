@@ -12,8 +12,8 @@ struct DeviceReport {
 
 enum class RecoveryAction {
   go_on,    ///< all is well, or the call was only interrupted: try again
-  restart,  ///< underrun: prepare, fill with silence, start
-  resume,   ///< suspended: ask the device to resume
+  restart,  ///< underrun or woken: prepare, fill with silence, start
+  resume,   ///< suspended: ask the device to resume, before it is restarted
   wait,     ///< the device is resuming: wait a period, then ask again
   abandon,  ///< gone: close it; the stream is lost and the amplifier goes off
   reopen,   ///< lost: try to open it by name

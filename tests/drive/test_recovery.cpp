@@ -18,13 +18,14 @@ TEST_CASE("an underrun restarts the device, an interruption does not", "[drive][
   CHECK_FALSE(recovery.lost());
 }
 
-TEST_CASE("a suspended device is resumed, waited for, and restarted where it cannot resume",
+TEST_CASE("a suspended device is resumed, waited for, and started anew whether it could or not",
           "[drive][recovery]") {
   Recovery recovery;
   CHECK(recovery.transferred({-ESTRPIPE}) == Action::resume);
   SECTION("it resumes after a while") {
     CHECK(recovery.acted({-EAGAIN}) == Action::wait);
     CHECK(recovery.acted({-EAGAIN}) == Action::wait);
+    CHECK(recovery.acted({0}) == Action::restart);
     CHECK(recovery.acted({0}) == Action::go_on);
   }
   SECTION("the driver cannot resume") {
