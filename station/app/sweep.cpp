@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 #include "station/app/calibrate.hpp"
@@ -13,7 +14,7 @@ namespace turnpoint::app {
 
 namespace {
 
-constexpr double kLead_s = 0.5;
+constexpr double kLead_s = 0.5, kMargin_s = 0.25;
 constexpr std::int64_t kPoll_ns = 5'000'000;
 
 drive::Burst burst_of(const SweepStep& step, int rate_Hz) {
@@ -40,8 +41,8 @@ void render(drive::SynchronousStream& stream, const std::vector<SweepStep>& step
 }
 
 /// The stream while the guard sees that somebody lives; throws what went wrong.
-void attend(drive::Stream& stream, drive::Amplifier& amplifier, std::int64_t until_ns) {
-  while (drive::monotonic_ns() < until_ns) {
+void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::function<bool()>& done) {
+  while (!done()) {
     amplifier.session_alive();
     while (const auto event = stream.poll()) {
       using Kind = drive::EventKind;
@@ -58,13 +59,17 @@ void attend(drive::Stream& stream, drive::Amplifier& amplifier, std::int64_t unt
 void play(drive::Stream& stream, drive::Amplifier& amplifier, const std::vector<SweepStep>& steps,
           int rate_Hz) {
   const auto begin = stream.earliest_frame() + std::llround(kLead_s * rate_Hz);
+  const auto margin = std::llround(kMargin_s * rate_Hz);
+  auto end = begin;
   for (const auto& step : steps) {
     auto burst = burst_of(step, rate_Hz);
     burst.start_frame = begin + std::llround(step.start_s * rate_Hz);
-    attend(stream, amplifier, stream.time_of(burst.start_frame) - 100'000'000);
+    // By what is rendered, which a device with a long buffer is far ahead of what is heard.
+    attend(stream, amplifier, [&] { return stream.earliest_frame() + margin >= burst.start_frame; });
     stream.schedule(burst);
-    attend(stream, amplifier, stream.time_of(burst.start_frame + burst.length_frames));
+    end = burst.start_frame + burst.length_frames;
   }
+  attend(stream, amplifier, [&] { return drive::monotonic_ns() >= stream.time_of(end); });
 }
 
 }  // namespace
@@ -110,9 +115,13 @@ double play_sweep(const rig::Rig& rig, const std::vector<SweepStep>& steps, cons
   const auto amplifier = panel::open_amplifier(rig.amplifier_uri);  // outlives the stream
   config.amplifier = amplifier.get();
   const auto stream = drive::open_realtime(config);
-  attend(*stream, *amplifier, drive::monotonic_ns() + 200'000'000);
+  const auto attend_for = [&](std::int64_t ns) {
+    attend(*stream, *amplifier,
+           [until_ns = drive::monotonic_ns() + ns] { return drive::monotonic_ns() >= until_ns; });
+  };
+  attend_for(200'000'000);
   if (!arm()) throw std::runtime_error("sweep: the amplifier was not armed; nothing was played");
-  attend(*stream, *amplifier, drive::monotonic_ns() + 50'000'000);
+  attend_for(50'000'000);
   amplifier->arm();
   amplifier->enable();
   const auto began_ns = drive::monotonic_ns();

@@ -66,7 +66,8 @@ struct Resonance {
 };
 
 /// Resonances by a straight line: about a peak 1/|u|^2 is a parabola in f, whose width is f0/2Q. Peaks with
-/// fewer than five points above half power are left out.
+/// fewer than five points above half power are left out, and those where the phase does not turn: they are
+/// the transducer's, not the surface's.
 std::vector<Resonance> find_resonances(const std::vector<ResponsePoint>& sweep);
 
 /// Median quality factor; none without resonances.

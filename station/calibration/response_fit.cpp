@@ -11,6 +11,10 @@
 namespace turnpoint::calibration {
 namespace {
 
+// Between its half-power points a resonance turns the phase by 90 degrees, a hump of the drive's response by
+// little.
+constexpr double least_turn_rad = std::numbers::pi / 4;
+
 void check(const std::vector<ResponsePoint>& sweep, int window) {
   if (sweep.size() < 5 || window < 3)
     throw std::invalid_argument(
@@ -88,6 +92,7 @@ ResponseFit fit_response(const std::vector<ResponsePoint>& sweep, int window) {
 
 std::vector<Resonance> find_resonances(const std::vector<ResponsePoint>& sweep) {
   check(sweep, 3);
+  const std::vector<double> phases = unwrapped(sweep);
   std::vector<Resonance> found;
   for (std::size_t k = 1; k + 1 < sweep.size(); ++k) {
     const double peak = sweep[k].m_per_full_scale;
@@ -96,6 +101,7 @@ std::vector<Resonance> find_resonances(const std::vector<ResponsePoint>& sweep) 
     while (low > 0 && sweep[low - 1].m_per_full_scale >= peak / std::numbers::sqrt2) --low;
     while (high + 1 < sweep.size() && sweep[high + 1].m_per_full_scale >= peak / std::numbers::sqrt2) ++high;
     if (high - low + 1 < 5) continue;
+    if (std::abs(phases[high] - phases[low]) < least_turn_rad) continue;
     // With a line f = f_k + u f_k the parabola 1/|u|^2 ~ a + b u + c u^2 has its bottom at -b/2c, half
     // width^2 a/c - (b/2c)^2.
     std::vector<std::vector<double>> rows;

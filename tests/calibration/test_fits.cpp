@@ -96,6 +96,13 @@ TEST_CASE("frequency and Q of a resonance come from its width", "[calibration]")
                   .has_value());  // too coarse a sweep
 }
 
+TEST_CASE("a hump without a turn of the phase is no resonance", "[calibration]") {
+  auto sweep = resonator(28000, 20, 24000, 32000, 61);
+  REQUIRE(find_resonances(sweep).size() == 1);
+  for (auto& point : sweep) point.phase_rad = 0.1;
+  CHECK(find_resonances(sweep).empty());
+}
+
 TEST_CASE("a response is smoothed without bias, and its band ends where equalisation would exceed 20 dB",
           "[calibration]") {
   auto sweep = resonator(30000, 30, 15000, 60000, 181);

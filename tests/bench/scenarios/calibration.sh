@@ -1,0 +1,87 @@
+# proves: a sweep played on a real card and measured by a simulated vibrometer becomes a calibration; a live session with it moves the surface as far as its database says
+# timeout: 500
+gpio_sim AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R
+for line in AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R; do pull $line down; done
+loopback
+section() { sed -i "/^\[$1\]/,/^uri/ s|^uri.*|uri = \"$2\"|" rig.toml; }
+sed '/^rate_Hz/a period_frames = 1920\nperiods = 64' "$SOURCE/deploy/rigs/simulated.toml" >rig.toml
+section output alsa:hw:Loopback,0
+section amplifier gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB
+section buttons gpio:left=BTN_L,right=BTN_R
+sed -e 's/device = "touch"/device = "buttons"/' "$SOURCE/tests/ui/short.toml" >short.toml
+live() { turnpoint run short.toml --rig rig.toml --mode live --participant P1 --db lab.sqlite --buttons-only --json "$@"; }
+
+# Not before it is calibrated.
+fails 2 live </dev/null
+has refusal.txt "no calibration in force" || fail "a live session without a calibration"
+
+# The transducer's true response, um at full scale: a resonance that the rig file knows nothing of.
+true_um() { awk -v f="$1" 'BEGIN { u = (f - 30000) / 8000; printf "%.6f", 3.1 * (1 + 0.5 * exp(-u * u)) }'; }
+# moved FILE: the frequency (Hz) and displacement (um) of what was played, as a vibrometer on that transducer sees it
+moved() {
+  read -r frequency level _ <<<"$(measure_tone "$1" 192000 2 0)"
+  awk -v f="$frequency" -v l="$level" -v r="$(true_um "$frequency")" 'BEGIN { printf "%.3f %.6f\n", f, r * 10 ^ (l / 20) }'
+}
+turnpoint calibrate --rig rig.toml --sweep --points 24 --amplitude 0.1 >sweep.csv
+sweep() {  # a host that stalls makes the guard trip, as it should: an operator would begin again
+  record 60 heard.raw; recorder=$!
+  turnpoint calibrate --rig rig.toml --sweep --points 24 --amplitude 0.1 --sweep-out alsa:hw:Loopback,0 --arm || status=$?
+  kill $recorder; wait $recorder || true
+  return $status
+}
+status=0; sweep || { status=0; sweep; } || { status=0; sweep; }
+[ "$(level AMP_EN)" = 0 ] || fail "the amplifier stays on after the sweep"
+python3 - <<'PYTHON'
+import csv
+data = open("heard.raw", "rb").read()
+begin = (len(data) - len(data.lstrip(b"\0"))) // 8
+for n, step in enumerate(csv.DictReader(open("sweep.csv"))):
+    at = begin + round((float(step["start_s"]) + 0.1) * 192000)
+    open(f"step{n}.raw", "wb").write(data[8 * at:8 * (at + 57600)])
+PYTHON
+echo frequency_Hz,displacement_um,phase_deg >response.csv
+for n in {0..23}; do moved step$n.raw | sed 's/ /,/; s/$/,0/' >>response.csv; done
+paste -d ' ' <(cut -d , -f 2 sweep.csv | tail -n +2) <(cut -d , -f 1 response.csv | tail -n +2) |
+  awk '{ d = $1 - $2; if (d > 0.01 || d < -0.01) exit 1 }' || { paste sweep.csv response.csv; fail "a step of the sweep at another frequency"; }
+
+printf '%s\n' displacement_um,relative_friction 0,1 0.5,0.8 1,0.55 2,0.3 4,0.15 8,0.1 >friction.csv
+printf '%s\n' frequency_Hz,level_dB 14000,70 30000,60 60000,50 >sound.csv
+turnpoint calibrate --rig rig.toml --response main=response.csv --full-scale 0.1 --friction friction.csv --sound sound.csv --note bench
+ls rig.calibration-*.toml
+
+# Four trials of a live session with it, by buttons.
+record 120 heard.raw; recorder=$!
+mkfifo operator
+live <operator >summary.json 2>console.txt & session=$!
+exec 8>operator
+# Whatever the session asks for is given, also where a stalled host made the guard trip and a trial is repeated.
+said() { grep -cE "$1" console.txt || true; }
+armed=0 went_on=0 answered=0
+while kill -0 $session 2>/dev/null; do
+  [ "$(said "arm or stop")" -le $armed ] || { armed=$(said "arm or stop"); echo arm >&8; }
+  [ "$(said "^(instructions|rest|paused)")" -le $went_on ] || { went_on=$((went_on + 1)); sleep 1.5; echo next >&8; }
+  [ "$(said "^stimulus")" -le $answered ] || { answered=$((answered + 1)); sleep 1; gpio_line press "$(pull_file BTN_L)" 50 >/dev/null; }
+  sleep 0.1
+done
+status=0; wait $session || status=$?
+kill $recorder
+cat summary.json
+[ $status = 0 ] && has summary.json '"completed"' || { cat console.txt; fail "the session ended with $status"; }
+rows() { sqlite3 -separator ' ' lab.sqlite "$1"; }
+[ "$(rows "SELECT run_mode FROM session WHERE calibration_id IN (SELECT calibration_id FROM calibration)")" = live ] ||
+  fail "not a live session with its calibration"
+
+rows "SELECT DISTINCT frequency_Hz, amplitude_um FROM tone" >told.txt
+python3 "$BENCH_SOURCE/guest/bursts.py" heard.raw burst
+heard=0
+for burst in burst*.raw; do
+  read -r frequency_Hz um <<<"$(moved $burst)"
+  # the tone that the database tells, and the displacement as a multiple of what it says
+  read -r told_Hz ratio <<<"$(awk -v f="$frequency_Hz" -v u="$um" '{ d = f - $1; if (d < 0.02 && d > -0.02) print $1, u / $2 }' told.txt)"
+  near "stimulus $heard (Hz)" "$frequency_Hz" "${told_Hz:-0}" 0.02
+  near "displacement of the drive edge against the database's (ratio)" "$ratio" 1 0.02
+  heard=$((heard + 1))
+done
+[ $heard -ge 4 ] || fail "only $heard stimuli heard"
+[ "$(wc -l <told.txt)" = 2 ] || fail "not two levels: $(cat told.txt)"
+[ "$(rows "SELECT count(*) FROM trial WHERE outcome = 'answered'")" = 4 ] || fail "$(rows "SELECT * FROM trial")"
