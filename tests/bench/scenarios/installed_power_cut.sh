@@ -1,12 +1,22 @@
-# proves: a session keeps each committed trial through a power cut at any moment, and `turnpoint resume` completes it
-# needs: disk
+# proves: a session under the installed unit keeps each committed trial through a power cut at any moment, and `turnpoint resume` completes it
+# needs: installed disk
 # timeout: 400
-disk_begin
-mkdir /run/disk/data
-watch_rows /run/disk/data/station.sqlite trial /dev/vda & watcher=$!
-turnpoint run "$SOURCE/protocols/demo.toml" --rig "$SOURCE/deploy/rigs/simulated.toml" --participant P01 \
-  --db /run/disk/data/station.sqlite --headless --observer sim --seed 1 --json >summary.json
-cat summary.json
+data=/var/lib/turnpoint
+disk_begin $data
+chown turnpoint: $data
+watch_rows $data/station.sqlite trial /dev/vda & watcher=$!
+mkdir /run/systemd/system/turnpoint.service.d
+cat >/run/systemd/system/turnpoint.service.d/session.conf <<END
+[Service]
+Type=oneshot
+WatchdogSec=0
+Restart=no
+ExecStart=
+ExecStart=/usr/bin/turnpoint run /usr/share/turnpoint/protocols/demo.toml --rig /usr/share/turnpoint/rigs/simulated.toml \
+  --participant P01 --db $data/station.sqlite --headless --observer sim --seed 1
+END
+systemctl daemon-reload
+systemctl start turnpoint || { journalctl -u turnpoint --no-pager; fail "the session failed"; }
 sleep 0.1
 kill $watcher
-mkdir "$OUT/whole"; cp /run/disk/data/* "$OUT/whole/"
+mkdir "$OUT/whole"; cp $data/station.sqlite* "$OUT/whole/"
