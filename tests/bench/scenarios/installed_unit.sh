@@ -1,10 +1,18 @@
-# proves: the installed unit gets ready under systemd, is hardened, listens nowhere, and is restarted when it hangs or dies; a session by touches under it outlives a lost panel
+# proves: the installed unit gets ready under systemd, on eglfs and on the frame buffer, is hardened, listens nowhere, and is restarted when it hangs or dies; a session by touches under it outlives a lost panel
 # needs: installed screen
 # timeout: 900
 state() { systemctl show -P "$1" turnpoint; }
 journal() { journalctl -u turnpoint --no-pager; }
 panel_begin
 screen_begin
+# As it is installed: eglfs on the kernel's mode setting, drawn by software for want of a GPU.
+systemctl start turnpoint || { journal | tail -30; fail "the unit did not get ready on eglfs"; }
+mount -t debugfs debugfs /sys/kernel/debug
+sed -n '/^plane/,/^crtc/p' /sys/kernel/debug/dri/0/state >shown.txt
+{ has shown.txt "allocated by = QSGRenderThread" && has shown.txt "size=800x480"; } || fail "not on the screen: $(cat shown.txt)"
+systemctl stop turnpoint
+
+# The rest on the frame buffer, whose pixels can be read.
 mkdir -p /etc/turnpoint
 printf 'QT_QPA_PLATFORM=linuxfb\nQT_QUICK_BACKEND=software\nQT_QPA_GENERIC_PLUGINS=evdevtouch\nQT_QPA_FB_DISABLE_INPUT=1\nTURNPOINT_DPI=132\n' \
   >/etc/turnpoint/environment
