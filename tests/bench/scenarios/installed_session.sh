@@ -1,6 +1,6 @@
 # proves: under the installed unit a session by buttons drives what its database says; stop, clock jump, lost sound card, full disk, lost GPIO chip and a kill keep every stored trial, and nothing arms by itself
 # needs: installed
-# timeout: 600
+# timeout: 900
 gpio_sim AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R
 for line in AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R; do pull $line down; done
 loopback
