@@ -1,182 +1,22 @@
-#include <unistd.h>
-
-#include <algorithm>
 #include <cstdlib>
-#include <filesystem>
-#include <functional>
-#include <memory>
 #include <stdexcept>
 #include <thread>
 
 #include "station/app/prepare.hpp"
-#include "station/drive/monotonic.hpp"
-#include "station/panel/guarded_amplifier.hpp"
-#include "station/panel/simulated_lines.hpp"
-#include "station/session/session.hpp"
-#include "station/store/read.hpp"
 #include "station/text/problem.hpp"
+#include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 // Live sessions in real time: a person with buttons, the operator, the guard on simulated lines, alsa-lib's
 // null device allowed as a plug-in, or no device at all. The assertions on the amplifier read the line's log.
 
 using namespace turnpoint;
-using session::InputKind;
-using session::PageKind;
-namespace fs = std::filesystem;
-
-namespace {
-
-constexpr int kEnable = 0, kHeartbeat = 1, kFaultLine = 2, kStop = 3;
-
-std::string protocol_text(const std::string& device) {
-  return R"(format = "friction-protocol/1"
-[protocol]
-id = "live"
-version = "1.0.0"
-title = "Two quick trials"
-languages = ["en"]
-[random]
-seed = 7
-[[factor]]
-name = "offset_mm"
-range = [-24.0, 24.0]
-[scene.edge]
-boundary_mm = "160 + offset_mm"
-edge = "p50"
-displacement_um = 1.0
-ramp_ms = 20
-tolerance = { boundary_mm = 0.5 }
-[task]
-kind = "single-interval"
-intervals = ["edge"]
-device = ")" +
-         device +
-         R"("
-question = { en = "Left or right?" }
-choices = [{ id = "left", label = { en = "Left" } }, { id = "right", label = { en = "Right" } }]
-correct = { left = "offset_mm < 0", right = "offset_mm > 0" }
-[timing]
-response_zero = "go_cue"
-explore_s = 2.0
-deadline_s = 3.0
-iti_s = { uniform = [0.1, 0.2] }
-anticipation_s = 0.0
-[[procedure]]
-name = "levels"
-kind = "constant-stimuli"
-level = "offset_mm"
-values = [-20.0, 20.0]
-repeats = 1
-[[block]]
-name = "main"
-procedures = ["levels"]
-)";
-}
-
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("turnpoint-live-" + std::to_string(::getpid()));
-  Folder() {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Folder() { fs::remove_all(path); }
-  std::string operator/(const std::string& name) const { return (path / name).string(); }
-};
-
-/// Lines that outlive the amplifier, so that their log can be read when all is over.
-class Shared : public panel::Lines {
- public:
-  explicit Shared(std::shared_ptr<panel::SimulatedLines> lines) : lines_(std::move(lines)) {}
-  std::optional<panel::Edge> wait(std::int64_t timeout_ns) override { return lines_->wait(timeout_ns); }
-  bool level(int index) override { return lines_->level(index); }
-  void drive(int index, int level) override { lines_->drive(index, level); }
-
- private:
-  std::shared_ptr<panel::SimulatedLines> lines_;
-};
-
-/// Who sits in the room: told of each page on the session's thread, may push inputs and move lines.
-struct Room : session::Display {
-  session::Inputs inputs;
-  std::shared_ptr<panel::SimulatedLines> lines = std::make_shared<panel::SimulatedLines>(4);
-  std::vector<session::Page> pages;
-  std::function<void(const session::Page&)> reacts;
-  int stimuli = 0;
-
-  void push(InputKind kind, int value = 0) {
-    session::Input input;
-    input.time_ns = drive::monotonic_ns();
-    input.kind = kind;
-    input.value = value;
-    inputs.push(input);
-  }
-  void press(int button) { push(InputKind::button, button); }
-
-  void show(const session::Page& page) override {
-    pages.push_back(page);
-    if (page.kind == PageKind::stimulus) ++stimuli;
-    reacts(page);
-  }
-
-  /// What a willing participant and an operator who mends everything do.
-  void cooperate(const session::Page& page) {
-    if (page.kind == PageKind::instructions || page.kind == PageKind::paused) push(InputKind::next);
-    if (page.kind == PageKind::stimulus) press(0);
-    if (page.kind == PageKind::fault) push(page.amplifier.empty() ? InputKind::next : InputKind::arm);
-  }
-
-  session::Devices devices() {
-    session::Devices devices;
-    devices.amplifier = panel::guard_amplifier(std::make_unique<Shared>(lines),
-                                               {kEnable, kHeartbeat, kFaultLine, kStop, false, false});
-    devices.panel =
-        panel::open_panel(panel::ButtonsConfig{}, panel::ContactConfig{}, session::handlers_for(inputs));
-    return devices;
-  }
-
-  std::vector<panel::SimulatedLines::Driven> enables() const {
-    auto driven = lines->driven();
-    std::erase_if(driven, [](const auto& change) { return change.line != kEnable; });
-    return driven;
-  }
-  int heartbeats() const {
-    const auto driven = lines->driven();
-    return static_cast<int>(
-        std::count_if(driven.begin(), driven.end(), [](const auto& c) { return c.line == kHeartbeat; }));
-  }
-};
-
-session::Setup live_setup(const std::string& database, const std::string& device = "buttons") {
-  session::Setup setup;
-  setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml");
-  setup.protocol = protocol::parse(protocol_text(device), "live.toml");
-  setup.participant = "P01";
-  setup.database = database;
-  setup.run_mode = store::RunMode::live;
-  setup.language = "en";
-  return setup;
-}
-
-std::vector<store::EventRow> events_of(const std::string& database, const session::Summary& summary,
-                                       const std::string& kind) {
-  auto events = store::read_session(database, summary.session_id).events;
-  std::erase_if(events, [&](const auto& event) { return event.kind != kind; });
-  return events;
-}
-
-std::vector<store::TrialRow> trials_of(const std::string& database, const session::Summary& summary) {
-  std::vector<store::TrialRow> all;
-  for (const auto& block : store::read_session(database, summary.session_id).blocks)
-    all.insert(all.end(), block.trials.begin(), block.trials.end());
-  return all;
-}
-
-}  // namespace
+using namespace turnpoint::live_room;
 
 TEST_CASE("a live session goes from the operator's arming to answers by buttons, and ends disarmed",
           "[session][live]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
   room.reacts = [&room](const auto& page) { room.cooperate(page); };
@@ -212,7 +52,7 @@ TEST_CASE("a live session goes from the operator's arming to answers by buttons,
 }
 
 TEST_CASE("without the operator's arming the amplifier is never enabled", "[session][live]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
   room.reacts = [&room](const auto& page) {
@@ -229,7 +69,7 @@ TEST_CASE("without the operator's arming the amplifier is never enabled", "[sess
 
 TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the trial and presents it again",
           "[session][live]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
   std::int64_t pressed_ns = 0;
@@ -265,7 +105,7 @@ TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the
 }
 
 TEST_CASE("lines that vanish end with the amplifier off, and no arming brings it back", "[session][live]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
   int tries = 0;
@@ -283,7 +123,7 @@ TEST_CASE("lines that vanish end with the amplifier off, and no arming brings it
 }
 
 TEST_CASE("the operator's disarming voids the trial; arming again goes on", "[session][live]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
   room.reacts = [&](const auto& page) {
@@ -297,7 +137,7 @@ TEST_CASE("the operator's disarming voids the trial; arming again goes on", "[se
 }
 
 TEST_CASE("a session whose program fails leaves the amplifier's line low", "[session][live]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
   room.reacts = [&](const auto& page) {
@@ -311,7 +151,7 @@ TEST_CASE("a session whose program fails leaves the amplifier's line low", "[ses
 }
 
 TEST_CASE("a finger's contacts are logged with their place", "[session][live]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
   auto devices = room.devices();
@@ -328,7 +168,7 @@ TEST_CASE("a finger's contacts are logged with their place", "[session][live]") 
 
 TEST_CASE("the interval between trials stretches to keep the duty, and the log says by how much",
           "[session][live]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   auto setup = live_setup(folder / "a.sqlite");
   setup.rig.limits.duty = 0.04;  // 2.4 s of any minute: one whole stimulus of 2 s, and no second
   Room room;
@@ -364,7 +204,7 @@ TEST_CASE("the interval between trials stretches to keep the duty, and the log s
 }
 
 TEST_CASE("a session whose time is used up stops with the reason", "[session][live]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   auto setup = live_setup(folder / "a.sqlite");
   setup.rig.limits.session_minutes = 2.5 / 60;
   Room room;
@@ -376,7 +216,7 @@ TEST_CASE("a session whose time is used up stops with the reason", "[session][li
 
 TEST_CASE("a live session refuses a low tone without a measured sound level, before it sounds",
           "[session][live]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   auto setup = live_setup(folder / "a.sqlite");
   auto text = protocol_text("buttons");
   text.replace(text.find("160 + offset_mm"), 15, "100 + offset_mm");
@@ -394,7 +234,7 @@ TEST_CASE("a live session refuses a low tone without a measured sound level, bef
 TEST_CASE("what a session is allowed to resample nowhere plays through alsa-lib's null device",
           "[session][live][alsa]") {
   ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
-  const Folder folder;
+  const TemporaryFolder folder;
   app::RunRequest request;
   request.participant = "P01";
   request.database = folder / "a.sqlite";

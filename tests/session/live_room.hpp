@@ -1,0 +1,156 @@
+// A room in which live sessions are held in real time: who sits there, the protocol, and lines that are
+// simulated.
+#pragma once
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "station/drive/monotonic.hpp"
+#include "station/panel/guarded_amplifier.hpp"
+#include "station/panel/simulated_lines.hpp"
+#include "station/session/session.hpp"
+#include "station/store/read.hpp"
+
+namespace turnpoint::live_room {
+
+using session::InputKind;
+using session::PageKind;
+
+inline constexpr int kEnable = 0, kHeartbeat = 1, kFaultLine = 2, kStop = 3;
+
+inline std::string protocol_text(const std::string& device) {
+  return R"(format = "friction-protocol/1"
+[protocol]
+id = "live"
+version = "1.0.0"
+title = "Two quick trials"
+languages = ["en"]
+[random]
+seed = 7
+[[factor]]
+name = "offset_mm"
+range = [-24.0, 24.0]
+[scene.edge]
+boundary_mm = "160 + offset_mm"
+edge = "p50"
+displacement_um = 1.0
+ramp_ms = 20
+tolerance = { boundary_mm = 0.5 }
+[task]
+kind = "single-interval"
+intervals = ["edge"]
+device = ")" +
+         device +
+         R"("
+question = { en = "Left or right?" }
+choices = [{ id = "left", label = { en = "Left" } }, { id = "right", label = { en = "Right" } }]
+correct = { left = "offset_mm < 0", right = "offset_mm > 0" }
+[timing]
+response_zero = "go_cue"
+explore_s = 2.0
+deadline_s = 3.0
+iti_s = { uniform = [0.1, 0.2] }
+anticipation_s = 0.0
+[[procedure]]
+name = "levels"
+kind = "constant-stimuli"
+level = "offset_mm"
+values = [-20.0, 20.0]
+repeats = 1
+[[block]]
+name = "main"
+procedures = ["levels"]
+)";
+}
+
+/// Lines that outlive the amplifier, so that their log can be read when all is over.
+class Shared : public panel::Lines {
+ public:
+  explicit Shared(std::shared_ptr<panel::SimulatedLines> lines) : lines_(std::move(lines)) {}
+  std::optional<panel::Edge> wait(std::int64_t timeout_ns) override { return lines_->wait(timeout_ns); }
+  bool level(int index) override { return lines_->level(index); }
+  void drive(int index, int level) override { lines_->drive(index, level); }
+
+ private:
+  std::shared_ptr<panel::SimulatedLines> lines_;
+};
+
+/// Who sits in the room: told of each page on the session's thread, may push inputs and move lines.
+struct Room : session::Display {
+  session::Inputs inputs;
+  std::shared_ptr<panel::SimulatedLines> lines = std::make_shared<panel::SimulatedLines>(4);
+  std::vector<session::Page> pages;
+  std::function<void(const session::Page&)> reacts;
+  int stimuli = 0;
+
+  void push(InputKind kind, int value = 0) {
+    session::Input input;
+    input.time_ns = drive::monotonic_ns();
+    input.kind = kind;
+    input.value = value;
+    inputs.push(input);
+  }
+  void press(int button) { push(InputKind::button, button); }
+
+  void show(const session::Page& page) override {
+    pages.push_back(page);
+    if (page.kind == PageKind::stimulus) ++stimuli;
+    reacts(page);
+  }
+
+  /// What a willing participant and an operator who mends everything do.
+  void cooperate(const session::Page& page) {
+    if (page.kind == PageKind::instructions || page.kind == PageKind::paused) push(InputKind::next);
+    if (page.kind == PageKind::stimulus) press(0);
+    if (page.kind == PageKind::fault) push(page.amplifier.empty() ? InputKind::next : InputKind::arm);
+  }
+
+  session::Devices devices() {
+    session::Devices devices;
+    devices.amplifier = panel::guard_amplifier(std::make_unique<Shared>(lines),
+                                               {kEnable, kHeartbeat, kFaultLine, kStop, false, false});
+    devices.panel =
+        panel::open_panel(panel::ButtonsConfig{}, panel::ContactConfig{}, session::handlers_for(inputs));
+    return devices;
+  }
+
+  std::vector<panel::SimulatedLines::Driven> enables() const {
+    auto driven = lines->driven();
+    std::erase_if(driven, [](const auto& change) { return change.line != kEnable; });
+    return driven;
+  }
+  int heartbeats() const {
+    const auto driven = lines->driven();
+    return static_cast<int>(
+        std::count_if(driven.begin(), driven.end(), [](const auto& c) { return c.line == kHeartbeat; }));
+  }
+};
+
+inline session::Setup live_setup(const std::string& database, const std::string& device = "buttons") {
+  session::Setup setup;
+  setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml");
+  setup.protocol = protocol::parse(protocol_text(device), "live.toml");
+  setup.participant = "P01";
+  setup.database = database;
+  setup.run_mode = store::RunMode::live;
+  setup.language = "en";
+  return setup;
+}
+
+inline std::vector<store::EventRow> events_of(const std::string& database, const session::Summary& summary,
+                                              const std::string& kind) {
+  auto events = store::read_session(database, summary.session_id).events;
+  std::erase_if(events, [&](const auto& event) { return event.kind != kind; });
+  return events;
+}
+
+inline std::vector<store::TrialRow> trials_of(const std::string& database, const session::Summary& summary) {
+  std::vector<store::TrialRow> all;
+  for (const auto& block : store::read_session(database, summary.session_id).blocks)
+    all.insert(all.end(), block.trials.begin(), block.trials.end());
+  return all;
+}
+
+}  // namespace turnpoint::live_room
