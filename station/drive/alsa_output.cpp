@@ -56,9 +56,7 @@ class AlsaOutput final : public Output {
     if (snd_pcm_htimestamp(pcm(), &free, &stamp) < 0 || free > device_.buffer_frames) return std::nullopt;
     if (stamp.tv_sec == 0 && stamp.tv_nsec == 0) return std::nullopt;
     const auto queued = static_cast<std::int64_t>(device_.buffer_frames - free);
-    const Position position{frames_ - queued, std::int64_t{1'000'000'000} * stamp.tv_sec + stamp.tv_nsec};
-    // Until its first interrupt a device that was started anew still shows the stamp of before.
-    return position.time_ns < started_at_ns_ ? std::nullopt : std::optional(position);
+    return Position{frames_ - queued, std::int64_t{1'000'000'000} * stamp.tv_sec + stamp.tv_nsec};
   }
 
   void finish() override {
@@ -78,7 +76,6 @@ class AlsaOutput final : public Output {
     const snd_pcm_uframes_t ahead = device_.buffer_frames - device_.period_frames;
     const snd_pcm_sframes_t written = snd_pcm_writei(pcm(), silence_.data(), ahead);
     if (written < 0) return static_cast<int>(written);
-    started_at_ns_ = monotonic_ns();
     return snd_pcm_start(pcm());
   }
 
@@ -183,7 +180,7 @@ class AlsaOutput final : public Output {
   std::vector<std::int32_t> silence_;
   Recovery recovery_;
   std::int64_t frames_ = 0;
-  std::int64_t lost_at_ns_ = 0, started_at_ns_ = 0;
+  std::int64_t lost_at_ns_ = 0;
   int stalls_ = 0;
   bool running_ = false;
 };

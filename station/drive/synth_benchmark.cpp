@@ -61,7 +61,8 @@ Method ours_float(std::uint64_t increment) {
 Method libm(std::uint64_t increment) {
   return {"integer phase, libm", [=](std::int64_t frame, Block& out) {
             for (std::size_t n = 0; n < block; ++n) {
-              const auto phase = static_cast<std::int64_t>(increment * (static_cast<std::uint64_t>(frame) + n));
+              const auto phase =
+                  static_cast<std::int64_t>(increment * (static_cast<std::uint64_t>(frame) + n));
               out.wide[n] = std::sin(static_cast<double>(phase) * (0x1p-64 * two_pi));
             }
           }};
@@ -84,16 +85,19 @@ Method table(std::uint64_t increment, int bits) {
 Method growing_time(double frequency_Hz, int rate_Hz) {
   return {"sin(2 pi f t), t += dt, double",
           [=, t = 0.0](std::int64_t, Block& out) mutable {
-            for (std::size_t n = 0; n < block; ++n, t += 1.0 / rate_Hz) out.wide[n] = std::sin(two_pi * frequency_Hz * t);
+            for (std::size_t n = 0; n < block; ++n, t += 1.0 / rate_Hz)
+              out.wide[n] = std::sin(two_pi * frequency_Hz * t);
           },
           true};
 }
 
 Method growing_float_time(double frequency_Hz, int rate_Hz) {
-  return {"sin(2 pi f t), float", [=](std::int64_t frame, Block& out) {
+  return {"sin(2 pi f t), float",
+          [=](std::int64_t frame, Block& out) {
             const auto w = static_cast<float>(two_pi * frequency_Hz);
             for (std::size_t n = 0; n < block; ++n) {
-              const auto t = static_cast<float>((static_cast<double>(frame) + static_cast<double>(n)) / rate_Hz);
+              const auto t =
+                  static_cast<float>((static_cast<double>(frame) + static_cast<double>(n)) / rate_Hz);
               out.narrow[n] = std::sin(w * t);
             }
           },
@@ -106,7 +110,7 @@ Method rotation(std::uint64_t increment) {
       "rotation, free running",
       [=, z = std::complex<double>(1, 0), step = std::polar(1.0, angle)](std::int64_t, Block& out) mutable {
         for (std::size_t n = 0; n < block; ++n, z = {z.real() * step.real() - z.imag() * step.imag(),
-                                             z.real() * step.imag() + z.imag() * step.real()})
+                                                     z.real() * step.imag() + z.imag() * step.real()})
           out.wide[n] = z.imag();
       },
       true};
@@ -119,7 +123,7 @@ Method reseeded_rotation(std::uint64_t increment) {
             const std::uint64_t phase = increment * static_cast<std::uint64_t>(frame);
             std::complex<double> z(sine_of_phase(phase + quarter_cycle), sine_of_phase(phase));
             for (std::size_t n = 0; n < block; ++n, z = {z.real() * step.real() - z.imag() * step.imag(),
-                                                 z.real() * step.imag() + z.imag() * step.real()})
+                                                         z.real() * step.imag() + z.imag() * step.real()})
               out.wide[n] = z.imag();
           }};
 }

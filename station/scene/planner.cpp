@@ -29,8 +29,8 @@ constexpr double kHighestShareOfRate = 0.45;
 
 constexpr std::size_t kRemembered = 512, kSolutions = 128;
 
-// Planned tones lie on a grid: processors and C libraries differ in the last bits of sines and logarithms, and
-// the same session must give the same samples on all of them. It is far below what matters: 1 uHz, 1 fm
+// Planned tones lie on a grid: processors and C libraries differ in the last bits of sines and logarithms,
+// and the same session must give the same samples on all of them. It is far below what matters: 1 uHz, 1 fm
 // (-180 dB of 1 um), 1 nrad.
 constexpr double kGridPerHz = 1e6, kGridPerMetre = 1e15, kGridPerRadian = 1e9;
 double on_grid(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }

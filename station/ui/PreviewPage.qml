@@ -137,14 +137,14 @@ Rectangle {
         FigureView {
             id: surface
             anchors { left: parent.left; right: parent.right; top: parent.top }
-            height: 0.3 * parent.height
+            height: 0.27 * parent.height
             textPixels: Math.max(0.8 * look.textSmall, 2 * root.pixelsPerMm)
             picture: root.controller.surface
         }
         FigureView {
             id: profile
             anchors { left: parent.left; right: parent.right; top: surface.bottom; topMargin: 0.6 * look.unit }
-            height: 0.38 * parent.height
+            height: 0.36 * parent.height
             textPixels: Math.max(0.8 * look.textSmall, 2 * root.pixelsPerMm)
             picture: root.controller.profile
         }

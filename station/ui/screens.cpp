@@ -27,6 +27,18 @@ void use_second_screen(const Application& application, StationWindow& window) {
   if (auto* second = application.second_screen()) window.show_live_window(*second);
 }
 
+/// A window of one page and its controller, until somebody closes it.
+void show_until_closed(const Application& application, const QString& page, const QVariant& controller) {
+  QQmlApplicationEngine engine;
+  auto& window = load_page(engine, page,
+                           {{"controller", controller},
+                            {"pixelsPerMm", pixels_per_mm(application.screen())},
+                            {"width", application.window_size().width()},
+                            {"height", application.window_size().height()}});
+  if (application.is_bare_panel()) window.showFullScreen();
+  QGuiApplication::exec();
+}
+
 }  // namespace
 
 session::Summary run_on_screen(app::RunRequest request, std::optional<session::Setup> prepared) {
@@ -61,14 +73,7 @@ void run_station(const app::StationRequest& request) {
 void show_preview(const app::PreviewRequest& request) {
   const Application application;
   PreviewController controller(request);
-  QQmlApplicationEngine engine;
-  auto& window = load_page(engine, "PreviewWindow.qml",
-                           {{"controller", QVariant::fromValue(&controller)},
-                            {"pixelsPerMm", pixels_per_mm(application.screen())},
-                            {"width", application.window_size().width()},
-                            {"height", application.window_size().height()}});
-  if (application.is_bare_panel()) window.showFullScreen();
-  QGuiApplication::exec();
+  show_until_closed(application, "PreviewWindow.qml", QVariant::fromValue(&controller));
 }
 
 std::optional<calibration::PanelLatency> measure_latency(const app::LatencyRequest& request) {
@@ -79,14 +84,7 @@ std::optional<calibration::PanelLatency> measure_latency(const app::LatencyReque
   if (devices.has_kernel_times())
     controller.set_kernel_time(
         [&devices](double x, double y, std::int64_t seen_ns) { return devices.claim(x, y, seen_ns); });
-  QQmlApplicationEngine engine;
-  auto& window = load_page(engine, "LatencyWindow.qml",
-                           {{"controller", QVariant::fromValue(&controller)},
-                            {"pixelsPerMm", pixels_per_mm(application.screen())},
-                            {"width", application.window_size().width()},
-                            {"height", application.window_size().height()}});
-  if (application.is_bare_panel()) window.showFullScreen();
-  QGuiApplication::exec();
+  show_until_closed(application, "LatencyWindow.qml", QVariant::fromValue(&controller));
   return controller.kept();
 }
 

@@ -8,17 +8,14 @@
 #include <vector>
 
 #include "station/drive/monotonic.hpp"
-#include "station/panel/guarded_amplifier.hpp"
-#include "station/panel/simulated_lines.hpp"
 #include "station/session/session.hpp"
 #include "station/store/read.hpp"
+#include "tests/support/shared_lines.hpp"
 
 namespace turnpoint::live_room {
 
 using session::InputKind;
 using session::PageKind;
-
-inline constexpr int kEnable = 0, kHeartbeat = 1, kFaultLine = 2, kStop = 3;
 
 inline std::string protocol_text(const std::string& device) {
   return R"(format = "friction-protocol/1"
@@ -65,22 +62,10 @@ procedures = ["levels"]
 )";
 }
 
-/// Lines that outlive the amplifier, so that their log can be read when all is over.
-class Shared : public panel::Lines {
- public:
-  explicit Shared(std::shared_ptr<panel::SimulatedLines> lines) : lines_(std::move(lines)) {}
-  std::optional<panel::Edge> wait(std::int64_t timeout_ns) override { return lines_->wait(timeout_ns); }
-  bool level(int index) override { return lines_->level(index); }
-  void drive(int index, int level) override { lines_->drive(index, level); }
-
- private:
-  std::shared_ptr<panel::SimulatedLines> lines_;
-};
-
 /// Who sits in the room: told of each page on the session's thread, may push inputs and move lines.
 struct Room : session::Display {
   session::Inputs inputs;
-  std::shared_ptr<panel::SimulatedLines> lines = std::make_shared<panel::SimulatedLines>(4);
+  std::shared_ptr<panel::SimulatedLines> lines = std::make_shared<panel::SimulatedLines>(SharedLines::count);
   std::vector<session::Page> pages;
   std::function<void(const session::Page&)> reacts;
   int stimuli = 0;
@@ -109,8 +94,7 @@ struct Room : session::Display {
 
   session::Devices devices() {
     session::Devices devices;
-    devices.amplifier = panel::guard_amplifier(std::make_unique<Shared>(lines),
-                                               {kEnable, kHeartbeat, kFaultLine, kStop, false, false});
+    devices.amplifier = guarded(lines);
     devices.panel =
         panel::open_panel(panel::ButtonsConfig{}, panel::ContactConfig{}, session::handlers_for(inputs));
     return devices;
@@ -118,13 +102,13 @@ struct Room : session::Display {
 
   std::vector<panel::SimulatedLines::Driven> enables() const {
     auto driven = lines->driven();
-    std::erase_if(driven, [](const auto& change) { return change.line != kEnable; });
+    std::erase_if(driven, [](const auto& change) { return change.line != SharedLines::enable; });
     return driven;
   }
   int heartbeats() const {
     const auto driven = lines->driven();
-    return static_cast<int>(
-        std::count_if(driven.begin(), driven.end(), [](const auto& c) { return c.line == kHeartbeat; }));
+    return static_cast<int>(std::count_if(driven.begin(), driven.end(),
+                                          [](const auto& c) { return c.line == SharedLines::heartbeat; }));
   }
 };
 

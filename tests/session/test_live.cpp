@@ -46,7 +46,7 @@ TEST_CASE("a live session goes from the operator's arming to answers by buttons,
     CHECK(enables[2 * k + 1].level == 0);
     CHECK(enables[2 * k + 1].time_ns > off_ns);
   }
-  CHECK_FALSE(room.lines->level(kEnable));
+  CHECK_FALSE(room.lines->level(SharedLines::enable));
   CHECK(events_of(setup.database, summary, "button").size() == 2);
   CHECK(events_of(setup.database, summary, "arm").front().value == "armed");
 }
@@ -76,12 +76,12 @@ TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) {
       pressed_ns = drive::monotonic_ns();
-      return room.lines->set(kStop, true, pressed_ns);
+      return room.lines->set(SharedLines::stop, true, pressed_ns);
     }
     if (page.kind == PageKind::fault && page.fault == session::FaultKind::stop_pressed &&
-        room.lines->level(kStop)) {
+        room.lines->level(SharedLines::stop)) {
       if (page.detail.find("refused") == std::string::npos) return room.push(InputKind::arm);  // too soon
-      room.lines->set(kStop, false, drive::monotonic_ns());
+      room.lines->set(SharedLines::stop, false, drive::monotonic_ns());
     }
     room.cooperate(page);
   };

@@ -4,28 +4,10 @@
 #include <chrono>
 
 #include "station/app/prepare.hpp"
-#include "station/panel/guarded_amplifier.hpp"
 #include "station/store/export.hpp"
+#include "tests/support/shared_lines.hpp"
 
 namespace turnpoint::ui {
-
-namespace {
-
-constexpr int kEnable = 0, kHeartbeat = 1, kFaultLine = 2, kStop = 3;
-
-/// Lines that the test moves while the amplifier's guard watches them.
-class SharedLines : public panel::Lines {
- public:
-  explicit SharedLines(std::shared_ptr<panel::SimulatedLines> lines) : lines_(std::move(lines)) {}
-  std::optional<panel::Edge> wait(std::int64_t timeout_ns) override { return lines_->wait(timeout_ns); }
-  bool level(int index) override { return lines_->level(index); }
-  void drive(int index, int level) override { lines_->drive(index, level); }
-
- private:
-  std::shared_ptr<panel::SimulatedLines> lines_;
-};
-
-}  // namespace
 
 RealSession::RealSession(QObject* parent)
     : QObject(parent),
@@ -49,7 +31,7 @@ void RealSession::start(const QString& protocol) {
   failure_.clear();
   ++sessions_;
   protocol_ = protocol.section('.', 0, 0);
-  lines_ = std::make_shared<panel::SimulatedLines>(4);
+  lines_ = std::make_shared<panel::SimulatedLines>(SharedLines::count);
   app::RunRequest request;
   request.protocol = TURNPOINT_SOURCE_DIR "/tests/ui/" + protocol.toStdString();
   request.rig = TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml";
@@ -59,8 +41,7 @@ void RealSession::start(const QString& protocol) {
     QString failure;
     try {
       session::Devices devices;
-      devices.amplifier = panel::guard_amplifier(std::make_unique<SharedLines>(lines_),
-                                                 {kEnable, kHeartbeat, kFaultLine, kStop, false, false});
+      devices.amplifier = guarded(lines_);
       session::run(app::prepare(request), &bridge_, inputs_, std::move(devices));
     } catch (const std::exception& error) {
       failure = error.what();
@@ -74,8 +55,10 @@ void RealSession::start(const QString& protocol) {
   });
 }
 
-void RealSession::setStop(bool pressed) { lines_->set(kStop, pressed, bridge_.now_ns()); }
-void RealSession::setAmplifierFault(bool active) { lines_->set(kFaultLine, active, bridge_.now_ns()); }
+void RealSession::setStop(bool pressed) { lines_->set(SharedLines::stop, pressed, bridge_.now_ns()); }
+void RealSession::setAmplifierFault(bool active) {
+  lines_->set(SharedLines::fault, active, bridge_.now_ns());
+}
 
 void RealSession::setDiskFull(bool full) {
   if (full)

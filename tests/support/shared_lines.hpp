@@ -1,0 +1,26 @@
+#pragma once
+#include <memory>
+
+#include "station/panel/guarded_amplifier.hpp"
+#include "station/panel/simulated_lines.hpp"
+
+/// The lines of an amplifier whose guard is the real one: the test moves them, reads their log when all is
+/// over.
+struct SharedLines : turnpoint::panel::Lines {
+  static constexpr int enable = 0, heartbeat = 1, fault = 2, stop = 3, count = 4;
+
+  explicit SharedLines(std::shared_ptr<turnpoint::panel::SimulatedLines> shared) : lines(std::move(shared)) {}
+  std::optional<turnpoint::panel::Edge> wait(std::int64_t timeout_ns) override {
+    return lines->wait(timeout_ns);
+  }
+  bool level(int index) override { return lines->level(index); }
+  void drive(int index, int level) override { lines->drive(index, level); }
+
+  std::shared_ptr<turnpoint::panel::SimulatedLines> lines;
+};
+
+inline auto guarded(const std::shared_ptr<turnpoint::panel::SimulatedLines>& lines) {
+  return turnpoint::panel::guard_amplifier(
+      std::make_unique<SharedLines>(lines),
+      {SharedLines::enable, SharedLines::heartbeat, SharedLines::fault, SharedLines::stop, false, false});
+}
