@@ -30,9 +30,11 @@ void choose_platform() {
 
 Application::Application() {
   choose_platform();
+  qputenv("QT_QPA_NO_SIGNAL_HANDLER", "1");  // the stop signals are ours, see there
   application_ = std::make_unique<QGuiApplication>(argc_, argv_);
   set_fonts();
   watchdog_ = std::make_unique<ServiceWatchdog>();
+  stop_signals_ = std::make_unique<StopSignals>();
 }
 
 QScreen& Application::screen() const {

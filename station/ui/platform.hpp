@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "station/ui/service_watchdog.hpp"
+#include "station/ui/stop_signals.hpp"
 
 namespace turnpoint::ui {
 
@@ -22,13 +23,17 @@ class Application {
   /// A panel of the station's own, or one too small for a window beside others: windows fill it.
   bool is_bare_panel() const;
   QSize window_size() const;
+  /// How the process ends when it is told to.
+  StopSignals& stop_signals() const { return *stop_signals_; }
 
  private:
   int argc_ = 1;
   char name_[13] = "turnpoint-ui";
   char* argv_[2] = {name_, nullptr};
   std::unique_ptr<QGuiApplication> application_;
-  std::unique_ptr<ServiceWatchdog> watchdog_;  // its timer lives in the application's event loop
+  // Both live in the application's event loop.
+  std::unique_ptr<ServiceWatchdog> watchdog_;
+  std::unique_ptr<StopSignals> stop_signals_;
 };
 
 }  // namespace turnpoint::ui

@@ -23,6 +23,20 @@ StationWindow::Place place_on(const Application& application) {
   return {pixels_per_mm(application.screen()), application.window_size(), application.is_bare_panel()};
 }
 
+/// A signal to stop ends the process at once until the first page stands, and the event loop from then on.
+void stop_in_order(const Application& application, const QQuickWindow& window) {
+  auto& stop = application.stop_signals();
+  QObject::connect(
+      &window, &QQuickWindow::frameSwapped, &stop, [&stop] { stop.take_over(); },
+      static_cast<Qt::ConnectionType>(Qt::AutoConnection | Qt::SingleShotConnection));
+}
+
+/// A session may begin before any page was on the screen.
+void stop_in_order(const Application& application, StationWindow& window) {
+  stop_in_order(application, window.window());
+  QObject::connect(&window, &StationWindow::beginning, &application.stop_signals(), &StopSignals::take_over);
+}
+
 void use_second_screen(const Application& application, StationWindow& window) {
   if (auto* second = application.second_screen()) window.show_live_window(*second);
 }
@@ -36,6 +50,7 @@ void show_until_closed(const Application& application, const QString& page, cons
                             {"width", application.window_size().width()},
                             {"height", application.window_size().height()}});
   if (application.is_bare_panel()) window.showFullScreen();
+  stop_in_order(application, window);
   QGuiApplication::exec();
 }
 
@@ -51,10 +66,10 @@ session::Summary run_on_screen(app::RunRequest request, std::optional<session::S
   const Application application;
   StationWindow window(place_on(application), nullptr, chosen.setup.database, request.operator_code);
   use_second_screen(application, window);
+  stop_in_order(application, window);
   window.ask(chosen);
   const auto summary = window.run();
-  if (!summary)
-    throw std::runtime_error("the window was closed before the session began; nothing was recorded");
+  if (!summary) throw std::runtime_error("it was ended before the session began; nothing was recorded");
   return *summary;
 }
 
@@ -63,6 +78,7 @@ void run_station(const app::StationRequest& request) {
   OperatorController operating(request);
   StationWindow window(place_on(application), &operating, request.database, request.operator_code);
   use_second_screen(application, window);
+  stop_in_order(application, window);
   try {
     window.run();
   } catch (const std::exception&) {

@@ -41,6 +41,10 @@ class StationWindow : public QObject {
   QQuickWindow& window() { return *window_; }
   SessionRunner& runner() { return runner_; }
 
+ signals:
+  /// A session is about to begin.
+  void beginning();
+
  private:
   void begin();
   void close();

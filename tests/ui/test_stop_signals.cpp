@@ -1,0 +1,139 @@
+#include <signal.h>
+
+#include <QCoreApplication>
+#include <QTimer>
+
+#include "station/store/read.hpp"
+#include "station/ui/stop_signals.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/ui/child.hpp"
+
+using turnpoint::ui::StopSignals;
+
+namespace {
+
+/// Enough for a machine that does much else; what is not obeyed at all takes for ever.
+constexpr int kPatience_ms = 20000;
+/// From the signal to the end of the process. A service manager kills after 5 s.
+constexpr int kPrompt_ms = 1000;
+
+const std::string kSource = TURNPOINT_SOURCE_DIR;
+
+std::vector<std::string> without_screen(const TemporaryFolder& folder) {
+  return {"QT_QPA_PLATFORM=offscreen", "QT_QUICK_BACKEND=software", "XDG_RUNTIME_DIR=" + folder.path,
+          "QT_LOGGING_RULES=turnpoint.startup=true"};
+}
+
+std::vector<std::string> station(const TemporaryFolder& folder) {
+  return {TURNPOINT_UI, "station", "--rig", kSource + "/deploy/rigs/simulated.toml", "--db", folder / "db"};
+}
+
+struct Loop {
+  int argc = 1;
+  char name[5] = "test";
+  char* argv[2] = {name, nullptr};
+  QCoreApplication application{argc, argv};
+};
+
+/// For a test's time signals do what the kernel does; the test framework has handlers of its own.
+struct KernelsWay {
+  KernelsWay() { set(SIG_DFL, SIG_DFL); }
+  ~KernelsWay() { set(terminate, interrupt); }
+  void set(sighandler_t on_terminate, sighandler_t on_interrupt) {
+    terminate = ::signal(SIGTERM, on_terminate);
+    interrupt = ::signal(SIGINT, on_interrupt);
+  }
+  sighandler_t terminate = SIG_DFL, interrupt = SIG_DFL;
+};
+
+bool is(int signal, sighandler_t expected) {
+  struct sigaction action {};
+  ::sigaction(signal, nullptr, &action);
+  return action.sa_handler == expected;
+}
+
+}  // namespace
+
+TEST_CASE("a start that hangs before its event loop ends at once when it is told to", "[stop]") {
+  const TemporaryFolder folder;
+  Child child({HELD_START}, {"XDG_RUNTIME_DIR=" + folder.path});
+  REQUIRE(child.says("held", kPatience_ms));
+  const int signal = GENERATE(SIGTERM, SIGINT, SIGHUP);
+  CAPTURE(signal, child.said());
+  CHECK_FALSE(child.handles(signal));
+  child.signal(signal);
+  REQUIRE(child.ends_within(kPrompt_ms));
+  CHECK(child.outcome() == -signal);
+}
+
+TEST_CASE("the station ends promptly whenever in its start it is told to", "[stop]") {
+  const TemporaryFolder folder;
+  Child child(station(folder), without_screen(folder));
+  const int delay_ms = GENERATE(0, 20, 50, 100, 200, 500);
+  CAPTURE(delay_ms, child.said());
+  REQUIRE_FALSE(child.ends_within(delay_ms));
+  child.signal(SIGTERM);
+  REQUIRE(child.ends_within(kPrompt_ms));
+  // Before the first page as the kernel does it, afterwards in order: a service manager takes both for a
+  // stop.
+  CHECK((child.outcome() == -SIGTERM || child.outcome() == 0));
+}
+
+TEST_CASE("with its first page on the screen the station ends in order when it is told to", "[stop]") {
+  const TemporaryFolder folder;
+  Child child(station(folder), without_screen(folder));
+  REQUIRE(child.says("first page after", kPatience_ms));
+  for (int waited_ms = 0; !child.handles(SIGTERM) && waited_ms < kPatience_ms; ++waited_ms)
+    REQUIRE_FALSE(child.ends_within(1));
+  child.signal(SIGTERM);
+  REQUIRE(child.ends_within(kPrompt_ms));
+  CAPTURE(child.said());
+  CHECK(child.outcome() == 0);
+}
+
+TEST_CASE("a session that is told to stop amid a stimulus is closed in its log, to be gone on with",
+          "[stop]") {
+  const TemporaryFolder folder;
+  Child child({STOPPED_SESSION, kSource + "/tests/ui/short.toml", kSource + "/deploy/rigs/simulated.toml",
+               folder / "db"},
+              without_screen(folder));
+  REQUIRE(child.ends_within(kPatience_ms));
+  CAPTURE(child.said());
+  CHECK(child.outcome() == 0);
+  CHECK(child.said().find("interrupted, 2 trials: stopped") != std::string::npos);
+  const auto sessions = turnpoint::store::list_sessions(folder / "db");
+  REQUIRE(sessions.size() == 1);
+  CHECK(sessions[0].status == turnpoint::store::SessionStatus::interrupted);
+}
+
+TEST_CASE("a stop signal ends the event loop once it is taken over, and a second one the process", "[stop]") {
+  const Loop loop;
+  const KernelsWay kernels_way;
+  {
+    StopSignals stop;
+    CHECK(is(SIGTERM, SIG_DFL));
+    stop.take_over();
+    stop.take_over();
+    CHECK_FALSE(is(SIGTERM, SIG_DFL));
+    QTimer::singleShot(kPatience_ms, [] { QCoreApplication::exit(1); });
+    ::raise(SIGTERM);
+    CHECK(QCoreApplication::exec() == 0);
+    CHECK(is(SIGTERM, SIG_DFL));
+    CHECK_FALSE(is(SIGINT, SIG_DFL));
+  }
+  CHECK(is(SIGINT, SIG_DFL));
+}
+
+TEST_CASE("a stop signal that whoever started the program has it ignore stays ignored", "[stop]") {
+  const Loop loop;
+  const KernelsWay kernels_way;
+  ::signal(SIGHUP, SIG_IGN);
+  {
+    StopSignals stop;
+    stop.take_over();
+    CHECK(is(SIGHUP, SIG_IGN));
+  }
+  CHECK(is(SIGHUP, SIG_IGN));
+  ::signal(SIGHUP, SIG_DFL);
+}
