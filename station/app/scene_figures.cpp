@@ -21,6 +21,9 @@ plot::Paint stroke(const std::string& colour, double width, const std::string& d
 }
 plot::Paint fill(const std::string& colour, double opacity = 1) { return {"", colour, 1, "", opacity}; }
 
+const std::string kMark = "mark";
+constexpr double kName_px = 14, kNameAbove_px = 20;  // the boundary's position, in words
+
 /// From this height on a drawing of the surface says what it shows.
 constexpr double kCaptionFrom_px = 165;
 
@@ -69,7 +72,7 @@ Place place_on(const rig::Rig& rig, double width_px, double height_px) {
     widest = std::max(widest, physics::half_width_m(at.surface, at.length_m * i / 20));
   const double to_scale = (at.right - at.left) / at.length_m;
   // Above and below there has to be room for labels, whatever is left.
-  const double most_px = std::min(0.24 * height_px, 0.5 * height_px - (low ? 30 : 46));
+  const double most_px = std::min(0.24 * height_px, 0.5 * height_px - (low ? 33 : 46));
   at.across = std::clamp(to_scale, 0.75 * most_px / widest, most_px / widest);
   return at;
 }
@@ -105,16 +108,32 @@ void draw_transducer(plot::Svg& svg, const Place& at) {
                 fill("#4d565e"));
 }
 
+/// The mark where the participant sees it, its name on the side that is away from the boundary.
+void draw_mark(plot::Svg& svg, const Look& look, const Place& at) {
+  const auto mark = mark_of(look);
+  if (!mark || *mark <= 0 || *mark >= at.length_m) return;
+  const auto [x, y] = at.above(*mark, 3);
+  svg.polygon({{x, y}, {x - 6, y - 9}, {x + 6, y - 9}}, fill(kInk));
+  const bool to_left = look.plan.boundary_m && at.x(*look.plan.boundary_m) >= x;
+  svg.text({to_left ? x - 10 : x + 10, y - 3}, kMark, 12, to_left ? plot::Anchor::end : plot::Anchor::start,
+           kInk);
+}
+
+/// Where the boundary's name has its lower end: above the mark and its name, where both would meet.
+double boundary_name_y(const Look& look, const Place& at, const std::string& name) {
+  const double boundary = *look.plan.boundary_m, own = at.above(boundary).second;
+  const auto mark = mark_of(look);
+  if (!mark) return own - kNameAbove_px;
+  const double reach = 0.5 * plot::text_width(name, kName_px) + 10 + plot::text_width(kMark, 12);
+  const bool near = std::abs(at.x(*mark) - at.x(boundary)) < reach;
+  return (near ? std::min(own, at.above(*mark).second) : own) - kNameAbove_px;
+}
+
 void draw_boundary(plot::Svg& svg, const Look& look, const Place& at) {
   for (const auto& tone : look.plan.tones)
     if (tone.turning_point_m)
       svg.line(at.below(*tone.turning_point_m, -0.4 * at.half(*tone.turning_point_m)),
                at.below(*tone.turning_point_m, 6), stroke(kQuiet, 1.2, "2 2"));
-  if (const auto mark = mark_of(look); mark && *mark > 0 && *mark < at.length_m) {
-    const auto tip = at.above(*mark, 3);
-    svg.polygon({tip, {tip.first - 6, tip.second - 9}, {tip.first + 6, tip.second - 9}}, fill(kInk));
-    svg.text({tip.first + 10, tip.second - 3}, "mark", 12, plot::Anchor::start, kInk);
-  }
   if (!look.plan.boundary_m) return;
   const double b = *look.plan.boundary_m, e = look.plan.error_bound_m;
   if (2 * e * (at.right - at.left) / at.length_m > 2) {
@@ -122,9 +141,10 @@ void draw_boundary(plot::Svg& svg, const Look& look, const Place& at) {
     svg.polygon({at.above(low, 6), at.above(high, 6), at.below(high, 6), at.below(low, 6)},
                 fill(kAccent, 0.25));
   }
-  svg.line(at.above(b, 14), at.below(b, 6), stroke(kAccent, 2.4));
-  svg.text({at.x(b), at.above(b).second - 18}, text::number(1e3 * b, 5) + " mm", 14, plot::Anchor::middle,
-           kAccent, 600);
+  const auto name = text::number(1e3 * b, 5) + " mm";
+  const double name_y = boundary_name_y(look, at, name);
+  svg.line({at.x(b), name_y + 5}, at.below(b, 6), stroke(kAccent, 2.4));
+  svg.text({at.x(b), name_y}, name, kName_px, plot::Anchor::middle, kAccent, 600);
 }
 
 }  // namespace
@@ -156,6 +176,7 @@ std::string surface_svg(const Look& look, const rig::Rig& rig, double width_px, 
   draw_transducer(svg, at);
   draw_heat(svg, look, at);
   draw_scale(svg, at);
+  draw_mark(svg, look, at);
   draw_boundary(svg, look, at);
   if (height_px < kCaptionFrom_px) return svg.finish();
   svg.text({width_px / 2, height_px - 10}, "mm from the wide end; darker moves more", 12,

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "station/plot/palette.hpp"
+#include "station/plot/rule_labels.hpp"
 #include "station/plot/svg.hpp"
 
 namespace turnpoint::plot {
@@ -14,25 +15,10 @@ namespace turnpoint::plot {
 namespace {
 
 constexpr double kText = 12, kTitle = 13.5, kPad = 10, kTick = 5, kCaptionLine = 16;
-const std::string kInk = "#222222", kSoft = "#666666", kGrid = "#e6e6e6";
+const std::string kInk = "#222222", kSoft = "#545454", kGrid = "#e6e6e6";
 
 void check(bool good, const std::string& what) {
   if (!good) throw std::invalid_argument("plot: " + what);
-}
-
-/// Where a panel's data rectangle lies, and what its axes show.
-struct Frame {
-  double x = 0, y = 0, width = 0, height = 0;
-  const Axis *across, *up;
-
-  Svg::Point at(double value_x, double value_y) const {
-    return {x + std::clamp(position(*across, value_x), -4.0, 5.0) * width,
-            y + (1 - std::clamp(position(*up, value_y), -4.0, 5.0)) * height};
-  }
-};
-
-bool drawable(const Axis& axis, double value) {
-  return std::isfinite(value) && (axis.scale == AxisScale::linear || value > 0);
 }
 
 void marker(Svg& svg, Svg::Point at, double r, const Style& style, bool open) {
@@ -100,21 +86,13 @@ struct Draw {
       }
   }
 
+  /// The line alone; its label comes when all that it has to avoid is drawn.
   void operator()(const Rule& rule) const {
+    if (!is_shown(rule, frame)) return;
     const bool flat = rule.direction == Rule::Direction::horizontal;
-    if (!drawable(flat ? *frame.up : *frame.across, rule.at)) return;
-    const auto at = flat ? frame.at(frame.across->low, rule.at) : frame.at(rule.at, frame.up->low);
-    const double right = frame.x + frame.width;
-    const Paint paint{kSoft, "", 1, "3 3", 1};
-    if (flat) {
-      svg.line({frame.x, at.second}, {right, at.second}, paint);
-      svg.text({right - 4, at.second - 4}, rule.label, kText - 1, Anchor::end, kSoft);
-    } else {
-      svg.line({at.first, frame.y}, {at.first, frame.y + frame.height}, paint);
-      const bool room = at.first + 4 + text_width(rule.label, kText - 1) < right;
-      svg.text({at.first + (room ? 4 : -4), frame.y + 12}, rule.label, kText - 1,
-               room ? Anchor::start : Anchor::end, kSoft);
-    }
+    const auto from = flat ? frame.at(frame.across->low, rule.at) : frame.at(rule.at, frame.up->low);
+    const auto to = flat ? frame.at(frame.across->high, rule.at) : frame.at(rule.at, frame.up->high);
+    svg.line(from, to, {kSoft, "", 1, "3 3", 1});
   }
 
   void operator()(const Line& curve) const {
@@ -141,17 +119,14 @@ struct Draw {
               fits(dots.weight.size()) && fits(dots.open.size()),
           "points \"" + dots.name + "\": lists differ in length");
     const auto look = style(dots.series);
-    const double heaviest =
-        dots.weight.empty() ? 1 : *std::max_element(dots.weight.begin(), dots.weight.end());
+    const auto radii = marker_radii_px(dots);
     for (std::size_t i = 0; i < dots.low.size(); ++i)
       if (drawable(*frame.up, dots.low[i]) && drawable(*frame.up, dots.high[i]))
         svg.line(frame.at(dots.x[i], dots.low[i]), frame.at(dots.x[i], dots.high[i]),
                  {look.colour, "", 1.3, "", 1});
     for (std::size_t i = 0; i < n; ++i) {
       if (!drawable(*frame.across, dots.x[i]) || !drawable(*frame.up, dots.y[i])) continue;
-      const double share = dots.weight.empty() ? 0.5 : std::sqrt(dots.weight[i] / heaviest);
-      marker(svg, frame.at(dots.x[i], dots.y[i]), 2.4 + 2.4 * share, look,
-             !dots.open.empty() && dots.open[i]);
+      marker(svg, frame.at(dots.x[i], dots.y[i]), radii[i], look, !dots.open.empty() && dots.open[i]);
     }
   }
 };
@@ -214,8 +189,8 @@ const HeatMap* heat_map(const Panel& panel) {
   return nullptr;
 }
 
-void draw_colour_bar(Svg& svg, const Frame& frame, const HeatMap& map) {
-  const double left = frame.x + frame.width + 12, width = 12;
+void draw_colour_bar(Svg& svg, const Frame& frame, double from, const HeatMap& map) {
+  const double left = from + 12, width = 12;
   constexpr int steps = 32;
   for (int i = 0; i < steps; ++i) {
     const auto colour = shade((i + 0.5) / steps);
@@ -278,16 +253,21 @@ void draw_panel(Svg& svg, const Panel& panel, double left, double top, double wi
   const double legend = draw_legend(nullptr, entries, inner_left, 0, inner_width);
   Frame frame{inner_left, top + kPad + title + legend, inner_width, 0, &panel.x, &panel.y};
   frame.height = top + height - kPad - 38 - frame.y;
+  const auto labelled = place_labels(panel, frame);
+  frame = labelled.frame;
   check(frame.width > 40 && frame.height > 40, "panel \"" + panel.title + "\" leaves no room for its data");
   svg.text({inner_left, top + kPad + 14}, panel.title, kTitle, Anchor::start, kInk, 600);
   draw_legend(&svg, entries, inner_left, top + kPad + title, inner_width);
-  draw_axes(svg, frame, ticks_with_room(panel.x, inner_width), up);
+  draw_axes(svg, frame, ticks_with_room(panel.x, frame.width), up);
   svg.text({left + kPad + 10, frame.y + frame.height / 2}, panel.y.label, kText, Anchor::middle, kInk, 400,
            90);
-  svg.begin_clip({frame.x - 1, frame.y - 6}, frame.width + 7, frame.height + 7);
+  const auto clip = drawn_in(frame);
+  svg.begin_clip({clip.left, clip.top}, clip.right - clip.left, clip.bottom - clip.top);
   for (const auto& layer : panel.layers) std::visit(Draw{svg, frame}, layer);
   svg.end_clip();
-  if (map) draw_colour_bar(svg, frame, *map);
+  for (const auto& label : labelled.labels)
+    svg.text(label.at, label.text, kLabelText_px, label.anchor, kSoft);
+  if (map) draw_colour_bar(svg, frame, inner_left + inner_width, *map);
 }
 
 /// The caption in lines that fit the width.

@@ -1,5 +1,6 @@
 #include "station/ui/figure_view.hpp"
 
+#include <QGuiApplication>
 #include <QPainter>
 #include <QRegularExpression>
 #include <QSvgRenderer>
@@ -10,6 +11,12 @@ namespace {
 
 constexpr double kMargin = 6;
 constexpr double kDrawnText_px = 12;  // of every drawing
+
+/// Drawings name families for browsers, one after another; Qt takes such a list for one family's name.
+QString in_pages_font(QString svg) {
+  static const QRegularExpression families("font-family=\"[^\"]*\"");
+  return svg.replace(families, "font-family=\"" + QGuiApplication::font().families().value(0) + "\"");
+}
 
 /// Qt draws what a clip path holds instead of clipping by it.
 QString without_clips(QString svg) {
@@ -35,7 +42,7 @@ void FigureView::paint(QPainter* painter) {
   if (!picture_.draw || inside.width() < 1 || inside.height() < 1) return;
   const double scale = text_pixels_ / kDrawnText_px;
   const auto svg = QString::fromStdString(picture_.draw(inside.width() / scale, inside.height() / scale));
-  QSvgRenderer renderer(without_clips(svg).toUtf8());
+  QSvgRenderer renderer(without_clips(in_pages_font(svg)).toUtf8());
   renderer.setAspectRatioMode(Qt::KeepAspectRatio);
   // A card in the pictures' own white, so that those of other proportions make one page.
   painter->setPen(Qt::NoPen);

@@ -5,6 +5,7 @@
 #include "station/app/preview.hpp"
 #include "station/app/scene_figures.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/svg_geometry.hpp"
 
 using namespace turnpoint;
 
@@ -19,6 +20,28 @@ app::Preview preview_of(const std::string& protocol) {
 protocol::Factors factors(const app::Preview& preview, const std::vector<std::string>& set) {
   std::vector<std::string> assumed;
   return app::factors_for(preview.protocol(), set, assumed);
+}
+
+/// Where a surface's picture has its boundary: the only line of this colour.
+double boundary_x(const std::string& svg) {
+  for (const auto& line : svg_geometry::elements(svg, "line"))
+    if (svg_geometry::attribute(line, "stroke") == "#b3400a") return svg_geometry::number(line, "x1");
+  throw std::runtime_error("no boundary drawn");
+}
+
+/// Words of a surface's picture that stand on others, on the boundary or over the edge; "" for none.
+std::string clash(const std::string& svg, double height) {
+  const auto texts = svg_geometry::texts(svg);
+  const double line_x = boundary_x(svg);
+  for (const auto& text : texts) {
+    if (text.box.top < 0 || text.box.bottom > height) return text.words + " over the edge";
+    if (text.words == "mark" && text.box.left < line_x && line_x < text.box.right)
+      return "mark on the boundary";
+    for (const auto& other : texts)
+      if (&other != &text && svg_geometry::meet(other.box, text.box))
+        return text.words + " on " + other.words;
+  }
+  return "";
 }
 
 }  // namespace
@@ -70,6 +93,24 @@ TEST_CASE("factors that are set must exist and be numbers", "[preview]") {
   std::vector<std::string> assumed;
   app::factors_for(preview.protocol(), {"offset_mm=3"}, assumed);
   CHECK(assumed == std::vector<std::string>{"mark_mm"});
+}
+
+TEST_CASE("in a surface's picture no words stand on other words or on the boundary, wherever the mark is",
+          "[preview]") {
+  auto preview = preview_of("demo");
+  auto look = preview.look("edge", factors(preview, {}));
+  const auto [width, height] =
+      GENERATE(std::pair{240.0, 84.0}, std::pair{700.0, 130.0}, std::pair{900.0, 400.0});
+  for (double boundary_mm = 40; boundary_mm <= 260; boundary_mm += 10.37)
+    for (double off_mm = -60; off_mm <= 60; off_mm += 1.5) {
+      look.plan.boundary_m = 1e-3 * boundary_mm;
+      const double mark_mm = boundary_mm + off_mm;
+      if (mark_mm < 20 || mark_mm > 280) continue;
+      look.factors["mark_mm"] = mark_mm;
+      const auto svg = app::surface_svg(look, preview.rig(), width, height);
+      CAPTURE(width, height, boundary_mm, mark_mm);
+      REQUIRE(clash(svg, height).empty());
+    }
 }
 
 TEST_CASE("the same look is the same picture, and another boundary another one", "[preview]") {

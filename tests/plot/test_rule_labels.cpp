@@ -1,0 +1,148 @@
+#include <cmath>
+
+#include "station/plot/chart.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/svg_geometry.hpp"
+
+using namespace turnpoint::plot;
+
+namespace {
+
+/// Labels of rules are the only words of this size; grid and axes are drawn in these colours.
+constexpr double kLabelSize = 11;
+const std::vector<std::string> kGridAndAxes{"#e6e6e6", "#222222"};
+
+int labels_on(const std::string& svg) {
+  const auto all = svg_geometry::texts(svg);
+  return static_cast<int>(
+      std::count_if(all.begin(), all.end(), [](const auto& text) { return text.size_px == kLabelSize; }));
+}
+
+/// The rule's label that stands on a curve, a marker, a bar, a rule, other words or over the picture's edge;
+/// "" where none does.
+std::string crossed(const std::string& svg, double width, double height) {
+  const auto texts = svg_geometry::texts(svg);
+  const auto ink = svg_geometry::ink(svg, kGridAndAxes);
+  for (const auto& label : texts) {
+    if (label.size_px != kLabelSize) continue;
+    const auto& box = label.box;
+    if (box.left < 0 || box.top < 0 || box.right > width || box.bottom > height)
+      return label.words + " (out)";
+    for (const auto& drawn : ink)
+      if (svg_geometry::meet(drawn, box)) return label.words + " (ink)";
+    for (const auto& other : texts)
+      if (&other != &label && svg_geometry::meet(other.box, box)) return label.words + " on " + other.words;
+  }
+  return "";
+}
+
+Figure with(Panel panel, double width_px, double height_px) {
+  Figure figure;
+  figure.title = "Labels";
+  figure.panels.push_back(std::move(panel));
+  figure.panel_width_px = width_px, figure.panel_height_px = height_px;
+  return figure;
+}
+
+Rule vertical(double at, std::string label) { return {Rule::Direction::vertical, at, std::move(label)}; }
+Rule horizontal(double at, std::string label) { return {Rule::Direction::horizontal, at, std::move(label)}; }
+
+Panel empty_panel() {
+  Panel panel;
+  panel.title = "Drive, and a tone's quality";
+  panel.x = {"Frequency (kHz)", 15, 45};
+  panel.y = {"Drive edge (\u00b5m)", 0, 0.72};
+  return panel;
+}
+
+}  // namespace
+
+TEST_CASE("The label of a rule never stands on a tone's mark, however close both are", "[plot][labels]") {
+  const double height = GENERATE(165.0, 200.0, 260.0), width = GENERATE(200.0, 430.0);
+  for (double tone = 15; tone <= 45; tone += 2.5)
+    for (double off = -4; off <= 4; off += 0.25) {
+      if (tone + off < 15 || tone + off > 45) continue;
+      auto panel = empty_panel();
+      panel.layers.push_back(vertical(tone + off, "resonance"));
+      panel.layers.push_back(Points{{tone}, {0.6}, {0}, {0.6}, {}, {}, 0, ""});
+      const auto svg = render(with(panel, width, height));
+      CAPTURE(width, height, tone, off);
+      REQUIRE(labels_on(svg) == 1);
+      REQUIRE(crossed(svg, width, height).empty());
+    }
+}
+
+TEST_CASE("Where curves leave no place, a rule's label stands outside of the data", "[plot][labels]") {
+  Line dense;
+  for (int i = 0; i <= 3000; ++i) {
+    dense.x.push_back(15 + 0.01 * i);
+    dense.y.push_back(0.36 + 0.36 * std::sin(2.0 * i));
+  }
+  auto panel = empty_panel();
+  const int rules = GENERATE(1, 2, 3);
+  const char* names[] = {"resonance", "edge of the zone", "level"};
+  for (int i = 0; i < rules; ++i) panel.layers.push_back(vertical(29 + 0.5 * i, names[i]));
+  SECTION("vertical rules, above it, in rows") {}
+  SECTION("and a horizontal one, to the right") { panel.layers.push_back(horizontal(0.3, "chance")); }
+  SECTION("and two horizontal ones, close together") {
+    panel.layers.push_back(horizontal(0.3, "chance"));
+    panel.layers.push_back(horizontal(0.31, "mean"));
+  }
+  panel.layers.push_back(dense);
+  const auto svg = render(with(panel, 430, 260));
+  CHECK(labels_on(svg) >= rules);
+  CHECK(crossed(svg, 430, 260).empty());
+}
+
+TEST_CASE("Labels of several rules keep apart from each other, from curves, bars and error bars",
+          "[plot][labels]") {
+  auto panel = empty_panel();
+  panel.y = {"Proportion", 0.4, 1};
+  for (const double at : {20.0, 20.4, 44.0}) panel.layers.push_back(vertical(at, "truth 3.14"));
+  panel.layers.push_back(horizontal(0.5, "chance"));
+  panel.layers.push_back(horizontal(GENERATE(0.52, 0.9, 1.0), "deadline"));
+  Points dots{{20, 25, 30, 35, 40},
+              {0.5, 0.6, 0.7, 0.9, 0.98},
+              {0.4, 0.5, 0.6, 0.8, 0.9},
+              {0.6, 0.7, 0.8, 1, 1},
+              {5, 10, 20, 10, 5},
+              {},
+              1,
+              "data"};
+  panel.layers.push_back(Line{dots.x, dots.y, 0, "fit"});
+  panel.layers.push_back(dots);
+  panel.layers.push_back(Histogram{{22, 24, 26}, {0.6, 0.8}, 2, ""});
+  const auto svg = render(with(panel, 430, 260));
+  CHECK(labels_on(svg) == 5);
+  CHECK(crossed(svg, 430, 260).empty());
+}
+
+TEST_CASE("A free label stands at its rule's upper right, and a rule beyond the axes shows nothing",
+          "[plot][labels]") {
+  auto panel = empty_panel();
+  panel.layers.push_back(vertical(20, "here"));
+  panel.layers.push_back(vertical(60, "beyond"));
+  const auto svg = render(with(panel, 430, 260));
+  REQUIRE(labels_on(svg) == 1);
+  const auto rules = svg_geometry::elements(svg, "line");
+  const auto dashed = std::find_if(rules.begin(), rules.end(), [](const auto& line) {
+    return !svg_geometry::attribute(line, "stroke-dasharray").empty();
+  });
+  REQUIRE(dashed != rules.end());
+  for (const auto& text : svg_geometry::texts(svg))
+    if (text.words == "here") {
+      CHECK(text.box.left == Approx(svg_geometry::number(*dashed, "x1") + 4));
+      CHECK(text.box.top < svg_geometry::number(*dashed, "y2") + 6);
+    }
+}
+
+TEST_CASE("The check of labels sees one that stands on a marker, on a curve, on words", "[plot][labels]") {
+  Svg svg(200, 100, "Control");
+  svg.text({50, 50}, "resonance", kLabelSize, Anchor::start, "#666666");
+  CHECK(crossed(svg.finish(), 200, 100).empty());
+  SECTION("marker") { svg.circle({60, 46}, 3, {"#0072b2", "", 1, "", 1}); }
+  SECTION("curve") { svg.polyline({{40, 40}, {120, 60}}, {"#0072b2", "", 2, "", 1}); }
+  SECTION("words") { svg.text({90, 52}, "Drive", 12, Anchor::start, "#222222"); }
+  SECTION("edge") { svg.text({180, 50}, "outside", kLabelSize, Anchor::start, "#666666"); }
+  CHECK_FALSE(crossed(svg.finish(), 200, 100).empty());
+}
