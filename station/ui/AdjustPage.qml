@@ -40,6 +40,7 @@ Item {
         wideEndLeft: root.page.wideEndLeft
         hasMark: root.page.hasMark
         markMm: root.page.markMm
+        textPixels: root.theme.textSmall
         ink: root.theme.ink
         paper: root.theme.paper
         accent: root.theme.action

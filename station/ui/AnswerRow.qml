@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Two or three answers of one size, one colour and one distance from the middle: nothing favours a side. It draws
-// only; a TouchField over the page judges the touches.
+// Two or three answers of one size, one size of letters, one colour and one distance from the middle: nothing
+// favours a side. It draws only; a TouchField over the page judges the touches.
 Item {
     id: root
     required property Theme theme
@@ -10,6 +10,29 @@ Item {
     required property int pressed
     readonly property real gap: theme.targetGap
     readonly property int count: answers.length
+    readonly property real buttonWidth: (width - (count - 1) * gap) / Math.max(1, count)
+    /// The largest letters in which each answer fits its button without a break inside a word.
+    readonly property real letters: {
+        let least = theme.textTitle
+        for (let i = 0; i < count; ++i) least = Math.min(least, fits.itemAt(i)?.fontInfo.pixelSize ?? least)
+        return least
+    }
+
+    Repeater {
+        id: fits
+        model: 6
+        Text {
+            required property int index
+            visible: false
+            width: root.buttonWidth - 4 * root.theme.unit
+            height: root.height - 4 * root.theme.unit
+            text: root.answers[index] ?? ""
+            font { pixelSize: root.theme.textTitle; weight: Font.DemiBold }
+            fontSizeMode: Text.Fit
+            minimumPixelSize: root.theme.textSmall
+            wrapMode: Text.WordWrap
+        }
+    }
 
     Repeater {
         // All that there may be, made once: a trial must not begin with building its buttons.
@@ -20,7 +43,7 @@ Item {
             readonly property bool down: root.pressed === index
             objectName: "answer" + index
             visible: index < root.count
-            width: (root.width - (root.count - 1) * root.gap) / Math.max(1, root.count)
+            width: root.buttonWidth
             height: root.height
             x: index * (width + root.gap)
             radius: root.theme.radius
@@ -30,9 +53,7 @@ Item {
                 anchors { fill: parent; margins: 2 * root.theme.unit }
                 text: root.answers[button.index] ?? ""
                 color: button.down ? root.theme.action : root.theme.actionText
-                font { pixelSize: root.theme.textTitle; weight: Font.DemiBold }
-                fontSizeMode: Text.Fit
-                minimumPixelSize: root.theme.textSmall
+                font { pixelSize: root.letters; weight: Font.DemiBold }
                 wrapMode: Text.Wrap
                 horizontalAlignment: Text.AlignHCenter
                 verticalAlignment: Text.AlignVCenter

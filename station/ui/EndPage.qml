@@ -1,7 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// Thanks for the participant, and nothing else: the session's numbers are behind a button for the operator.
+// Thanks for the participant, and nothing else: the session's numbers are behind a button for the operator, and
+// behind the operator's code. They are the operator's alone, so they are in English as all of the operator's pages
+// are, and called as in the report and in the files.
 Item {
     id: root
     required property Theme theme
@@ -71,9 +73,17 @@ Item {
         anchors.fill: parent
         color: root.theme.paper
         MouseArea { anchors.fill: parent }
+        Text {
+            id: heading
+            anchors { left: parent.left; right: parent.right; top: parent.top }
+            text: "The session in numbers"
+            color: root.theme.ink
+            font { pixelSize: 0.85 * root.theme.textTitle; weight: Font.Bold }
+            elide: Text.ElideRight
+        }
         Grid {
             id: numbers
-            anchors { left: parent.left; right: parent.right; top: parent.top }
+            anchors { left: parent.left; right: parent.right; top: heading.bottom; topMargin: 1.6 * root.theme.unit }
             columns: 2
             columnSpacing: 4 * root.theme.unit
             rowSpacing: root.theme.unit
@@ -108,7 +118,7 @@ Item {
             anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
             theme: root.theme
             primary: false
-            text: root.texts.close
+            text: "Close"
             onActivated: root.counting = false
         }
     }

@@ -55,6 +55,7 @@ Item {
         hasMark: root.page.hasMark
         markMm: root.page.markMm
         showFinger: true
+        textPixels: root.theme.textSmall
         ink: root.theme.ink
         paper: root.theme.paper
         accent: root.theme.action

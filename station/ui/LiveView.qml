@@ -212,6 +212,7 @@ Rectangle {
                 FactTable { width: parent.width; theme: look; heading: "On the surface"; facts: root.live.scene; labelWidth: 0.3 * width }
             }
         }
+        ScrollCue { theme: look; place: scroll }
     }
 
     Rectangle {

@@ -83,13 +83,14 @@ Item {
         }
     }
 
-    // Sign, heading and text side by side, so that three answers are found at a glance.
+    // Sign, heading and text side by side, so that three answers are found at a glance; a heading never breaks.
     component Line: Row {
         id: line
         property string glyph
         property string heading
         property string says
         property color tint: root.theme.ink
+        readonly property real needed: label.implicitWidth
         readonly property real textSize: Math.max(root.theme.textSmall, 0.84 * root.theme.textBody)
         width: parent.width
         spacing: 1.2 * root.theme.unit
@@ -101,11 +102,11 @@ Item {
         }
         Text {
             id: label
-            width: 0.24 * line.width
+            objectName: "heading"
+            width: lines.headingWidth
             text: line.heading
             color: line.tint
             font { pixelSize: Math.max(root.theme.textSmall, 0.9 * line.textSize); weight: Font.Bold }
-            wrapMode: Text.Wrap
         }
         Text {
             width: line.width - sign.width - label.width - 2 * line.spacing
@@ -129,19 +130,23 @@ Item {
             objectName: "explanation"
             anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 1.8 * root.theme.unit }
             spacing: 0.8 * root.theme.unit
+            readonly property real headingWidth: Math.max(happened.needed, safe.needed, toDo.needed) + 0.8 * root.theme.unit
             Line {
+                id: happened
                 glyph: "alert"
                 heading: root.texts.whatHappened
                 says: root.page.text
                 tint: root.theme.wrong
             }
             Line {
+                id: safe
                 glyph: "shield"
                 heading: root.texts.whatIsSafe
                 says: root.page.safe
                 tint: root.theme.right
             }
             Line {
+                id: toDo
                 glyph: "tool"
                 heading: root.texts.whatToDo
                 says: root.page.toDo

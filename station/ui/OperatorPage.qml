@@ -123,6 +123,7 @@ Rectangle {
                 }
             }
         }
+        ScrollCue { theme: look; place: protocols }
     }
 
     Rectangle {
@@ -204,9 +205,11 @@ Rectangle {
                             Text {
                                 id: named
                                 x: 1.8 * look.textSmall
+                                width: parent.width - x
                                 text: cue.modelData.name + ": " + cue.modelData.says
                                 color: cue.modelData.leaks ? look.wrong : look.quiet
                                 font { pixelSize: look.textSmall; weight: cue.modelData.leaks ? Font.DemiBold : Font.Normal }
+                                wrapMode: Text.Wrap
                             }
                         }
                     }
@@ -224,6 +227,7 @@ Rectangle {
                 }
             }
         }
+        ScrollCue { theme: look; place: scroll }
     }
 
     component Choice: ActionButton {

@@ -194,5 +194,6 @@ Rectangle {
                 FactTable { width: parent.width; theme: look; heading: "Cues"; facts: root.controller.cues; labelWidth: 0.5 * width }
             }
         }
+        ScrollCue { theme: look; place: scroll }
     }
 }

@@ -107,5 +107,6 @@ Rectangle {
                 FactTable { width: parent.width; theme: look; heading: "Station"; facts: root.report.health; labelWidth: 0.5 * width }
             }
         }
+        ScrollCue { theme: look; place: scroll }
     }
 }

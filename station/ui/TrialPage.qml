@@ -28,6 +28,7 @@ Item {
         hasMark: root.page.hasMark
         markMm: root.page.markMm
         showFinger: root.cue
+        textPixels: root.theme.textSmall
         ink: root.theme.ink
         paper: root.theme.paper
         accent: root.theme.action

@@ -14,11 +14,18 @@ namespace {
 /// scale.
 constexpr double kSlimmest = 1.0 / 11;
 constexpr double kTick_mm = 10, kLabel_mm = 50;
+constexpr double kFinger = 5;  // width in units
 
 QColor mixed(const QColor& a, const QColor& b, double part_of_b) {
   return QColor::fromRgbF(static_cast<float>(a.redF() + (b.redF() - a.redF()) * part_of_b),
                           static_cast<float>(a.greenF() + (b.greenF() - a.greenF()) * part_of_b),
                           static_cast<float>(a.blueF() + (b.blueF() - a.blueF()) * part_of_b));
+}
+
+QFont font_of(double pixels) {
+  QFont font;
+  font.setPixelSize(static_cast<int>(std::ceil(pixels)));
+  return font;
 }
 
 }  // namespace
@@ -29,6 +36,7 @@ struct SurfaceDrawing::Layout {
   double axis_y = 0;           ///< centre line
   double px_per_mm = 1;        ///< along the strip
   double wide_half = 0, narrow_half = 0;
+  double scale_text = 0, flag_text = 0, flag_height = 0;
   double unit = 1;  ///< height / 20: strokes and gaps follow the item's size
   double length_mm = 1;
   bool wide_left = true;
@@ -47,17 +55,24 @@ SurfaceDrawing::Layout SurfaceDrawing::layout() const {
   at.unit = std::min(height() / 20, width() / 60);
   at.wide_left = wide_end_left_;
   at.length_mm = length_mm_;
-  const double driver = 3.2 * at.unit, margin = 1.8 * at.unit;
+  at.scale_text = std::max(text_pixels_, 1.8 * at.unit);
+  at.flag_text = std::max(text_pixels_, 2.3 * at.unit);
+  at.flag_height = std::max(3.6 * at.unit, 1.4 * at.flag_text);
+  // Half of the scale's last number stands beyond the strip's end.
+  const double last =
+      QFontMetricsF(font_of(at.scale_text)).horizontalAdvance(QString::number(length_mm_, 'f', 0));
+  const double driver = 3.2 * at.unit, margin = std::max(1.8 * at.unit, 0.5 * last + 2);
   at.left = wide_end_left_ ? driver + margin : margin;
   at.right = width() - (wide_end_left_ ? margin : driver + margin);
   at.px_per_mm = (at.right - at.left) / length_mm_;
   const double slim = 2 * wide_half_width_mm_ / length_mm_;
   const double across = at.px_per_mm * std::max(1.0, kSlimmest / slim);
-  const double room = 4.6 * at.unit;
+  const double above = at.flag_height + 2 * at.unit, below = 2.2 * at.unit + 1.3 * at.scale_text;
+  const double room = std::clamp(0.5 * (height() - above - below), at.unit, 4.6 * at.unit);
   const double shrink = std::min(1.0, room / (across * wide_half_width_mm_));
   at.wide_half = wide_half_width_mm_ * across * shrink;
   at.narrow_half = narrow_half_width_mm_ * across * shrink;
-  at.axis_y = 5.6 * at.unit + room;
+  at.axis_y = above + room;
   return at;
 }
 
@@ -104,10 +119,8 @@ void SurfaceDrawing::paint_strip(QPainter& painter, const Layout& at) const {
 }
 
 void SurfaceDrawing::paint_scale(QPainter& painter, const Layout& at) const {
-  QFont font = painter.font();
-  font.setPixelSize(std::max(11, static_cast<int>(1.8 * at.unit)));
-  painter.setFont(font);
-  const QFontMetricsF metrics(font);
+  painter.setFont(font_of(at.scale_text));
+  const QFontMetricsF metrics(painter.font());
   const double y0 = at.axis_y + at.wide_half + 0.9 * at.unit;
   const QColor colour = mixed(ink_, paper_, 0.15);
   for (int i = 0; i * kTick_mm <= length_mm_ + 1e-9; ++i) {
@@ -115,12 +128,23 @@ void SurfaceDrawing::paint_scale(QPainter& painter, const Layout& at) const {
     const bool labelled = std::fmod(mm, kLabel_mm) < 1e-9;
     painter.setPen(QPen(colour, std::max(1.0, 0.1 * at.unit)));
     painter.drawLine(QPointF(at.x(mm), y0), QPointF(at.x(mm), y0 + (labelled ? 1.0 : 0.5) * at.unit));
-    if (!labelled) continue;
     const QString label = QString::number(static_cast<int>(mm));
+    if (!labelled || behind_finger(at, mm, metrics.horizontalAdvance(label))) continue;
     painter.drawText(
         QPointF(at.x(mm) - metrics.horizontalAdvance(label) / 2, y0 + 1.3 * at.unit + metrics.ascent()),
         label);
   }
+}
+
+/// A number half covered would be read wrong.
+bool SurfaceDrawing::behind_finger(const Layout& at, double mm, double width_px) const {
+  if (!show_finger_) return false;
+  return std::abs(at.x(mm) - finger_x(at)) < 0.5 * (width_px + kFinger * at.unit) + 0.4 * at.unit;
+}
+
+/// Under the mark and the same to both sides of it: where the finger lies must not favour an answer.
+double SurfaceDrawing::finger_x(const Layout& at) const {
+  return at.x(has_mark_ ? mark_mm_ : 0.5 * length_mm_);
 }
 
 void SurfaceDrawing::paint_mark(QPainter& painter, const Layout& at) const {
@@ -130,7 +154,7 @@ void SurfaceDrawing::paint_mark(QPainter& painter, const Layout& at) const {
 
   // The pointer ends on the strip's edge; the number matches the scale printed on the surface.
   const double tip_y = at.axis_y - half - 0.25 * u;
-  const double flag_y = 0.2 * u, flag_height = 3.6 * u;
+  const double flag_y = 0.2 * u, flag_height = at.flag_height;
   QPainterPath pointer;
   pointer.moveTo(x, tip_y);
   pointer.lineTo(x - 1.0 * u, tip_y - 1.7 * u);
@@ -142,8 +166,7 @@ void SurfaceDrawing::paint_mark(QPainter& painter, const Layout& at) const {
   painter.drawRect(QRectF(x - 0.22 * u, flag_y + flag_height - 0.2 * u, 0.44 * u,
                           tip_y - 1.6 * u - flag_y - flag_height + 0.4 * u));
 
-  QFont font = painter.font();
-  font.setPixelSize(std::max(11, static_cast<int>(2.3 * u)));
+  QFont font = font_of(at.flag_text);
   font.setWeight(QFont::DemiBold);
   painter.setFont(font);
   const QFontMetricsF metrics(font);
@@ -158,9 +181,8 @@ void SurfaceDrawing::paint_mark(QPainter& painter, const Layout& at) const {
 
 void SurfaceDrawing::paint_finger(QPainter& painter, const Layout& at) const {
   const double u = at.unit;
-  // Under the mark and the same to both sides of it: where the finger lies must not favour an answer.
-  const double x = at.x(has_mark_ ? mark_mm_ : 0.5 * length_mm_);
-  const double tip_y = at.axis_y - (has_mark_ ? 0.2 : 1.4) * u, width_px = 5.0 * u;
+  const double x = finger_x(at);
+  const double tip_y = at.axis_y - (has_mark_ ? 0.2 : 1.4) * u, width_px = kFinger * u;
 
   // The finger fades out below: it comes from the person, not from the drawing.
   const double bottom = height();

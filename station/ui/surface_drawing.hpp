@@ -6,7 +6,8 @@ namespace turnpoint::ui {
 
 /// The surface seen from above, to scale: the tapered strip with its transducer at the wide end, a millimetre
 /// scale, the mark pointed at, and a fingertip that shows where to slide. Still: it draws once for each
-/// change of a property. Lengths in mm; positions count from the wide end.
+/// change of a property. Lengths in mm; positions count from the wide end. Its numbers are never smaller than
+/// `textPixels`.
 class SurfaceDrawing : public QQuickPaintedItem {
   Q_OBJECT
   QML_ELEMENT
@@ -17,6 +18,7 @@ class SurfaceDrawing : public QQuickPaintedItem {
   Q_PROPERTY(bool hasMark MEMBER has_mark_ NOTIFY changed)
   Q_PROPERTY(double markMm MEMBER mark_mm_ NOTIFY changed)
   Q_PROPERTY(bool showFinger MEMBER show_finger_ NOTIFY changed)
+  Q_PROPERTY(double textPixels MEMBER text_pixels_ NOTIFY changed)
   Q_PROPERTY(QColor ink MEMBER ink_ NOTIFY changed)
   Q_PROPERTY(QColor paper MEMBER paper_ NOTIFY changed)
   Q_PROPERTY(QColor accent MEMBER accent_ NOTIFY changed)
@@ -35,12 +37,15 @@ class SurfaceDrawing : public QQuickPaintedItem {
   void paint_scale(QPainter& painter, const Layout& at) const;
   void paint_mark(QPainter& painter, const Layout& at) const;
   void paint_finger(QPainter& painter, const Layout& at) const;
+  double finger_x(const Layout& at) const;
+  bool behind_finger(const Layout& at, double mm, double width_px) const;
 
   double length_mm_ = 0, wide_half_width_mm_ = 0, narrow_half_width_mm_ = 0;
   bool wide_end_left_ = true;
   bool has_mark_ = false;
   double mark_mm_ = 0;
   bool show_finger_ = false;
+  double text_pixels_ = 11;
   QColor ink_ = Qt::black, paper_ = Qt::white, accent_ = Qt::black;
 };
 

@@ -1,7 +1,10 @@
 #include "tests/ui/page_inspector.hpp"
 
+#include <QFontMetricsF>
 #include <QImage>
+#include <QJSValue>
 #include <QQuickWindow>
+#include <QRegularExpression>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -35,6 +38,10 @@ void each_text(const QQuickItem& item, const std::function<void(const QQuickItem
   const bool is_text = item.inherits("QQuickText");
   if (is_text && !item.property("text").toString().trimmed().isEmpty()) look(item);
   for (const auto* child : item.childItems()) each_text(*child, look);
+}
+
+bool has_ideographs(const QString& word) {
+  return std::any_of(word.begin(), word.end(), [](QChar c) { return c.unicode() >= 0x2e80; });
 }
 
 /// Where the letters are, in pixels of the window.
@@ -74,6 +81,32 @@ QStringList PageInspector::cutTexts(QQuickItem* page) const {
       cut += text.property("text").toString();
   });
   return cut;
+}
+
+QStringList PageInspector::brokenWords(QQuickItem* page) const {
+  QStringList broken;
+  each_text(*page, [&](const QQuickItem& text) {
+    if (text.property("lineCount").toInt() < 2) return;
+    QFont font = text.property("font").value<QFont>();
+    // What it has been made smaller to.
+    font.setPixelSize(text.property("fontInfo").value<QJSValue>().property("pixelSize").toInt());
+    const QFontMetricsF metrics(font);
+    for (const auto& word : text.property("text").toString().split(QRegularExpression("\\s+")))
+      if (!has_ideographs(word) && metrics.horizontalAdvance(word) > text.width() + 1) broken += word;
+  });
+  return broken;
+}
+
+bool PageInspector::reachesEdge(QQuickItem* item) const {
+  const QImage image = item->window()->grabWindow();
+  const QRect place = item->mapRectToScene(item->boundingRect())
+                          .toAlignedRect()
+                          .intersected(image.rect())
+                          .adjusted(1, 1, -1, -1);
+  const auto ground = image.pixel(place.topLeft());
+  for (int y = place.top(); y <= place.bottom(); ++y)
+    if (image.pixel(place.left(), y) != ground || image.pixel(place.right(), y) != ground) return true;
+  return false;
 }
 
 int PageInspector::texts(QQuickItem* page) const {

@@ -17,7 +17,11 @@ class PageInspector : public QObject {
   Q_INVOKABLE QStringList faintTexts(QQuickItem* page, double least) const;
   /// Texts below `page` that were cut off by their place: elided, clipped, or reaching out of the page.
   Q_INVOKABLE QStringList cutTexts(QQuickItem* page) const;
-  /// How many texts the two above look at.
+  /// Texts below `page` with a line break inside a word. (Between Chinese or Japanese characters it is none.)
+  Q_INVOKABLE QStringList brokenWords(QQuickItem* page) const;
+  /// True where anything but the ground that it stands on reaches the left or the right edge of an item.
+  Q_INVOKABLE bool reachesEdge(QQuickItem* item) const;
+  /// How many texts the others look at.
   Q_INVOKABLE int texts(QQuickItem* page) const;
 };
 

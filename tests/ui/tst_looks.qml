@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// Every page as it is rendered: nothing faint, nothing cut off.
+// Every page as it is rendered, on a small panel and on a larger one: nothing faint, nothing cut off, no word broken.
 Item {
     id: stage
     width: 800
@@ -28,6 +28,22 @@ Item {
             color: "#777777"
             elide: Text.ElideRight
         }
+        Text {
+            id: longWord
+            visible: false
+            y: 100
+            width: 200
+            text: "Reibungsreicher geworden"
+            font.pixelSize: 30
+            wrapMode: Text.Wrap
+        }
+        Rectangle {
+            id: drawing
+            y: 300
+            width: 200
+            height: 100
+            Rectangle { id: drawn; x: 20; y: 20; width: 100; height: 20; color: "black" }
+        }
     }
 
     TestCase {
@@ -35,6 +51,39 @@ Item {
         when: windowShown
 
         SignalSpy { id: shown; target: script.bridge; signalName: "shown" }
+
+        function place(row) {
+            stage.width = row.panel.width
+            stage.height = row.panel.height
+            tryCompare(stage.Window.window, "width", row.panel.width)
+            view.pixelsPerMm = row.panel.mm
+            const before = shown.count
+            script.show(row.page, row.language)
+            tryCompare(shown, "count", before + 1)
+        }
+        function all(parent, wanted) {
+            let found = []
+            for (let i = 0; i < parent.children.length; ++i) {
+                const child = parent.children[i]
+                if (!child.visible) continue
+                if (wanted(child)) found.push(child)
+                found = found.concat(all(child, wanted))
+            }
+            return found
+        }
+
+        function test_answers_are_written_in_one_size_however_long_they_are_data() {
+            return [{ tag: "long", page: "explore-speed", language: "de", panel: { width: 1280, height: 800, mm: 5.9 } },
+                    { tag: "short", page: "explore", language: "en", panel: { width: 800, height: 480, mm: 5.2 } }]
+        }
+        function test_answers_are_written_in_one_size_however_long_they_are(row) {
+            place(row)
+            const first = findChild(view, "answer0").children[0], second = findChild(view, "answer1").children[0]
+            compare(first.font.pixelSize, second.font.pixelSize)
+            verify(first.font.pixelSize >= 3.4 * row.panel.mm)
+            // What is short keeps the size that answers have.
+            compare(first.font.pixelSize === Math.round(4 * Math.min(row.panel.width / 80, row.panel.height / 48)), row.tag === "short")
+        }
 
         function test_what_is_faint_or_cut_is_found() {
             control.visible = true
@@ -46,21 +95,35 @@ Item {
             compare(inspector.cutTexts(control), [])
             sample.cut = 200
             compare(inspector.cutTexts(control), ["faint or cut"])
+            sample.visible = false
+            longWord.visible = true
+            compare(inspector.brokenWords(control), ["Reibungsreicher"])
+            longWord.font.pixelSize = 20
+            compare(inspector.brokenWords(control), [])
+            verify(!inspector.reachesEdge(drawing))
+            drawn.x = 120
+            verify(inspector.reachesEdge(drawing))
             control.visible = false
         }
 
         function test_every_text_stands_out_by_seven_to_one_and_is_whole_data() {
             const rows = []
-            for (const language of ["en", "de", "ja"])
-                for (const page of script.pages) rows.push({ tag: page + " " + language, page: page, language: language })
+            for (const panel of [{ width: 800, height: 480, mm: 5.2 }, { width: 1280, height: 800, mm: 5.9 }])
+                for (const language of ["en", "de", "ja"])
+                    for (const page of script.pages)
+                        rows.push({ tag: page + " " + language + " " + panel.width, page: page, language: language, panel: panel })
             return rows
         }
         function test_every_text_stands_out_by_seven_to_one_and_is_whole(row) {
-            const before = shown.count
-            script.show(row.page, row.language)
-            tryCompare(shown, "count", before + 1)
+            place(row)
             compare(inspector.faintTexts(view, 7), [])
             compare(inspector.cutTexts(view), [])
+            compare(inspector.brokenWords(view), [])
+            for (const drawing of all(view, item => item.lengthMm !== undefined))
+                verify(!inspector.reachesEdge(drawing))
+            const headings = all(view, item => item.objectName === "heading")
+            compare(headings.length, row.page.startsWith("fault-") ? 3 : 0)
+            for (const heading of headings) compare(heading.lineCount, 1)
         }
     }
 }
