@@ -47,7 +47,7 @@ Item {
     }
     Text {
         anchors { left: parent.left; right: parent.right; top: surface.bottom; bottom: slider.top; bottomMargin: root.theme.unit }
-        text: root.silent ? root.texts.pressDone : root.page.text
+        text: root.silent ? root.texts.pressDone : root.texts.phrased(root.page.text)
         color: root.theme.ink
         font { pixelSize: 1.1 * root.theme.textBody; weight: Font.Medium }
         fontSizeMode: Text.Fit

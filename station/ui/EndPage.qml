@@ -30,7 +30,7 @@ Item {
         }
         Text {
             width: parent.width
-            text: root.page.title !== "" ? root.page.title : root.texts.thanks
+            text: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.thanks
             color: root.theme.ink
             font { pixelSize: root.theme.textTitle; weight: Font.Bold }
             horizontalAlignment: Text.AlignHCenter
@@ -38,7 +38,7 @@ Item {
         }
         Text {
             width: parent.width
-            text: root.page.text !== "" ? root.page.text : root.texts.thanksText
+            text: root.page.text !== "" ? root.texts.phrased(root.page.text) : root.texts.thanksText
             color: root.theme.quiet
             font.pixelSize: root.theme.textBody
             horizontalAlignment: Text.AlignHCenter

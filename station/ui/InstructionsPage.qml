@@ -22,7 +22,7 @@ Item {
         id: title
         visible: text !== "" && !badge.visible
         anchors { left: parent.left; right: parent.right; top: parent.top }
-        text: root.page.title
+        text: root.texts.phrased(root.page.title)
         color: root.theme.ink
         font { pixelSize: root.theme.textTitle; weight: Font.Bold }
         wrapMode: Text.Wrap
@@ -34,7 +34,7 @@ Item {
             top: badge.visible ? badge.bottom : title.bottom; topMargin: root.theme.unit
             bottom: surface.top; bottomMargin: root.theme.unit
         }
-        text: root.page.text
+        text: root.texts.phrased(root.page.text)
         color: root.theme.ink
         font.pixelSize: root.theme.textBody
         fontSizeMode: Text.Fit

@@ -35,7 +35,7 @@ Item {
         Text {
             objectName: "headline"
             anchors.verticalCenter: parent.verticalCenter
-            text: root.asking ? root.texts.reallyEnd : root.page.title !== "" ? root.page.title : root.texts.faultTitle
+            text: root.asking ? root.texts.reallyEnd : root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.faultTitle
             color: root.theme.ink
             font { pixelSize: 0.8 * root.theme.textTitle; weight: Font.Bold }
         }
@@ -54,7 +54,7 @@ Item {
         }
         Text {
             width: parent.width
-            text: root.asking ? root.texts.reallyEnd : root.page.title !== "" ? root.page.title
+            text: root.asking ? root.texts.reallyEnd : root.page.title !== "" ? root.texts.phrased(root.page.title)
                 : root.failed ? root.texts.failedTitle : root.fault ? root.texts.faultTitle : root.texts.paused
             color: root.theme.ink
             font { pixelSize: 0.85 * root.theme.textTitle; weight: Font.Bold }
@@ -63,7 +63,7 @@ Item {
         }
         Text {
             width: parent.width
-            text: root.page.text !== "" ? root.page.text : root.texts.pausedText
+            text: root.page.text !== "" ? root.texts.phrased(root.page.text) : root.texts.pausedText
             color: root.theme.quiet
             font.pixelSize: root.theme.textBody
             lineHeight: 1.2
@@ -135,21 +135,21 @@ Item {
                 id: happened
                 glyph: "alert"
                 heading: root.texts.whatHappened
-                says: root.page.text
+                says: root.texts.phrased(root.page.text)
                 tint: root.theme.wrong
             }
             Line {
                 id: safe
                 glyph: "shield"
                 heading: root.texts.whatIsSafe
-                says: root.page.safe
+                says: root.texts.phrased(root.page.safe)
                 tint: root.theme.right
             }
             Line {
                 id: toDo
                 glyph: "tool"
                 heading: root.texts.whatToDo
-                says: root.page.toDo
+                says: root.texts.phrased(root.page.toDo)
                 tint: root.theme.action
             }
             Text {

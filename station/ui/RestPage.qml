@@ -31,7 +31,7 @@ Item {
         topPadding: Math.max(0, (height - 24 * root.theme.unit) / 2)
         Text {
             width: parent.width
-            text: root.page.title !== "" ? root.page.title : root.texts.breakTitle
+            text: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.breakTitle
             color: root.theme.ink
             font { pixelSize: root.theme.textTitle; weight: Font.Bold }
             horizontalAlignment: Text.AlignHCenter

@@ -6,7 +6,28 @@ QtObject {
     required property string language
 
     function pick(en: string, de: string, ja: string) : string {
-        return language.startsWith("de") ? de : language.startsWith("ja") ? ja : en
+        return language.startsWith("de") ? de : language.startsWith("ja") ? phrased(ja) : en
+    }
+
+    /// A text of this language as it is to be shown. Japanese may break a line between almost any two characters,
+    /// also inside a word; word joiners (U+2060) leave the breaks after punctuation, and those where hiragana,
+    /// which end a phrase, meet a character that begins one. A phrase longer than a line still breaks anywhere.
+    function phrased(text: string) : string {
+        if (!language.startsWith("ja")) return text
+        const japanese = /[\u3001-\u30ff\u3400-\u9fff\uff01-\uff9f]/
+        let shown = ""
+        for (let i = 0; i < text.length; ++i) {
+            const whole = i + 1 < text.length && japanese.test(text[i]) && japanese.test(text[i + 1])
+            shown += text[i] + (whole && !endsPhrase(text, i) ? "\u2060" : "")
+        }
+        return shown
+    }
+    function endsPhrase(text: string, i: int) : bool {
+        const hiragana = /[\u3041-\u309f]/, begins = /[\u30a1-\u30fa\u3400-\u9fff\u300c\u300e\uff08]/
+        const polite = at => /[おご]/.test(text[at]) && /[\u3400-\u9fff]/.test(text[at + 1] ?? "")
+        if (/[、。・!?]/.test(text[i])) return true
+        if (/[」』)]/.test(text[i])) return !hiragana.test(text[i + 1])  // else its particle follows
+        return hiragana.test(text[i]) && !polite(i) && (begins.test(text[i + 1]) || polite(i + 1))
     }
 
     readonly property string proceed: pick("Continue", "Weiter", "次へ")
@@ -50,8 +71,8 @@ QtObject {
     readonly property string forOperator: pick("For the experimenter", "Für die Versuchsleitung", "実験者用")
     readonly property string close: pick("Close", "Schließen", "閉じる")
     readonly property string consentTitle: pick("Before we begin", "Bevor wir beginnen", "始める前に")
-    readonly property string consentText: pick("Have you read and signed the consent form, version %1?",
-                                               "Haben Sie die Einwilligung, Fassung %1, gelesen und unterschrieben?",
+    readonly property string consentText: pick("Have you read and signed the consent form, version %1?",
+                                               "Haben Sie die Einwilligung, Fassung %1, gelesen und unterschrieben?",
                                                "同意書(版 %1)を読み、署名しましたか?")
     readonly property string consentYes: pick("Yes, I have", "Ja", "はい")
     readonly property string consentNo: pick("No", "Nein", "いいえ")

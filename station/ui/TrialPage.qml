@@ -66,7 +66,7 @@ Item {
         anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: 1.5 * root.theme.unit; top: surface.bottom }
         text: root.counted && root.stimulus ? root.texts.slideNow
             : root.counted && !root.asks ? root.texts.getReady
-            : root.cue ? root.texts.slideHere : root.page.text
+            : root.cue ? root.texts.slideHere : root.texts.phrased(root.page.text)
         color: root.theme.ink
         font { pixelSize: 1.15 * root.theme.textBody; weight: Font.Medium }
         fontSizeMode: Text.Fit

@@ -1,0 +1,80 @@
+import QtQuick
+import QtTest
+import Turnpoint
+
+// Where a text may break into lines.
+Item {
+    id: stage
+    width: 800
+    height: 200
+
+    Texts { id: japanese; language: "ja" }
+    Texts { id: german; language: "de" }
+    TextMetrics { id: metrics; font: shown.font }
+    Text {
+        id: shown
+        property var lines: []
+        font.pixelSize: 24
+        wrapMode: Text.Wrap
+        onLineLaidOut: line => { lines[line.number] = line.implicitWidth }
+    }
+
+    TestCase {
+        name: "Phrases"
+        when: windowShown
+
+        /// What lies between two places where a line may break.
+        function pieces(text) {
+            const joined = japanese.phrased(text), found = [""]
+            for (let i = 0; i < joined.length; ++i) {
+                if (joined[i] === "\u2060") continue
+                if (i > 0 && joined[i - 1] !== "\u2060") found.push("")
+                found[found.length - 1] += joined[i]
+            }
+            return found
+        }
+        function widthOf(text) {
+            metrics.text = text
+            return metrics.advanceWidth
+        }
+
+        function test_a_japanese_text_breaks_where_a_phrase_ends_data() {
+            return [{ tag: "なめらかな|部分が|印で|終わるように、|つまみを|動かしてください。" },
+                    { tag: "実験者を|お待ちください" },
+                    { tag: "指定と|異なる|刺激になります。|別の|端子か|機器を|使ってください。" },
+                    { tag: "アンプを|有効にしてから|「次へ」を|押します。" },
+                    { tag: "回答は|すべて|保存されました。" }]
+        }
+        function test_a_japanese_text_breaks_where_a_phrase_ends(row) {
+            const wanted = row.tag.split("|"), text = wanted.join("")
+            // Hiragana after hiragana is no place to break, so a piece may be two phrases, but never half of one.
+            let begun = 0
+            const starts = wanted.map(piece => (begun += piece.length) - piece.length)
+            begun = 0
+            for (const piece of pieces(text)) {
+                verify(starts.includes(begun), piece)
+                begun += piece.length
+            }
+            compare(begun, text.length)
+            verify(pieces(text).length > 1)
+        }
+
+        function test_a_shown_line_ends_with_a_phrase() {
+            const text = "なめらかな部分が印で終わるように、つまみを動かしてください。"
+            shown.width = widthOf("なめらかな部分が印で終わるように、つまみを動かしてく") + 2
+            shown.text = text
+            compare(shown.lineCount, 2)
+            verify(shown.lines[0] > widthOf("なめらかな部分が印で終わるように、つまみを動か"))  // as it was without
+            shown.text = japanese.phrased(text)
+            compare(shown.lineCount, 2)
+            fuzzyCompare(shown.lines[0], widthOf("なめらかな部分が印で終わるように、つまみを"), 2)
+            shown.width = widthOf("なめらか")
+            verify(shown.contentWidth <= shown.width + 1)  // a phrase that has no room breaks after all
+        }
+
+        function test_words_of_other_languages_and_writings_are_left_alone() {
+            compare(german.phrased("Bitte auf Fertig tippen."), "Bitte auf Fertig tippen.")
+            compare(japanese.phrased("turnpoint doctor 44.1 kHz"), "turnpoint doctor 44.1 kHz")
+        }
+    }
+}
