@@ -240,34 +240,67 @@ std::vector<Tick> ticks_with_room(const Axis& axis, double width) {
   return ticks(axis, axis.scale == AxisScale::linear ? 2 : 7);
 }
 
-void draw_panel(Svg& svg, const Panel& panel, double left, double top, double width, double height) {
-  // What title, legend and the axis below leave, at a line of text and a half a tick.
-  const auto up = ticks(panel.y, std::clamp(static_cast<int>((height - 110) / 18), 2, 5));
+struct Place {
+  double left = 0, top = 0, width = 0, height = 0;
+};
+
+/// What a panel's place is divided into.
+struct Division {
+  double left = 0, width = 0, legend_top = 0;  ///< of title, legend and data
+  std::vector<Tick> up;
+  std::vector<Entry> entries;
+  Labelled labelled;
+};
+
+Division divided(const Panel& panel, const Place& place, VerticalLabels where, int wanted_ticks) {
+  Division d;
+  d.up = ticks(panel.y, wanted_ticks);
   double labels = 0;
-  for (const auto& tick : up) labels = std::max(labels, text_width(tick.label, kText));
-  const double title = panel.title.empty() ? 4 : 26;
-  const double inner_left = left + kPad + 18 + labels + kTick + 3;
-  const auto entries = legend_of(panel);
-  const auto* map = heat_map(panel);
-  const double inner_width = left + width - kPad - 6 - (map ? 72 : 0) - inner_left;
-  const double legend = draw_legend(nullptr, entries, inner_left, 0, inner_width);
-  Frame frame{inner_left, top + kPad + title + legend, inner_width, 0, &panel.x, &panel.y};
-  frame.height = top + height - kPad - 38 - frame.y;
-  const auto labelled = place_labels(panel, frame);
-  frame = labelled.frame;
+  for (const auto& tick : d.up) labels = std::max(labels, text_width(tick.label, kText));
+  d.left = place.left + kPad + 18 + labels + kTick + 3;
+  d.width = place.left + place.width - kPad - 6 - (heat_map(panel) ? 72 : 0) - d.left;
+  d.legend_top = place.top + kPad + (panel.title.empty() ? 4 : 26);
+  d.entries = legend_of(panel);
+  Frame frame{d.left, d.legend_top, d.width, 0, &panel.x, &panel.y};
+  frame.y += draw_legend(nullptr, d.entries, d.left, 0, d.width);
+  frame.height = place.top + place.height - kPad - 38 - frame.y;
+  d.labelled = place_labels(panel, frame, where);
+  return d;
+}
+
+/// With as many ticks up as stand a line of text and a half apart.
+Division divided(const Panel& panel, const Place& place, VerticalLabels where) {
+  for (int wanted = 5;; --wanted) {
+    auto d = divided(panel, place, where, wanted);
+    const double needed = 1.5 * kText * static_cast<double>(d.up.size() - 1);
+    if (wanted == 2 || needed <= d.labelled.frame.height) return d;
+  }
+}
+
+void draw_panel(Svg& svg, const Panel& panel, const Place& place, VerticalLabels where) {
+  const auto d = divided(panel, place, where);
+  const auto& frame = d.labelled.frame;
   check(frame.width > 40 && frame.height > 40, "panel \"" + panel.title + "\" leaves no room for its data");
-  svg.text({inner_left, top + kPad + 14}, panel.title, kTitle, Anchor::start, kInk, 600);
-  draw_legend(&svg, entries, inner_left, top + kPad + title, inner_width);
-  draw_axes(svg, frame, ticks_with_room(panel.x, frame.width), up);
-  svg.text({left + kPad + 10, frame.y + frame.height / 2}, panel.y.label, kText, Anchor::middle, kInk, 400,
-           90);
+  svg.text({d.left, place.top + kPad + 14}, panel.title, kTitle, Anchor::start, kInk, 600);
+  draw_legend(&svg, d.entries, d.left, d.legend_top, d.width);
+  draw_axes(svg, frame, ticks_with_room(panel.x, frame.width), d.up);
+  svg.text({place.left + kPad + 10, frame.y + frame.height / 2}, panel.y.label, kText, Anchor::middle, kInk,
+           400, 90);
   const auto clip = drawn_in(frame);
   svg.begin_clip({clip.left, clip.top}, clip.right - clip.left, clip.bottom - clip.top);
   for (const auto& layer : panel.layers) std::visit(Draw{svg, frame}, layer);
   svg.end_clip();
-  for (const auto& label : labelled.labels)
+  for (const auto& label : d.labelled.labels)
     svg.text(label.at, label.text, kLabelText_px, label.anchor, kSoft);
-  if (map) draw_colour_bar(svg, frame, inner_left + inner_width, *map);
+  if (const auto* map = heat_map(panel)) draw_colour_bar(svg, frame, d.left + d.width, *map);
+}
+
+/// Small multiples are compared with each other: where one has to put a label above its data, all do.
+VerticalLabels labels_of(const std::vector<Panel>& panels, const std::vector<Place>& places) {
+  for (std::size_t i = 0; i < panels.size(); ++i)
+    for (const auto& label : divided(panels[i], places[i], VerticalLabels::beside).labelled.labels)
+      if (label.anchor == Anchor::middle) return VerticalLabels::above;
+  return VerticalLabels::beside;
 }
 
 /// The caption in lines that fit the width.
@@ -296,9 +329,12 @@ std::string render(const Figure& figure) {
       panels + (caption.empty() ? 0 : kPad + kCaptionLine * static_cast<double>(caption.size()));
   Svg svg(width, height, figure.title);
   svg.rectangle({0, 0}, width, height, {"", "#ffffff", 0, "", 1});
+  std::vector<Place> places;
   for (int i = 0; i < count; ++i)
-    draw_panel(svg, figure.panels[static_cast<std::size_t>(i)], i % columns * figure.panel_width_px,
-               i / columns * figure.panel_height_px, figure.panel_width_px, figure.panel_height_px);
+    places.push_back({i % columns * figure.panel_width_px, i / columns * figure.panel_height_px,
+                      figure.panel_width_px, figure.panel_height_px});
+  const auto where = labels_of(figure.panels, places);
+  for (std::size_t i = 0; i < places.size(); ++i) draw_panel(svg, figure.panels[i], places[i], where);
   double y = panels + kText;
   for (const auto& line : caption) {
     svg.text({2 * kPad, y}, line, kText, Anchor::start, kSoft);

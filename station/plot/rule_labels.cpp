@@ -193,8 +193,12 @@ std::vector<Box> covered(const Panel& panel, const Frame& frame) {
   return boxes;
 }
 
-Labelled place_labels(const Panel& panel, Frame whole) {
+Labelled place_labels(const Panel& panel, Frame whole, VerticalLabels where) {
   std::set<const Rule*> outside_data;
+  for (const auto& layer : panel.layers)
+    if (const auto* rule = std::get_if<Rule>(&layer);
+        rule != nullptr && !rule->label.empty() && !is_flat(*rule) && where == VerticalLabels::above)
+      outside_data.insert(rule);
   for (;;) {
     const auto frame = without_labels(whole, outside_data);
     const auto boxes = covered(panel, frame);

@@ -51,11 +51,12 @@ struct RuleLabel {
 /// The labels of the panel's rules, and the frame that they leave. Each stands beside its rule where nothing
 /// is covered, as near to the upper right end as it can. One that finds no such place goes out of the data:
 /// a vertical rule's above it, in a row of its own, a horizontal one's to the right; the frame gets smaller
-/// by that.
+/// by that. `above`: vertical rules' labels all go there, so that panels side by side stay of one height.
 struct Labelled {
   Frame frame;
   std::vector<RuleLabel> labels;
 };
-Labelled place_labels(const Panel& panel, Frame frame);
+enum class VerticalLabels { beside, above };
+Labelled place_labels(const Panel& panel, Frame frame, VerticalLabels where = VerticalLabels::beside);
 
 }  // namespace turnpoint::plot

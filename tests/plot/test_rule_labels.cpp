@@ -136,6 +136,44 @@ TEST_CASE("A free label stands at its rule's upper right, and a rule beyond the 
     }
 }
 
+TEST_CASE("Panels of one figure keep one height, also where only one of them has no place for a label",
+          "[plot][labels]") {
+  auto tall = empty_panel(), flat = empty_panel();
+  tall.layers = {Histogram{{15, 25, 35, 45}, {0.7, 0.7, 0.7}, 0, ""}, vertical(30, "median 1.02 s")};
+  flat.layers = {Histogram{{15, 25, 35, 45}, {0.1, 0.1, 0.1}, 0, ""}, vertical(30, "median 1.02 s")};
+  auto figure = with(tall, 430, 200);
+  figure.panels.push_back(flat);
+  figure.columns = 2;
+  const auto heights = [](const std::string& svg) {
+    std::vector<double> found;
+    for (const auto& line : svg_geometry::elements(svg, "line"))
+      if (!svg_geometry::attribute(line, "stroke-dasharray").empty())
+        found.push_back(svg_geometry::number(line, "y1") - svg_geometry::number(line, "y2"));
+    return found;
+  };
+  const auto together = heights(render(figure));
+  REQUIRE(together.size() == 2);
+  CHECK(together[0] == together[1]);
+  CHECK(crossed(render(figure), 860, 200).empty());
+  // Alone the second one has its label in the data, and more height.
+  CHECK(heights(render(with(flat, 430, 200)))[0] > together[1]);
+}
+
+TEST_CASE("Numbers beside an axis stand a line and a half apart, however low the panel is", "[plot]") {
+  for (const double height : {170.0, 200.0, 300.0}) {
+    auto panel = empty_panel();
+    panel.y = {"Trials", 0, 151};
+    panel.layers = {Line{{15, 45}, {0, 140}, 0, "named"}, vertical(30, "median")};
+    std::vector<double> lines;
+    const auto svg = render(with(panel, 430, height));
+    for (const auto& line : svg_geometry::elements(svg, "line"))
+      if (svg_geometry::attribute(line, "stroke") == "#e6e6e6")
+        lines.push_back(svg_geometry::number(line, "y1"));
+    REQUIRE(lines.size() >= 2);
+    CHECK(lines[0] - lines[1] >= 18);
+  }
+}
+
 TEST_CASE("The check of labels sees one that stands on a marker, on a curve, on words", "[plot][labels]") {
   Svg svg(200, 100, "Control");
   svg.text({50, 50}, "resonance", kLabelSize, Anchor::start, "#666666");
