@@ -56,13 +56,13 @@ Item {
     Row {
         id: cells
         anchors { horizontalCenter: parent.horizontalCenter; top: help.bottom; topMargin: 1.2 * root.theme.unit }
-        spacing: 0.8 * root.theme.unit
+        spacing: 0.6 * root.theme.unit
         Repeater {
             model: code.maximumLength
             Rectangle {
                 id: cell
                 required property int index
-                width: 5.2 * root.theme.unit
+                width: 5 * root.theme.unit
                 height: 6.6 * root.theme.unit
                 radius: 0.6 * root.theme.unit
                 color: root.theme.raised

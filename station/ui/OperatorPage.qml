@@ -114,6 +114,8 @@ Rectangle {
                         text: card.modelData.problem !== "" ? "cannot be used" : card.modelData.title
                         color: card.chosen ? look.actionText : card.modelData.problem !== "" ? look.wrong : look.quiet
                         font.pixelSize: look.textSmall
+                        wrapMode: Text.Wrap
+                        maximumLineCount: 3
                         elide: Text.ElideRight
                     }
                 }

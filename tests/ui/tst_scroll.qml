@@ -25,6 +25,14 @@ Item {
             contentHeight: 520
             clip: true
         }
+        Item {
+            id: above
+            width: 100
+            height: 100
+            clip: true
+            Rectangle { width: 100; height: 100; color: "white" }
+            Glyph { id: sign; height: 40; name: "alert"; color: "black" }
+        }
         ScrollCue { id: cue; theme: look; place: place }
     }
 
@@ -42,6 +50,23 @@ Item {
             fuzzyCompare(cue.y + cue.height, 20 + 260, 0.5)
             verify(cue.x >= place.x + place.width && cue.x + cue.width <= card.width)
         }
+        /// Darkest of some pixels, 0 to 1, around the middle of a sign that lies at (0, y).
+        function darkest(y) {
+            const image = grabImage(stage)
+            let least = 1
+            for (let x = 0; x < 40; ++x)
+                for (let dy = 0; dy < 40; ++dy) least = Math.min(least, image.red(x, y + dy) / 255)
+            return least
+        }
+        function test_a_sign_is_kept_within_the_place_that_clips_it() {
+            sign.y = 30
+            verify(darkest(30) < 0.3)
+            sign.y = 110
+            verify(darkest(110) > 0.5)
+            sign.y = 30
+            verify(darkest(30) < 0.3)
+        }
+
         function test_where_all_is_seen_there_is_no_cue() {
             place.contentHeight = 260
             verify(!cue.visible)
