@@ -2,7 +2,7 @@
 
 #include "station/app/resume.hpp"
 #include "station/cli/command.hpp"
-#include "station/cli/operator_console.hpp"
+#include "station/cli/console_session.hpp"
 #include "station/cli/run.hpp"
 
 namespace turnpoint::cli {
@@ -30,10 +30,7 @@ void add_resume(CLI::App& app, Context& context) {
       if (!context.screens) return become_ui(context);
       return show_summary(context, context.screens->session({}, *setup));
     }
-    session::Inputs inputs;
-    if (!setup->observer.empty()) return show_summary(context, session::run(*setup, nullptr, inputs));
-    OperatorConsole console(setup->rig, inputs, context.err);
-    show_summary(context, session::run(*setup, &console, inputs));
+    run_without_screen(context, *setup);
   });
 }
 

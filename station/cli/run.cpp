@@ -9,8 +9,9 @@
 #include <system_error>
 
 #include "station/app/places.hpp"
+#include "station/cli/console_session.hpp"
 #include "station/cli/json.hpp"
-#include "station/cli/operator_console.hpp"
+#include "station/store/read.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
@@ -55,8 +56,6 @@ Json to_json(const session::Summary& summary) {
           {"estimates", estimates}};
 }
 
-}  // namespace
-
 void print_summary(std::ostream& out, const session::Summary& s) {
   using text::number;
   fmt::print(out, "Session {} ({}, {}): {}{}\n", s.session_id, s.protocol_id, s.run_mode,
@@ -75,12 +74,24 @@ void print_summary(std::ostream& out, const session::Summary& s) {
   fmt::print(out, "  database {}\n", s.database);
 }
 
-void show_summary(Context& context, const session::Summary& summary) {
-  if (context.json)
+/// A session without a trial is none to go on with.
+void print_how_to_resume(std::ostream& out, const session::Summary& s, const std::string& options) {
+  if (store::interrupted_session(s.database, s.session_id))
+    fmt::print(out, "  to go on: turnpoint resume --db {} --session {}{}\n", s.database, s.session_id,
+               options);
+}
+
+}  // namespace
+
+void show_summary(Context& context, const session::Summary& summary, const std::string& resume_options) {
+  const bool interrupted = summary.status == store::SessionStatus::interrupted;
+  if (interrupted) context.exit_code = 1;
+  if (context.json) {
     context.out << to_json(summary).dump(2) << "\n";
-  else
-    print_summary(context.out, summary);
-  if (summary.status == store::SessionStatus::interrupted) context.exit_code = 1;
+    return;
+  }
+  print_summary(context.out, summary);
+  if (interrupted) print_how_to_resume(context.out, summary, resume_options);
 }
 
 std::shared_ptr<app::RunRequest> add_run_options(CLI::App& command) {
@@ -119,7 +130,9 @@ void add_run(CLI::App& app, Context& context) {
   add_json(*command, context);
   command->footer(
       "Example: turnpoint run protocols/demo.toml --rig deploy/rigs/simulated.toml --participant P01 --db "
-      "lab.sqlite");
+      "lab.sqlite\n"
+      "A session without a screen ends in order, to be resumed, at Ctrl-C or SIGTERM; a second one cuts it "
+      "off.");
   command->callback([request, &context] {
     const bool person = request->observer.empty();
     if (person && request->headless && !request->buttons_only)
@@ -132,11 +145,7 @@ void add_run(CLI::App& app, Context& context) {
       throw UsageError("run: --participant is missing; only a screen can ask for it");
     request->rig = app::rig_or_default(request->rig, context.err);
     if (on_screen) return show_summary(context, context.screens->session(*request, std::nullopt));
-    const auto setup = app::prepare(*request);
-    session::Inputs inputs;
-    if (!person) return show_summary(context, session::run(setup, nullptr, inputs));
-    OperatorConsole console(setup.rig, inputs, context.err);
-    show_summary(context, session::run(setup, &console, inputs));
+    run_without_screen(context, app::prepare(*request));
   });
 }
 

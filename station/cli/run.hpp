@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <string>
 
 #include "station/app/prepare.hpp"
 #include "station/cli/command.hpp"
@@ -12,7 +13,8 @@ std::shared_ptr<app::RunRequest> add_run_options(CLI::App& command);
 /// Hands the whole command line to turnpoint-ui beside this program; comes back only by an exception.
 void become_ui(const Context& context);
 
-/// The summary as text or JSON; a session that was interrupted sets exit status 1.
-void show_summary(Context& context, const session::Summary& summary);
+/// The summary as text, with the command that goes on with an interrupted session, or as JSON. A session that
+/// was interrupted sets exit status 1. `resume_options`: what that command needs besides (" --headless").
+void show_summary(Context& context, const session::Summary& summary, const std::string& resume_options = "");
 
 }  // namespace turnpoint::cli

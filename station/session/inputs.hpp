@@ -17,7 +17,7 @@ enum class InputKind {
   touch_down,   ///< any touch on the panel, answer or not: for the log
   button,       ///< value = index of the response button, in the order of the rig's URI
   contact,      ///< value 1: finger on the surface, 0: lifted; number: where along it, 0 to 1, or below 0
-  stop,         ///< participant or operator wants to stop; what was done is kept
+  stop,         ///< participant or operator wants to stop, or whoever text says; what was done is kept
   pause,        ///< operator
   xrun,         ///< the drive lost frames
   fault,        ///< `fault` says what, text the detail; from drive, amplifier or panel: the trial is void

@@ -160,7 +160,7 @@ Summary run_on(const Setup& setup, Display* display, std::unique_ptr<Stage> stag
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor) {
   if (setup.observer.empty()) return run(setup, display, inputs, open_devices(setup.rig, inputs), monitor);
   const observer::Observer observer(observer::parse(setup.observer));
-  return run_on(setup, display, virtual_stage(simulated_stream(setup.rig), observer), monitor);
+  return run_on(setup, display, virtual_stage(simulated_stream(setup.rig), observer, inputs), monitor);
 }
 
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices, Monitor* monitor) {

@@ -64,8 +64,9 @@ struct Summary {
 /// Runs one sitting to its end on the calling thread: real clock, pages to `display`, input from `inputs`.
 /// Where the amplifier is real, or the session live, nothing is presented before an operator has pushed
 /// InputKind::arm, and again after each fault of the amplifier. With an observer in the setup it runs on the
-/// virtual clock, drives no hardware, and `display` may be null. `monitor` may be null.
-/// Throws text::BadInput for a setup that cannot run, store::StoreError, std::system_error for devices.
+/// virtual clock, drives no hardware, hears of `inputs` a stop alone, and between two trials, and `display`
+/// may be null. `monitor` may be null. Throws text::BadInput for a setup that cannot run, store::StoreError,
+/// std::system_error for devices.
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor = nullptr);
 
 /// The same with devices already open (a real session only).

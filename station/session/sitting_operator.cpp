@@ -52,7 +52,7 @@ void Sitting::note(const Input& input) {
   switch (input.kind) {
     case InputKind::stop:
       stop_asked_ = true;
-      stop_reason_ = "stopped by the participant or the operator";
+      stop_reason_ = input.text.empty() ? "stopped by the participant or the operator" : input.text;
       break;
     case InputKind::failure:
       stop_asked_ = true;

@@ -90,7 +90,9 @@ drive::StreamConfig stream_of(const rig::Rig& rig);
 std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices devices, Inputs& inputs);
 
 /// The virtual clock: the drive advances with it, and the observer answers and arms what amplifier there
-/// would be. With nothing to wait for, the observer presses Continue.
-std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer);
+/// would be. With nothing to wait for, the observer presses Continue. Of `inputs`, which must outlive it, it
+/// hears a stop alone, and between two trials.
+std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer,
+                                     Inputs& inputs);
 
 }  // namespace turnpoint::session

@@ -13,8 +13,8 @@ constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
 class VirtualStage : public Stage {
  public:
-  VirtualStage(const drive::StreamConfig& config, observer::Observer observer)
-      : stream_(drive::open_synchronous(config)), observer_(std::move(observer)) {
+  VirtualStage(const drive::StreamConfig& config, observer::Observer observer, Inputs& inputs)
+      : stream_(drive::open_synchronous(config)), observer_(std::move(observer)), inputs_(inputs) {
     amplifier_->arm();
   }
 
@@ -39,9 +39,18 @@ class VirtualStage : public Stage {
     return input;
   }
 
+  /// A stop that came meanwhile from the real world. It has no moment on the virtual clock, and amid a trial
+  /// nobody feels it would only make void what is over in milliseconds: it counts from the next trial on, so
+  /// that a simulated session that was stopped and goes on equals an unbroken one.
   std::vector<Input> drain() override {
     script_.clear();
-    return {};
+    std::vector<Input> stops;
+    for (auto& input : inputs_.drain()) {
+      if (input.kind != InputKind::stop) continue;
+      input.time_ns = now_ns_;
+      stops.push_back(std::move(input));
+    }
+    return stops;
   }
 
   void wait_for(const std::function<bool()>&) override {}  // who needs it next waits without time passing
@@ -112,6 +121,7 @@ class VirtualStage : public Stage {
   std::unique_ptr<drive::Amplifier> amplifier_ = drive::simulated_amplifier();
   std::unique_ptr<drive::SynchronousStream> stream_;
   observer::Observer observer_;
+  Inputs& inputs_;
   std::int64_t now_ns_ = 0;
   std::deque<Input> script_;  ///< what the observer will do, in time
   Sounding sounding_;
@@ -119,8 +129,9 @@ class VirtualStage : public Stage {
 
 }  // namespace
 
-std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer) {
-  return std::make_unique<VirtualStage>(stream, std::move(observer));
+std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer,
+                                     Inputs& inputs) {
+  return std::make_unique<VirtualStage>(stream, std::move(observer), inputs);
 }
 
 }  // namespace turnpoint::session

@@ -151,8 +151,9 @@ bool Station::live(session::Setup setup) {
                          : store::SessionLog::begin(database_, start_of(setup), segment);
   const auto id = session_id_ = log.session().session_id;
   const auto stream = session::stream_of(setup.rig);
+  session::Inputs nobody;
   auto owned = std::make_unique<Room>(
-      world_, disk(), session::virtual_stage(stream, observer::Observer(observer::parse("sim"))),
+      world_, disk(), session::virtual_stage(stream, observer::Observer(observer::parse("sim")), nobody),
       stream.output.rate_Hz);
   Room& room = *owned;
   Acknowledgements monitor(world_, room, id, dead_);

@@ -6,8 +6,8 @@
 #include "station/store/read.hpp"
 #include "station/ui/stop_signals.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/child.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tests/ui/child.hpp"
 
 using turnpoint::ui::StopSignals;
 

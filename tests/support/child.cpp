@@ -1,9 +1,10 @@
-#include "tests/ui/child.hpp"
+#include "tests/support/child.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,6 +13,7 @@
 #include <chrono>
 #include <fstream>
 #include <system_error>
+#include <utility>
 
 namespace {
 
@@ -44,16 +46,20 @@ Child::Child(const std::vector<std::string>& command, const std::vector<std::str
   for (char** variable = environ; *variable != nullptr; ++variable) variables.emplace_back(*variable);
   int pipe[2];
   if (::pipe2(pipe, O_CLOEXEC) != 0) fail("pipe", errno);
+  int typed[2];
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, typed) != 0) fail("socketpair", errno);
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
-  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  ::posix_spawn_file_actions_adddup2(&actions, typed[1], STDIN_FILENO);
   ::posix_spawn_file_actions_adddup2(&actions, pipe[1], STDOUT_FILENO);
   ::posix_spawn_file_actions_adddup2(&actions, pipe[1], STDERR_FILENO);
   const int error = ::posix_spawn(&process_, command[0].c_str(), &actions, nullptr, pointers(command).data(),
                                   pointers(variables).data());
   ::posix_spawn_file_actions_destroy(&actions);
   ::close(pipe[1]);
+  ::close(typed[1]);
   output_ = pipe[0];
+  input_ = typed[0];
   if (error != 0) fail(command[0], error);
   descriptor_ = static_cast<int>(::syscall(SYS_pidfd_open, process_, 0));
   if (descriptor_ < 0) fail("pidfd_open", errno);
@@ -65,13 +71,24 @@ Child::~Child() {
     ::waitpid(process_, nullptr, 0);
   }
   ::close(descriptor_);
-  ::close(output_);
+  ::close(input_);
+  stop_listening();
 }
 
 void Child::signal(int number) const { ::kill(process_, number); }
 
+void Child::type(const std::string& line) const {
+  const auto text = line + "\n";
+  if (::send(input_, text.data(), text.size(), MSG_NOSIGNAL) < 0) fail("typing", errno);
+}
+
+void Child::stop_listening() {
+  if (output_ >= 0) ::close(std::exchange(output_, -1));
+}
+
 /// One piece of what it says; false at the end, or after so long.
 bool Child::listen(int patience_ms) {
+  if (output_ < 0) return false;
   char text[4096];
   if (!ready(output_, patience_ms)) return false;
   const auto length = ::read(output_, text, sizeof text);

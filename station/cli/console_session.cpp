@@ -1,0 +1,54 @@
+#include "station/cli/console_session.hpp"
+
+#include <signal.h>
+
+#include <thread>
+#include <utility>
+
+#include "station/app/stop_signals.hpp"
+#include "station/cli/operator_console.hpp"
+#include "station/cli/run.hpp"
+#include "station/drive/monotonic.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+/// While it lives, the first signal to end the program is the session's stop.
+class StopOnSignal {
+ public:
+  explicit StopOnSignal(session::Inputs& inputs) {
+    signals_.take_over();
+    waiter_ = std::jthread([this, &inputs] { stop(inputs, signals_.wait()); });
+  }
+  StopOnSignal(const StopOnSignal&) = delete;
+  StopOnSignal& operator=(const StopOnSignal&) = delete;
+  ~StopOnSignal() { signals_.release(); }
+
+ private:
+  static void stop(session::Inputs& inputs, const std::string& signal) {
+    if (signal.empty()) return;
+    session::Input input;
+    input.time_ns = drive::monotonic_ns();
+    input.kind = session::InputKind::stop;
+    input.text = "the program was told to end (" + signal + ")";
+    inputs.push(std::move(input));
+  }
+
+  app::StopSignals signals_;
+  std::jthread waiter_;  // last: joined before what it uses goes
+};
+
+}  // namespace
+
+void run_without_screen(Context& context, const session::Setup& setup) {
+  // Ctrl-C ends what the messages are piped into as well, and then the next message would end the session.
+  ::signal(SIGPIPE, SIG_IGN);
+  session::Inputs inputs;
+  const StopOnSignal stop(inputs);
+  if (!setup.observer.empty()) return show_summary(context, session::run(setup, nullptr, inputs));
+  OperatorConsole console(setup.rig, inputs, context.err);
+  show_summary(context, session::run(setup, &console, inputs), " --headless");
+}
+
+}  // namespace turnpoint::cli

@@ -1,0 +1,210 @@
+#include <signal.h>
+
+#include <cstring>
+#include <filesystem>
+
+#include "station/store/read.hpp"
+#include "tests/store/sample.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/child.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+/// Enough for a machine that does much else; what is not obeyed at all takes for ever.
+constexpr int kPatience_ms = 20000;
+/// From the signal to the end of the process. A service manager kills after 5 s.
+constexpr int kPrompt_ms = 1000;
+
+std::vector<std::string> run(const std::string& protocol, const std::string& database,
+                             const std::vector<std::string>& how) {
+  const std::string source = TURNPOINT_SOURCE_DIR;
+  std::vector<std::string> command = {TURNPOINT,
+                                      "run",
+                                      source + "/protocols/" + protocol,
+                                      "--rig",
+                                      source + "/deploy/rigs/simulated.toml",
+                                      "--participant",
+                                      "P01",
+                                      "--seed",
+                                      "42",
+                                      "--db",
+                                      database};
+  command.insert(command.end(), how.begin(), how.end());
+  return command;
+}
+
+std::vector<std::string> by_buttons(const std::string& database) {
+  return run("demo.toml", database, {"--buttons-only"});
+}
+
+/// 137 trials, more than a second of them even on a fast machine.
+std::vector<std::string> simulated(const std::string& database) {
+  return run("boundary-adaptive.toml", database, {"--headless", "--observer", "sim"});
+}
+
+std::vector<std::string> resume(const std::string& database) {
+  return {TURNPOINT, "resume", "--db", database, "--headless"};
+}
+
+/// To the first stimulus of a session with somebody at the buttons, who never says that they have read.
+void begin_first_stimulus(Child& child) {
+  REQUIRE(child.says("instructions", kPatience_ms));
+  child.type("next");
+  REQUIRE(child.says("stimulus", kPatience_ms));
+}
+
+/// To a simulated session's first stored trials.
+void begin_trials(Child& child, const std::string& database) {
+  for (int waited_ms = 0; waited_ms < kPatience_ms; ++waited_ms) {
+    if (std::filesystem::exists(database)) {
+      const auto sessions = store::list_sessions(database);
+      if (!sessions.empty() && sessions[0].trials >= 3) return;
+    }
+    REQUIRE_FALSE(child.ends_within(1));
+  }
+  FAIL("no trial within " << kPatience_ms << " ms");
+}
+
+void until_first_signal_is_taken(Child& child, int signal) {
+  for (int waited_ms = 0; child.handles(signal) && waited_ms < kPatience_ms; ++waited_ms)
+    REQUIRE_FALSE(child.ends_within(1));
+}
+
+store::SessionRecord only_session(const std::string& database) {
+  const auto sessions = store::list_sessions(database);
+  REQUIRE(sessions.size() == 1);
+  return sessions[0];
+}
+
+/// Without those that a session which goes on warms up with.
+std::vector<store::TrialRow> trials_of(const std::string& database) {
+  std::vector<store::TrialRow> trials;
+  for (const auto& block : store::read_session(database, only_session(database).session_id).blocks)
+    for (const auto& trial : block.trials)
+      if (trial.type != store::TrialType::warmup) trials.push_back(trial);
+  return trials;
+}
+
+std::string reason_for(int signal) {
+  return std::string("the program was told to end (SIG") + ::sigabbrev_np(signal) + ")";
+}
+
+/// What the process has said, and what its database says, of a session that `signal` ended.
+void check_stopped(const Child& child, int signal, const store::SessionRecord& session) {
+  CHECK(child.outcome() == 1);
+  CHECK(child.said().find("interrupted: " + reason_for(signal)) != std::string::npos);
+  CHECK(child.said().find("turnpoint resume --db ") != std::string::npos);
+  CHECK(child.said().find("--session " + session.session_id) != std::string::npos);
+  CHECK(session.status == store::SessionStatus::interrupted);
+  CHECK(session.status_reason == reason_for(signal));
+}
+
+}  // namespace
+
+TEST_CASE("a signal to end amid a stimulus stops a session by buttons as the operator does", "[stop]") {
+  const TemporaryFolder folder;
+  const auto database = folder / "db";
+  const int signal = GENERATE(SIGTERM, SIGINT, SIGHUP);
+  Child child(by_buttons(database));
+  begin_first_stimulus(child);
+  child.signal(signal);
+  REQUIRE(child.ends_within(kPrompt_ms));
+  CAPTURE(child.said());
+  check_stopped(child, signal, only_session(database));
+  const auto trials = trials_of(database);
+  REQUIRE(trials.size() == 1);
+  CHECK(trials[0].outcome == store::TrialOutcome::aborted);
+  // The stimulus went through its ramp: its end is known.
+  const auto stored = store::read_session(database, only_session(database).session_id);
+  int stimuli = 0;
+  for (const auto& event : stored.events) stimuli += event.kind == "stimulus" ? 1 : 0;
+  CHECK(stimuli == 1);
+
+  Child again(resume(database));
+  begin_first_stimulus(again);
+  again.signal(SIGTERM);
+  REQUIRE(again.ends_within(kPrompt_ms));
+  check_stopped(again, SIGTERM, only_session(database));
+  CHECK(again.said().find(" --headless\n") != std::string::npos);
+  CHECK(only_session(database).segments == 2);
+  CHECK(trials_of(database).size() == 2);
+}
+
+TEST_CASE("a simulated session that a signal ended goes on to what an unbroken one comes to", "[stop]") {
+  const TemporaryFolder folder;
+  const auto database = folder / "db";
+  const int signal = GENERATE(SIGTERM, SIGINT);
+  Child child(simulated(database));
+  begin_trials(child, database);
+  child.signal(signal);
+  REQUIRE(child.ends_within(kPrompt_ms));
+  CAPTURE(child.said());
+  check_stopped(child, signal, only_session(database));
+  const auto before = trials_of(database).size();
+
+  Child again(resume(database));
+  REQUIRE(again.ends_within(kPatience_ms));
+  CHECK(again.outcome() == 0);
+  CHECK(only_session(database).status == store::SessionStatus::completed);
+  Child unbroken(simulated(folder / "unbroken"));
+  REQUIRE(unbroken.ends_within(kPatience_ms));
+  const auto trials = trials_of(database), expected = trials_of(folder / "unbroken");
+  CHECK(before < expected.size());
+  REQUIRE(trials.size() == expected.size());
+  for (std::size_t i = 0; i < trials.size(); ++i) {
+    CHECK(trials[i].outcome == expected[i].outcome);
+    CHECK(trials[i].level == expected[i].level);
+    CHECK(trials[i].response == expected[i].response);
+    CHECK(trials[i].state_hash == expected[i].state_hash);
+  }
+}
+
+TEST_CASE("a second signal ends at once a session whose ending hangs", "[stop]") {
+  const TemporaryFolder folder;
+  const auto database = folder / "db";
+  const int signal = GENERATE(SIGTERM, SIGINT);
+  Child child(by_buttons(database));
+  begin_first_stimulus(child);
+  auto held = sample::raw(database);
+  held.execute("BEGIN IMMEDIATE");  // what the session has to write waits for this to end
+  REQUIRE(child.handles(signal));
+  child.signal(signal);
+  until_first_signal_is_taken(child, signal);
+  REQUIRE_FALSE(child.ends_within(100));
+  child.signal(signal);
+  REQUIRE(child.ends_within(kPrompt_ms));
+  CAPTURE(child.said());
+  CHECK(child.outcome() == -signal);
+  held.execute("ROLLBACK");
+  CHECK(only_session(database).status == store::SessionStatus::running);
+}
+
+TEST_CASE("a session goes on through a signal that whoever started it has it ignore", "[stop]") {
+  const TemporaryFolder folder;
+  const auto database = folder / "db";
+  const auto before = ::signal(SIGHUP, SIG_IGN);
+  Child child(simulated(database));
+  ::signal(SIGHUP, before);
+  begin_trials(child, database);
+  CHECK_FALSE(child.handles(SIGHUP));
+  child.signal(SIGHUP);
+  REQUIRE(child.ends_within(kPatience_ms));
+  CAPTURE(child.said());
+  CHECK(child.outcome() == 0);
+  CHECK(only_session(database).status == store::SessionStatus::completed);
+}
+
+TEST_CASE("a session ends in order where the reader of its messages was ended as well", "[stop]") {
+  const TemporaryFolder folder;
+  const auto database = folder / "db";
+  Child child(by_buttons(database));
+  begin_first_stimulus(child);
+  child.stop_listening();
+  child.signal(SIGINT);
+  REQUIRE(child.ends_within(kPrompt_ms));
+  CHECK(child.outcome() == 1);
+  CHECK(only_session(database).status == store::SessionStatus::interrupted);
+  CHECK(only_session(database).status_reason == reason_for(SIGINT));
+}
