@@ -17,13 +17,12 @@ namespace turnpoint::panel {
 namespace {
 
 constexpr int guard_priority = 75;
+constexpr std::int64_t look_again_ns = 100'000'000;
 
 class GuardedAmplifier final : public drive::Amplifier {
  public:
-  GuardedAmplifier(std::unique_ptr<Lines> lines, const GuardLines& roles)
-      : lines_(std::move(lines)), roles_(roles) {
-    drive_low();
-    take_levels();
+  GuardedAmplifier(OpenLines open, const GuardLines& roles) : open_(std::move(open)), roles_(roles) {
+    take_up();
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
 
@@ -52,7 +51,6 @@ class GuardedAmplifier final : public drive::Amplifier {
     drive_low();
   }
   void trip(std::string_view reason) noexcept override {
-    drive_low();
     const std::lock_guard lock(mutex_);
     guard_.trip(drive::monotonic_ns(), reason);
     drive_low();
@@ -85,10 +83,9 @@ class GuardedAmplifier final : public drive::Amplifier {
     lines_->drive(roles_.enable, guard_.outputs().enable);
   }
 
-  // An amplifier that nobody watches stays off until the station is started again.
+  // An amplifier that nobody can watch stays off.
   void check_guarded() const {
-    if (!ended_.empty())
-      throw std::runtime_error("amplifier: its lines are gone (" + ended_ + "); mend that, then start again");
+    if (!lines_) throw std::runtime_error("amplifier: its lines are gone (" + gone_ + ")");
   }
 
   void take_signs() noexcept {
@@ -99,7 +96,7 @@ class GuardedAmplifier final : public drive::Amplifier {
   // A line that cannot be driven belongs to a chip that is gone; the thread finds that out by itself.
   void drive_low() noexcept {
     try {
-      lines_->drive(roles_.enable, 0);
+      if (lines_) lines_->drive(roles_.enable, 0);
     } catch (const std::exception&) {
     }
   }
@@ -107,11 +104,23 @@ class GuardedAmplifier final : public drive::Amplifier {
   bool fault_at(bool level) const noexcept { return level != roles_.fault_active_low; }
   bool stop_at(bool level) const noexcept { return level != roles_.stop_active_low; }
 
-  // What was pressed or faulty before this program came.
-  void take_levels() {
+  // Lines that are low, and what was pressed or faulty before.
+  void take_up() {
+    auto lines = open_();
+    lines->drive(roles_.enable, 0);
+    const std::lock_guard lock(mutex_);
     const std::int64_t now = drive::monotonic_ns();
-    if (roles_.fault >= 0) guard_.fault_line(now, fault_at(lines_->level(roles_.fault)));
-    if (roles_.stop >= 0) guard_.stop_line(now, stop_at(lines_->level(roles_.stop)));
+    if (roles_.fault >= 0) guard_.fault_line(now, fault_at(lines->level(roles_.fault)));
+    if (roles_.stop >= 0) guard_.stop_line(now, stop_at(lines->level(roles_.stop)));
+    lines_ = std::move(lines);
+  }
+
+  // Without its lines the guard cannot guard: the heartbeat ends, and what monitors it outside acts.
+  void let_go(const std::string& why) {
+    const std::lock_guard lock(mutex_);
+    guard_.trip(drive::monotonic_ns(), "its lines are gone: " + why);
+    gone_ = why;
+    lines_.reset();
   }
 
   // The line goes low first; only then are locks taken and reasons kept.
@@ -135,33 +144,39 @@ class GuardedAmplifier final : public drive::Amplifier {
     if (roles_.heartbeat >= 0) lines_->drive(roles_.heartbeat, guard_.outputs().heartbeat);
   }
 
+  // Edges until the next beat, and then the beat.
+  void watch() {
+    const auto seen = lines_->wait(std::max<std::int64_t>(0, beat_ns_ - drive::monotonic_ns()));
+    if (seen) edge(*seen);
+    if (drive::monotonic_ns() < beat_ns_) return;
+    beat();
+    const std::lock_guard lock(mutex_);
+    beat_ns_ = guard_.next_tick_ns();
+  }
+
   void run(const std::stop_token& stop) noexcept {
     static_cast<void>(drive::become_realtime(guard_priority));
-    std::int64_t next = drive::monotonic_ns();
     while (!stop.stop_requested()) {
       try {
-        const std::int64_t now = drive::monotonic_ns();
-        const auto seen = lines_->wait(std::max<std::int64_t>(0, next - now));
-        if (seen) edge(*seen);
-        if (drive::monotonic_ns() >= next) {
-          beat();
-          const std::lock_guard lock(mutex_);
-          next = guard_.next_tick_ns();
+        if (lines_) {
+          watch();
+        } else {
+          drive::sleep_until_ns(drive::monotonic_ns() + look_again_ns);
+          take_up();
         }
       } catch (const std::exception& error) {
-        const std::lock_guard lock(mutex_);
-        guard_.trip(drive::monotonic_ns(), error.what());
-        ended_ = error.what();
-        return;  // without its lines the guard cannot guard; the external heartbeat monitor acts
+        let_go(error.what());
       }
     }
   }
 
-  std::unique_ptr<Lines> lines_;
+  OpenLines open_;
   GuardLines roles_;
   mutable std::mutex mutex_;
+  std::unique_ptr<Lines> lines_;  ///< none while they are gone; the guard's thread alone changes that, locked
   Guard guard_;
-  std::string ended_;  ///< why the thread watches no longer; "" while it does
+  std::string gone_;  ///< why
+  std::int64_t beat_ns_ = 0;
   std::atomic<std::int64_t> audio_ns_{-1}, session_ns_{-1}, reaction_ns_{-1};
   std::jthread thread_;
 };
@@ -174,14 +189,14 @@ bool is_low(const std::string& value, const Uri& uri) {
 
 }  // namespace
 
-std::unique_ptr<drive::Amplifier> guard_amplifier(std::unique_ptr<Lines> lines, const GuardLines& roles) {
-  return std::make_unique<GuardedAmplifier>(std::move(lines), roles);
+std::unique_ptr<drive::Amplifier> guard_amplifier(OpenLines open, const GuardLines& roles) {
+  return std::make_unique<GuardedAmplifier>(std::move(open), roles);
 }
 
 std::unique_ptr<drive::Amplifier> open_amplifier(const std::string& text) {
   Uri uri = parse_uri(text);
   if (uri.scheme == "sim" && uri.name.empty() && uri.values.empty())
-    return guard_amplifier(std::make_unique<SimulatedLines>(4), {0, 1, 2, 3, false, false});
+    return guard_amplifier([] { return std::make_unique<SimulatedLines>(4); }, {0, 1, 2, 3, false, false});
   if (uri.scheme != "gpio" || !uri.name.empty())
     throw std::invalid_argument("amplifier '" + text +
                                 "'; allowed sim: or gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE");
@@ -202,7 +217,7 @@ std::unique_ptr<drive::Amplifier> open_amplifier(const std::string& text) {
   roles.stop_active_low = is_low(uri.take("stop_active", active), uri);
   uri.check_empty("enable, heartbeat, fault, stop, active, fault_active, stop_active");
   if (roles.enable < 0) throw std::invalid_argument("amplifier '" + text + "' has no enable line");
-  return guard_amplifier(open_gpio_lines(requests), roles);
+  return guard_amplifier([requests] { return open_gpio_lines(requests); }, roles);
 }
 
 }  // namespace turnpoint::panel

@@ -22,9 +22,14 @@ struct Touch {
       position;  ///< along the surface, 0 at one end of the sensor and 1 at the other, where it can tell
 };
 
-/// Something that went wrong with the panel: a chip lost, edges lost.
+/// Something that went wrong with the panel.
 struct PanelFault {
+  enum class Kind {
+    edges_lost,  ///< more than the kernel keeps
+    gone,        ///< a chip or a sensor; it is looked for until it is back
+  };
   std::int64_t time_ns = 0;
+  Kind kind = Kind::gone;
   std::string what;
 };
 
@@ -33,6 +38,7 @@ struct PanelHandlers {
   std::function<void(const Press&)> press;
   std::function<void(const Touch&)> touch;
   std::function<void(const PanelFault&)> fault;
+  std::function<void(std::int64_t time_ns)> back;  ///< what had gone; a button held at that time is no press
 };
 
 /// `sim:` or `gpio:left=BTN_L,right=BTN_R` (add `active=low` for buttons to ground, `refractory_ms=50` by
@@ -55,6 +61,8 @@ class Panel {
   virtual const std::vector<std::string>& buttons() const = 0;
   virtual bool has_contact() const = 0;
   virtual bool tells_position() const = 0;
+  /// What has gone and is not back yet, and why; "" when all is there.
+  virtual std::string missing() const = 0;
 
   /// Simulated panels only: as if it had happened then. Throws std::logic_error on a real one.
   virtual void simulate(const Press& press) = 0;

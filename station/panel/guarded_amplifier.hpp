@@ -17,7 +17,9 @@ struct GuardLines {
 };
 
 /// An amplifier on lines (kernel or simulated) with its guard thread, SCHED_FIFO 75 where that is granted.
-/// The enable line is low on return and after destruction.
-std::unique_ptr<drive::Amplifier> guard_amplifier(std::unique_ptr<Lines> lines, const GuardLines& roles);
+/// The enable line is low on return and after destruction. Lines whose chip has gone are a latched fault, and
+/// are looked for until they are back; then an operator can clear and arm. Throws what `open` throws at the
+/// start.
+std::unique_ptr<drive::Amplifier> guard_amplifier(OpenLines open, const GuardLines& roles);
 
 }  // namespace turnpoint::panel

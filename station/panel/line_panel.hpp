@@ -19,8 +19,8 @@ struct LinePanel {
   std::int64_t contact_refractory_ns = 50'000'000;
 };
 
-/// A panel on given lines, kernel or simulated.
-std::unique_ptr<Panel> watch_lines(std::unique_ptr<Lines> lines, const LinePanel& plan,
-                                   std::vector<std::string> names, PanelHandlers handlers);
+/// A panel on lines, kernel or simulated. Throws what `open` throws at the start.
+std::unique_ptr<Panel> watch_lines(OpenLines open, const LinePanel& plan, std::vector<std::string> names,
+                                   PanelHandlers handlers);
 
 }  // namespace turnpoint::panel

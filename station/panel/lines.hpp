@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,6 +48,9 @@ class LineError : public std::system_error {
  public:
   using std::system_error::system_error;
 };
+
+/// Requests lines: at the start, and again once their chip has gone, until it is back.
+using OpenLines = std::function<std::unique_ptr<Lines>()>;
 
 /// Requests kernel lines by name (libgpiod 1 or 2, as built). Throws LineError naming the line.
 std::unique_ptr<Lines> open_gpio_lines(const std::vector<LineRequest>& requests);

@@ -1,10 +1,9 @@
-#include <algorithm>
 #include <stdexcept>
-#include <thread>
+#include <utility>
 
 #include "station/drive/monotonic.hpp"
-#include "station/drive/rights.hpp"
 #include "station/panel/buttons.hpp"
+#include "station/panel/device_watch.hpp"
 #include "station/panel/evdev_contact.hpp"
 #include "station/panel/line_panel.hpp"
 #include "station/panel/uri.hpp"
@@ -16,10 +15,10 @@ constexpr int panel_priority = 75, evdev_priority = 60;
 constexpr std::int64_t settle_check_ns = 5'000'000;
 constexpr std::int64_t evdev_wait_ns = 100'000'000;
 
-// Watches lines: buttons first, then perhaps the contact line.
-class LineWatcher {
+// Buttons first, then perhaps the contact line, as they are read.
+class LineReader {
  public:
-  LineWatcher(std::unique_ptr<Lines> lines, const LinePanel& plan, const PanelHandlers& handlers)
+  LineReader(std::unique_ptr<Lines> lines, const LinePanel& plan, const PanelHandlers& handlers)
       : lines_(std::move(lines)), plan_(plan), handlers_(handlers) {
     for (int k = 0; k < plan_.lines; ++k) {
       const std::int64_t refractory_ns =
@@ -27,7 +26,13 @@ class LineWatcher {
       filters_.emplace_back(refractory_ns, active(k, lines_->level(k)));
     }
     checks_.resize(filters_.size());
-    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  }
+
+  void look() {
+    if (const auto edge = lines_->wait(settle_check_ns))
+      take(*edge);
+    else
+      settle();
   }
 
  private:
@@ -45,14 +50,13 @@ class LineWatcher {
     }
   }
 
-  void fault(const std::string& what) {
-    if (handlers_.fault) handlers_.fault({drive::monotonic_ns(), what});
-  }
-
   void take(const Edge& edge) {
     const auto k = static_cast<std::size_t>(edge.line);
-    if (const std::uint32_t missed = checks_[k].missed_before(edge.sequence))
-      fault(std::to_string(missed) + " edges of line " + std::to_string(edge.line) + " were lost");
+    const std::uint32_t missed = checks_[k].missed_before(edge.sequence);
+    if (missed > 0 && handlers_.fault)
+      handlers_.fault(
+          {drive::monotonic_ns(), PanelFault::Kind::edges_lost,
+           std::to_string(missed) + " edges of line " + std::to_string(edge.line) + " were lost"});
     tell(edge.line, filters_[k].edge(edge.time_ns, active(edge.line, edge.rising)), edge.time_ns);
   }
 
@@ -66,54 +70,29 @@ class LineWatcher {
     }
   }
 
-  void run(const std::stop_token& stop) noexcept {
-    static_cast<void>(drive::become_realtime(panel_priority));
-    while (!stop.stop_requested()) {
-      try {
-        if (const auto edge = lines_->wait(settle_check_ns))
-          take(*edge);
-        else
-          settle();
-      } catch (const std::exception& error) {
-        fault(error.what());
-        return;
-      }
-    }
-  }
-
   std::unique_ptr<Lines> lines_;
-  LinePanel plan_;
+  const LinePanel& plan_;
   const PanelHandlers& handlers_;
   std::vector<EdgeFilter> filters_;
   std::vector<SequenceCheck> checks_;
-  std::jthread thread_;
 };
 
-class TouchWatcher {
- public:
-  TouchWatcher(const std::string& name, int axis, const PanelHandlers& handlers)
-      : contact_(name, axis), handlers_(handlers) {
-    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
-  }
+DeviceWatch::Open line_opener(OpenLines open, LinePanel plan, const PanelHandlers& handlers) {
+  return [open = std::move(open), plan = std::make_shared<LinePanel>(std::move(plan)), &handlers] {
+    auto reader = std::make_shared<LineReader>(open(), *plan, handlers);
+    return [reader] { reader->look(); };
+  };
+}
 
- private:
-  void run(const std::stop_token& stop) noexcept {
-    static_cast<void>(drive::become_realtime(evdev_priority));
-    while (!stop.stop_requested()) {
-      try {
-        const auto touch = contact_.wait(evdev_wait_ns);
-        if (touch && handlers_.touch) handlers_.touch(*touch);
-      } catch (const std::exception& error) {
-        if (handlers_.fault) handlers_.fault({drive::monotonic_ns(), error.what()});
-        return;
-      }
-    }
-  }
-
-  EvdevContact contact_;
-  const PanelHandlers& handlers_;
-  std::jthread thread_;
-};
+DeviceWatch::Open touch_opener(std::string name, int axis, const PanelHandlers& handlers) {
+  return [name = std::move(name), axis, &handlers] {
+    auto contact = std::make_shared<EvdevContact>(name, axis);
+    return [contact, &handlers] {
+      const auto touch = contact->wait(evdev_wait_ns);
+      if (touch && handlers.touch) handlers.touch(*touch);
+    };
+  };
+}
 
 class RigPanel final : public Panel {
  public:
@@ -122,6 +101,11 @@ class RigPanel final : public Panel {
   const std::vector<std::string>& buttons() const override { return names_; }
   bool has_contact() const override { return has_contact_; }
   bool tells_position() const override { return tells_position_; }
+  std::string missing() const override {
+    for (const auto* device : {lines_.get(), touch_.get()})
+      if (device && !device->missing().empty()) return device->missing();
+    return "";
+  }
   void simulate(const Press& press) override {
     check_simulated();
     if (handlers_.press) handlers_.press(press);
@@ -134,8 +118,7 @@ class RigPanel final : public Panel {
   std::vector<std::string> names_;
   bool has_contact_ = false, tells_position_ = false;
   PanelHandlers handlers_;
-  std::unique_ptr<LineWatcher> lines_;
-  std::unique_ptr<TouchWatcher> touch_;
+  std::unique_ptr<DeviceWatch> lines_, touch_;
 
  private:
   void check_simulated() const {
@@ -194,7 +177,9 @@ void plan_contact(const std::string& text, RigPanel& panel, LinePanel& plan) {
     uri.check_empty("axis");
     if (axis != "x" && axis != "y")
       throw std::invalid_argument("'" + text + "': axis=" + axis + "; allowed x, y");
-    panel.touch_ = std::make_unique<TouchWatcher>(uri.name, axis == "x" ? ABS_X : ABS_Y, panel.handlers_);
+    panel.touch_ =
+        std::make_unique<DeviceWatch>(touch_opener(uri.name, axis == "x" ? ABS_X : ABS_Y, panel.handlers_),
+                                      evdev_priority, panel.handlers_);
     panel.tells_position_ = true;
   } else {
     throw std::invalid_argument("contact '" + text + "'; allowed sim:, gpio:line=LINE, evdev:NAME");
@@ -203,12 +188,13 @@ void plan_contact(const std::string& text, RigPanel& panel, LinePanel& plan) {
 
 }  // namespace
 
-std::unique_ptr<Panel> watch_lines(std::unique_ptr<Lines> lines, const LinePanel& plan,
-                                   std::vector<std::string> names, PanelHandlers handlers) {
+std::unique_ptr<Panel> watch_lines(OpenLines open, const LinePanel& plan, std::vector<std::string> names,
+                                   PanelHandlers handlers) {
   auto panel = std::make_unique<RigPanel>(std::move(handlers));
   panel->names_ = std::move(names);
   panel->has_contact_ = plan.contact >= 0;
-  panel->lines_ = std::make_unique<LineWatcher>(std::move(lines), plan, panel->handlers_);
+  panel->lines_ = std::make_unique<DeviceWatch>(line_opener(std::move(open), plan, panel->handlers_),
+                                                panel_priority, panel->handlers_);
   return panel;
 }
 
@@ -219,8 +205,10 @@ std::unique_ptr<Panel> open_panel(const std::optional<ButtonsConfig>& buttons,
   if (buttons) plan_buttons(buttons->uri, *panel, plan);
   if (contact) plan_contact(contact->uri, *panel, plan);
   plan.lines = static_cast<int>(plan.requests.size());
+  const auto open = [requests = plan.requests] { return open_gpio_lines(requests); };
   if (plan.lines > 0)
-    panel->lines_ = std::make_unique<LineWatcher>(open_gpio_lines(plan.requests), plan, panel->handlers_);
+    panel->lines_ = std::make_unique<DeviceWatch>(line_opener(open, plan, panel->handlers_), panel_priority,
+                                                  panel->handlers_);
   return panel;
 }
 

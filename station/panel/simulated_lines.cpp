@@ -57,4 +57,10 @@ void SimulatedLines::remove() {
   changed_.notify_all();
 }
 
+void SimulatedLines::put_back() {
+  const std::lock_guard lock(mutex_);
+  gone_ = false;
+  edges_.clear();
+}
+
 }  // namespace turnpoint::panel

@@ -30,8 +30,9 @@ class SimulatedLines : public Lines {
     int level = 0;
   };
   std::vector<Driven> driven() const;
-  /// The chip is unplugged: every further call throws ENODEV.
+  /// The chip is unplugged: every further call throws ENODEV until it is plugged in again, outputs low.
   void remove();
+  void put_back();
 
  private:
   void check() const;

@@ -28,7 +28,13 @@ panel::PanelHandlers handlers_for(Inputs& inputs) {
   };
   handlers.fault = [&inputs, stamped](const panel::PanelFault& fault) {
     Input input = stamped(fault.time_ns, InputKind::fault);
+    if (fault.kind == panel::PanelFault::Kind::gone) input.fault = FaultKind::lines_gone;
     input.text = "panel: " + fault.what;
+    inputs.push(std::move(input));
+  };
+  handlers.back = [&inputs, stamped](std::int64_t time_ns) {
+    Input input = stamped(time_ns, InputKind::notice);
+    input.text = "panel: what had gone is back";
     inputs.push(std::move(input));
   };
   return handlers;

@@ -76,6 +76,19 @@ constexpr std::array kFaults{
            "Touch-Panel wieder anschließen, dann Weiter; der Durchgang wird wiederholt."},
           {"タッチパネルが外れました", "表面は静止しています。ここまでの回答は保存されています。",
            "タッチパネルをつなぎ直してから「次へ」を押してください。試行をもう一度行います。"}},
+    Entry{
+        FaultKind::lines_gone,
+        "lines_gone",
+        {"Buttons, sensor or amplifier lines are gone", kSurfaceOff,
+         "Plug them in again, arm the amplifier where that is asked, then press Continue; the trial comes "
+         "again."},
+        {"Taster, Sensor oder Verstärkerleitungen fehlen",
+         "Der Verstärker ist aus; die Oberfläche ruht und darf berührt werden.",
+         "Wieder anschließen, Verstärker scharf schalten, wenn verlangt, dann Weiter; der Durchgang wird "
+         "wiederholt."},
+        {"ボタン・センサー・アンプの配線が外れました",
+         "アンプは切れています。表面は静止していて、触れても安全です。",
+         "つなぎ直し、求められたらアンプを有効にしてから「次へ」を押してください。試行をもう一度行います。"}},
     Entry{FaultKind::disk_full,
           "disk_full",
           {"The disk is full",
@@ -118,6 +131,13 @@ FaultText fault_text(FaultKind kind, const std::string& language) {
   const auto& found = entry(kind);
   const auto& texts = language == "de" ? found.de : language == "ja" ? found.ja : found.en;
   return {texts.happened, texts.safe, texts.to_do};
+}
+
+FaultKind fault_of_amplifier(std::string_view reason) {
+  if (reason == kConverterGone) return FaultKind::converter_gone;
+  if (reason.starts_with("the stop")) return FaultKind::stop_pressed;
+  if (reason.starts_with("its lines are gone")) return FaultKind::lines_gone;
+  return FaultKind::amplifier;
 }
 
 const char* name(FaultKind kind) { return entry(kind).name; }

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <string_view>
 
 namespace turnpoint::session {
 
@@ -11,10 +12,14 @@ enum class FaultKind {
   amplifier,        ///< its fault line, or a reason that the station found itself
   stop_pressed,     ///< the stop in the amplifier's supply
   touch_gone,       ///< the touch panel was unplugged
+  lines_gone,       ///< the GPIO chip of buttons, contact or amplifier, or the touch sensor on the surface
   disk_full,        ///< a finished trial could not be stored yet
   disarmed,         ///< no fault: nobody has armed the amplifier yet, or the operator switched it off
   stimulus_missed,  ///< frames were lost, or a stimulus came too late
 };
+
+/// With this the station itself trips the amplifier.
+inline constexpr std::string_view kConverterGone = "the converter is gone";
 
 /// A fault in words for whoever stands before the screen: what happened, what is safe, what to do.
 struct FaultText {
@@ -23,6 +28,9 @@ struct FaultText {
 
 /// In the language asked for (two-letter code), or in English where the station does not speak it.
 FaultText fault_text(FaultKind kind, const std::string& language);
+
+/// What has latched the amplifier's fault, from its reason (drive::Amplifier::fault).
+FaultKind fault_of_amplifier(std::string_view reason);
 
 /// "converter_gone", ...: for the log.
 const char* name(FaultKind kind);

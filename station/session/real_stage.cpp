@@ -17,7 +17,6 @@ constexpr std::int64_t kPoll_ns = 5'000'000;        // how often drive and guard
 constexpr std::int64_t kClocks_ns = 1'000'000'000;  // how often the clocks are compared
 constexpr std::int64_t kSettle_ns = 50'000'000;     // an amplifier comes up in silence
 constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
-constexpr const char* kConverterGone = "the converter is gone";
 constexpr std::int64_t kTail_ns = 20'000'000;  // and goes down after it
 
 class RealStage : public Stage {
@@ -93,6 +92,7 @@ class RealStage : public Stage {
   const std::vector<std::string>& buttons() const override {
     return devices_.panel ? devices_.panel->buttons() : no_buttons_;
   }
+  std::string missing() const override { return devices_.panel ? devices_.panel->missing() : ""; }
   void question(const observer::Question&, std::int64_t) override {}
   void adjustment(const observer::Adjustment&, std::int64_t) override {}
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
@@ -127,7 +127,7 @@ class RealStage : public Stage {
     }
     while (const auto event = stream_->poll()) hear(*event, now);
     if (amplifier() == drive::AmplifierState::faulted && !std::exchange(fault_told_, true))
-      push_fault(amplifier_().fault_time_ns(), kind_of_fault(), amplifier_fault());
+      push_fault(amplifier_().fault_time_ns(), fault_of_amplifier(amplifier_().fault()), amplifier_fault());
     if (now >= clocks_due_ns_) look_at_clocks(now);
   }
 
@@ -173,13 +173,6 @@ class RealStage : public Stage {
     if (!news.suspended_s) return;
     push(InputKind::notice, now, fmt::format("the machine slept for {:.1f} s", *news.suspended_s));
     amplifier_().trip("the machine was suspended");
-  }
-
-  /// From what latched the fault; only the reasons below have pages of their own.
-  FaultKind kind_of_fault() const {
-    const auto what = devices_.amplifier->fault();
-    if (what == kConverterGone) return FaultKind::converter_gone;
-    return what.starts_with("the stop") ? FaultKind::stop_pressed : FaultKind::amplifier;
   }
 
   void push_fault(std::int64_t time_ns, FaultKind kind, std::string detail) {

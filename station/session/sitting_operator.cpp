@@ -121,17 +121,25 @@ Sitting::Flow Sitting::until_armed(const Fault& why) {
     if (input.kind == InputKind::fault) page = pages_.fault(input.fault, input.text, director_);
     if (input.kind == InputKind::arm && !armed()) page.detail = input.text;
   }
+  fault_.reset();  // whatever came meanwhile was on the page
   return Flow::go_on;
 }
 
-/// After a fault: the screen says what happened; the operator mends it, clears and arms; then it goes on.
+/// After a fault: the screen says what happened; the operator mends it, clears and arms; then it goes on. Who
+/// goes on too early sees what is still missing.
 Sitting::Flow Sitting::recover() {
   stage_->close_amplifier();
   while (const auto what = std::exchange(fault_, std::nullopt)) {
-    if (armed()) return show_and_wait(pages_.fault(what->kind, what->detail, director_), 0);
-    if (until_armed(*what) == Flow::stop) return Flow::stop;
+    auto page = pages_.fault(what->kind, what->detail, director_);
+    if (!armed()) {
+      if (until_armed(*what) == Flow::stop) return Flow::stop;
+      page = pages_.paused(director_);
+    }
+    if (show_and_wait(page, 0) == Flow::stop) return Flow::stop;
+    if (const auto missing = stage_->missing(); !missing.empty())
+      fault_ = Fault{FaultKind::lines_gone, missing};
   }
-  return show_and_wait(pages_.paused(director_), 0);
+  return Flow::go_on;
 }
 
 void Sitting::log(const Input& input) { log_.event(event_row(input, trial_index_)); }

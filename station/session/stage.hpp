@@ -69,6 +69,8 @@ class Stage {
 
   /// Names of the rig's response buttons, in the order of their indices.
   virtual const std::vector<std::string>& buttons() const = 0;
+  /// What of buttons and contact has gone and is not back yet, and why; "" when all is there.
+  virtual std::string missing() const = 0;
 
   /// Tells a simulated observer that this answer will be wanted, counted from `zero_ns`; nobody else listens.
   virtual void question(const observer::Question& question, std::int64_t zero_ns) = 0;

@@ -73,6 +73,7 @@ class VirtualStage : public Stage {
   void close_amplifier() override { amplifier_->disable(); }
 
   const std::vector<std::string>& buttons() const override { return no_buttons_; }
+  std::string missing() const override { return ""; }
   void question(const observer::Question& question, std::int64_t zero_ns) override {
     const auto reply = observer_.answer(question);
     if (!reply.choice) return;

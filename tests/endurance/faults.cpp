@@ -4,9 +4,9 @@ namespace endurance {
 
 const char* name(Fault fault) {
   static constexpr const char* kNames[kFaults] = {
-      "amplifier line", "stop pressed",  "converter gone", "audio silent",      "underrun",   "touch gone",
-      "disarm",         "repeat",        "pause",          "end session",       "clock jump", "disk full",
-      "kill",           "kill in write", "power cut",      "power cut in write"};
+      "amplifier line", "stop pressed", "converter gone", "audio silent", "underrun",          "touch gone",
+      "lines gone",     "disarm",       "repeat",         "pause",        "end session",       "clock jump",
+      "disk full",      "kill",         "kill in write",  "power cut",    "power cut in write"};
   return kNames[static_cast<int>(fault)];
 }
 

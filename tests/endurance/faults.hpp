@@ -13,6 +13,7 @@ enum class Fault {
   audio_silent,    ///< the audio thread gives no sign for longer than the guard allows
   underrun,        ///< frames are lost
   touch_gone,      ///< the touch panel is unplugged
+  lines_gone,      ///< the GPIO chip of buttons and amplifier is unplugged, and comes back
   disarm,          ///< operator
   repeat,          ///< operator: void this trial
   pause,           ///< operator
@@ -24,7 +25,7 @@ enum class Fault {
   power_cut,       ///< power fails at a random moment: of what was not synced, any sector or none stays
   power_cut_in_write,
 };
-inline constexpr int kFaults = 16;
+inline constexpr int kFaults = 17;
 const char* name(Fault fault);
 
 /// The seeded course of events: when the next fault comes and which. Equal on every machine.

@@ -33,7 +33,7 @@ Room::Room(World& world, Disk disk, std::unique_ptr<session::Stage> inner, int r
 Room::~Room() {
   // The line falls back to its pull however the process ends.
   world_.amplifier.line(world_ns(), false);
-  for (const char* what : {"amplifier line", "stop pressed"}) world_.amplifier.over(what);
+  for (const char* what : {"amplifier line", "stop pressed", "lines gone"}) world_.amplifier.over(what);
   world_.now_ns = world_ns();
   world_.session_ns += now_ns();
 }
@@ -123,6 +123,8 @@ std::string Room::arm() {
   return why_not;
 }
 
+std::string Room::clear() { return missing_.empty() ? guard_.clear() : "its lines are gone"; }
+
 std::string Room::disarm() {
   world_.amplifier.cause(world_ns(), "disarmed by the operator");
   guard_.disarm();
@@ -164,11 +166,7 @@ void Room::show(const session::Page& page) {
 void Room::tell_guard_fault() {
   line();
   if (guard_.state() != AmplifierState::faulted || std::exchange(fault_told_, true)) return;
-  const auto& what = guard_.fault();
-  const auto kind = what == "the converter is gone" ? FaultKind::converter_gone
-                    : what.starts_with("the stop")  ? FaultKind::stop_pressed
-                                                    : FaultKind::amplifier;
-  push(InputKind::fault, kind, what);
+  push(InputKind::fault, session::fault_of_amplifier(guard_.fault()), guard_.fault());
 }
 
 void Room::strike_line(const char* what, void (panel::Guard::*change)(std::int64_t, bool)) {
@@ -184,9 +182,24 @@ void Room::strike_line(const char* what, void (panel::Guard::*change)(std::int64
 
 void Room::strike_device() {
   world_.amplifier.cause(world_ns(), "converter gone");
-  guard_.trip(now_ns(), "the converter is gone");
+  guard_.trip(now_ns(), session::kConverterGone);
   tell_guard_fault();
   plan(world_.course.seconds(0.5, 10), [this] { push(InputKind::notice, {}, "the converter is back"); });
+}
+
+/// Buttons and amplifier are on one chip: it is told twice, and refused until it is back.
+void Room::strike_chip() {
+  world_.amplifier.cause(world_ns(), "lines gone");
+  world_.amplifier.lasts("lines gone");
+  missing_ = "the chip is gone";
+  push(InputKind::fault, FaultKind::lines_gone, "panel: " + missing_);
+  guard_.trip(now_ns(), "its lines are gone: " + missing_);
+  tell_guard_fault();
+  plan(world_.course.seconds(0.1, 20), [this] {
+    world_.amplifier.over("lines gone");
+    missing_.clear();
+    push(InputKind::notice, {}, "panel: what had gone is back");
+  });
 }
 
 void Room::strike(Fault fault) {
@@ -197,6 +210,8 @@ void Room::strike(Fault fault) {
       return strike_line("stop pressed", &panel::Guard::stop_line);
     case Fault::converter_gone:
       return strike_device();
+    case Fault::lines_gone:
+      return strike_chip();
     case Fault::audio_silent: {
       guard_.session_alive(now_ns() + 150'000'000);
       guard_.tick(now_ns() + 150'000'000);  // the last sign of the audio thread is that old then

@@ -68,11 +68,12 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   std::int64_t silence() override;
   std::string arm() override;
   std::string disarm() override;
-  std::string clear() override { return guard_.clear(); }
+  std::string clear() override;
   turnpoint::drive::AmplifierState amplifier() const override { return guard_.state(); }
   std::string open_amplifier() override;
   void close_amplifier() override { closing_ = world_.plant != Plant::never_off; }
   const std::vector<std::string>& buttons() const override { return inner_->buttons(); }
+  std::string missing() const override { return missing_; }
   void question(const turnpoint::observer::Question& question, std::int64_t zero_ns) override {
     inner_->question(question, zero_ns);
   }
@@ -100,12 +101,14 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   void strike(Fault fault);
   void strike_line(const char* what, void (turnpoint::panel::Guard::*change)(std::int64_t, bool));
   void strike_device();
+  void strike_chip();
   void tell_guard_fault();
 
   World& world_;
   Disk disk_;
   std::unique_ptr<turnpoint::session::Stage> inner_;
   turnpoint::panel::Guard guard_;
+  std::string missing_;  ///< why the GPIO chip is not there
   double ns_per_frame_;
   std::int64_t born_ns_;
   std::vector<Planned> planned_;

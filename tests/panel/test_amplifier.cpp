@@ -5,14 +5,13 @@
 #include "station/panel/guarded_amplifier.hpp"
 #include "station/panel/simulated_lines.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/shared_lines.hpp"
 
 using namespace turnpoint;
 using namespace turnpoint::panel;
 using drive::AmplifierState;
 
 namespace {
-
-constexpr GuardLines roles{0, 1, 2, 3, false, false};
 
 // Waits for what another thread is about to do; 5 s is a failure, not a measurement.
 template <typename Condition>
@@ -26,8 +25,8 @@ bool eventually(Condition&& condition) {
 }
 
 struct Bench {
-  SimulatedLines* lines = new SimulatedLines(4);  // owned by the amplifier
-  std::unique_ptr<drive::Amplifier> amplifier = guard_amplifier(std::unique_ptr<Lines>(lines), roles);
+  std::shared_ptr<SimulatedLines> lines = std::make_shared<SimulatedLines>(SharedLines::count);
+  std::unique_ptr<drive::Amplifier> amplifier = guarded(lines);
 
   void enable() {
     amplifier->audio_alive();
@@ -65,9 +64,9 @@ TEST_CASE("the guard thread drops the enable line on a fault edge and latches it
 
 TEST_CASE("a stop that was pressed before the start is seen, and silence of the audio thread trips",
           "[panel][amplifier][threads]") {
-  auto* lines = new SimulatedLines(4);
-  lines->set(3, true, 0);
-  const auto amplifier = guard_amplifier(std::unique_ptr<Lines>(lines), roles);
+  const auto lines = std::make_shared<SimulatedLines>(SharedLines::count);
+  lines->set(SharedLines::stop, true, 0);
+  const auto amplifier = guarded(lines);
   amplifier->audio_alive();
   amplifier->session_alive();
   CHECK_THROWS_WITH(amplifier->arm(), "amplifier: cannot be armed: the stop is pressed");
@@ -78,12 +77,36 @@ TEST_CASE("a stop that was pressed before the start is seen, and silence of the 
   CHECK_FALSE(other.lines->level(0));
 }
 
-TEST_CASE("a chip that vanishes is a fault", "[panel][amplifier][threads]") {
+TEST_CASE(
+    "a chip that vanishes is a latched fault; once it is back, an operator can arm, and nothing does so "
+    "alone",
+    "[panel][amplifier][threads]") {
   Bench bench;
   bench.enable();
   bench.lines->remove();
   CHECK(eventually([&] { return bench.amplifier->state() == AmplifierState::faulted; }));
-  CHECK(bench.amplifier->fault().find("No such device") != std::string::npos);
+  CHECK(bench.amplifier->fault() == "its lines are gone: simulated gpio chip: No such device");
+  bench.amplifier->disable();
+  bench.amplifier->trip("another reason");  // the first is kept
+  CHECK_THROWS_WITH(bench.amplifier->clear(),
+                    "amplifier: its lines are gone (simulated gpio chip: No such device)");
+  bench.lines->set(SharedLines::stop, true, drive::monotonic_ns());  // pressed while nobody could see it
+  bench.lines->put_back();
+  const auto why_not = [&] {
+    try {
+      return bench.amplifier->clear(), std::string();
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+  };
+  CHECK(eventually([&] { return why_not() == "amplifier: cannot be cleared: the stop is still pressed"; }));
+  CHECK(bench.amplifier->state() == AmplifierState::faulted);
+  bench.lines->set(SharedLines::stop, false, drive::monotonic_ns());
+  CHECK(eventually([&] { return why_not().empty(); }));
+  CHECK(bench.amplifier->state() == AmplifierState::disarmed);
+  CHECK_FALSE(bench.lines->level(SharedLines::enable));
+  bench.enable();
+  CHECK(bench.lines->level(SharedLines::enable));
 }
 
 TEST_CASE("an amplifier is opened from the rig's text, with every mistake named", "[panel][amplifier]") {

@@ -7,6 +7,7 @@
 #include "station/panel/simulated_lines.hpp"
 #include "station/panel/uri.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/shared_lines.hpp"
 
 using namespace turnpoint;
 using namespace turnpoint::panel;
@@ -42,12 +43,13 @@ TEST_CASE("a gap in the kernel's numbers tells how many edges were lost", "[pane
   CHECK(check.missed_before(8) == 0);
 }
 
-TEST_CASE("presses, contact, lost edges and a lost chip reach the handlers with their times",
+TEST_CASE("presses, contact, lost edges, and a chip lost and back reach the handlers with their times",
           "[panel][buttons][threads]") {
   std::mutex mutex;
   std::vector<Press> presses;
   std::vector<Touch> touches;
   std::vector<std::string> faults;
+  std::vector<std::int64_t> returns;
   PanelHandlers handlers;
   handlers.press = [&](const Press& press) {
     const std::lock_guard lock(mutex);
@@ -61,11 +63,15 @@ TEST_CASE("presses, contact, lost edges and a lost chip reach the handlers with 
     const std::lock_guard lock(mutex);
     faults.push_back(fault.what);
   };
-  auto* lines = new SimulatedLines(3);
+  handlers.back = [&](std::int64_t time_ns) {
+    const std::lock_guard lock(mutex);
+    returns.push_back(time_ns);
+  };
+  const auto lines = std::make_shared<SimulatedLines>(3);
   LinePanel plan;
   plan.lines = 3;
   plan.contact = 2;
-  const auto panel = watch_lines(std::unique_ptr<Lines>(lines), plan, {"left", "right"}, handlers);
+  const auto panel = watch_lines(opener(lines), plan, {"left", "right"}, handlers);
   const auto reached = [&](auto& list, std::size_t count) {
     const std::int64_t end = drive::monotonic_ns() + 5'000'000'000;
     while (drive::monotonic_ns() < end) {
@@ -93,6 +99,17 @@ TEST_CASE("presses, contact, lost edges and a lost chip reach the handlers with 
   REQUIRE(reached(faults, 2));
   CHECK(faults[1].find("simulated gpio chip") == 0);
   CHECK(presses.size() == 2);
+  CHECK(panel->missing() == "simulated gpio chip: No such device");
+  lines->set(1, true, now + 200 * ms);  // held down while it comes back: not a press
+  lines->put_back();
+  REQUIRE(reached(returns, 1));
+  CHECK(panel->missing().empty());
+  const std::int64_t later = drive::monotonic_ns();
+  lines->set(1, false, later);
+  lines->set(1, true, later + 100 * ms);
+  REQUIRE(reached(presses, 3));
+  CHECK(presses[2].time_ns == later + 100 * ms);
+  CHECK(faults.size() == 2);
   CHECK_THROWS_AS(panel->simulate(Press{}), std::logic_error);
 }
 

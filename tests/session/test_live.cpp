@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "station/app/prepare.hpp"
+#include "station/panel/line_panel.hpp"
 #include "station/text/problem.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
@@ -104,22 +105,62 @@ TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the
   CHECK(enables[2].time_ns > arms.back().time_ns);
 }
 
-TEST_CASE("lines that vanish end with the amplifier off, and no arming brings it back", "[session][live]") {
+TEST_CASE(
+    "lines that vanish turn the amplifier off; arming is refused until they are back, and then it goes on",
+    "[session][live]") {
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
-  int tries = 0;
+  int refused = 0;
   room.reacts = [&](const auto& page) {
-    if (page.kind == PageKind::stimulus) return room.lines->remove();
-    if (page.kind == PageKind::fault && room.stimuli > 0)
-      return room.push(++tries < 3 ? InputKind::arm : InputKind::stop);
+    if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.lines->remove();
+    if (page.kind == PageKind::fault && page.fault == session::FaultKind::lines_gone &&
+        page.detail.find("refused: amplifier: its lines are gone") == 0 && ++refused == 2)
+      room.lines->put_back();
     room.cooperate(page);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == store::SessionStatus::interrupted);
-  CHECK(room.stimuli == 1);
-  CHECK(room.enables().size() == 1);
-  CHECK(trials_of(setup.database, summary).front().outcome == store::TrialOutcome::fault);
+  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(refused >= 2);
+  const auto trials = trials_of(setup.database, summary);
+  REQUIRE(trials.size() == 3);
+  CHECK(trials[0].outcome == store::TrialOutcome::fault);
+  CHECK(trials[1].level == trials[0].level);
+  CHECK(events_of(setup.database, summary, "arm").back().value == "armed");
+  CHECK_FALSE(room.lines->level(SharedLines::enable));
+}
+
+TEST_CASE("who goes on before the buttons are back is told what is missing", "[session][live]") {
+  const TemporaryFolder folder;
+  const auto setup = live_setup(folder / "a.sqlite");
+  Room room;
+  const auto buttons = std::make_shared<panel::SimulatedLines>(2);
+  int told = 0;
+  room.reacts = [&](const auto& page) {
+    if (page.kind == PageKind::stimulus && room.stimuli == 1) return buttons->remove();
+    if (page.kind == PageKind::fault && page.fault == session::FaultKind::lines_gone && ++told == 3) {
+      CHECK(page.amplifier.empty());  // nothing to arm: the amplifier has lines of its own
+      buttons->put_back();
+    }
+    if (page.kind == PageKind::stimulus) return buttons->set(0, true, drive::monotonic_ns());
+    if (page.kind == PageKind::interval || page.kind == PageKind::feedback)
+      buttons->set(0, false, drive::monotonic_ns());
+    room.cooperate(page);
+  };
+  auto devices = room.devices();
+  panel::LinePanel plan;
+  plan.lines = 2;
+  plan.refractory_ns = 0;
+  devices.panel =
+      panel::watch_lines(opener(buttons), plan, {"left", "right"}, session::handlers_for(room.inputs));
+  const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
+  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(told >= 3);
+  const auto trials = trials_of(setup.database, summary);
+  REQUIRE(trials.size() == 3);
+  CHECK(trials[0].outcome == store::TrialOutcome::fault);
+  CHECK(trials[1].outcome == store::TrialOutcome::answered);
+  CHECK(events_of(setup.database, summary, "notice").back().value == "panel: what had gone is back");
 }
 
 TEST_CASE("the operator's disarming voids the trial; arming again goes on", "[session][live]") {

@@ -215,9 +215,9 @@ TEST_CASE("a monitor is told of every trial before and after, and changes none",
 
 TEST_CASE("every fault says what happened, what is safe and what to do in each language", "[session]") {
   using session::FaultKind;
-  for (const auto kind :
-       {FaultKind::other, FaultKind::converter_gone, FaultKind::converter_rate, FaultKind::amplifier,
-        FaultKind::stop_pressed, FaultKind::touch_gone, FaultKind::disk_full, FaultKind::stimulus_missed})
+  for (const auto kind : {FaultKind::other, FaultKind::converter_gone, FaultKind::converter_rate,
+                          FaultKind::amplifier, FaultKind::stop_pressed, FaultKind::touch_gone,
+                          FaultKind::lines_gone, FaultKind::disk_full, FaultKind::stimulus_missed})
     for (const auto* language : {"en", "de", "ja"}) {
       const auto text = session::fault_text(kind, language);
       INFO(session::name(kind) << " " << language);

@@ -19,8 +19,16 @@ struct SharedLines : turnpoint::panel::Lines {
   std::shared_ptr<turnpoint::panel::SimulatedLines> lines;
 };
 
+/// Requests them, as one does from a chip: fails while that is gone.
+inline turnpoint::panel::OpenLines opener(const std::shared_ptr<turnpoint::panel::SimulatedLines>& lines) {
+  return [lines] {
+    static_cast<void>(lines->level(0));
+    return std::make_unique<SharedLines>(lines);
+  };
+}
+
 inline auto guarded(const std::shared_ptr<turnpoint::panel::SimulatedLines>& lines) {
   return turnpoint::panel::guard_amplifier(
-      std::make_unique<SharedLines>(lines),
+      opener(lines),
       {SharedLines::enable, SharedLines::heartbeat, SharedLines::fault, SharedLines::stop, false, false});
 }

@@ -1,5 +1,6 @@
-// panel_events BUTTONS CONTACT SECONDS: prints presses, contacts and faults with the kernel's time stamps; ""
-// for none.
+// panel_events BUTTONS CONTACT SECONDS: prints presses, contacts, faults and returns with the kernel's time
+// stamps;
+// "" for none.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -24,6 +25,10 @@ void run(const std::string& buttons, const std::string& contact, double seconds)
   };
   handlers.fault = [](const panel::PanelFault& fault) {
     std::printf("fault %s\n", fault.what.c_str());
+    std::fflush(stdout);
+  };
+  handlers.back = [](std::int64_t time_ns) {
+    std::printf("back %lld\n", static_cast<long long>(time_ns));
     std::fflush(stdout);
   };
   using Buttons = std::optional<panel::ButtonsConfig>;
