@@ -41,7 +41,10 @@ Rectangle {
         from: 0
         to: 1
         duration: Math.max(1, root.holdMs)
-        onFinished: root.activated()
+        onFinished: {
+            area.done = true
+            root.activated()
+        }
     }
 
     Row {
@@ -65,8 +68,11 @@ Rectangle {
     }
     MouseArea {
         id: area
+        /// The press has acted: what it did may have made this a button that needs no holding.
+        property bool done: false
         anchors.fill: parent
         enabled: root.enabled && root.armed
-        onClicked: if (root.holdMs === 0) root.activated()
+        onPressed: done = false
+        onClicked: if (root.holdMs === 0 && !done) root.activated()
     }
 }

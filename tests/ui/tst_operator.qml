@@ -111,6 +111,8 @@ Item {
             mousePress(arm)
             tryCompare(operating, "armed", true, 3000)
             mouseRelease(arm)
+            wait(50)
+            compare(operating.armed, true)
             tap(page.item, "arm")
             compare(operating.armed, false)
             page.active = false
