@@ -59,7 +59,7 @@ std::optional<session::Setup> prepare_resume(const ResumeRequest& request, std::
   setup.resume_session = found->session.session_id;
   setup.resume_at = resume_at(request.policy, setup.protocol.resume);
   messages << "resume: session " << found->session.session_id << " of participant " << start.participant
-           << ", " << found->session.trials << " trials done\n";
+           << ", " << found->session.trials << " trials stored\n";
   return setup;
 }
 

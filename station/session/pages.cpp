@@ -150,11 +150,11 @@ Page Pages::paused(const Director& director) const {
   return page;
 }
 
-Page Pages::end(const Summary& summary) const {
-  auto page = blank(PageKind::end, nullptr, nullptr);
+Page Pages::end(const Summary& summary, const Director& director) const {
+  auto page = blank(PageKind::end, nullptr, &director);
   const bool whole = summary.status == store::SessionStatus::completed;
   page.title = word(whole ? Word::thanks : Word::thanks_early, setup_.language);
-  page.trials_done = page.trials_total = summary.trials;
+  if (whole) page.trials_total = page.trials_done;  // an adaptive procedure's end was an estimate
   page.summary = {{"Trials", std::to_string(summary.trials)},
                   {"Too late", std::to_string(summary.timeouts)},
                   {"Too early", std::to_string(summary.anticipations)},

@@ -28,7 +28,7 @@ class Pages {
   /// A fault that stops the session until somebody has mended it; `detail` is what the station found.
   Page fault(FaultKind kind, const std::string& detail, const Director& director) const;
   Page paused(const Director& director) const;
-  Page end(const Summary& summary) const;
+  Page end(const Summary& summary, const Director& director) const;
 
  private:
   Page blank(PageKind kind, const protocol::Block* block, const Director* director) const;

@@ -50,7 +50,7 @@ Summary Sitting::run() {
     finish(store::SessionStatus::stopped, director_.ended_because());
   else
     finish(store::SessionStatus::completed, "");
-  show(pages_.end(summary_));
+  show(pages_.end(summary_, director_));
   stage_->finish();
   return summary_;
 }
@@ -106,7 +106,10 @@ Sitting::Flow Sitting::show_and_wait(Page page, double at_least_s) {
     if (handle_on_page(input) == Flow::stop) return Flow::stop;
     if (input.kind == InputKind::next) return Flow::go_on;
     if (buttons_turn && input.kind == InputKind::answer && input.time_ns >= read_ns) return Flow::go_on;
-    if (input.kind == InputKind::fault || input.kind == InputKind::disarm) show(page);
+    if (input.kind != InputKind::fault && input.kind != InputKind::disarm) continue;
+    // It has been mended, and whoever did so has pressed Continue: for the fault before it too.
+    if (page.kind == PageKind::fault || page.kind == PageKind::paused) return Flow::go_on;
+    show(page);
   }
   return Flow::go_on;
 }

@@ -216,7 +216,7 @@ QStringList OperatorController::languages() const {
 
 QString OperatorController::interrupted() const {
   if (!interrupted_) return {};
-  return QStringLiteral("%1, %2: %3 trials done, interrupted %4 ago")
+  return QStringLiteral("%1, %2: %3 trials stored, interrupted %4 ago")
       .arg(QString::fromStdString(interrupted_->participant),
            QString::fromStdString(interrupted_->protocol_id))
       .arg(interrupted_->trials)

@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "station/app/prepare.hpp"
 #include "station/panel/line_panel.hpp"
@@ -66,6 +68,10 @@ TEST_CASE("without the operator's arming the amplifier is never enabled", "[sess
   CHECK(summary.trials == 0);
   CHECK(room.stimuli == 0);
   CHECK(room.enables().empty());
+  const auto& end = room.pages.back();
+  CHECK(end.kind == PageKind::end);
+  CHECK(end.trials_done == 0);
+  CHECK(end.trials_total == 2);  // not "all of what was done"
 }
 
 TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the trial and presents it again",
@@ -128,6 +134,29 @@ TEST_CASE(
   CHECK(trials[1].level == trials[0].level);
   CHECK(events_of(setup.database, summary, "arm").back().value == "armed");
   CHECK_FALSE(room.lines->level(SharedLines::enable));
+}
+
+TEST_CASE("a second fault on the first one's page is mended once, not twice", "[session][live]") {
+  const TemporaryFolder folder;
+  const auto setup = live_setup(folder / "a.sqlite");
+  Room room;
+  bool pressed = false;
+  room.reacts = [&](const auto& page) {
+    if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.push(InputKind::fault);
+    if (page.kind == PageKind::fault && room.stimuli == 1 && !std::exchange(pressed, true)) {
+      CHECK(page.amplifier.empty());  // still armed: the page has its Continue
+      return room.lines->set(SharedLines::stop, true, drive::monotonic_ns());
+    }
+    if (page.kind == PageKind::fault && pressed && room.lines->level(SharedLines::stop))
+      room.lines->set(SharedLines::stop, false, drive::monotonic_ns());
+    room.cooperate(page);
+  };
+  const auto summary = session::run(setup, &room, room.inputs, room.devices());
+  CHECK(summary.status == store::SessionStatus::completed);
+  const auto is = [](PageKind kind) { return [kind](const auto& page) { return page.kind == kind; }; };
+  const auto paused = std::find_if(room.pages.begin(), room.pages.end(), is(PageKind::paused));
+  REQUIRE(paused != room.pages.end());
+  CHECK(std::none_of(paused, room.pages.end(), is(PageKind::fault)));
 }
 
 TEST_CASE("who goes on before the buttons are back is told what is missing", "[session][live]") {

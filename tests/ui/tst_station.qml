@@ -216,7 +216,7 @@ Item {
             room.calibrate()
             compare(room.cutOffSession("live"), 9)
             room.reopen("2468")
-            tryVerify(() => operating.interrupted.startsWith("T1, short: 2 trials done"), 20000, operating.interrupted)
+            tryVerify(() => operating.interrupted.startsWith("T1, short: 2 trials stored"), 20000, operating.interrupted)
             tap("resume")
             arm()                                                    // as after any start of a live session
             tap("proceed")
