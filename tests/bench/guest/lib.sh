@@ -2,7 +2,7 @@
 set -eu
 PATH=$BENCH_DIR/bin:$BIN:$PATH
 say() { echo "# $*"; }
-fail() { echo "FAILED: $*"; exit 1; }
+fail() { echo "FAILED: $*"; [ ! -e /dev/fb0 ] || screenshot failed; exit 1; }
 
 # near WHAT VALUE EXPECTED TOLERANCE: passes when the value is that close.
 near() {
@@ -20,7 +20,7 @@ fails() {
 # eventually SECONDS COMMAND...: waits until the command succeeds, or fails the scenario.
 eventually() {
   local end=$((SECONDS + $1)); shift
-  until "$@"; do [ $SECONDS -lt $end ] || fail "did not happen in time: $*"; sleep 0.02; done
+  until "$@"; do [ $SECONDS -lt $end ] || fail "did not happen in time: $*"; sleep 0.05; done
 }
 has() { grep -q "$2" "$1"; }   # has FILE PATTERN
 equals() { [ "$($1 $2)" = "$3" ]; }
@@ -83,5 +83,5 @@ screen_begin() {
   export QT_QPA_GENERIC_PLUGINS=evdevtouch:$PANEL
 }
 # pixel X Y: colour there, as bbggrr in hexadecimal; screenshot NAME: keeps what is on the screen in $OUT/NAME.png.
-pixel() { dd if=/dev/fb0 bs=4 skip=$(($2 * 800 + $1)) count=1 status=none | od -An -tx1 | tr -d ' ' | cut -c1-6; }
+pixel() { local hex; hex=$(od -An -tx1 -j $((4 * ($2 * 800 + $1))) -N 3 /dev/fb0); echo "${hex// /}"; }
 screenshot() { python3 "$BENCH_SOURCE/guest/screenshot.py" "$OUT/$1.png"; }

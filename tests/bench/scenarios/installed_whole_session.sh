@@ -1,0 +1,168 @@
+# proves: a whole live session on the installed kiosk, from the operator's page to the last answer, by touches and buttons; panel, sound card and GPIO chip lost and back, hung and killed in a stimulus; every boundary that was heard is the database's
+# needs: installed screen
+# timeout: 1800
+gpio_sim AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R
+for line in AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R; do pull $line down; done
+loopback
+panel_begin
+screen_begin
+udevadm settle
+db=/var/lib/turnpoint/turnpoint.sqlite
+rows() { sqlite3 -separator ' ' "file:$db?mode=ro" "$1" 2>/dev/null || true; }
+
+# The rig, calibrated for live sessions; then the unit, as it is installed but on a screen whose pixels can be read.
+sed -e "/^\[output\]/,/^uri/ s|^uri.*|uri = \"alsa:hw:Loopback,0\"\nperiod_frames = 1920\nperiods = 64|" \
+  -e "/^\[amplifier\]/,/^uri/ s|^uri.*|uri = \"gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB\"|" \
+  -e "/^\[buttons\]/,/^uri/ s|^uri.*|uri = \"gpio:left=BTN_L,right=BTN_R\"|" \
+  -e "/^\[touch\]/,/^uri/ s|^uri.*|uri = \"evdev:$PANEL\"|" /usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
+awk 'BEGIN { print "frequency_Hz,displacement_um,phase_deg"
+  for (f = 20000; f <= 50000; f += 500) print f "," 0.3 + 4e-6 * f ",-20" }' >sweep.csv
+printf 'displacement_um,relative_friction\n0,1\n0.5,0.6\n1,0.4\n2,0.2\n4,0.15\n' >friction.csv
+printf 'frequency_Hz,level_dB\n20000,60\n30000,70\n50000,80\n' >sound.csv
+turnpoint calibrate --rig /etc/turnpoint/rig.toml --response main=sweep.csv --full-scale 0.1 --friction friction.csv --sound sound.csv
+printf 'QT_QPA_PLATFORM=linuxfb\nQT_QUICK_BACKEND=software\nQT_QPA_GENERIC_PLUGINS=evdevtouch\nQT_QPA_FB_DISABLE_INPUT=1\nTURNPOINT_DPI=132\n' \
+  >/etc/turnpoint/environment
+systemctl daemon-reload
+
+# The pages on a panel of 800 x 480, by the colour of what can be pressed.
+action=5c3d0f
+is() { [ "$(pixel "$1" "$2")" = $action ]; }
+tap() { touch_do tap "$1" "$2"; sleep 0.2; }
+hold() { touch_do down 0 "$1" "$2"; touch_do sleep 1200; touch_do up 0; sleep 1.6; }
+answers_open() { is 60 400 && is 740 400; }
+continues() { is 290 390 && ! is 60 400; }
+goes_on() { eventually 30 continues; sleep 0.7; tap 400 390; }
+on() { [ "$(level AMP_EN)" = 1 ]; }
+off() { [ "$(level AMP_EN)" = 0 ]; }
+stored() { [ "$(rows "SELECT count(*) FROM trial")" = "$1" ]; }
+stimulus() { eventually 30 answers_open; eventually 5 on; sleep 1; echo "$1" >>presented.txt; }
+by_touch() { stimulus stored; touch_do tap 200 370; eventually 5 off; eventually 10 stored "$1"; }
+by_button() { stimulus stored; gpio_line press "$(pull_file BTN_R)" 50 >/dev/null; eventually 5 off; eventually 10 stored "$1"; }
+# By the operator: "for the experimenter", the code, and the long press that arms.
+operator_code() { eventually 10 is 397 75; sleep 0.3; tap 397 107; tap 280 188; tap 519 188; tap 397 269; }
+asked() { is 397 75 || { tap 536 400; sleep 0.5; return 1; }; }   # a tap before the page could be read does nothing
+arm() { eventually 15 asked; operator_code; hold 536 400; }
+carry_on() { sleep 0.7; tap 535 395; }
+
+systemctl start turnpoint
+first=$(systemctl show -P MainPID turnpoint)
+record 110 heard0.raw; recorder=$!
+start_page() { is 25 430; }
+eventually 20 start_page
+tap 150 215                       # demo
+tap 303 392                       # "enter it now"
+sleep 0.5; screenshot code
+tap 437 360; tap 736 240; tap 63 240; tap 700 425   # P01
+tap 197 443                       # live
+hold 385 443                      # arm
+screenshot chosen
+off || fail "on before the session"
+tap 694 443                       # begin
+english() { is 200 150; }
+eventually 20 english; sleep 0.5; tap 400 150
+goes_on
+by_touch 1
+by_button 2
+screenshot trial
+
+say "the panel is unplugged, and comes back"
+stimulus stored
+touch_do gone
+eventually 10 stored 3
+eventually 5 off
+sleep 1; screenshot panel_gone
+before=$PANEL
+panel_begin
+[ "$PANEL" = "$before" ] || fail "it came back as $PANEL"
+carry_on
+
+say "the sound card is unplugged, and comes back"
+stimulus stored
+echo snd_aloop.0 >/sys/bus/platform/drivers/snd_aloop/unbind
+eventually 1 off
+eventually 10 stored 4
+kill $recorder 2>/dev/null || true; wait $recorder || true
+echo snd_aloop.0 >/sys/bus/platform/drivers/snd_aloop/bind
+eventually 5 test -e /dev/snd/pcmC0D1c
+record 110 heard1.raw; recorder=$!
+sleep 1
+off || fail "it armed itself"
+arm; screenshot dac_back
+carry_on
+by_touch 5
+
+say "the GPIO chip is unplugged, and comes back"
+stimulus stored
+echo 0 >/sys/kernel/config/gpio-sim/bench/live
+eventually 10 stored 6
+sleep 0.5
+arm; screenshot chip_gone
+echo 1 >/sys/kernel/config/gpio-sim/bench/live
+GPIO_DEVICE=$(echo /sys/devices/platform/gpio-sim.*/gpiochip*)
+for line in AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R; do pull $line down; done
+sleep 0.5
+off || fail "it armed itself"
+hold 536 400; screenshot chip_back
+carry_on
+by_button 7
+by_touch 8
+
+say "the station hangs in a stimulus: the watchdog ends it, and it starts unarmed"
+stimulus lost
+kill -STOP "$first"
+eventually 15 off
+eventually 30 start_page
+journalctl -u turnpoint --no-pager | grep -i "watchdog timeout" || fail "it was not the watchdog: $(journalctl -u turnpoint --no-pager | tail -5)"
+sleep 0.5; screenshot interrupted
+tap 738 83
+eventually 10 is 440 375
+off || fail "a resumed session armed by itself"
+arm
+goes_on
+by_touch 9
+
+say "it is killed in a stimulus"
+stimulus lost
+systemctl kill -s KILL turnpoint
+eventually 1 off
+eventually 30 start_page
+hold 385 443
+tap 738 83
+goes_on
+by_button 10; by_touch 11; by_button 12; by_touch 13
+sleep 2; screenshot end
+completed() { [ "$(rows "SELECT status FROM session")" = completed ]; }
+eventually 10 completed
+off || fail "on after the session"
+tap 560 390; sleep 0.5; operator_code
+eventually 10 start_page
+kill $recorder; wait $recorder || true
+[ "$(rows "PRAGMA integrity_check")" = ok ] || fail "the database is damaged"
+screenshot start_page
+
+# What was answered, by which device, and when: touches on the left, buttons on the right.
+near "restarts" "$(systemctl show -P NRestarts turnpoint)" 2 0
+near "sessions" "$(rows "SELECT count(*) FROM session WHERE run_mode = 'live'")" 1 0
+[ "$(rows "SELECT group_concat(coalesce(response, outcome), ' ') FROM trial")" = \
+  "left right fault fault left fault right left left right left right left" ] || fail "$(rows "SELECT * FROM trial")"
+near "answers with the kernel's time" "$(rows "SELECT count(*) FROM trial WHERE response_time_quality = 'kernel'")" 10 0
+near "presses" "$(rows "SELECT count(*) FROM event WHERE kind = 'button'")" 4 0
+near "refused armings" "$(rows "SELECT count(*) FROM event WHERE kind = 'arm' AND value LIKE 'refused: amplifier: its lines are gone%'")" 1 0
+near "armings" "$(rows "SELECT count(*) FROM event WHERE kind = 'arm' AND value = 'armed'")" 5 0
+
+# What was heard: each stimulus against its row, and back through the physics to its boundary. Those that were killed
+# have no row.
+for k in 0 1; do python3 "$BENCH_SOURCE/guest/bursts.py" heard$k.raw burst$k. && rm heard$k.raw; done
+near "stimuli heard" "$(ls burst*.raw | wc -l)" "$(wc -l <presented.txt)" 0
+ls burst*.raw | sort -V | paste -d ' ' - presented.txt | awk '$2 == "stored" { print $1 }' >heard.txt
+rows "SELECT frequency_Hz, boundary_mm, model FROM tone ORDER BY trial_index" >rows.txt
+near "stimuli in the database" "$(wc -l <rows.txt)" "$(wc -l <heard.txt)" 0
+while read -r burst; do measure_tone "$burst" 192000 2 0; done <heard.txt >measured.txt
+model=$(cut -d ' ' -f 3 rows.txt | sort -u)
+turnpoint map --rig /etc/turnpoint/rig.toml --edge p50 --model "$model" --frequency $(cut -d ' ' -f 1 measured.txt) --json |
+  awk -F '[:,]' '/boundary_mm/ { printf "%.6f\n", $2 }' >felt.txt
+paste -d ' ' heard.txt measured.txt rows.txt felt.txt >pairs.txt
+while read -r burst measured _ residual frequency boundary _ felt; do
+  near "$burst (Hz, residual $residual dB)" "$measured" "$frequency" 0.02
+  near "its boundary (mm)" "$felt" "$boundary" 0.01
+done <pairs.txt
