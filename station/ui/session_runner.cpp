@@ -122,6 +122,7 @@ void SessionRunner::ask_to_stop() {
   session::Input input;
   input.time_ns = now_ns();
   input.kind = session::InputKind::stop;
+  input.text = "the program was told to end (by a signal, or its window was closed)";
   inputs_.push(std::move(input));
 }
 
