@@ -20,7 +20,7 @@ fails() {
 # eventually SECONDS COMMAND...: waits until the command succeeds, or fails the scenario.
 eventually() {
   local end=$((SECONDS + $1)); shift
-  until "$@"; do [ $SECONDS -lt $end ] || fail "did not happen in time: $*"; sleep 0.05; done
+  until "$@"; do [ $SECONDS -lt $end ] || fail "did not happen in time: $*"; sleep 0.1; done
 }
 has() { grep -q "$2" "$1"; }   # has FILE PATTERN
 equals() { [ "$($1 $2)" = "$3" ]; }
@@ -53,7 +53,7 @@ level() { cat "$(line_of "$1")/value"; }
 # loopback: a sound card whose playback side (hw:Loopback,0) is recorded from hw:Loopback,1, bit by bit.
 loopback() { modprobe snd-aloop pcm_substreams=1; eventually 5 test -e /dev/snd/pcmC0D1c; }
 # record SECONDS FILE [RATE]: in the background, raw S32_LE stereo; its process is $!.
-record() { arecord -q -D hw:Loopback,1 -t raw -f S32_LE -c 2 -r "${3:-192000}" --period-size=1920 --buffer-size=192000 -d "$1" "$2" & }
+record() { arecord -q -D hw:Loopback,1 -t raw -f S32_LE -c 2 -r "${3:-192000}" --period-size=9600 --buffer-size=192000 -d "$1" "$2" & }
 
 # disk_begin [WHERE]: the `disk`, empty, on /run/disk or there. What is written there is judged by NAME.after with
 # power_cuts.py.

@@ -35,7 +35,7 @@ goes_on() { eventually 30 continues; sleep 0.7; tap 400 390; }
 on() { [ "$(level AMP_EN)" = 1 ]; }
 off() { [ "$(level AMP_EN)" = 0 ]; }
 stored() { [ "$(rows "SELECT count(*) FROM trial")" = "$1" ]; }
-stimulus() { eventually 30 answers_open; eventually 5 on; sleep 1; echo "$1" >>presented.txt; }
+stimulus() { eventually 30 answers_open; eventually 5 on; sleep 0.8; echo "$1" >>presented.txt; }
 by_touch() { stimulus stored; touch_do tap 200 370; eventually 5 off; eventually 10 stored "$1"; }
 by_button() { stimulus stored; gpio_line press "$(pull_file BTN_R)" 50 >/dev/null; eventually 5 off; eventually 10 stored "$1"; }
 # By the operator: "for the experimenter", the code, and the long press that arms.
@@ -150,19 +150,7 @@ near "presses" "$(rows "SELECT count(*) FROM event WHERE kind = 'button'")" 4 0
 near "refused armings" "$(rows "SELECT count(*) FROM event WHERE kind = 'arm' AND value LIKE 'refused: amplifier: its lines are gone%'")" 1 0
 near "armings" "$(rows "SELECT count(*) FROM event WHERE kind = 'arm' AND value = 'armed'")" 5 0
 
-# What was heard: each stimulus against its row, and back through the physics to its boundary. Those that were killed
-# have no row.
-for k in 0 1; do python3 "$BENCH_SOURCE/guest/bursts.py" heard$k.raw burst$k. && rm heard$k.raw; done
-near "stimuli heard" "$(ls burst*.raw | wc -l)" "$(wc -l <presented.txt)" 0
-ls burst*.raw | sort -V | paste -d ' ' - presented.txt | awk '$2 == "stored" { print $1 }' >heard.txt
-rows "SELECT frequency_Hz, boundary_mm, model FROM tone ORDER BY trial_index" >rows.txt
-near "stimuli in the database" "$(wc -l <rows.txt)" "$(wc -l <heard.txt)" 0
-while read -r burst; do measure_tone "$burst" 192000 2 0; done <heard.txt >measured.txt
-model=$(cut -d ' ' -f 3 rows.txt | sort -u)
-turnpoint map --rig /etc/turnpoint/rig.toml --edge p50 --model "$model" --frequency $(cut -d ' ' -f 1 measured.txt) --json |
-  awk -F '[:,]' '/boundary_mm/ { printf "%.6f\n", $2 }' >felt.txt
-paste -d ' ' heard.txt measured.txt rows.txt felt.txt >pairs.txt
-while read -r burst measured _ residual frequency boundary _ felt; do
-  near "$burst (Hz, residual $residual dB)" "$measured" "$frequency" 0.02
-  near "its boundary (mm)" "$felt" "$boundary" 0.01
-done <pairs.txt
+# What was heard is judged outside, where that is faster.
+for k in 0 1; do python3 "$BENCH_SOURCE/guest/bursts.py" heard$k.raw "$OUT/burst$k."; done
+cp presented.txt /etc/turnpoint/rig.toml "$OUT"
+rows "SELECT frequency_Hz, boundary_mm, model FROM tone ORDER BY trial_index" >"$OUT/rows.txt"
