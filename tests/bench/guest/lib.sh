@@ -17,9 +17,9 @@ fails() {
   cat refusal.txt
   [ $status -eq "$expected" ] || fail "exit status $status, expected $expected: $*"
 }
-# eventually SECONDS COMMAND...: waits until the command succeeds, or fails the scenario.
+# eventually SECONDS COMMAND...: waits at least so long until the command succeeds, or fails the scenario.
 eventually() {
-  local end=$((SECONDS + $1)); shift
+  local end=$((SECONDS + $1 + 1)); shift   # SECONDS may be about to count on
   until "$@"; do [ $SECONDS -lt $end ] || fail "did not happen in time: $*"; sleep 0.1; done
 }
 has() { grep -q "$2" "$1"; }   # has FILE PATTERN
