@@ -100,6 +100,10 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
       {FaultKind::amplifier, "line AMP_FAULT active"},
       {FaultKind::stop_pressed, "line STOP active"},
       {FaultKind::touch_gone, "/dev/input/by-id/usb-panel-event: No such device"},
+      {FaultKind::lines_gone,
+       "refused: amplifier: its lines are gone (gpio line AMP_EN: no chip has a line of this name: No such "
+       "file "
+       "or directory)"},
       {FaultKind::disk_full, "lab.sqlite: database or disk is full"},
       {FaultKind::stimulus_missed, "384 frames lost"},
       {FaultKind::converter_rate, ""},
@@ -116,7 +120,8 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
     page.to_do = text.to_do;
     page.detail = detail;
     if (kind == FaultKind::disarmed) page.amplifier = "disarmed";
-    if (kind == FaultKind::amplifier || kind == FaultKind::stop_pressed || kind == FaultKind::converter_gone)
+    if (kind == FaultKind::amplifier || kind == FaultKind::stop_pressed ||
+        kind == FaultKind::converter_gone || kind == FaultKind::lines_gone)
       page.amplifier = "faulted";
     all.push_back({std::string("fault-") + session::name(kind), page});
   }
