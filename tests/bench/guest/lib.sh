@@ -50,6 +50,24 @@ pull_file() { echo "$(line_of "$1")/pull"; }
 pull() { echo "pull-$2" >"$(pull_file "$1")"; }
 level() { cat "$(line_of "$1")/value"; }
 
+# rig_with DEVICE=URI... <RIG >RIG: a rig file with these devices; sound gets buffers that outlast a stalled host.
+rig_with() {
+  local device script=
+  for device in "$@"; do
+    script+="/^\[${device%%=*}\]/,/^uri/ s|^uri.*|uri = \"${device#*=}\"|"$'\n'
+    [ "${device%%=*}" != output ] || script+=$'/^rate_Hz/a period_frames = 1920\\nperiods = 64\n'
+  done
+  sed "$script"
+}
+# calibrate_for_live RIG: what a live session asks for, of an actuator that nobody has measured.
+calibrate_for_live() {
+  awk 'BEGIN { print "frequency_Hz,displacement_um,phase_deg"
+    for (f = 20000; f <= 50000; f += 500) print f "," 0.3 + 4e-6 * f ",-20" }' >sweep.csv
+  printf 'displacement_um,relative_friction\n0,1\n0.5,0.6\n1,0.4\n2,0.2\n4,0.15\n' >friction.csv
+  printf 'frequency_Hz,level_dB\n20000,60\n30000,70\n50000,80\n' >sound.csv
+  turnpoint calibrate --rig "$1" --response main=sweep.csv --full-scale 0.1 --friction friction.csv --sound sound.csv
+}
+
 # loopback: a sound card whose playback side (hw:Loopback,0) is recorded from hw:Loopback,1, bit by bit.
 loopback() { modprobe snd-aloop pcm_substreams=1; eventually 5 test -e /dev/snd/pcmC0D1c; }
 # record SECONDS FILE [RATE]: in the background, raw S32_LE stereo; its process is $!.
@@ -85,3 +103,8 @@ screen_begin() {
 # pixel X Y: colour there, as bbggrr in hexadecimal; screenshot NAME: keeps what is on the screen in $OUT/NAME.png.
 pixel() { local hex; hex=$(od -An -tx1 -j $((4 * ($2 * 800 + $1))) -N 3 /dev/fb0); echo "${hex// /}"; }
 screenshot() { python3 "$BENCH_SOURCE/guest/screenshot.py" "$OUT/$1.png"; }
+# On the participant's pages: whether something that can be pressed is at X Y, by its colour; which page it is.
+action=5c3d0f
+shows() { [ "$(pixel "$1" "$2")" = $action ]; }
+answers_open() { shows 60 400 && shows 740 400; }
+continues() { shows 290 390 && ! shows 60 400; }

@@ -2,8 +2,7 @@
 # timeout: 400
 gpio_sim BTN_L BTN_R
 pull BTN_L down; pull BTN_R down
-sed -e "/^\[buttons\]/,/^uri/ s|^uri.*|uri = \"gpio:left=BTN_L,right=BTN_R\"|" \
-  "$SOURCE/deploy/rigs/simulated.toml" >rig.toml
+rig_with buttons=gpio:left=BTN_L,right=BTN_R <"$SOURCE/deploy/rigs/simulated.toml" >rig.toml
 sed -e 's/device = "touch"/device = "buttons"/' "$SOURCE/tests/ui/short.toml" >short.toml
 mkfifo operator
 turnpoint run short.toml --rig rig.toml --participant P1 --db lab.sqlite --buttons-only --json \

@@ -3,11 +3,8 @@
 gpio_sim AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R
 for line in AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R; do pull $line down; done
 loopback
-section() { sed -i "/^\[$1\]/,/^uri/ s|^uri.*|uri = \"$2\"|" rig.toml; }
-sed '/^rate_Hz/a period_frames = 1920\nperiods = 64' "$SOURCE/deploy/rigs/simulated.toml" >rig.toml
-section output alsa:hw:Loopback,0
-section amplifier gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB
-section buttons gpio:left=BTN_L,right=BTN_R
+rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB buttons=gpio:left=BTN_L,right=BTN_R \
+  <"$SOURCE/deploy/rigs/simulated.toml" >rig.toml
 sed -e 's/device = "touch"/device = "buttons"/' "$SOURCE/tests/ui/short.toml" >short.toml
 live() { turnpoint run short.toml --rig rig.toml --mode live --participant P1 --db lab.sqlite --buttons-only --json "$@"; }
 

@@ -8,11 +8,8 @@ udevadm settle
 data=/var/lib/turnpoint db=/var/lib/turnpoint/lab.sqlite log=/run/session.log
 mount -t tmpfs -o size=24M,mode=0750,uid="$(id -u turnpoint)",gid="$(id -g turnpoint)" data $data
 rows() { sqlite3 -separator ' ' "file:$db?mode=ro" "$1"; }
-section() { sed -i "/^\[$1\]/,/^uri/ s|^uri.*|uri = \"$2\"|" /etc/turnpoint/rig.toml; }
-sed '/^rate_Hz/a period_frames = 1920\nperiods = 64' /usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
-section output alsa:hw:Loopback,0
-section amplifier gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB
-section buttons gpio:left=BTN_L,right=BTN_R
+rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB buttons=gpio:left=BTN_L,right=BTN_R \
+  </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
 
 # station ARGUMENTS: starts the unit as it is installed, with buttons and the operator's typing instead of the screen.
 mkfifo /run/operator; exec 8<>/run/operator

@@ -11,26 +11,15 @@ db=/var/lib/turnpoint/turnpoint.sqlite
 rows() { sqlite3 -separator ' ' "file:$db?mode=ro" "$1" 2>/dev/null || true; }
 
 # The rig, calibrated for live sessions; then the unit, as it is installed but on a screen whose pixels can be read.
-sed -e "/^\[output\]/,/^uri/ s|^uri.*|uri = \"alsa:hw:Loopback,0\"\nperiod_frames = 1920\nperiods = 64|" \
-  -e "/^\[amplifier\]/,/^uri/ s|^uri.*|uri = \"gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB\"|" \
-  -e "/^\[buttons\]/,/^uri/ s|^uri.*|uri = \"gpio:left=BTN_L,right=BTN_R\"|" \
-  -e "/^\[touch\]/,/^uri/ s|^uri.*|uri = \"evdev:$PANEL\"|" /usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
-awk 'BEGIN { print "frequency_Hz,displacement_um,phase_deg"
-  for (f = 20000; f <= 50000; f += 500) print f "," 0.3 + 4e-6 * f ",-20" }' >sweep.csv
-printf 'displacement_um,relative_friction\n0,1\n0.5,0.6\n1,0.4\n2,0.2\n4,0.15\n' >friction.csv
-printf 'frequency_Hz,level_dB\n20000,60\n30000,70\n50000,80\n' >sound.csv
-turnpoint calibrate --rig /etc/turnpoint/rig.toml --response main=sweep.csv --full-scale 0.1 --friction friction.csv --sound sound.csv
+rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB buttons=gpio:left=BTN_L,right=BTN_R "touch=evdev:$PANEL" \
+  </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
+calibrate_for_live /etc/turnpoint/rig.toml
 printf 'QT_QPA_PLATFORM=linuxfb\nQT_QUICK_BACKEND=software\nQT_QPA_GENERIC_PLUGINS=evdevtouch\nQT_QPA_FB_DISABLE_INPUT=1\nTURNPOINT_DPI=132\n' \
   >/etc/turnpoint/environment
 systemctl daemon-reload
 
-# The pages on a panel of 800 x 480, by the colour of what can be pressed.
-action=5c3d0f
-is() { [ "$(pixel "$1" "$2")" = $action ]; }
 tap() { touch_do tap "$1" "$2"; sleep 0.2; }
 hold() { touch_do down 0 "$1" "$2"; touch_do sleep 1200; touch_do up 0; sleep 1.6; }
-answers_open() { is 60 400 && is 740 400; }
-continues() { is 290 390 && ! is 60 400; }
 goes_on() { eventually 30 continues; sleep 0.7; tap 400 390; }
 on() { [ "$(level AMP_EN)" = 1 ]; }
 off() { [ "$(level AMP_EN)" = 0 ]; }
@@ -39,15 +28,15 @@ stimulus() { eventually 30 answers_open; eventually 5 on; sleep 0.8; echo "$1" >
 by_touch() { stimulus stored; touch_do tap 200 370; eventually 5 off; eventually 10 stored "$1"; }
 by_button() { stimulus stored; gpio_line press "$(pull_file BTN_R)" 50 >/dev/null; eventually 5 off; eventually 10 stored "$1"; }
 # By the operator: "for the experimenter", the code, and the long press that arms.
-operator_code() { eventually 10 is 397 75; sleep 0.3; tap 397 107; tap 280 188; tap 519 188; tap 397 269; }
-asked() { is 397 75 || { tap 536 400; sleep 0.5; return 1; }; }   # a tap before the page could be read does nothing
+operator_code() { eventually 10 shows 397 75; sleep 0.3; tap 397 107; tap 280 188; tap 519 188; tap 397 269; }
+asked() { shows 397 75 || { tap 536 400; sleep 0.5; return 1; }; }   # a tap before the page could be read does nothing
 arm() { eventually 15 asked; operator_code; hold 536 400; }
 carry_on() { sleep 0.7; tap 535 395; }
 
 systemctl start turnpoint
 first=$(systemctl show -P MainPID turnpoint)
 record 110 heard0.raw; recorder=$!
-start_page() { is 25 430; }
+start_page() { shows 25 430; }
 eventually 20 start_page
 tap 150 215                       # demo
 tap 303 392                       # "enter it now"
@@ -58,7 +47,7 @@ hold 385 443                      # arm
 screenshot chosen
 off || fail "on before the session"
 tap 694 443                       # begin
-english() { is 200 150; }
+english() { shows 200 150; }
 eventually 20 english; sleep 0.5; tap 400 150
 goes_on
 by_touch 1
@@ -115,7 +104,7 @@ eventually 30 start_page
 journalctl -u turnpoint --no-pager | grep -i "watchdog timeout" || fail "it was not the watchdog: $(journalctl -u turnpoint --no-pager | tail -5)"
 sleep 0.5; screenshot interrupted
 tap 738 83
-eventually 10 is 440 375
+eventually 10 shows 440 375
 off || fail "a resumed session armed by itself"
 arm
 goes_on
