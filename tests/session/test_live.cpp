@@ -136,7 +136,7 @@ TEST_CASE(
   CHECK_FALSE(room.lines->level(SharedLines::enable));
 }
 
-TEST_CASE("a second fault on the first one's page is mended once, not twice", "[session][live]") {
+TEST_CASE("faults on a fault's page are mended with it, not one after another", "[session][live]") {
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
@@ -147,8 +147,10 @@ TEST_CASE("a second fault on the first one's page is mended once, not twice", "[
       CHECK(page.amplifier.empty());  // still armed: the page has its Continue
       return room.lines->set(SharedLines::stop, true, drive::monotonic_ns());
     }
-    if (page.kind == PageKind::fault && pressed && room.lines->level(SharedLines::stop))
+    if (page.kind == PageKind::fault && pressed && room.lines->level(SharedLines::stop)) {
       room.lines->set(SharedLines::stop, false, drive::monotonic_ns());
+      room.push(InputKind::fault);  // a third one, before anybody has armed
+    }
     room.cooperate(page);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
