@@ -74,6 +74,10 @@ std::string StopSignals::wait() const {
   pollfd woken{wake_, POLLIN, 0};
   while (::poll(&woken, 1, -1) < 0 && errno == EINTR) {
   }
+  return told();
+}
+
+std::string StopSignals::told() {
   const int first = first_signal;
   return first == 0 ? "" : std::string("SIG") + ::sigabbrev_np(first);
 }

@@ -8,8 +8,9 @@ namespace turnpoint::app {
 
 /// The signals that ask the program to end: SIGTERM (the service manager's, also when the machine goes down),
 /// SIGINT and SIGHUP. At first each ends the process at once, as the kernel does it. After take_over() the
-/// first of them is only told, for what runs to be ended in order, by a thread that wait()s or an event loop
-/// that watches descriptor(); a second of the same kind ends the process at once.
+/// first of them is only told, for what runs to be ended in order, by a thread that wait()s, an event loop
+/// that watches descriptor(), or a loop that asks what was told(); a second of the same kind ends the process
+/// at once.
 ///
 /// One of it at a time: the handler writes to an eventfd that it finds by a global, and does nothing else.
 class StopSignals {
@@ -31,6 +32,9 @@ class StopSignals {
   /// On any thread.
   std::string wait() const;
   void release();
+
+  /// The first signal's name, for whoever looks in now and then; "" where none has come.
+  static std::string told();
 
  private:
   struct Before {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "station/app/calibrate.hpp"
+#include "station/app/stop_signals.hpp"
 #include "station/drive/engine.hpp"
 #include "station/drive/monotonic.hpp"
 #include "station/panel/amplifier.hpp"
@@ -40,7 +41,7 @@ void render(drive::SynchronousStream& stream, const std::vector<SweepStep>& step
   stream.finish();
 }
 
-/// The stream while the guard sees that somebody lives; throws what went wrong.
+/// The stream while the guard sees that somebody lives; throws what went wrong, also a signal to end.
 void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::function<bool()>& done) {
   while (!done()) {
     amplifier.session_alive();
@@ -52,6 +53,8 @@ void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::funct
     }
     if (amplifier.state() == drive::AmplifierState::faulted)
       throw std::runtime_error("sweep: " + amplifier.fault());
+    if (const auto signal = StopSignals::told(); !signal.empty())
+      throw std::runtime_error("sweep: the program was told to end (" + signal + "); the sweep is not whole");
     drive::sleep_until_ns(drive::monotonic_ns() + kPoll_ns);
   }
 }
@@ -114,7 +117,9 @@ double play_sweep(const rig::Rig& rig, const std::vector<SweepStep>& steps, cons
   }
   const auto amplifier = panel::open_amplifier(rig.amplifier_uri);  // outlives the stream
   config.amplifier = amplifier.get();
-  const auto stream = drive::open_realtime(config);
+  StopSignals signals;
+  signals.take_over();
+  const auto stream = drive::open_realtime(config);  // on its way out it ramps down what sounds
   const auto attend_for = [&](std::int64_t ns) {
     attend(*stream, *amplifier,
            [until_ns = drive::monotonic_ns() + ns] { return drive::monotonic_ns() >= until_ns; });

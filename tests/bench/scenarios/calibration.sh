@@ -6,7 +6,34 @@ loopback
 rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB buttons=gpio:left=BTN_L,right=BTN_R \
   <"$SOURCE/deploy/rigs/simulated.toml" >rig.toml
 sed -e 's/device = "touch"/device = "buttons"/' "$SOURCE/tests/ui/short.toml" >short.toml
+stepped_sweep=(turnpoint calibrate --rig rig.toml --sweep --points 24 --amplitude 0.1)
 live() { turnpoint run short.toml --rig rig.toml --mode live --participant P1 --db lab.sqlite --buttons-only --json "$@"; }
+
+# A sweep that is told to end amid its first tone lets it go down, and then the amplifier.
+cut_short() {
+  record 20 cut.raw; recorder=$!
+  "${stepped_sweep[@]}" --sweep-out alsa:hw:Loopback,0 --arm 2>cut.txt & sweep=$!
+  eventually 10 equals level AMP_EN 1
+  sleep 0.6; kill $sweep
+  status=0; wait $sweep || status=$?
+  kill $recorder; wait $recorder || true
+  cat cut.txt
+  [ "$(level AMP_EN)" = 0 ] || fail "the amplifier stays on after a signal"
+  has cut.txt SIGTERM || return 1    # a host that stalls makes the guard trip before
+  [ $status = 1 ] || fail "a sweep that was told to end ended with $status"
+  read -r length_ms last_of_peak <<<"$(python3 - <<'PYTHON'
+import array
+heard = array.array("i", open("cut.raw", "rb").read())[::2]
+sounding = [n for n, x in enumerate(heard) if x]
+begin, end = sounding[0], sounding[-1]
+peak = max(map(abs, heard))
+print((end - begin) / 192, max(map(abs, heard[end - 384:])) / peak)   # the last 2 ms
+PYTHON
+)"
+  awk -v ms="$length_ms" 'BEGIN { exit !(ms > 50 && ms < 480) }'   # neither before the tone nor after it
+}
+cut_short || cut_short || cut_short || fail "no tone was cut short"
+near "a tone that was cut short, its last 2 ms against its peak" "$last_of_peak" 0 0.01
 
 # Not before it is calibrated.
 fails 2 live </dev/null
@@ -19,10 +46,10 @@ moved() {
   read -r frequency level _ <<<"$(measure_tone "$1" 192000 2 0)"
   awk -v f="$frequency" -v l="$level" -v r="$(true_um "$frequency")" 'BEGIN { printf "%.3f %.6f\n", f, r * 10 ^ (l / 20) }'
 }
-turnpoint calibrate --rig rig.toml --sweep --points 24 --amplitude 0.1 >sweep.csv
+"${stepped_sweep[@]}" >sweep.csv
 sweep() {  # a host that stalls makes the guard trip, as it should: an operator would begin again
   record 60 heard.raw; recorder=$!
-  turnpoint calibrate --rig rig.toml --sweep --points 24 --amplitude 0.1 --sweep-out alsa:hw:Loopback,0 --arm || status=$?
+  "${stepped_sweep[@]}" --sweep-out alsa:hw:Loopback,0 --arm || status=$?
   kill $recorder; wait $recorder || true
   return $status
 }
@@ -33,8 +60,8 @@ import csv
 data = open("heard.raw", "rb").read()
 begin = (len(data) - len(data.lstrip(b"\0"))) // 8
 for n, step in enumerate(csv.DictReader(open("sweep.csv"))):
-    at = begin + round((float(step["start_s"]) + 0.1) * 192000)
-    open(f"step{n}.raw", "wb").write(data[8 * at:8 * (at + 57600)])
+    at = begin + round((float(step["start_s"]) + 0.2) * 192000)
+    open(f"step{n}.raw", "wb").write(data[8 * at:8 * (at + 9600)])
 PYTHON
 echo frequency_Hz,displacement_um,phase_deg >response.csv
 for n in {0..23}; do moved step$n.raw | sed 's/ /,/; s/$/,0/' >>response.csv; done
@@ -69,7 +96,7 @@ rows() { sqlite3 -separator ' ' lab.sqlite "$1"; }
   fail "not a live session with its calibration"
 
 rows "SELECT DISTINCT frequency_Hz, amplitude_um FROM tone" >told.txt
-python3 "$BENCH_SOURCE/guest/bursts.py" heard.raw burst
+python3 "$BENCH_SOURCE/guest/bursts.py" heard.raw burst 0.1
 heard=0
 for burst in burst*.raw; do
   read -r frequency_Hz um <<<"$(moved $burst)"
