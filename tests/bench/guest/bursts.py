@@ -1,5 +1,5 @@
-"""bursts.py FILE PREFIX: from a recording (S32_LE stereo, 192 kHz) each burst on channel 0, without its ramps, as
-PREFIX0.raw, PREFIX1.raw, ..."""
+"""bursts.py FILE PREFIX [SECONDS]: from a recording (S32_LE stereo, 192 kHz) each burst on channel 0, without its ramps,
+as PREFIX0.raw, PREFIX1.raw, ...; of a long one the middle SECONDS."""
 import array
 import sys
 
@@ -10,6 +10,7 @@ QUIET = 1 << 20
 with open(sys.argv[1], "rb") as file:
     data = file.read()
 frames = len(data) // FRAME
+longest = round(float(sys.argv[3]) * RATE) if len(sys.argv) > 3 else frames
 begin, count = None, 0
 for at in range(0, frames - 32, STEP):
     loud = max(map(abs, array.array("i", data[at * FRAME:(at + 32) * FRAME])[::2])) > QUIET
@@ -17,8 +18,8 @@ for at in range(0, frames - 32, STEP):
         begin = at
     if begin is not None and (not loud or at + STEP >= frames - 32):
         if at - begin > RATE // 2:
-            middle = data[(begin + RATE // 5) * FRAME:(at - RATE // 5) * FRAME]
+            cut = max(RATE // 5, (at - begin - longest) // 2)
             with open(f"{sys.argv[2]}{count}.raw", "wb") as out:
-                out.write(middle)
+                out.write(data[(begin + cut) * FRAME:(at - cut) * FRAME])
             count += 1
         begin = None

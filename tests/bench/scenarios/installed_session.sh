@@ -99,7 +99,7 @@ near "clock jumps logged" "$(rows "SELECT count(*) FROM event WHERE value LIKE '
 
 # Each stimulus that was heard against its row: the tones in the order of presentation.
 rows "SELECT tone.frequency_Hz FROM tone ORDER BY trial_index" >frequencies.txt
-for k in 0 1; do python3 "$BENCH_SOURCE/guest/bursts.py" heard$k.raw burst$k; done
+for k in 0 1; do python3 "$BENCH_SOURCE/guest/bursts.py" heard$k.raw burst$k 0.1; done
 ls burst*.raw | head -4 | paste -d ' ' - frequencies.txt >pairs.txt
 near "stimuli heard, with the one that was killed" "$(ls burst*.raw | wc -l)" 5 0
 near "stimuli in the database" "$(wc -l <frequencies.txt)" 4 0
