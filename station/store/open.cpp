@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -47,6 +48,37 @@ FileState state_of(const std::string& path) {
   return size == 0 ? FileState::empty : FileState::something;
 }
 
+/// What root makes in another user's folder is that user's: the station, which runs as itself, goes on with
+/// it.
+void give_to_owner_of_folder(int descriptor, const std::string& path) {
+  struct stat folder {};
+  if (::geteuid() != 0 || ::stat(fs::path(path).parent_path().c_str(), &folder) != 0) return;
+  if (::fchown(descriptor, folder.st_uid, folder.st_gid) != 0)
+    fail_system(fault_of_errno(errno), "owner of " + path, errno, "run this as the user of the folder");
+}
+
+void give_to_owner_of_folder(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+  if (descriptor < 0) fail_system(fault_of_errno(errno), path, errno, "check the disk");
+  try {
+    give_to_owner_of_folder(descriptor, path);
+  } catch (const StoreError&) {
+    ::close(descriptor);
+    throw;
+  }
+  ::close(descriptor);
+}
+
+/// Whoever could not read the original cannot read its copy.
+void make_as_readable_as(const std::string& original, const std::string& copy) {
+  std::error_code none;
+  const auto permissions = fs::status(original, none).permissions();
+  if (none || permissions == fs::perms::unknown) return;  // it is in memory
+  const auto own = fs::perms::owner_read | fs::perms::owner_write;
+  const auto executable = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
+  fs::permissions(copy, ((permissions & fs::perms::all) | own) & ~executable);
+}
+
 void refuse_empty(const std::string& path) {
   throw StoreError(
       Fault::not_a_database,
@@ -70,6 +102,7 @@ void create_file(const std::string& path) {
     create_schema(database, schema_version());
     Statement(database, "INSERT INTO meta VALUES ('database_id', ?)").bind(new_uuid()).run();
   }
+  give_to_owner_of_folder(temporary);
   sync_path(temporary);
   fs::rename(temporary, path);
   sync_path(fs::path(path).parent_path().string());
@@ -115,10 +148,16 @@ Database open_plain_reader(const std::string& path) {
 
 StationLock::StationLock(const std::string& database) {
   const auto path = database + ".lock";
-  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0660);
+  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0660);
   if (descriptor_ < 0)
     fail_system(fault_of_errno(errno), "lock file " + path, errno,
                 "the folder of the database must exist and be writable");
+  try {
+    give_to_owner_of_folder(descriptor_, path);
+  } catch (const StoreError&) {
+    ::close(descriptor_);
+    throw;
+  }
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     char owner[64] = {};
     const auto size = ::pread(descriptor_, owner, sizeof owner - 1, 0);
@@ -173,6 +212,8 @@ void copy_to_file(Database& from, const std::string& to) {
       // A copy is one file: out of WAL mode it can be read from any medium.
       copy.execute("PRAGMA journal_mode = DELETE");
     }
+    make_as_readable_as(from.path(), temporary);
+    give_to_owner_of_folder(temporary);
     sync_path(temporary);
     fs::rename(temporary, to);
     sync_path(fs::path(to).parent_path().string());

@@ -30,6 +30,7 @@ enum class IfMissing { create, fail };
 
 /// Opens a database for writing: WAL, synchronous FULL, foreign keys; checks its pages, and takes an older
 /// schema to the current one after a copy FILE.before-vN. A new file appears whole or not at all.
+/// What root makes anew in another user's folder, the lock as well, is that user's.
 /// Sessions that a dead process left running become interrupted, those without trials abandoned.
 /// Throws StoreError and changes nothing for a file that is empty, damaged, not Turnpoint's or newer.
 Writer open_writer(const std::string& path, IfMissing if_missing);
@@ -44,7 +45,8 @@ void check_pages(Database& database);
 /// Makes a file's or folder's contents durable. Throws StoreError.
 void sync_path(const std::string& path);
 
-/// Writes all of `from` into the file `to` by way of a temporary: durable, checked, then renamed.
+/// Writes all of `from` into the file `to` by way of a temporary: durable, checked, then renamed. Readable to
+/// whom the original is.
 void copy_to_file(Database& from, const std::string& to);
 
 }  // namespace turnpoint::store

@@ -1,3 +1,8 @@
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "station/store/annotate.hpp"
@@ -174,6 +179,53 @@ TEST_CASE("a damaged database is set aside and the newest good backup takes its 
   CHECK(sample::bytes_of(restored.quarantined) == bytes);
   CHECK(list_sessions(db).size() == (newest_is_good ? 2 : 1));
   CHECK(sample::session(db, 1).size() == 36);
+}
+
+namespace {
+
+struct stat status_of(const std::string& path) {
+  struct stat status {};
+  REQUIRE(::stat(path.c_str(), &status) == 0);
+  return status;
+}
+
+}  // namespace
+
+TEST_CASE("what root makes in the station's folder is the station's, and a copy no more readable",
+          "[store]") {
+  if (::geteuid() != 0) return;  // only root can make files of others
+  TemporaryFolder folder;
+  const auto home = folder / "home", db = home + "/a.sqlite", dir = folder / "backups";
+  constexpr uid_t kStation = 65533;
+  std::filesystem::create_directory(home);
+  REQUIRE(::chown(home.c_str(), kStation, kStation) == 0);
+  const auto is_stations = [&](const std::string& path) {
+    CAPTURE(path);
+    CHECK(status_of(path).st_uid == kStation);
+    CHECK(status_of(path).st_gid == kStation);
+  };
+  sample::session(db, 4);
+  is_stations(db);
+  is_stations(db + ".lock");
+  std::filesystem::permissions(db, std::filesystem::perms(0640));
+  const auto copy = backup(db, {dir, 9});
+  CHECK((status_of(copy.path).st_mode & 0777) == 0640);
+  CHECK(status_of(copy.path).st_uid == 0);  // of the folder for backups
+  std::filesystem::remove(db + ".lock");
+  std::filesystem::resize_file(db, 6000);
+  restore_backup(db, dir);
+  is_stations(db);
+  is_stations(db + ".lock");
+  CHECK((status_of(db).st_mode & 0777) == 0640);
+}
+
+TEST_CASE("a link in the place of the lock is not followed", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", target = folder / "target";
+  std::ofstream(target) << "precious";
+  std::filesystem::create_symlink(target, db + ".lock");
+  CHECK(sample::failure([&] { sample::session(db, 1); }).first == Fault::io);
+  CHECK(sample::bytes_of(target) == "precious");
 }
 
 TEST_CASE("without a good backup nothing is moved", "[store]") {
