@@ -9,8 +9,10 @@ namespace turnpoint::panel {
 std::vector<std::string> chip_paths() {
   std::vector<std::string> paths;
   std::error_code ignored;
+  // Not links: Raspberry Pi OS has a second name for a chip, and each of its lines would be there twice.
   for (const auto& entry : std::filesystem::directory_iterator("/dev", ignored))
-    if (entry.path().filename().string().starts_with("gpiochip")) paths.push_back(entry.path().string());
+    if (entry.path().filename().string().starts_with("gpiochip") && !entry.is_symlink(ignored))
+      paths.push_back(entry.path().string());
   std::sort(paths.begin(), paths.end(), [](const std::string& a, const std::string& b) {
     return a.size() != b.size() ? a.size() < b.size() : a < b;
   });

@@ -2,6 +2,7 @@
 # suite: core
 # timeout: 240
 gpio_sim AMP_EN AMP_FAULT STOP AMP_HB
+ln -s "${GPIO_DEVICE##*/}" /dev/gpiochip99    # a second name of the chip, as Raspberry Pi OS has it
 for line in AMP_EN AMP_FAULT STOP AMP_HB; do pull $line down; done
 station_lines amplifier gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB >station.txt & station=$!
 eventually 10 has station.txt ready
