@@ -1,5 +1,4 @@
 #pragma once
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -42,12 +41,8 @@ std::vector<SweepStep> sweep_plan(const rig::Rig& rig, const SweepOptions& optio
 /// Columns transducer, frequency_Hz, full_scale, start_s, length_s.
 std::string to_csv(const std::vector<SweepStep>& steps);
 
-/// Renders or plays the sweep; `uri` as in a rig's [output]. On a real converter the amplifier is the
-/// operator's: it is armed here only where `arm` is given, asked once before the first tone; enabled for the
-/// sweep, and disarmed after it. Returns how many seconds the sweep took. Throws as drive::open_output, and
-/// std::runtime_error for an amplifier that cannot be armed, a fault on the way, or a signal to end: what
-/// sounds is then ramped down, and the amplifier off after it.
-double play_sweep(const rig::Rig& rig, const std::vector<SweepStep>& steps, const std::string& uri,
-                  const std::function<bool()>& arm);
+/// Renders the sweep at once; where `uri` (as in a rig's [output]) is a converter, plays it by play_armed,
+/// which is the operator's to ask for.
+void play_sweep(const rig::Rig& rig, const std::vector<SweepStep>& steps, const std::string& uri);
 
 }  // namespace turnpoint::app

@@ -97,13 +97,12 @@ void sweep(const Options& options, const rig::Rig& rig, Context& context) {
     context.out << app::to_csv(steps);
     return;
   }
-  const auto arm = [&] {
-    if (!options.arm)
-      fmt::print(context.err, "The amplifier is off. With the surface clear, --arm lets the sweep arm it.\n");
-    return options.arm;
-  };
-  const double took_s = app::play_sweep(rig, steps, options.sweep_out, arm);
-  fmt::print(context.err, "{} tones, {} s, to {}\n", steps.size(), number(took_s, 4), options.sweep_out);
+  if (options.sweep_out.starts_with("alsa:") && !options.arm)
+    throw UsageError("calibrate: --sweep-out " + options.sweep_out +
+                     " plays on the amplifier; with the surface clear, give --arm");
+  app::play_sweep(rig, steps, options.sweep_out);
+  const double length_s = steps.back().start_s + steps.back().length_s;
+  fmt::print(context.err, "{} tones, {} s, to {}\n", steps.size(), number(length_s, 4), options.sweep_out);
 }
 
 Json delay_json(const std::optional<calibration::Delay>& delay) {

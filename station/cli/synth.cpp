@@ -5,6 +5,7 @@
 #include <memory>
 #include <numbers>
 
+#include "station/app/play_armed.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/tones.hpp"
@@ -22,6 +23,7 @@ struct Options {
   std::string rig, out;
   std::vector<std::string> tones;
   double seconds = 1, ramp_ms = 50;
+  bool arm = false;
 };
 
 drive::Burst burst_for(const rig::Rig& rig, const Options& options) {
@@ -67,11 +69,26 @@ Json to_json(const drive::PlayReport& report, const Options& options) {
             {"device_losses", c.device_losses}}}};
 }
 
+/// Without `--arm` the amplifier is left alone: off, as it is without a station.
+drive::PlayReport play(const rig::Rig& rig, const Options& options) {
+  const auto burst = burst_for(rig, options);
+  if (!options.arm) {
+    auto config = session::stream_of(rig);
+    config.output.uri = options.out;
+    return drive::play(config, burst);
+  }
+  if (!options.out.starts_with("alsa:"))
+    throw UsageError("synth: --arm with --out " + options.out +
+                     "; only alsa:NAME has an amplifier behind it");
+  if (options.seconds > rig.limits.continuous_s)
+    throw UsageError(fmt::format("synth: --arm for {} s; the rig allows {} s without a pause",
+                                 text::number(options.seconds), text::number(rig.limits.continuous_s)));
+  return app::play_armed(rig, options.out, {burst});
+}
+
 void synth(const Options& options, Context& context) {
   const auto rig = rig::load(options.rig);
-  auto config = session::stream_of(rig);
-  config.output.uri = options.out;
-  const auto report = drive::play(config, burst_for(rig, options));
+  const auto report = play(rig, options);
   if (context.json) {
     context.out << to_json(report, options).dump(2) << "\n";
     return;
@@ -96,6 +113,9 @@ void add_synth(CLI::App& app, Context& context) {
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command->add_option("--out", options->out, "null: | wav:FILE | alsa:NAME")->required();
+  command->add_flag(
+      "--arm", options->arm,
+      "With --out alsa:...: the operator arms the rig's amplifier by this, for as long as it plays");
   add_json(*command, context);
   command->footer(
       "Example: turnpoint synth --rig deploy/rigs/simulated.toml --tone 30000:0.5 --seconds 2 --out "

@@ -1,0 +1,92 @@
+#include "station/app/play_armed.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <stdexcept>
+
+#include "station/app/stop_signals.hpp"
+#include "station/drive/monotonic.hpp"
+#include "station/drive/prepared_burst.hpp"
+#include "station/panel/amplifier.hpp"
+#include "station/session/stage.hpp"
+
+namespace turnpoint::app {
+
+namespace {
+
+constexpr double kLead_s = 0.5, kMargin_s = 0.25;
+constexpr std::int64_t kPoll_ns = 5'000'000;
+constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // by which the audio thread proves its life
+
+/// The stream while the guard sees that somebody lives; throws what went wrong, also a signal to end.
+void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::function<bool()>& done) {
+  while (!done()) {
+    amplifier.session_alive();
+    while (const auto event = stream.poll()) {
+      using Kind = drive::EventKind;
+      if (event->kind == Kind::underrun || event->kind == Kind::device_lost ||
+          event->kind == Kind::burst_missed)
+        throw std::runtime_error("the converter lost frames or is gone; begin again");
+    }
+    if (amplifier.state() == drive::AmplifierState::faulted) throw std::runtime_error(amplifier.fault());
+    if (const auto signal = StopSignals::told(); !signal.empty())
+      throw std::runtime_error("the program was told to end (" + signal + "); not all was played");
+    drive::sleep_until_ns(drive::monotonic_ns() + kPoll_ns);
+  }
+}
+
+/// Returns the frame of the first onset.
+std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier,
+                  const std::vector<drive::Burst>& bursts) {
+  const int rate_Hz = stream.config().output.rate_Hz;
+  const auto begin = stream.earliest_frame() + std::llround(kLead_s * rate_Hz);
+  const auto margin = std::llround(kMargin_s * rate_Hz);
+  auto end = begin;
+  for (auto burst : bursts) {
+    burst.start_frame += begin;
+    // By what is rendered, which a device with a long buffer is far ahead of what is heard.
+    attend(stream, amplifier, [&] { return stream.earliest_frame() + margin >= burst.start_frame; });
+    stream.schedule(burst);
+    end = burst.start_frame + burst.length_frames;
+  }
+  attend(stream, amplifier, [&] { return drive::monotonic_ns() >= stream.time_of(end); });
+  return begin;
+}
+
+double largest_peak(const std::vector<drive::Burst>& bursts, const drive::StreamConfig& config) {
+  double peak = 0;
+  for (const auto& burst : bursts)
+    for (const double channel : drive::prepare(burst, format_of(config.output), config.limits).peak)
+      peak = std::max(peak, channel);
+  return peak;
+}
+
+}  // namespace
+
+drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
+                             const std::vector<drive::Burst>& bursts) {
+  auto config = session::stream_of(rig);
+  config.output.uri = uri;
+  drive::PlayReport report;
+  report.peak = largest_peak(bursts, config);
+  const auto amplifier = panel::open_amplifier(rig.amplifier_uri);  // outlives the stream
+  config.amplifier = amplifier.get();
+  StopSignals signals;
+  signals.take_over();
+  const auto stream = drive::open_realtime(config);  // on its way out it ramps down what sounds
+  attend(*stream, *amplifier,
+         [until_ns = drive::monotonic_ns() + kFirstBlocks_ns] { return drive::monotonic_ns() >= until_ns; });
+  amplifier->arm();
+  amplifier->enable();
+  report.onset_frame = play(*stream, *amplifier, bursts);
+  amplifier->disarm();
+  report.counters = stream->counters();
+  report.rights = stream->rights();
+  report.clock = stream->clock();
+  report.rate = stream->measured_rate();
+  return report;
+}
+
+}  // namespace turnpoint::app
