@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "station/app/places.hpp"
 #include "station/drive/engine.hpp"
 #include "station/drive/monotonic.hpp"
 
@@ -75,6 +76,15 @@ void converter(const rig::Rig& rig, std::vector<Check>& checks) {
   }
 }
 
+// A rig file begins with a simulated panel: easily forgotten beside a real converter.
+Check touch(const rig::Rig& rig) {
+  auto check = panel::check_touch("touch", *rig.touch_uri);
+  if (check.status == Status::ok && *rig.touch_uri == "sim:" && rig.output.uri.starts_with("alsa:"))
+    return {"touch", Status::warning, "simulated: answers by touch have no kernel time",
+            "[touch] uri = \"evdev:NAME\", the panel's name in /proc/bus/input/devices"};
+  return check;
+}
+
 void rights(std::vector<Check>& checks) {
   rlimit priority{}, memory{};
   ::getrlimit(RLIMIT_RTPRIO, &priority);
@@ -95,8 +105,7 @@ void rights(std::vector<Check>& checks) {
 void display(std::vector<Check>& checks) {
   std::error_code ignored;
   const bool session = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
-  const bool direct =
-      std::filesystem::exists("/dev/dri/card0", ignored) || std::filesystem::exists("/dev/fb0", ignored);
+  const bool direct = !screen_card().empty() || std::filesystem::exists("/dev/fb0", ignored);
   checks.push_back(
       {"display", session || direct ? Status::ok : Status::warning,
        session  ? "a desktop session"
@@ -156,7 +165,7 @@ std::vector<Check> examine(const rig::Rig& rig, const std::string& data_path) {
     checks.push_back(panel::check_touch("contact", *rig.contact_uri));
   else if (rig.contact_uri)
     lines("contact", *rig.contact_uri);
-  if (rig.touch_uri) checks.push_back(panel::check_touch("touch", *rig.touch_uri));
+  if (rig.touch_uri) checks.push_back(touch(rig));
   display(checks);
   rights(checks);
   disk(data_path, checks);

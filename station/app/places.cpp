@@ -29,4 +29,18 @@ std::string rig_or_default(const std::string& named, std::ostream& messages) {
   throw text::BadInput({{{}, "no rig: none was named and none is installed", "give --rig FILE"}});
 }
 
+std::string screen_card(const std::string& drm) {
+  std::string first;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(drm, ignored)) {
+    const auto connector = entry.path().filename().string();  // card1-HDMI-A-1
+    const auto dash = connector.find('-');
+    if (dash == std::string::npos || !connector.starts_with("card")) continue;
+    const auto card = "/dev/dri/" + connector.substr(0, dash);
+    if (first.empty() || card.size() < first.size() || (card.size() == first.size() && card < first))
+      first = card;
+  }
+  return first;
+}
+
 }  // namespace turnpoint::app

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "station/app/doctor.hpp"
+#include "station/app/places.hpp"
+#include "station/app/station_request.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 
@@ -24,7 +27,7 @@ const char* word(app::Check::Status status) {
 }
 
 void doctor(const std::string& rig_path, const std::string& data_path, Context& context) {
-  const auto rig = rig::load(rig_path);
+  const auto rig = rig::load(app::rig_or_default(rig_path, context.err));
   const auto checks = app::examine(rig, data_path);
   Json list = Json::array();
   for (const auto& check : checks) {
@@ -45,9 +48,10 @@ void add_doctor(CLI::App& app, Context& context) {
   auto* command = app.add_subcommand(
       "doctor", "Check the hardware that a rig names; exit status 1 where something is wrong");
   auto rig = std::make_shared<std::string>();
-  auto data = std::make_shared<std::string>(".");
-  command->add_option("--rig", *rig, "Rig file")->required();
-  command->add_option("--data", *data, "Where databases go (default: here)");
+  auto data =
+      std::make_shared<std::string>(std::filesystem::path(app::default_database()).parent_path().string());
+  command->add_option("--rig", *rig, "Rig file; otherwise the installed one, else the simulated one");
+  command->add_option("--data", *data, "Folder that databases go to")->capture_default_str();
   add_json(*command, context);
   command->footer("Example: turnpoint doctor --rig deploy/rigs/raspberry-pi-aluminium.toml");
   command->callback([rig, data, &context] { doctor(*rig, *data, context); });

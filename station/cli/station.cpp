@@ -18,8 +18,13 @@ void add_station(CLI::App& app, Context& context) {
       ->add_option("--operator-code", request->operator_code,
                    "Digits that open the operator's pages, arming and the report on the participant's screen")
       ->capture_default_str();
+  command->add_flag(
+      "--locked", request->locked,
+      "Ask for the code before the first page too: where a participant may stand at the screen");
   command->footer("Example: turnpoint station --db lab.sqlite");
   command->callback([request, &context] {
+    if (request->locked && request->operator_code.empty())
+      throw UsageError("station: --locked without an operator's code; give --operator-code DIGITS");
     if (!context.screens) return become_ui(context);
     request->rig = app::rig_or_default(request->rig, context.err);
     if (request->protocols.empty()) request->protocols = app::shipped("protocols");

@@ -12,13 +12,15 @@ Window {
     required property ReportModel report
     property OperatorController operating: null
     property string operatorCode: ""
+    /// The operator's page stays shut until somebody has typed the code.
+    property bool locked: false
     required property real pixelsPerMm
     property bool leftHanded: false
     readonly property bool asking: start.stage === StartController.Language || start.stage === StartController.Consent
                                    || start.stage === StartController.Code
 
     /// What somebody who knows the operator's code may do on the participant's screen: "view" the running session,
-    /// "arm" the amplifier, read the "report", "leave" for the operator's page. Without a code there is no view.
+    /// "arm" the amplifier, read the "report", "leave" for the operator's page, "unlock" it. Without a code there is no view.
     property string wish
     function ask(what: string) {
         wish = what
@@ -30,6 +32,7 @@ Window {
         if (wish === "report" && report.ready) reportPage.wanted = true
         else if (wish === "report") participant.counting = true
         if (wish === "leave") start.close()
+        if (wish === "unlock") locked = false
         if (wish !== "view") return
         // The operator's view would cover a trial: a pause ends it first, and it comes again.
         if (participant.inTrial) bridge.pause()
@@ -45,6 +48,7 @@ Window {
     property bool begun: false
     readonly property ParticipantView participant: session.item as ParticipantView
     onFrameSwapped: begun = true
+    Component.onCompleted: if (locked) ask("unlock")
 
     width: 1280
     height: 800
@@ -129,6 +133,7 @@ Window {
         visible: false
         theme: theme
         code: root.operatorCode
+        last: root.locked
         onAbandoned: visible = false
         onPassed: {
             visible = false
@@ -171,7 +176,7 @@ Window {
     }
     Loader {
         anchors.fill: parent
-        active: root.operating !== null && root.start.stage === StartController.Operator
+        active: root.operating !== null && root.start.stage === StartController.Operator && !root.locked
         sourceComponent: OperatorPage {
             objectName: "operatorPage"
             operating: root.operating

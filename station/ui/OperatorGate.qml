@@ -6,6 +6,8 @@ Rectangle {
     id: root
     required property Theme theme
     required property string code
+    /// There is nothing behind it to go back to.
+    property bool last: false
     property string typed
     readonly property var keys: ["1", "2", "3", "4", "5", "6", "7", "8", "9", "", "0", "⌫"]
     signal passed()
@@ -53,6 +55,8 @@ Rectangle {
         }
         ActionButton {
             objectName: "gateLeave"
+            opacity: root.last ? 0 : 1
+            enabled: !root.last
             anchors.horizontalCenter: parent.horizontalCenter
             theme: root.theme
             primary: false

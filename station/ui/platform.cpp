@@ -1,35 +1,55 @@
 #include "station/ui/platform.hpp"
 
+#include <QTemporaryFile>
+
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
+#include <string>
 
+#include "station/app/places.hpp"
 #include "station/ui/screen.hpp"
 
 namespace turnpoint::ui {
 
 namespace {
 
-void choose_platform() {
+/// eglfs takes the first card, which may have no connector; the file tells it which one has. Nothing where
+/// somebody has said it already.
+std::unique_ptr<QTemporaryFile> eglfs_config(const std::string& card) {
+  if (qEnvironmentVariableIsSet("QT_QPA_EGLFS_KMS_CONFIG")) return nullptr;
+  auto file = std::make_unique<QTemporaryFile>();
+  if (!file->open())
+    throw std::runtime_error("screen: a temporary file: " + file->errorString().toStdString());
+  file->write(QByteArray("{\"device\": \"") + card.c_str() + "\"}\n");
+  file->close();
+  qputenv("QT_QPA_EGLFS_KMS_CONFIG", file->fileName().toUtf8());
+  return file;
+}
+
+/// Returns what the platform reads while it starts.
+std::unique_ptr<QTemporaryFile> choose_platform() {
   if (qEnvironmentVariableIsSet("QT_QPA_PLATFORM") || qEnvironmentVariableIsSet("DISPLAY") ||
       qEnvironmentVariableIsSet("WAYLAND_DISPLAY"))
-    return;
-  if (std::filesystem::exists("/dev/dri/card0")) {
+    return nullptr;
+  if (const auto card = app::screen_card(); !card.empty()) {
     qputenv("QT_QPA_PLATFORM", "eglfs");
-  } else if (std::filesystem::exists("/dev/fb0")) {
-    qputenv("QT_QPA_PLATFORM", "linuxfb");
-    qputenv("QT_QUICK_BACKEND", "software");
-  } else {
-    throw std::invalid_argument(
-        "no screen: neither DISPLAY, WAYLAND_DISPLAY, /dev/dri/card0 nor /dev/fb0 is there; give --headless "
-        "--observer sim, or --buttons-only (turnpoint preview: --out DIR)");
+    return eglfs_config(card);
   }
+  if (!std::filesystem::exists("/dev/fb0"))
+    throw std::invalid_argument(
+        "no screen: no DISPLAY, no WAYLAND_DISPLAY, no graphics card with a connector and no /dev/fb0; give "
+        "--headless --observer sim, or --buttons-only (turnpoint preview: --out DIR)");
+  qputenv("QT_QPA_PLATFORM", "linuxfb");
+  qputenv("QT_QUICK_BACKEND", "software");
+  return nullptr;
 }
 
 }  // namespace
 
 Application::Application() {
-  choose_platform();
+  const auto read_at_start = choose_platform();
   qputenv("QT_QPA_NO_SIGNAL_HANDLER", "1");  // the stop signals are ours, see there
   application_ = std::make_unique<QGuiApplication>(argc_, argv_);
   set_fonts();

@@ -50,9 +50,8 @@ bool is_known(const std::string& database, const QString& code) {
 
 }  // namespace
 
-StationWindow::StationWindow(const Place& place, OperatorController* operating, const std::string& database,
-                             const std::string& operator_code)
-    : operating_(operating), start_([database](const QString& code) { return is_known(database, code); }) {
+StationWindow::StationWindow(const Place& place, const Operator& allowed, const std::string& database)
+    : operating_(allowed.page), start_([database](const QString& code) { return is_known(database, code); }) {
   connect(&start_, &StartController::ready, this, &StationWindow::begin);
   connect(&start_, &StartController::closed, this, &StationWindow::close);
   if (operating_ != nullptr) connect(operating_, &OperatorController::chosen, this, &StationWindow::ask);
@@ -62,7 +61,8 @@ StationWindow::StationWindow(const Place& place, OperatorController* operating, 
                         {"live", QVariant::fromValue(&runner_.live())},
                         {"report", QVariant::fromValue(&runner_.report())},
                         {"operating", QVariant::fromValue(operating_)},
-                        {"operatorCode", QString::fromStdString(operator_code)},
+                        {"operatorCode", QString::fromStdString(allowed.code)},
+                        {"locked", allowed.locked},
                         {"pixelsPerMm", place.pixels_per_mm},
                         {"width", place.size.width()},
                         {"height", place.size.height()}});

@@ -24,10 +24,13 @@ class StationWindow : public QObject {
     bool bare_panel = false;  ///< the window fills the screen
   };
 
-  /// `operating` (null: no operator's page) must outlive this. `operator_code` opens the operator's view from
-  /// the participant's pages; "" keeps it shut.
-  StationWindow(const Place& place, OperatorController* operating, const std::string& database,
-                const std::string& operator_code);
+  struct Operator {
+    OperatorController* page = nullptr;  ///< must outlive the window; null: no operator's page
+    std::string code;     ///< opens the operator's view from the participant's pages; "" keeps it shut
+    bool locked = false;  ///< the operator's page stands behind the code from the beginning on
+  };
+
+  StationWindow(const Place& place, const Operator& allowed, const std::string& database);
 
   /// Asks the participant what is open, then runs the session.
   void ask(const ChosenSession& chosen);

@@ -46,12 +46,17 @@ void StationRoom::open(const QString& code) {
   reopen(code);
 }
 
-void StationRoom::reopen(const QString& code) {
+void StationRoom::reopen(const QString& code) { start({code.toStdString(), false}); }
+
+void StationRoom::reopenLocked(const QString& code) { start({code.toStdString(), true}); }
+
+void StationRoom::start(const Lock& lock) {
   close();
   operating_ = std::make_unique<OperatorController>(
-      app::StationRequest{path("protocols"), path("rig.toml"), path("lab.sqlite"), code.toStdString()});
-  station_ = std::make_unique<StationWindow>(StationWindow::Place{5.9, QSize(1280, 800), false},
-                                             operating_.get(), path("lab.sqlite"), code.toStdString());
+      app::StationRequest{path("protocols"), path("rig.toml"), path("lab.sqlite"), lock.code, lock.locked});
+  station_ = std::make_unique<StationWindow>(
+      StationWindow::Place{5.9, QSize(1280, 800), false},
+      StationWindow::Operator{operating_.get(), lock.code, lock.locked}, path("lab.sqlite"));
   emit opened();
 }
 

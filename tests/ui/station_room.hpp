@@ -37,6 +37,8 @@ class StationRoom : public QObject {
   Q_INVOKABLE void open(const QString& code);
   /// Leaves it and starts it again on what is in the folder.
   Q_INVOKABLE void reopen(const QString& code);
+  /// The same, locked.
+  Q_INVOKABLE void reopenLocked(const QString& code);
   Q_INVOKABLE void close();
   Q_INVOKABLE void addSecondScreen();
 
@@ -69,6 +71,11 @@ class StationRoom : public QObject {
   void opened();
 
  private:
+  struct Lock {
+    std::string code;
+    bool locked = false;
+  };
+  void start(const Lock& lock);
   QStringList read(const std::string& database, const QString& file, const QString& name,
                    const QString& where, const QString& is) const;
   std::string path(const QString& name) const { return folder_->filePath(name).toStdString(); }

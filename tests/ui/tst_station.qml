@@ -312,6 +312,21 @@ Item {
             appears("operatorPage")
         }
 
+        function test_a_locked_station_begins_behind_the_code() {
+            room.open("2468")
+            room.reopenLocked("2468")
+            appears("gate")
+            verify(!shown("operatorPage"))
+            compare(find(room.screen, "gateLeave").enabled, false)   // there is nothing to go back to
+            type("1357")
+            verify(shown("gate") && !shown("operatorPage"))
+            type("2468")
+            appears("operatorPage")
+            verify(!shown("gate"))
+            begin("T8")                                              // and from then on as ever
+            tryCompare(page, "kind", PageModel.Instructions, 20000)
+        }
+
         function test_without_a_code_nothing_opens_the_operators_view() {
             room.open("")
             begin("T5")

@@ -4,11 +4,15 @@
 state() { systemctl show -P "$1" turnpoint; }
 journal() { journalctl -u turnpoint --no-pager; }
 panel_begin
+# As on a board whose first graphics card only draws: the screen is at the second.
+modprobe vgem
+eventually 5 test -e /dev/dri/card0
 screen_begin
+[ -e /sys/class/drm/card1-Virtual-1 ] || fail "not at the second card: $(ls /sys/class/drm)"
 # As it is installed: eglfs on the kernel's mode setting, drawn by software for want of a GPU.
 systemctl start turnpoint || { journal | tail -30; fail "the unit did not get ready on eglfs"; }
 mount -t debugfs debugfs /sys/kernel/debug
-sed -n '/^plane/,/^crtc/p' /sys/kernel/debug/dri/0/state >shown.txt
+sed -n '/^plane/,/^crtc/p' /sys/kernel/debug/dri/1/state >shown.txt
 { has shown.txt "allocated by = QSGRenderThread" && has shown.txt "size=800x480"; } || fail "not on the screen: $(cat shown.txt)"
 [ "$(state ActiveState)/$(state SubState)" = active/running ] || fail "it is $(state ActiveState)"
 first=$(state MainPID)

@@ -32,12 +32,14 @@ operator_code() { eventually 10 shows 397 75; sleep 0.3; tap 397 107; tap 280 18
 asked() { shows 397 75 || { tap 536 400; sleep 0.5; return 1; }; }   # a tap before the page could be read does nothing
 arm() { eventually 15 asked; operator_code; hold 536 400; }
 carry_on() { sleep 0.7; tap 535 395; }
+# The start page stands behind the code.
+start_page() { shows 25 430; }
+unlock() { eventually 30 shows 397 75; ! start_page || fail "the start page stands open"; operator_code; eventually 10 start_page; }
 
 systemctl start turnpoint
 first=$(systemctl show -P MainPID turnpoint)
+unlock
 record 110 heard0.raw; recorder=$!
-start_page() { shows 25 430; }
-eventually 20 start_page
 tap 150 215                       # demo
 tap 303 392                       # "enter it now"
 sleep 0.5; screenshot code
@@ -73,7 +75,7 @@ eventually 10 stored 4
 kill $recorder 2>/dev/null || true; wait $recorder || true
 echo snd_aloop.0 >/sys/bus/platform/drivers/snd_aloop/bind
 eventually 5 test -e /dev/snd/pcmC0D1c
-record 110 heard1.raw; recorder=$!
+record 140 heard1.raw; recorder=$!
 sleep 1
 off || fail "it armed itself"
 arm; screenshot dac_back
@@ -100,7 +102,7 @@ say "the station hangs in a stimulus: the watchdog ends it, and it starts unarme
 stimulus lost
 kill -STOP "$first"
 eventually 15 off
-eventually 30 start_page
+unlock
 journalctl -u turnpoint --no-pager | grep -i "watchdog timeout" || fail "it was not the watchdog: $(journalctl -u turnpoint --no-pager | tail -5)"
 sleep 0.5; screenshot interrupted
 tap 738 83
@@ -114,7 +116,8 @@ say "it is killed in a stimulus"
 stimulus lost
 systemctl kill -s KILL turnpoint
 eventually 1 off
-eventually 30 start_page
+unlock
+sleep 0.5
 hold 385 443
 tap 738 83
 goes_on

@@ -1,0 +1,46 @@
+#include "tests/support/catch.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace {
+
+constexpr int kPatience_ms = 20000;
+const std::string kRig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
+
+/// What the program says to this command line, and how it ends.
+void check_refused(std::vector<std::string> arguments, const std::string& why) {
+  arguments.insert(arguments.begin(), TURNPOINT);
+  Child child(arguments);
+  REQUIRE(child.ends_within(kPatience_ms));
+  CAPTURE(child.said());
+  CHECK(child.outcome() == 2);
+  CHECK(child.said().find(why) != std::string::npos);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "nothing plays on the amplifier that the operator has not armed, nor for longer than the rig allows",
+    "[cli]") {
+  check_refused({"synth", "--rig", kRig, "--tone", "30000", "--seconds", "2", "--out", "null:", "--arm"},
+                "synth: --arm with --out null:; only alsa:NAME has an amplifier behind it");
+  check_refused({"synth", "--rig", kRig, "--tone", "30000", "--seconds", "31", "--out", "alsa:hw:9", "--arm"},
+                "synth: --arm for 31 s; the rig allows 30 s without a pause");
+  check_refused(
+      {"calibrate", "--rig", kRig, "--sweep", "--sweep-out", "alsa:hw:9"},
+      "calibrate: --sweep-out alsa:hw:9 plays on the amplifier; with the surface clear, give --arm");
+}
+
+TEST_CASE("a station is not locked without a code that opens it", "[cli]") {
+  check_refused({"station", "--locked", "--operator-code", ""},
+                "station: --locked without an operator's code; give --operator-code DIGITS");
+}
+
+TEST_CASE("the doctor takes the rig that the other commands take", "[cli]") {
+  const TemporaryFolder folder;
+  Child child({TURNPOINT, "doctor"}, {"XDG_DATA_HOME=" + (folder / "data")});
+  REQUIRE(child.ends_within(kPatience_ms));
+  CAPTURE(child.said());
+  CHECK(child.said().find(" (no --rig was given)") != std::string::npos);
+  CHECK(child.said().find("MiB free in " + folder.path) != std::string::npos);
+}
