@@ -34,7 +34,12 @@ arm() { eventually 15 asked; operator_code; hold 536 400; }
 carry_on() { sleep 0.7; tap 535 395; }
 # The start page stands behind the code.
 start_page() { shows 25 430; }
-unlock() { eventually 30 shows 397 75; ! start_page || fail "the start page stands open"; operator_code; eventually 10 start_page; }
+unlock() {
+  eventually 30 shows 397 75
+  ! start_page || fail "the start page stands open"
+  sleep 1; operator_code   # the pages behind it are being made
+  eventually 10 start_page
+}
 
 systemctl start turnpoint
 first=$(systemctl show -P MainPID turnpoint)
