@@ -28,16 +28,17 @@ stimulus() { eventually 30 answers_open; eventually 5 on; sleep 0.8; echo "$1" >
 by_touch() { stimulus stored; touch_do tap 200 370; eventually 5 off; eventually 10 stored "$1"; }
 by_button() { stimulus stored; gpio_line press "$(pull_file BTN_R)" 50 >/dev/null; eventually 5 off; eventually 10 stored "$1"; }
 # By the operator: "for the experimenter", the code, and the long press that arms.
-operator_code() { eventually 10 shows 397 75; sleep 0.3; tap 397 107; tap 280 188; tap 519 188; tap 397 269; }
-asked() { shows 397 75 || { tap 536 400; sleep 0.5; return 1; }; }   # a tap before the page could be read does nothing
+keypad() { shows 280 75 && shows 397 75; }
+operator_code() { eventually 10 keypad; sleep 0.3; tap 397 107; tap 280 188; tap 519 188; tap 397 269; }
+asked() { keypad || { tap 536 400; sleep 0.5; return 1; }; }   # a tap before the page could be read does nothing
 arm() { eventually 15 asked; operator_code; hold 536 400; }
 carry_on() { sleep 0.7; tap 535 395; }
 # The start page stands behind the code.
 start_page() { shows 25 430; }
 unlock() {
-  eventually 30 shows 397 75
+  eventually 30 keypad
   ! start_page || fail "the start page stands open"
-  sleep 1; operator_code   # the pages behind it are being made
+  operator_code
   eventually 10 start_page
 }
 
