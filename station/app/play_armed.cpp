@@ -16,7 +16,7 @@ namespace turnpoint::app {
 
 namespace {
 
-constexpr double kLead_s = 0.5, kMargin_s = 0.25;
+constexpr double kLead_s = 0.5, kMargin_s = 0.5;
 constexpr std::int64_t kPoll_ns = 5'000'000;
 constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // by which the audio thread proves its life
 
@@ -41,18 +41,22 @@ void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::funct
 std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier,
                   const std::vector<drive::Burst>& bursts) {
   const int rate_Hz = stream.config().output.rate_Hz;
-  const auto begin = stream.earliest_frame() + std::llround(kLead_s * rate_Hz);
   const auto margin = std::llround(kMargin_s * rate_Hz);
-  auto end = begin;
-  for (auto burst : bursts) {
-    burst.start_frame += begin;
+  auto first = bursts.at(0);
+  first.start_frame = stream.earliest_frame() + std::llround(kLead_s * rate_Hz);
+  // However long the first one took to check, the others follow at their distance.
+  const auto onset = stream.schedule_soon(first).start_frame;
+  auto end = onset + first.length_frames;
+  for (std::size_t k = 1; k < bursts.size(); ++k) {
+    auto burst = bursts[k];
+    burst.start_frame += onset - bursts[0].start_frame;
     // By what is rendered, which a device with a long buffer is far ahead of what is heard.
     attend(stream, amplifier, [&] { return stream.earliest_frame() + margin >= burst.start_frame; });
     stream.schedule(burst);
     end = burst.start_frame + burst.length_frames;
   }
   attend(stream, amplifier, [&] { return drive::monotonic_ns() >= stream.time_of(end); });
-  return begin;
+  return onset;
 }
 
 double largest_peak(const std::vector<drive::Burst>& bursts, const drive::StreamConfig& config) {

@@ -66,6 +66,12 @@ struct StreamConfig {
   Amplifier* amplifier = nullptr;
 };
 
+/// A burst that was accepted, and the frame at which it begins.
+struct Scheduled {
+  std::uint32_t burst = 0;
+  std::int64_t start_frame = 0;
+};
+
 /// A stream that runs on silence and plays bursts at absolute frames. All functions are for one control
 /// thread; none of them blocks on the audio thread. Frames count from 0 at the opening, through underruns and
 /// reopenings.
@@ -76,6 +82,9 @@ class Stream {
   /// Checks and sends a burst; returns its number (from 1). Throws BurstRefused (limits, sum of overlapping
   /// peaks, start frame already gone, too many waiting).
   virtual std::uint32_t schedule(const Burst& burst) = 0;
+  /// The same at the soonest frame that it is sure to reach once it is checked, which can take longer than a
+  /// buffer lasts (see prepare); not before its own start frame.
+  virtual Scheduled schedule_soon(const Burst& burst) = 0;
   /// Changes a burst that waits or sounds; `at_frame` counts from its start. Throws BurstRefused.
   virtual void change(std::uint32_t burst, const Change& change) = 0;
   /// Ramps one burst (0: all) down as soon as possible, or from an absolute frame. Throws std::runtime_error

@@ -32,19 +32,30 @@ void EngineCore::check_room(const PreparedBurst& burst) const {
                       c, sum[c], config_.limits.peak));
 }
 
-std::uint32_t EngineCore::schedule(const Burst& burst, std::int64_t earliest_frame) {
+std::uint32_t EngineCore::schedule(const Burst& burst, const Earliest& earliest_frame) {
   gather();
-  if (burst.start_frame < earliest_frame)
-    throw BurstRefused(
-        fmt::format("burst refused: frame {} is gone; the soonest is {}", burst.start_frame, earliest_frame));
   PreparedBurst prepared = prepare(burst, format_of(config_.output), config_.limits);
-  check_room(prepared);
-  prepared.id = ++last_id_;
+  if (const auto earliest = earliest_frame(); burst.start_frame < earliest)
+    throw BurstRefused(
+        fmt::format("burst refused: frame {} is gone; the soonest is {}", burst.start_frame, earliest));
+  return start(prepared);
+}
+
+Scheduled EngineCore::schedule_soon(const Burst& burst, const Earliest& earliest_frame) {
+  gather();
+  PreparedBurst prepared = prepare(burst, format_of(config_.output), config_.limits);
+  prepared.start_frame = std::max(prepared.start_frame, earliest_frame());
+  return {start(prepared), prepared.start_frame};
+}
+
+std::uint32_t EngineCore::start(PreparedBurst& burst) {
+  check_room(burst);
+  burst.id = ++last_id_;
   outgoing_->kind = CommandKind::start;
-  outgoing_->start = prepared;
+  outgoing_->start = burst;
   send(*outgoing_);
-  open_.push_back(prepared);
-  return prepared.id;
+  open_.push_back(burst);
+  return burst.id;
 }
 
 void EngineCore::change(std::uint32_t burst, const Change& change) {

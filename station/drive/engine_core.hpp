@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <deque>
+#include <functional>
 #include <vector>
 
 #include "station/drive/engine.hpp"
@@ -14,7 +15,10 @@ class EngineCore {
  public:
   explicit EngineCore(const StreamConfig& config);
 
-  std::uint32_t schedule(const Burst& burst, std::int64_t earliest_frame);
+  /// The soonest frame that can be reached, asked once the burst is checked.
+  using Earliest = std::function<std::int64_t()>;
+  std::uint32_t schedule(const Burst& burst, const Earliest& earliest_frame);
+  Scheduled schedule_soon(const Burst& burst, const Earliest& earliest_frame);
   void change(std::uint32_t burst, const Change& change);
   void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame);
   std::optional<Event> poll();
@@ -47,6 +51,7 @@ class EngineCore {
   void send(const Command& command);
   void gather();
   void check_room(const PreparedBurst& burst) const;
+  std::uint32_t start(PreparedBurst& burst);
 
   StreamConfig config_;
   std::uint32_t last_id_ = 0;

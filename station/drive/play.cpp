@@ -9,8 +9,7 @@ namespace {
 PlayReport rendered(const StreamConfig& config, Burst burst) {
   const auto stream = open_synchronous(config);
   PlayReport report;
-  report.onset_frame = burst.start_frame = stream->earliest_frame();
-  stream->schedule(burst);
+  report.onset_frame = stream->schedule_soon(burst).start_frame;
   stream->advance(burst.length_frames);
   stream->finish();
   report.counters = stream->counters();
@@ -23,13 +22,13 @@ PlayReport rendered(const StreamConfig& config, Burst burst) {
 PlayReport played(const StreamConfig& config, Burst burst) {
   const auto stream = open_realtime(config);
   PlayReport report;
-  report.onset_frame = burst.start_frame = stream->earliest_frame();
-  const std::uint32_t id = stream->schedule(burst);
+  const auto scheduled = stream->schedule_soon(burst);
+  report.onset_frame = scheduled.start_frame;
   for (bool sounding = true; sounding;) {
     sleep_until_ns(monotonic_ns() + 10'000'000);
     while (const auto event = stream->poll()) {
       const bool over = event->kind == EventKind::burst_ended || event->kind == EventKind::burst_missed;
-      if ((over && event->burst == id) || event->kind == EventKind::device_lost) sounding = false;
+      if ((over && event->burst == scheduled.burst) || event->kind == EventKind::device_lost) sounding = false;
     }
   }
   report.counters = stream->counters();

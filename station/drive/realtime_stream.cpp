@@ -49,7 +49,12 @@ class Realtime final : public Stream {
     thread_.request_stop();
   }
 
-  std::uint32_t schedule(const Burst& burst) override { return core_.schedule(burst, earliest_frame()); }
+  std::uint32_t schedule(const Burst& burst) override {
+    return core_.schedule(burst, [this] { return earliest_frame(); });
+  }
+  Scheduled schedule_soon(const Burst& burst) override {
+    return core_.schedule_soon(burst, [this] { return earliest_frame(); });
+  }
   void change(std::uint32_t burst, const Change& change) override { core_.change(burst, change); }
   void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame) override {
     core_.stop(burst, ramp, frame);

@@ -22,7 +22,12 @@ class Synchronous final : public SynchronousStream {
       throw std::invalid_argument(config.output.uri + " needs its samples; only null: can do without");
   }
 
-  std::uint32_t schedule(const Burst& burst) override { return core_.schedule(burst, frame_); }
+  std::uint32_t schedule(const Burst& burst) override {
+    return core_.schedule(burst, [this] { return frame_; });
+  }
+  Scheduled schedule_soon(const Burst& burst) override {
+    return core_.schedule_soon(burst, [this] { return frame_; });
+  }
   void change(std::uint32_t burst, const Change& change) override { core_.change(burst, change); }
   void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame) override {
     core_.stop(burst, ramp, frame);

@@ -17,9 +17,10 @@ struct Sounding {
 
 inline Onset schedule(drive::Stream& stream, drive::Burst burst, std::int64_t earliest_ns,
                       Sounding& sounding) {
-  burst.start_frame = std::max(stream.earliest_frame(), stream.frame_at(earliest_ns));
-  sounding = {stream.schedule(burst), burst.start_frame, burst.start_frame + burst.length_frames, burst.ramp};
-  return {burst.start_frame, stream.time_of(burst.start_frame)};
+  burst.start_frame = std::max<std::int64_t>(0, stream.frame_at(earliest_ns));
+  const auto [number, start_frame] = stream.schedule_soon(burst);
+  sounding = {number, start_frame, start_frame + burst.length_frames, burst.ramp};
+  return {start_frame, stream.time_of(start_frame)};
 }
 
 inline std::optional<std::int64_t> glide_to(drive::Stream& stream, const Sounding& sounding,

@@ -37,7 +37,7 @@ TEST_CASE("the audio side allocates, locks and logs nothing, whatever it is sent
   burst.marker.kind = MarkerKind::tone;
   burst.marker.amplitude = 0.1;
   burst.noise.rms = 0.01;
-  const auto id = core.schedule(burst, 0);
+  const auto id = core.schedule(burst, [] { return std::int64_t{0}; });
   const auto run = [&](int blocks) {
     return violations_in([&] {
       for (int k = 0; k < blocks; ++k, frame += 384) core.process(frame, block);

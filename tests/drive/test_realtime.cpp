@@ -35,3 +35,27 @@ TEST_CASE("a real-time stream to null plays bursts at their frames and tells wha
   CHECK(fit.rate_Hz() == Approx(192000).epsilon(1e-6));
   CHECK(stream->frame_at(stream->time_of(asked[0])) == asked[0]);
 }
+
+TEST_CASE("a burst that takes longer to check than the buffer lasts begins after it, and is not missed",
+          "[drive][realtime][threads]") {
+  // The amplitudes add up to more than full scale: that the peak stays below it is found by rendering 10 s.
+  Burst burst = one_tone(20000, 0.07);
+  burst.tones.count = 16;
+  for (int k = 1; k < 16; ++k)
+    burst.tones.tones[static_cast<std::size_t>(k)] = {20000 + 1234.5 * k, 0.07, 0.7 * k * k, 0};
+  burst.length_frames = 1920000;
+  const auto stream = open_realtime({});
+  burst.start_frame = stream->earliest_frame();
+  CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);  // gone, once it is checked
+  const auto scheduled = stream->schedule_soon(burst);
+  CHECK(scheduled.start_frame > burst.start_frame);
+  std::optional<Event> first;
+  while (!first) {
+    sleep_until_ns(monotonic_ns() + 1'000'000);
+    first = stream->poll();
+  }
+  CHECK(first->kind == EventKind::burst_started);
+  CHECK(first->burst == scheduled.burst);
+  CHECK(first->frame == scheduled.start_frame);
+  CHECK(stream->counters().missed == 0);
+}

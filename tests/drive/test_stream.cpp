@@ -116,6 +116,11 @@ TEST_CASE("a burst too late, one too many, or too loud beside another is refused
   Burst burst = one_tone(20000, 0.4);
   burst.start_frame = 999;
   CHECK_THROWS_WITH(stream->schedule(burst), "burst refused: frame 999 is gone; the soonest is 1000");
+  {
+    const auto other = open_synchronous({});
+    other->advance(1000);
+    CHECK(other->schedule_soon(burst).start_frame == 1000);
+  }
   burst.start_frame = 2000;
   stream->schedule(burst);
   stream->schedule(burst);
