@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "station/store/export_files.hpp"
+#include "station/store/files.hpp"
 #include "station/store/identity.hpp"
 #include "station/store/open.hpp"
 #include "station/store/sqlite.hpp"
@@ -95,7 +96,7 @@ BackupReport backup(const std::string& path, const BackupOptions& options) {
   make_folder(options.directory);
   BackupReport report;
   report.path = (fs::path(options.directory) / fmt::format("{}-{}.sqlite", stem_of(path), stamp())).string();
-  copy_to_file(database, report.path);
+  copy_to_file(database, report.path, path);
   {
     Database copy(report.path, Database::Access::immutable);
     const auto whole = copy.text("PRAGMA integrity_check(1)");
@@ -124,7 +125,7 @@ BackupReport backup(const std::string& path, const BackupOptions& options) {
 }
 
 Restoration restore_backup(const std::string& path, const std::string& directory) {
-  const StationLock lock(fs::weakly_canonical(path).string());
+  const StationLock lock(canonical(path));
   const auto trouble = trouble_with(path);
   if (!trouble)
     throw StoreError(Fault::refused,
@@ -142,7 +143,7 @@ Restoration restore_backup(const std::string& path, const std::string& directory
       verify_checksum_file(candidate);
       auto good = open_reader(candidate);
       const auto counts = counts_of(good);
-      copy_to_file(good, path + ".restored");
+      copy_to_file(good, path + ".restored", candidate);
       restoration.quarantined = quarantine(path);
       fs::rename(path + ".restored", path);
       sync_path(fs::absolute(path).parent_path().string());

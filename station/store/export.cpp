@@ -10,6 +10,7 @@
 
 #include "station/store/export_files.hpp"
 #include "station/store/export_tables.hpp"
+#include "station/store/files.hpp"
 #include "station/store/open.hpp"
 #include "station/store/sqlite.hpp"
 

@@ -202,7 +202,7 @@ class SourceCopy {
   SourceCopy(const std::string& source, const std::string& beside) : path_(beside + ".merging") {
     verify_checksum_file(source);
     auto reader = open_reader(source);
-    copy_to_file(reader, path_);
+    copy_to_file(reader, path_, source);
   }
   SourceCopy(const SourceCopy&) = delete;
   SourceCopy& operator=(const SourceCopy&) = delete;

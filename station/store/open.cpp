@@ -1,17 +1,14 @@
 #include "station/store/open.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sqlite3.h>
 #include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <utility>
 
+#include "station/store/files.hpp"
 #include "station/store/identity.hpp"
 #include "station/store/schema.hpp"
 
@@ -21,23 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-[[noreturn]] void fail_system(Fault fault, const std::string& what, int code, const std::string& advice) {
-  throw StoreError(fault, fmt::format("{}: {}; {}", what, std::strerror(code), advice));
-}
-
-Fault fault_of_errno(int code) {
-  if (code == ENOSPC || code == EDQUOT) return Fault::disk_full;
-  if (code == EACCES || code == EROFS || code == EPERM) return Fault::read_only;
-  return code == ENOENT ? Fault::missing : Fault::io;
-}
-
-/// The real file behind links, so that two names of one database share one lock.
-std::string canonical(const std::string& path) {
-  std::error_code ignored;
-  const auto resolved = fs::weakly_canonical(path, ignored);
-  return resolved.empty() ? path : resolved.string();
-}
-
 enum class FileState { absent, empty, something };
 
 FileState state_of(const std::string& path) {
@@ -46,37 +26,6 @@ FileState state_of(const std::string& path) {
   if (error == std::errc::no_such_file_or_directory) return FileState::absent;
   if (error) fail_system(Fault::missing, "database " + path, error.value(), "name a file");
   return size == 0 ? FileState::empty : FileState::something;
-}
-
-/// What root makes in another user's folder is that user's: the station, which runs as itself, goes on with
-/// it.
-void give_to_owner_of_folder(int descriptor, const std::string& path) {
-  struct stat folder {};
-  if (::geteuid() != 0 || ::stat(fs::path(path).parent_path().c_str(), &folder) != 0) return;
-  if (::fchown(descriptor, folder.st_uid, folder.st_gid) != 0)
-    fail_system(fault_of_errno(errno), "owner of " + path, errno, "run this as the user of the folder");
-}
-
-void give_to_owner_of_folder(const std::string& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
-  if (descriptor < 0) fail_system(fault_of_errno(errno), path, errno, "check the disk");
-  try {
-    give_to_owner_of_folder(descriptor, path);
-  } catch (const StoreError&) {
-    ::close(descriptor);
-    throw;
-  }
-  ::close(descriptor);
-}
-
-/// Whoever could not read the original cannot read its copy.
-void make_as_readable_as(const std::string& original, const std::string& copy) {
-  std::error_code none;
-  const auto permissions = fs::status(original, none).permissions();
-  if (none || permissions == fs::perms::unknown) return;  // it is in memory
-  const auto own = fs::perms::owner_read | fs::perms::owner_write;
-  const auto executable = fs::perms::owner_exec | fs::perms::group_exec | fs::perms::others_exec;
-  fs::permissions(copy, ((permissions & fs::perms::all) | own) & ~executable);
 }
 
 void refuse_empty(const std::string& path) {
@@ -147,17 +96,7 @@ Database open_plain_reader(const std::string& path) {
 }  // namespace
 
 StationLock::StationLock(const std::string& database) {
-  const auto path = database + ".lock";
-  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0660);
-  if (descriptor_ < 0)
-    fail_system(fault_of_errno(errno), "lock file " + path, errno,
-                "the folder of the database must exist and be writable");
-  try {
-    give_to_owner_of_folder(descriptor_, path);
-  } catch (const StoreError&) {
-    ::close(descriptor_);
-    throw;
-  }
+  descriptor_ = open_lock(database + ".lock");
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     char owner[64] = {};
     const auto size = ::pread(descriptor_, owner, sizeof owner - 1, 0);
@@ -187,15 +126,7 @@ void check_pages(Database& database) {
   if (keys.step()) database.fail(SQLITE_CORRUPT, "foreign_key_check: table " + keys.text(0));
 }
 
-void sync_path(const std::string& path) {
-  const auto name = path.empty() ? std::string(".") : path;
-  const int descriptor = ::open(name.c_str(), O_RDONLY | O_CLOEXEC);
-  const int code = descriptor < 0 || ::fsync(descriptor) != 0 ? errno : 0;
-  if (descriptor >= 0) ::close(descriptor);
-  if (code != 0) fail_system(fault_of_errno(code), "sync " + name, code, "check the disk");
-}
-
-void copy_to_file(Database& from, const std::string& to) {
+void copy_to_file(Database& from, const std::string& to, const std::string& original) {
   const auto temporary = to + ".new";
   const auto clean = [&temporary] {
     for (const auto* suffix : {"", "-wal", "-shm", "-journal"}) {
@@ -205,6 +136,7 @@ void copy_to_file(Database& from, const std::string& to) {
   };
   clean();
   try {
+    create_private(temporary);
     {
       Database copy(temporary, Database::Access::create);
       copy_database(from, copy);
@@ -212,8 +144,8 @@ void copy_to_file(Database& from, const std::string& to) {
       // A copy is one file: out of WAL mode it can be read from any medium.
       copy.execute("PRAGMA journal_mode = DELETE");
     }
-    make_as_readable_as(from.path(), temporary);
     give_to_owner_of_folder(temporary);
+    permit_as(original, temporary);
     sync_path(temporary);
     fs::rename(temporary, to);
     sync_path(fs::path(to).parent_path().string());
@@ -236,7 +168,7 @@ Writer open_writer(const std::string& name, IfMissing if_missing) {
   require_writable(database);
   check_pages(database);
   if (version < schema_version())
-    copy_to_file(database, fmt::format("{}.before-v{}", path, schema_version()));
+    copy_to_file(database, fmt::format("{}.before-v{}", path, schema_version()), path);
   database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
   migrate(database);
   recover_sessions(database);

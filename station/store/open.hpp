@@ -42,11 +42,8 @@ Database open_reader(const std::string& path);
 /// PRAGMA quick_check and foreign_key_check; throws StoreError (corrupt) with what they say.
 void check_pages(Database& database);
 
-/// Makes a file's or folder's contents durable. Throws StoreError.
-void sync_path(const std::string& path);
-
-/// Writes all of `from` into the file `to` by way of a temporary: durable, checked, then renamed. Readable to
-/// whom the original is.
-void copy_to_file(Database& from, const std::string& to);
+/// Writes all of `from` into the file `to` by way of a temporary: durable, checked, then renamed. Private
+/// until then; afterwards with the permissions of `original`, the file that `from` was read from.
+void copy_to_file(Database& from, const std::string& to, const std::string& original);
 
 }  // namespace turnpoint::store

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "station/store/backup.hpp"
+#include "station/store/files.hpp"
 #include "station/store/identity.hpp"
 #include "station/store/open.hpp"
 #include "station/store/read.hpp"

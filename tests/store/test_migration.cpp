@@ -1,3 +1,4 @@
+#include "station/store/backup.hpp"
 #include "station/store/export.hpp"
 #include "station/store/read.hpp"
 #include "station/store/schema.hpp"
@@ -34,6 +35,16 @@ TEST_CASE("each released schema step is as it was released", "[store]") {
   Database made(folder / "made.sqlite", Database::Access::create);
   create_schema(made, version);
   CHECK(schema_of(old) == schema_of(made));
+}
+
+TEST_CASE("a copy of an older database is no more readable than the database", "[store]") {
+  namespace fs = std::filesystem;
+  TemporaryFolder folder;
+  const auto db = folder / "old.sqlite";
+  make_old(db, 1);
+  fs::permissions(db, fs::perms::owner_read | fs::perms::owner_write);
+  const auto copy = backup(db, {folder / "backups", 9});
+  CHECK(fs::status(copy.path).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
 }
 
 TEST_CASE("an older database is migrated with its rows, and a copy of it is kept", "[store]") {

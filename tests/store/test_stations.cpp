@@ -193,7 +193,10 @@ struct stat status_of(const std::string& path) {
 
 TEST_CASE("what root makes in the station's folder is the station's, and a copy no more readable",
           "[store]") {
-  if (::geteuid() != 0) return;  // only root can make files of others
+  if (::geteuid() != 0) {
+    WARN("not root: nothing was tried");
+    return;
+  }
   TemporaryFolder folder;
   const auto home = folder / "home", db = home + "/a.sqlite", dir = folder / "backups";
   constexpr uid_t kStation = 65533;
@@ -219,12 +222,37 @@ TEST_CASE("what root makes in the station's folder is the station's, and a copy 
   CHECK((status_of(db).st_mode & 0777) == 0640);
 }
 
+TEST_CASE(
+    "a database that root names by where it stands is the folder's owner's too, and a lock stays whose it is",
+    "[store]") {
+  if (::geteuid() != 0) {
+    WARN("not root: nothing was tried");
+    return;
+  }
+  TemporaryFolder folder;
+  constexpr uid_t kStation = 65533;
+  REQUIRE(::chown(folder.path.c_str(), kStation, kStation) == 0);
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path);
+  sample::session("a.sqlite", 1);
+  std::filesystem::current_path(before);
+  CHECK(status_of(folder / "a.sqlite").st_uid == kStation);
+  CHECK(status_of(folder / "a.sqlite.lock").st_uid == kStation);
+  REQUIRE(::chown(folder.path.c_str(), 0, 0) == 0);
+  sample::session(folder / "a.sqlite", 1);
+  CHECK(status_of(folder / "a.sqlite.lock").st_uid == kStation);
+}
+
 TEST_CASE("a link in the place of the lock is not followed", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", target = folder / "target";
   std::ofstream(target) << "precious";
-  std::filesystem::create_symlink(target, db + ".lock");
-  CHECK(sample::failure([&] { sample::session(db, 1); }).first == Fault::io);
+  SECTION("a symbolic one") { std::filesystem::create_symlink(target, db + ".lock"); }
+  SECTION("a second name") { std::filesystem::create_hard_link(target, db + ".lock"); }
+  const auto [fault, message] = sample::failure([&] { sample::session(db, 1); });
+  CHECK(fault == Fault::io);
+  CHECK(sample::contains(message, "a.sqlite.lock"));
+  CHECK(sample::contains(message, "remove it"));
   CHECK(sample::bytes_of(target) == "precious");
 }
 

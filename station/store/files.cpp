@@ -1,0 +1,109 @@
+#include "station/store/files.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+namespace turnpoint::store {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  int get() const { return number_; }
+  int release() { return std::exchange(number_, -1); }
+
+ private:
+  int number_;
+};
+
+struct stat status_of(int descriptor, const std::string& path) {
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) fail_system(fault_of_errno(errno), path, errno, "check the disk");
+  return status;
+}
+
+/// What is somebody's already stays theirs.
+void give_to_owner_of_folder(int descriptor, const std::string& path) {
+  if (::geteuid() != 0 || status_of(descriptor, path).st_uid != 0) return;
+  struct stat folder {};
+  const auto name = fs::path(path).parent_path();
+  if (::stat(name.c_str(), &folder) != 0 || ::fchown(descriptor, folder.st_uid, folder.st_gid) != 0)
+    fail_system(fault_of_errno(errno), "owner of " + path, errno,
+                "run this as the user of the folder " + name.string());
+}
+
+}  // namespace
+
+void fail_system(Fault fault, const std::string& what, int code, const std::string& advice) {
+  throw StoreError(fault, fmt::format("{}: {}; {}", what, std::strerror(code), advice));
+}
+
+Fault fault_of_errno(int code) {
+  if (code == ENOSPC || code == EDQUOT) return Fault::disk_full;
+  if (code == EACCES || code == EROFS || code == EPERM) return Fault::read_only;
+  return code == ENOENT ? Fault::missing : Fault::io;
+}
+
+std::string canonical(const std::string& path) {
+  std::error_code ignored;
+  const auto resolved = fs::weakly_canonical(fs::absolute(path, ignored), ignored);
+  return resolved.empty() ? path : resolved.string();
+}
+
+int open_lock(const std::string& path) {
+  Descriptor lock(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0660));
+  if (lock.get() < 0 && errno == ELOOP)
+    throw StoreError(Fault::io, "lock file " + path + ": is a link; it was not followed; remove it");
+  if (lock.get() < 0)
+    fail_system(fault_of_errno(errno), "lock file " + path, errno,
+                "the folder of the database must exist and be writable");
+  const auto status = status_of(lock.get(), path);
+  if (!S_ISREG(status.st_mode) || status.st_nlink > 1)
+    throw StoreError(Fault::io, "lock file " + path + ": has a second name; it was left alone; remove it");
+  give_to_owner_of_folder(lock.get(), path);
+  return lock.release();
+}
+
+void create_private(const std::string& path) {
+  const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
+  if (file.get() < 0)
+    fail_system(fault_of_errno(errno), path, errno, "the folder must exist and be writable");
+}
+
+void give_to_owner_of_folder(const std::string& path) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
+  if (file.get() < 0) fail_system(fault_of_errno(errno), path, errno, "check the disk");
+  give_to_owner_of_folder(file.get(), path);
+}
+
+void permit_as(const std::string& original, const std::string& path) {
+  struct stat status {};
+  if (::stat(original.c_str(), &status) != 0) return;
+  // A disk without permissions has its own for all files.
+  if (::chmod(path.c_str(), (status.st_mode & 0666) | 0600) != 0 && errno != EPERM)
+    fail_system(fault_of_errno(errno), "permissions of " + path, errno, "check the disk");
+}
+
+void sync_path(const std::string& path) {
+  const auto name = path.empty() ? std::string(".") : path;
+  const Descriptor file(::open(name.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0 || ::fsync(file.get()) != 0)
+    fail_system(fault_of_errno(errno), "sync " + name, errno, "check the disk");
+}
+
+}  // namespace turnpoint::store

@@ -1,0 +1,34 @@
+#pragma once
+#include <string>
+
+#include "station/store/error.hpp"
+
+namespace turnpoint::store {
+
+// The files of a database: their names, whose they are, and who may read them. What root makes anew in
+// another user's folder is that user's: the station, which runs as itself, goes on with it. All throw
+// StoreError.
+
+/// A call of the system that failed: "WHAT: No space left on device; ADVICE".
+[[noreturn]] void fail_system(Fault fault, const std::string& what, int code, const std::string& advice);
+Fault fault_of_errno(int code);
+
+/// The absolute name of the real file behind links, so that two names of one database share one lock.
+std::string canonical(const std::string& path);
+
+/// Opens the lock file, and makes it where there is none. Whatever else stands there, a link or a file with a
+/// second name, is refused and left alone. Returns its descriptor.
+int open_lock(const std::string& path);
+
+/// Makes an empty file that only its owner may read.
+void create_private(const std::string& path);
+/// A file that root has made becomes the folder's owner's.
+void give_to_owner_of_folder(const std::string& path);
+/// Gives a file the permissions of another, as far as files of data have them; it stays private where there
+/// is no other.
+void permit_as(const std::string& original, const std::string& path);
+
+/// Makes a file's or folder's contents durable.
+void sync_path(const std::string& path);
+
+}  // namespace turnpoint::store
