@@ -1,5 +1,7 @@
 #include "station/app/play_armed.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -20,17 +22,35 @@ constexpr double kLead_s = 0.5, kMargin_s = 0.5;
 constexpr std::int64_t kPoll_ns = 5'000'000;
 constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // by which the audio thread proves its life
 
+/// Why what was played cannot be used; "" for what belongs to playing.
+std::string trouble_of(const drive::Event& event, const drive::OutputConfig& output) {
+  switch (event.kind) {
+    case drive::EventKind::underrun:
+      return fmt::format("{}: {} frames passed in silence; begin again", output.uri, event.frames);
+    case drive::EventKind::device_lost:
+      return output.uri + ": the converter is gone";
+    case drive::EventKind::burst_missed:
+      return output.uri + ": a tone came too late to be played; begin again";
+    case drive::EventKind::rate_wrong:
+      return fmt::format("{}: runs at {:.1f} Hz, not at {} Hz: nothing that was played had its frequency",
+                         output.uri, 1e-3 * static_cast<double>(event.frames), output.rate_Hz);
+    case drive::EventKind::burst_started:
+    case drive::EventKind::burst_ended:
+    case drive::EventKind::device_back:
+      return "";
+  }
+  return "";
+}
+
 /// The stream while the guard sees that somebody lives; throws what went wrong, also a signal to end.
 void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::function<bool()>& done) {
   while (!done()) {
     amplifier.session_alive();
-    while (const auto event = stream.poll()) {
-      using Kind = drive::EventKind;
-      if (event->kind == Kind::underrun || event->kind == Kind::device_lost ||
-          event->kind == Kind::burst_missed)
-        throw std::runtime_error("the converter lost frames or is gone; begin again");
-    }
-    if (amplifier.state() == drive::AmplifierState::faulted) throw std::runtime_error(amplifier.fault());
+    while (const auto event = stream.poll())
+      if (const auto trouble = trouble_of(*event, stream.config().output); !trouble.empty())
+        throw std::runtime_error(trouble);
+    if (amplifier.state() == drive::AmplifierState::faulted)
+      throw std::runtime_error("amplifier: " + amplifier.fault());
     if (const auto signal = StopSignals::told(); !signal.empty())
       throw std::runtime_error("the program was told to end (" + signal + "); not all was played");
     drive::sleep_until_ns(drive::monotonic_ns() + kPoll_ns);
