@@ -1,7 +1,11 @@
 #include "station/app/places.hpp"
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <ostream>
+#include <tuple>
+#include <vector>
 
 #include "station/text/problem.hpp"
 
@@ -30,17 +34,17 @@ std::string rig_or_default(const std::string& named, std::ostream& messages) {
 }
 
 std::string screen_card(const std::string& drm) {
-  std::string first;
+  std::vector<std::tuple<bool, std::size_t, std::string>> cards;  // without a screen, then by number
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(drm, ignored)) {
     const auto connector = entry.path().filename().string();  // card1-HDMI-A-1
     const auto dash = connector.find('-');
     if (dash == std::string::npos || !connector.starts_with("card")) continue;
-    const auto card = "/dev/dri/" + connector.substr(0, dash);
-    if (first.empty() || card.size() < first.size() || (card.size() == first.size() && card < first))
-      first = card;
+    std::string status;
+    std::ifstream(entry.path() / "status") >> status;
+    cards.emplace_back(status != "connected", dash, "/dev/dri/" + connector.substr(0, dash));
   }
-  return first;
+  return cards.empty() ? "" : std::get<std::string>(*std::min_element(cards.begin(), cards.end()));
 }
 
 }  // namespace turnpoint::app

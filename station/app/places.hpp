@@ -12,10 +12,9 @@ std::string rig_or_default(const std::string& named, std::ostream& messages);
 /// A folder that comes with the program ("protocols", "deploy/rigs"), in the source tree or as installed.
 std::string shipped(const std::string& folder);
 
-/// The kernel's graphics card that screens are connected to, "/dev/dri/card1"; the first where there are
-/// several,
-/// "" where there is none. A board's first card may be one that only draws. `drm` is where the kernel lists
-/// them.
+/// The kernel's graphics card that a screen is connected to, "/dev/dri/card1"; without a screen the first
+/// that has a connector, "" where none has: a board's first card may be one that only draws. `drm` is where
+/// the kernel lists them.
 std::string screen_card(const std::string& drm = "/sys/class/drm");
 
 }  // namespace turnpoint::app

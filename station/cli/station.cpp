@@ -14,10 +14,7 @@ void add_station(CLI::App& app, Context& context) {
                       "Folder with protocol files; otherwise the shipped ones");
   command->add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
   command->add_option("--db", request->database, "Database; otherwise one in the user's data folder");
-  command
-      ->add_option("--operator-code", request->operator_code,
-                   "Digits that open the operator's pages, arming and the report on the participant's screen")
-      ->capture_default_str();
+  add_operator_code(*command, request->operator_code);
   command->add_flag(
       "--locked", request->locked,
       "Ask for the code before the first page too: where a participant may stand at the screen");

@@ -71,8 +71,9 @@ struct SoundLevel {
 };
 
 /// For live sessions: a tone below 22.4 kHz needs a measured level at its frequency (between two measured
-/// ones) that stays within 75 dB at its amplitude; at and above 25 kHz a measured level must stay within 110
-/// dB. Returns what is wrong, or "". Occupational guidance; see the rig's documentation.
+/// ones) that stays within 75 dB at its amplitude; from there to 25 kHz a measured level must stay within
+/// 75 dB too, at and above 25 kHz within 110 dB. Returns what is wrong, or "". Occupational guidance; see the
+/// rig's documentation.
 std::string sound_problem(double frequency_Hz, double amplitude, const std::vector<SoundLevel>& measured);
 
 }  // namespace turnpoint::drive

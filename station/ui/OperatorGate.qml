@@ -1,7 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// The way from the participant's screen to the operator's: digits, after a long press that nobody makes by accident.
+// The way from the participant's screen to the operator's: digits, after a long press that nobody makes by
+// accident; or, of a station that is locked, before anything else.
 Rectangle {
     id: root
     required property Theme theme

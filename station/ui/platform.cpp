@@ -30,13 +30,14 @@ std::unique_ptr<QTemporaryFile> eglfs_config(const std::string& card) {
 
 /// Returns what the platform reads while it starts.
 std::unique_ptr<QTemporaryFile> choose_platform() {
-  if (qEnvironmentVariableIsSet("QT_QPA_PLATFORM") || qEnvironmentVariableIsSet("DISPLAY") ||
-      qEnvironmentVariableIsSet("WAYLAND_DISPLAY"))
-    return nullptr;
+  const auto wanted = qgetenv("QT_QPA_PLATFORM");
+  const bool desktop = qEnvironmentVariableIsSet("DISPLAY") || qEnvironmentVariableIsSet("WAYLAND_DISPLAY");
+  if (wanted.isEmpty() ? desktop : !wanted.startsWith("eglfs")) return nullptr;
   if (const auto card = app::screen_card(); !card.empty()) {
-    qputenv("QT_QPA_PLATFORM", "eglfs");
+    if (wanted.isEmpty()) qputenv("QT_QPA_PLATFORM", "eglfs");
     return eglfs_config(card);
   }
+  if (!wanted.isEmpty()) return nullptr;  // another kind of eglfs finds its screen by itself
   if (!std::filesystem::exists("/dev/fb0"))
     throw std::invalid_argument(
         "no screen: no DISPLAY, no WAYLAND_DISPLAY, no graphics card with a connector and no /dev/fb0; give "

@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <fstream>
 
 #include "station/app/places.hpp"
 #include "tests/support/catch.hpp"
@@ -21,4 +22,7 @@ TEST_CASE("the screen's card is the first that has a connector", "[app]") {
   listed("card2-DSI-1");
   listed("card2-HDMI-A-2");
   CHECK(app::screen_card(folder / "") == "/dev/dri/card2");
+  std::ofstream(folder / "card2-DSI-1/status") << "disconnected\n";
+  std::ofstream(folder / "card10-HDMI-A-1/status") << "connected\n";
+  CHECK(app::screen_card(folder / "") == "/dev/dri/card10");  // the only one with a screen
 }

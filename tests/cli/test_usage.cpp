@@ -34,6 +34,8 @@ TEST_CASE(
 TEST_CASE("a station is not locked without a code that opens it", "[cli]") {
   check_refused({"station", "--locked", "--operator-code", ""},
                 "station: --locked without an operator's code; give --operator-code DIGITS");
+  check_refused({"station", "--locked", "--operator-code", "24b8"},
+                "--operator-code: '24b8': digits are allowed; the keypad has nothing else");
 }
 
 TEST_CASE("the doctor takes the rig that the other commands take", "[cli]") {

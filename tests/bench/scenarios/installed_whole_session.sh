@@ -16,6 +16,7 @@ rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,
 calibrate_for_live /etc/turnpoint/rig.toml
 printf 'QT_QPA_PLATFORM=linuxfb\nQT_QUICK_BACKEND=software\nQT_QPA_GENERIC_PLUGINS=evdevtouch\nQT_QPA_FB_DISABLE_INPUT=1\nTURNPOINT_DPI=132\n' \
   >/etc/turnpoint/environment
+echo 'TURNPOINT_OPTIONS=--operator-code 2580 --protocols /usr/share/turnpoint/protocols' >>/etc/turnpoint/environment
 systemctl daemon-reload
 
 tap() { touch_do tap "$1" "$2"; sleep 0.2; }
@@ -29,7 +30,7 @@ by_touch() { stimulus stored; touch_do tap 200 370; eventually 5 off; eventually
 by_button() { stimulus stored; gpio_line press "$(pull_file BTN_R)" 50 >/dev/null; eventually 5 off; eventually 10 stored "$1"; }
 # By the operator: "for the experimenter", the code, and the long press that arms.
 keypad() { shows 280 75 && shows 397 75; }
-operator_code() { eventually 10 keypad; sleep 0.3; tap 397 107; tap 280 188; tap 519 188; tap 397 269; }
+operator_code() { eventually 10 keypad; sleep 0.3; tap 397 107; tap 397 188; tap 397 269; tap 397 349; }
 asked() { keypad || { tap 536 400; sleep 0.5; return 1; }; }   # a tap before the page could be read does nothing
 arm() { eventually 15 asked; operator_code; hold 536 400; }
 carry_on() { sleep 0.7; tap 535 395; }
@@ -43,6 +44,9 @@ unlock() {
 }
 
 systemctl start turnpoint
+eventually 30 keypad
+sleep 0.3; tap 397 107; tap 280 188; tap 519 188; tap 397 269   # the built-in code, which is not the one here
+sleep 0.5; keypad || fail "2468 opens a station whose code is another"
 first=$(systemctl show -P MainPID turnpoint)
 unlock
 record 110 heard0.raw; recorder=$!
