@@ -93,8 +93,7 @@ drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
                              const std::vector<drive::Burst>& bursts) {
   auto config = session::stream_of(rig);
   config.output.uri = uri;
-  drive::PlayReport report;
-  report.peak = largest_peak(bursts, config);
+  const auto peak = largest_peak(bursts, config);                   // refused before anything is opened
   const auto amplifier = panel::open_amplifier(rig.amplifier_uri);  // outlives the stream
   config.amplifier = amplifier.get();
   StopSignals signals;
@@ -104,12 +103,11 @@ drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
          [until_ns = drive::monotonic_ns() + kFirstBlocks_ns] { return drive::monotonic_ns() >= until_ns; });
   amplifier->arm();
   amplifier->enable();
-  report.onset_frame = play(*stream, *amplifier, bursts);
+  const auto onset_frame = play(*stream, *amplifier, bursts);
   amplifier->disarm();
-  report.counters = stream->counters();
-  report.rights = stream->rights();
-  report.clock = stream->clock();
-  report.rate = stream->measured_rate();
+  auto report = drive::report_of(*stream);
+  report.peak = peak;
+  report.onset_frame = onset_frame;
   return report;
 }
 

@@ -142,6 +142,9 @@ struct PlayReport {
   std::int64_t onset_frame = 0;
 };
 
+/// Of a stream that has played: all but the burst's own (peak, largest sample, onset).
+PlayReport report_of(Stream& stream);
+
 /// Plays or renders one burst and the silence around it: in real time for `alsa:`, at once otherwise. The
 /// burst's start frame is moved to the soonest possible one. Throws as above.
 PlayReport play(const StreamConfig& config, Burst burst);

@@ -8,37 +8,41 @@ namespace {
 
 PlayReport rendered(const StreamConfig& config, Burst burst) {
   const auto stream = open_synchronous(config);
-  PlayReport report;
-  report.onset_frame = stream->schedule_soon(burst).start_frame;
+  const auto onset_frame = stream->schedule_soon(burst).start_frame;
   stream->advance(burst.length_frames);
   stream->finish();
-  report.counters = stream->counters();
-  report.rights = stream->rights();
-  report.clock = stream->clock();
+  PlayReport report = report_of(*stream);
+  report.onset_frame = onset_frame;
   report.largest_sample = stream->largest_sample();
   return report;
 }
 
 PlayReport played(const StreamConfig& config, Burst burst) {
   const auto stream = open_realtime(config);
-  PlayReport report;
   const auto scheduled = stream->schedule_soon(burst);
-  report.onset_frame = scheduled.start_frame;
   for (bool sounding = true; sounding;) {
     sleep_until_ns(monotonic_ns() + 10'000'000);
     while (const auto event = stream->poll()) {
       const bool over = event->kind == EventKind::burst_ended || event->kind == EventKind::burst_missed;
-      if ((over && event->burst == scheduled.burst) || event->kind == EventKind::device_lost) sounding = false;
+      if ((over && event->burst == scheduled.burst) || event->kind == EventKind::device_lost)
+        sounding = false;
     }
   }
-  report.counters = stream->counters();
-  report.rights = stream->rights();
-  report.clock = stream->clock();
-  report.rate = stream->measured_rate();
+  PlayReport report = report_of(*stream);
+  report.onset_frame = scheduled.start_frame;
   return report;
 }
 
 }  // namespace
+
+PlayReport report_of(Stream& stream) {
+  PlayReport report;
+  report.counters = stream.counters();
+  report.rights = stream.rights();
+  report.clock = stream.clock();
+  report.rate = stream.measured_rate();
+  return report;
+}
 
 PlayReport play(const StreamConfig& config, Burst burst) {
   burst.start_frame = 0;
