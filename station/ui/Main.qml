@@ -20,7 +20,8 @@ Window {
                                    || start.stage === StartController.Code
 
     /// What somebody who knows the operator's code may do on the participant's screen: "view" the running session,
-    /// "arm" the amplifier, read the "report", "leave" for the operator's page, "unlock" it. Without a code there is no view.
+    /// "arm" the amplifier, read the "report", "leave" for the operator's page, "unlock" it. Without a code there is
+    /// no view.
     property string wish
     function ask(what: string) {
         wish = what

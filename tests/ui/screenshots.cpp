@@ -86,6 +86,17 @@ class Camera {
     shoot(name);
   }
 
+  /// The keypad for the operator's code, as a station begins that is locked, and over a participant's page.
+  void shoot_gate() {
+    auto* gate = window_->findChild<QQuickItem*>("gate");
+    gate->setVisible(true);
+    window_->setProperty("locked", true);
+    shoot("gate-locked");
+    window_->setProperty("locked", false);
+    shoot("gate");
+    gate->setVisible(false);
+  }
+
   int count() const { return count_; }
 
  private:
@@ -199,6 +210,7 @@ int shoot_operator(const QString& out, const QStringList& sizes) {
 }
 
 int shoot_all(Camera& camera, const QString& language) {
+  camera.shoot_gate();
   camera.start().ask({kLanguages, "", "", "2026-03", "pilot"});
   camera.shoot("language");
   camera.start().chooseLanguage(static_cast<int>(kLanguages.indexOf(language)));
