@@ -1,3 +1,6 @@
+#include <fstream>
+#include <iterator>
+
 #include "tests/support/catch.hpp"
 #include "tests/support/child.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -36,6 +39,23 @@ TEST_CASE("a station is not locked without a code that opens it", "[cli]") {
                 "station: --locked without an operator's code; give --operator-code DIGITS");
   check_refused({"station", "--locked", "--operator-code", "24b8"},
                 "--operator-code: '24b8': digits are allowed; the keypad has nothing else");
+}
+
+TEST_CASE("the doctor warns of a simulated panel beside a real converter", "[cli]") {
+  const TemporaryFolder folder;
+  const auto rig = folder / "rig.toml";
+  std::ifstream simulated(kRig);
+  std::string text{std::istreambuf_iterator<char>(simulated), {}};
+  const std::string warning = "simulated: answers by touch have no kernel time";
+  for (const char* output : {"null:", "alsa:hw:31"}) {  // a card that is not there
+    const auto uri = text.find("uri = \"null:\"");
+    if (uri != std::string::npos) text.replace(uri, 13, std::string("uri = \"") + output + "\"");
+    std::ofstream(rig) << text;
+    Child child({TURNPOINT, "doctor", "--rig", rig, "--data", folder.path});
+    REQUIRE(child.ends_within(kPatience_ms));
+    CAPTURE(child.said());
+    CHECK((child.said().find(warning) != std::string::npos) == (std::string(output) != "null:"));
+  }
 }
 
 TEST_CASE("the doctor takes the rig that the other commands take", "[cli]") {
