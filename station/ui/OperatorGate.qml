@@ -29,7 +29,7 @@ Rectangle {
         spacing: 1.2 * root.theme.unit
         Text {
             anchors.horizontalCenter: parent.horizontalCenter
-            text: root.typed === "" ? "Operator" : "•".repeat(root.typed.length)
+            text: root.typed === "" ? "Operator's code" : "•".repeat(root.typed.length)
             color: root.theme.ink
             font { pixelSize: root.theme.textTitle; weight: Font.Bold }
         }
