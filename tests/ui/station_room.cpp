@@ -3,9 +3,9 @@
 #include <QDir>
 #include <QFile>
 #include <QGuiApplication>
-#include <QProcess>
 #include <QScreen>
 #include <chrono>
+#include <csignal>
 #include <fstream>
 
 #include "station/app/calibrate.hpp"
@@ -13,6 +13,7 @@
 #include "station/app/prepare.hpp"
 #include "station/calibration/apply.hpp"
 #include "station/store/export.hpp"
+#include "tests/support/child.hpp"
 
 namespace turnpoint::ui {
 
@@ -105,12 +106,12 @@ double StationRoom::keepLatency() {
 }
 
 int StationRoom::cutOffSession(const QString& mode) {
-  QProcess process;
-  process.setProcessChannelMode(QProcess::ForwardedErrorChannel);
-  process.start(CUT_OFF_SESSION, {folder_->filePath("protocols/short.toml"), folder_->filePath("rig.toml"),
-                                  folder_->filePath("lab.sqlite"), mode});
-  if (!process.waitForFinished(60'000)) return -1;
-  return process.exitStatus() == QProcess::CrashExit ? 9 : process.exitCode();
+  const auto path = [this](const char* name) { return folder_->filePath(name).toStdString(); };
+  Child child({CUT_OFF_SESSION, path("protocols/short.toml"), path("rig.toml"), path("lab.sqlite"),
+               mode.toStdString()});
+  if (!child.ends_within(60'000)) return 0;
+  if (child.outcome() != -SIGKILL) qWarning("%s", child.said().c_str());
+  return child.outcome();
 }
 
 void StationRoom::lookOn() {

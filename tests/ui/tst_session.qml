@@ -35,6 +35,7 @@ Item {
             const all = []
             collect(view, all)
             compare(all.length, 1)
+            tryCompare(all[0], "armed", true, 20000)
             mouseClick(all[0])
         }
 

@@ -214,7 +214,7 @@ Item {
         function test_a_session_that_was_cut_off_goes_on_at_its_very_trial() {
             room.open("2468")
             room.calibrate()
-            compare(room.cutOffSession("live"), 9)
+            compare(room.cutOffSession("live"), -9)
             room.reopen("2468")
             tryVerify(() => operating.interrupted.startsWith("T1, short: 2 trials stored"), 20000, operating.interrupted)
             tap("resume")
