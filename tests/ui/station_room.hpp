@@ -48,7 +48,8 @@ class StationRoom : public QObject {
   Q_INVOKABLE void pressed(double ago_ms);
   Q_INVOKABLE double keepLatency();
 
-  /// A session of participant T1, on this rig, that was killed in its third trial: exit code, -9 for a kill.
+  /// A session of participant T1, on this rig, that was killed in its third trial: exit code, -9 for a
+  /// kill, 0 where it did not end within a minute.
   Q_INVOKABLE int cutOffSession(const QString& mode);
 
   /// The levels of this protocol's first session, in order: of one that nothing interrupted.

@@ -33,7 +33,7 @@ Item {
         function tap(name) {
             tryVerify(() => find(view, name) !== null, 20000, name)
             wait(400)                                                // a page takes taps once it has been up a while,
-            tryVerify(() => find(view, name).armed, 20000, name)     // however long its first frame took
+            tryVerify(() => find(view, name)?.armed, 20000, name)    // however long its first frame took
             mouseClick(find(view, name))
         }
         /// Where on the slider a value stands.

@@ -35,7 +35,7 @@ Item {
         function tap(name) {
             tryVerify(() => find(view, name) !== null, 20000, name)
             wait(400)
-            tryVerify(() => find(view, name) && find(view, name).armed, 20000, name + " on page " + page.kind + ": " + page.text)
+            tryVerify(() => find(view, name)?.armed, 20000, name)
             mouseClick(find(view, name))
         }
         function hold(name) {
