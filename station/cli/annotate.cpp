@@ -26,7 +26,7 @@ void annotate(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_annotate(CLI::App& app, Context& context) {
+void add_annotate(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("annotate", "Add a note to a session; the trials stay as they are");
   command->add_option("--db", options->database, "Database")->required();

@@ -53,14 +53,14 @@ void restore(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_backup(CLI::App& app, Context& context) {
+void add_backup(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("backup", "Copy a database, also a running one, check the copy, keep the newest");
   command->add_option("--db", options->database, "Database")->required();
   command->add_option("--dir", options->backup.directory, "Folder of the backups")->required();
   command->add_option("--keep", options->backup.keep, "How many stay; 0 keeps all")
-      ->check(CLI::NonNegativeNumber)
+      ->check(not_negative())
       ->capture_default_str();
   command->add_flag("--restore", options->restore,
                     "Put the newest good backup in the place of a damaged, empty or missing database");

@@ -83,19 +83,19 @@ void bench(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_bench(CLI::App& app, Context& context) {
+void add_bench(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("bench", "Speed against accuracy on this machine, as tables and plots");
   command->add_option("what", options->what, "physics | synth | procedures | store; otherwise all")
-      ->check(CLI::IsMember(kAll));
+      ->check(one_of(kAll));
   command->add_option("--out", options->out, "Folder for CSV tables and SVG plots");
   command->add_option("--seconds", options->seconds, "About how long physics may measure")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   command->add_option("--disk", options->disk, "Folder on the disk that store measures")
       ->capture_default_str();
   command->add_option("--trials", options->trials, "Trials that store writes each way")
-      ->check(CLI::PositiveNumber)
+      ->check(positive())
       ->capture_default_str();
   add_json(*command, context);
   command->footer("Example: turnpoint bench physics --out bench");

@@ -163,7 +163,7 @@ void calibrate(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_calibrate(CLI::App& app, Context& context) {
+void add_calibrate(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("calibrate", "Fit measurements of a rig; plan or play the sweep for them");
@@ -175,12 +175,12 @@ void add_calibrate(CLI::App& app, Context& context) {
   command->add_option("--boundaries", options->boundaries,
                       "File: frequency_Hz,boundary_mm,sd_mm (sd 0: unknown)");
   command->add_option("--law", options->law, "membrane | plate; otherwise three boundaries decide")
-      ->check(CLI::IsMember({"membrane", "plate"}));
+      ->check(one_of({"membrane", "plate"}));
   command->add_option("--friction", options->friction, "File: displacement_um,relative_friction");
   command->add_option("--sound", options->sound, "File: frequency_Hz,level_dB (SPL at full scale)");
   command->add_option("--valid-days", options->valid_days, "Until it expires")
       ->capture_default_str()
-      ->check(CLI::Range(1, 3650));
+      ->check(range(1, 3650));
   command->add_option("--note", options->note, "Kept in the file: instruments, temperature, who");
   command->add_option("--out", options->out,
                       "File; otherwise beside the rig, with the date, where `run` finds it");
@@ -192,7 +192,7 @@ void add_calibrate(CLI::App& app, Context& context) {
           "--reference", options->reference,
           "button: under the tapping finger, tells the way in | photodiode: on the flash, the way out")
       ->capture_default_str()
-      ->check(CLI::IsMember({"button", "photodiode"}));
+      ->check(one_of({"button", "photodiode"}));
   command->add_flag("--sweep", options->sweep, "Print the stepped sweep to measure with, as CSV");
   command->add_option("--sweep-out", options->sweep_out, "With --sweep: play it to wav:FILE or alsa:NAME");
   command->add_flag("--arm", options->arm,

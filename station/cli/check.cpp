@@ -173,7 +173,7 @@ void check(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_check(CLI::App& app, Context& context) {
+void add_check(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("check", "All mistakes in a protocol file at once, or what the session will be");
@@ -181,7 +181,7 @@ void add_check(CLI::App& app, Context& context) {
   command->add_option("--rig", options->rig, "Rig file");
   command
       ->add_option("--sessions", options->sessions, "Simulated sessions for trials and duration; 0 for none")
-      ->check(CLI::Range(0, 1000));
+      ->check(range(0, 1000));
   add_json(*command, context);
   command->footer("Example: turnpoint check protocols/demo.toml --rig deploy/rigs/simulated.toml");
   command->callback([options, &context] { check(*options, context); });

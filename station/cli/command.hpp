@@ -1,5 +1,4 @@
 #pragma once
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <iosfwd>
 #include <optional>
@@ -10,6 +9,7 @@
 #include "station/app/prepare.hpp"
 #include "station/app/preview.hpp"
 #include "station/app/station_request.hpp"
+#include "station/cli/command_line.hpp"
 
 namespace turnpoint::cli {
 
@@ -45,33 +45,33 @@ class UsageError : public std::runtime_error {
 
 /// Each adds one sub-command: its options, an example in the footer, and the callback that does it. One file
 /// each; the table in commands.cpp lists them.
-void add_map(CLI::App& app, Context& context);
-void add_field(CLI::App& app, Context& context);
-void add_plan(CLI::App& app, Context& context);
-void add_synth(CLI::App& app, Context& context);
-void add_trace(CLI::App& app, Context& context);
-void add_run(CLI::App& app, Context& context);
-void add_doctor(CLI::App& app, Context& context);
-void add_calibrate(CLI::App& app, Context& context);
-void add_resume(CLI::App& app, Context& context);
-void add_export(CLI::App& app, Context& context);
-void add_sessions(CLI::App& app, Context& context);
-void add_backup(CLI::App& app, Context& context);
-void add_merge(CLI::App& app, Context& context);
-void add_withdraw(CLI::App& app, Context& context);
-void add_annotate(CLI::App& app, Context& context);
-void add_check(CLI::App& app, Context& context);
-void add_new(CLI::App& app, Context& context);
-void add_protocols(CLI::App& app, Context& context);
-void add_report(CLI::App& app, Context& context);
-void add_figures(CLI::App& app, Context& context);
-void add_power(CLI::App& app, Context& context);
-void add_bench(CLI::App& app, Context& context);
-void add_preview(CLI::App& app, Context& context);
-void add_station(CLI::App& app, Context& context);
+void add_map(CommandLine& app, Context& context);
+void add_field(CommandLine& app, Context& context);
+void add_plan(CommandLine& app, Context& context);
+void add_synth(CommandLine& app, Context& context);
+void add_trace(CommandLine& app, Context& context);
+void add_run(CommandLine& app, Context& context);
+void add_doctor(CommandLine& app, Context& context);
+void add_calibrate(CommandLine& app, Context& context);
+void add_resume(CommandLine& app, Context& context);
+void add_export(CommandLine& app, Context& context);
+void add_sessions(CommandLine& app, Context& context);
+void add_backup(CommandLine& app, Context& context);
+void add_merge(CommandLine& app, Context& context);
+void add_withdraw(CommandLine& app, Context& context);
+void add_annotate(CommandLine& app, Context& context);
+void add_check(CommandLine& app, Context& context);
+void add_new(CommandLine& app, Context& context);
+void add_protocols(CommandLine& app, Context& context);
+void add_report(CommandLine& app, Context& context);
+void add_figures(CommandLine& app, Context& context);
+void add_power(CommandLine& app, Context& context);
+void add_bench(CommandLine& app, Context& context);
+void add_preview(CommandLine& app, Context& context);
+void add_station(CommandLine& app, Context& context);
 
 /// Adds `--json` to a sub-command.
-void add_json(CLI::App& command, Context& context);
+void add_json(Command& command, Context& context);
 
 /// Parses and does what the command line says. Returns the exit status: 0 done, 1 failed at run time, 2 bad
 /// input or usage. The only catch-all of the program.

@@ -11,7 +11,7 @@ namespace turnpoint::cli {
 
 namespace {
 
-using Add = void (*)(CLI::App&, Context&);
+using Add = void (*)(CommandLine&, Context&);
 constexpr Add kCommands[] = {
     add_map,      add_field,  add_plan,   add_synth,     add_trace,    add_run,   add_resume,  add_export,
     add_sessions, add_backup, add_merge,  add_withdraw,  add_annotate, add_check, add_new,     add_protocols,
@@ -24,22 +24,17 @@ int report(std::ostream& err, const std::exception& error, int code) {
 
 }  // namespace
 
-void add_json(CLI::App& command, Context& context) {
+void add_json(Command& command, Context& context) {
   command.add_flag("--json", context.json, "Print one JSON document on standard output");
 }
 
 int run(int argc, char** argv, std::ostream& out, std::ostream& err, const Screens* screens) {
   Context context{out, err, false, 0, {argv, argv + argc + 1}, screens};
-  CLI::App app("Turnpoint: a psychophysics station for ultrasonic tapered friction displays", "turnpoint");
-  app.require_subcommand(1);
-  app.set_version_flag("--version", TURNPOINT_VERSION);
+  CommandLine app("Turnpoint: a psychophysics station for ultrasonic tapered friction displays", "turnpoint",
+                  TURNPOINT_VERSION);
   for (const auto add : kCommands) add(app, context);
   try {
-    app.parse(argc, argv);
-    return context.exit_code;
-  } catch (const CLI::ParseError& error) {
-    // CLI11 answers --help and --version by exceptions with code 0.
-    return app.exit(error, out, err) == 0 ? 0 : 2;
+    return app.parse(argc, argv, out, err).value_or(context.exit_code);
   } catch (const text::BadInput& error) {
     err << error.what() << "\n";
     return 2;

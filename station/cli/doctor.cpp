@@ -44,7 +44,7 @@ void doctor(const std::string& rig_path, const std::string& data_path, Context& 
 
 }  // namespace
 
-void add_doctor(CLI::App& app, Context& context) {
+void add_doctor(CommandLine& app, Context& context) {
   auto* command = app.add_subcommand(
       "doctor", "Check the hardware that a rig names; exit status 1 where something is wrong");
   auto rig = std::make_shared<std::string>();

@@ -50,7 +50,7 @@ void export_data(Options options, Context& context) {
 
 }  // namespace
 
-void add_export(CLI::App& app, Context& context) {
+void add_export(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("export", "Write sessions as CSV or BIDS, one folder a protocol");
   command->add_option("--db", options->database, "Database")->required();
@@ -59,7 +59,7 @@ void add_export(CLI::App& app, Context& context) {
   command->add_option("--participant", options->selection.participant, "Only this participant code");
   command->add_option("--protocol", options->selection.protocol_id, "Only this protocol");
   command->add_option("--format", options->format, "csv | bids")
-      ->check(CLI::IsMember({"csv", "bids"}))
+      ->check(one_of({"csv", "bids"}))
       ->capture_default_str();
   command->add_option("--separator", options->separator, "Between columns: , ; | or tab")
       ->capture_default_str();

@@ -124,19 +124,19 @@ void field(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_field(CLI::App& app, Context& context) {
+void add_field(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("field", "Displacement and friction along the centre line");
   command->add_option("--rig", options->rig, "Rig file")->required();
   command->add_option("--tone", options->tones, "HZ[:UM[:DEG]]: frequency, drive-edge displacement, phase")
       ->required();
   command->add_option("--points", options->points, "So many points from 0 to the length, inclusive")
-      ->check(CLI::Range(2, 10'000'000));
+      ->check(range(2, 10'000'000));
   command->add_option("--at", options->at, "Points in mm, with commas between");
   command->add_option("--model", options->model, "auto | airy | seed | uniform | mode | modes")
       ->capture_default_str();
   command->add_option("--tolerance", options->tolerance, "Relative error of the amplitude that is allowed")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   command->add_option("--normalise", options->normalise, "drive | peak | none")->capture_default_str();
   add_json(*command, context);
   command->footer("Example: turnpoint field --rig deploy/rigs/simulated.toml --tone 30000:0.5 --points 301");

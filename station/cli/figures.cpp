@@ -66,7 +66,7 @@ void figures(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_figures(CLI::App& app, Context& context) {
+void add_figures(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "figures", "Figures 3, 5, 8 and 10 of the 1998 paper, with the corrected theory beside them");

@@ -68,7 +68,7 @@ void map(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_map(CLI::App& app, Context& context) {
+void add_map(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("map", "Boundary to frequency, or frequency to boundary");
   command->add_option("--rig", options->rig, "Rig file")->required();
@@ -78,7 +78,7 @@ void add_map(CLI::App& app, Context& context) {
       ->capture_default_str();
   command->add_option("--model", options->model, "Model to use; otherwise the cheapest that is enough");
   command->add_option("--tolerance-mm", options->tolerance_mm, "Error that is allowed, in mm")
-      ->check(CLI::PositiveNumber);
+      ->check(positive());
   add_json(*command, context);
   command->footer("Example: turnpoint map --rig deploy/rigs/simulated.toml --boundary 150 200 --edge p50");
   command->callback([options, &context] { map(*options, context); });

@@ -53,7 +53,7 @@ void merge(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_merge(CLI::App& app, Context& context) {
+void add_merge(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("merge", "Bring the sessions of other stations' databases into one");
   command->add_option("--db", options->database, "Database that they come into; made where it is not there")

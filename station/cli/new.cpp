@@ -104,7 +104,7 @@ void make(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_new(CLI::App& app, Context& context) {
+void add_new(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("new", "Starts a protocol file by asking what is to be measured");
   command->add_option("file", options->file, "The file to write, such as my-study.toml")->required();

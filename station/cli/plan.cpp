@@ -125,7 +125,7 @@ void plan(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_plan(CLI::App& app, Context& context) {
+void add_plan(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("plan", "What a scene of a protocol becomes: tones, model, reason, cues");

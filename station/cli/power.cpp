@@ -149,7 +149,7 @@ void power(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_power(CLI::App& app, Context& context) {
+void add_power(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "power", "What a study would find: bias, spread and interval coverage by simulated sessions");
@@ -157,16 +157,16 @@ void add_power(CLI::App& app, Context& context) {
   command->add_option("--rig", options->rig, "Rig file, for the cues that an observer could use instead");
   command->add_option("--observers", options->observers, "Simulated sessions")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1'000'000));
+      ->check(range(1, 1'000'000));
   command->add_option("--intervals", options->intervals, "Sessions that also get 95 % intervals")
       ->capture_default_str()
-      ->check(CLI::Range(0, 1'000'000));
+      ->check(range(0, 1'000'000));
   command
       ->add_option("--observer", options->observer,
                    "sim[:threshold=...,slope=...,lapse=...,bias=...]: who answers")
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of the first session, 0 to 2^53")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53));
+      ->check(range(0, 9007199254740992));
   command->add_option("--out", options->out, "Folder for the figure and the numbers");
   add_json(*command, context);
   command->footer(

@@ -59,7 +59,7 @@ void preview_to_files(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_preview(CLI::App& app, Context& context) {
+void add_preview(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("preview", "The scenes of a protocol before anyone is in the room");
   command->add_option("protocol", options->protocol, "Protocol file")->required();

@@ -49,7 +49,7 @@ void protocols(const std::string& folder, Context& context) {
 
 }  // namespace
 
-void add_protocols(CLI::App& app, Context& context) {
+void add_protocols(CommandLine& app, Context& context) {
   auto folder = std::make_shared<std::string>();
   auto* command = app.add_subcommand("protocols", "Lists the protocols that come with the program");
   command->add_option("--folder", *folder, "Another folder with protocol files");

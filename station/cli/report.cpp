@@ -40,7 +40,7 @@ void report_session(Options options, Context& context) {
 
 }  // namespace
 
-void add_report(CLI::App& app, Context& context) {
+void add_report(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("report", "One page about a session: fits, bias, the trade, health");
   command->add_option("--db", options->database, "Database")->required();

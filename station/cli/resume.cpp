@@ -7,13 +7,13 @@
 
 namespace turnpoint::cli {
 
-void add_resume(CLI::App& app, Context& context) {
+void add_resume(CommandLine& app, Context& context) {
   auto request = std::make_shared<app::ResumeRequest>();
   auto* command = app.add_subcommand("resume", "Go on with the newest interrupted session");
-  command->add_option("--db", request->database, "Database file")->required()->check(CLI::ExistingFile);
+  command->add_option("--db", request->database, "Database file")->required()->check(existing_file());
   command->add_option("--session", request->session_id, "Session; otherwise the newest interrupted one");
   command->add_option("--policy", request->policy, "resume | restart | block; otherwise the protocol's")
-      ->check(CLI::IsMember({"resume", "restart", "block"}));
+      ->check(one_of({"resume", "restart", "block"}));
   command->add_flag("--headless", request->headless, "No screen");
   add_json(*command, context);
   command->footer("Example: turnpoint resume --db lab.sqlite --policy resume");

@@ -94,7 +94,7 @@ void show_summary(Context& context, const session::Summary& summary, const std::
   if (interrupted) print_how_to_resume(context.out, summary, resume_options);
 }
 
-std::shared_ptr<app::RunRequest> add_run_options(CLI::App& command) {
+std::shared_ptr<app::RunRequest> add_run_options(Command& command) {
   auto request = std::make_shared<app::RunRequest>();
   command.add_option("protocol", request->protocol, "Protocol file")->required();
   command.add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
@@ -103,12 +103,12 @@ std::shared_ptr<app::RunRequest> add_run_options(CLI::App& command) {
   command.add_option("--db", request->database, "Database file; made if it does not exist")->required();
   command.add_option("--mode", request->mode, "live | pilot")
       ->capture_default_str()
-      ->check(CLI::IsMember({"live", "pilot"}));
+      ->check(one_of({"live", "pilot"}));
   command.add_option("--language", request->language, "One of the protocol's languages; otherwise its first");
   command.add_option("--observer", request->observer,
                      "sim[:threshold=...,slope=...]: a simulated observer answers");
   command.add_option("--seed", request->seed, "Seed of all random draws, 0 to 2^53")
-      ->check(CLI::Range(std::uint64_t{0}, std::uint64_t{1} << 53));
+      ->check(range(0, 9007199254740992));
   command.add_option(
       "--consent", request->consent_version,
       "Version of the consent form; the screen asks the participant to confirm having signed it");
@@ -121,19 +121,19 @@ std::shared_ptr<app::RunRequest> add_run_options(CLI::App& command) {
   return request;
 }
 
-void add_operator_code(CLI::App& command, std::string& code) {
+void add_operator_code(Command& command, std::string& code) {
   command
       .add_option("--operator-code", code,
                   "Digits that open the operator's pages, arming and the report on the participant's screen")
       ->capture_default_str()
-      ->check([](const std::string& text) {
-        return text.find_first_not_of("0123456789") == std::string::npos
-                   ? std::string()
-                   : "'" + text + "': digits are allowed; the keypad has nothing else";
-      });
+      ->check({"", [](const std::string& text) {
+                 return text.find_first_not_of("0123456789") == std::string::npos
+                            ? std::string()
+                            : "'" + text + "': digits are allowed; the keypad has nothing else";
+               }});
 }
 
-void add_run(CLI::App& app, Context& context) {
+void add_run(CommandLine& app, Context& context) {
   auto* command = app.add_subcommand("run", "Run a session");
   auto request = add_run_options(*command);
   add_json(*command, context);

@@ -60,7 +60,7 @@ void sessions(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_sessions(CLI::App& app, Context& context) {
+void add_sessions(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("sessions", "List the sessions of a database");
   command->add_option("--db", options->database, "Database")->required();

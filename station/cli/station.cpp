@@ -7,7 +7,7 @@
 
 namespace turnpoint::cli {
 
-void add_station(CLI::App& app, Context& context) {
+void add_station(CommandLine& app, Context& context) {
   auto request = std::make_shared<app::StationRequest>();
   auto* command = app.add_subcommand("station", "The operator's start page: choose, check, run, resume");
   command->add_option("--protocols", request->protocols,

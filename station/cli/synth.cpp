@@ -100,7 +100,7 @@ void synth(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_synth(CLI::App& app, Context& context) {
+void add_synth(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("synth", "Play or render tones");
   command->add_option("--rig", options->rig, "Rig file: rate, depth, transducers")->required();
@@ -108,10 +108,10 @@ void add_synth(CLI::App& app, Context& context) {
       ->required();
   command->add_option("--seconds", options->seconds, "Length, both ramps included")
       ->required()
-      ->check(CLI::Range(0.001, 3600.0));
+      ->check(between(0.001, 3600.0));
   command->add_option("--ramp-ms", options->ramp_ms, "Length of each ramp")
       ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+      ->check(not_negative());
   command->add_option("--out", options->out, "null: | wav:FILE | alsa:NAME")->required();
   command->add_flag(
       "--arm", options->arm,

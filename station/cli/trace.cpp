@@ -73,7 +73,7 @@ void trace(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_trace(CLI::App& app, Context& context) {
+void add_trace(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("trace", "The levels that a procedure gives for given answers");
   command->add_option("protocol", options->protocol, "Protocol file")->required();

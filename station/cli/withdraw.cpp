@@ -58,7 +58,7 @@ void withdraw(const Options& options, Context& context) {
 
 }  // namespace
 
-void add_withdraw(CLI::App& app, Context& context) {
+void add_withdraw(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("withdraw", "Delete all data of a participant who withdraws; cannot be undone");

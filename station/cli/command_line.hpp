@@ -1,0 +1,85 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <iosfwd>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace turnpoint::cli {
+
+/// A condition on the text of an option's value, and how the help describes what is allowed.
+struct Check {
+  std::string allowed;
+  std::function<std::string(const std::string& value)> problem;  ///< returns "" where the value is allowed
+};
+Check range(std::int64_t least, std::int64_t most);  ///< whole numbers
+Check between(double least, double most);            ///< any numbers
+Check positive();
+Check not_negative();
+Check one_of(std::vector<std::string> values);
+Check existing_file();
+
+/// One option of a sub-command. Each call returns the option itself, so that calls can be chained.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+  Option* required();
+  Option* capture_default_str();  ///< shows the target's present value in the help
+  Option* check(Check check);
+
+ private:
+  CLI::Option* option_;
+};
+
+/// One sub-command: its options, the example under its help, and what it does. An option writes into its
+/// target, which must outlive the parsing. Names without leading dashes are positional.
+///
+/// CLI11 does the work, compiled once in command_line.cpp: included by every command, its inline code took
+/// ten seconds of compilation for each of them.
+class Command {
+ public:
+  explicit Command(CLI::App* app) : app_(app) {}
+  template <class T>
+  Option* add_option(const std::string& name, T& target, const std::string& help) {
+    return add(name, &target, help);
+  }
+  void add_flag(const std::string& name, bool& target, const std::string& help);
+  void footer(const std::string& text);
+  void callback(std::function<void()> action);
+
+ private:
+  using Target = std::variant<std::string*, int*, double*, std::uint64_t*, std::vector<std::string>*,
+                              std::vector<double>*, std::optional<std::string>*, std::optional<int>*,
+                              std::optional<double>*, std::optional<std::uint64_t>*>;
+  Option* add(const std::string& name, Target target, const std::string& help);
+
+  CLI::App* app_;
+  std::vector<std::unique_ptr<Option>> options_;
+};
+
+/// The whole command line: its sub-commands, of which one must be given.
+class CommandLine {
+ public:
+  CommandLine(const std::string& description, const std::string& program, const std::string& version);
+  ~CommandLine();
+  Command* add_subcommand(const std::string& name, const std::string& help);
+
+  /// Parses, and runs the callback of the sub-command that was given, whose exceptions pass through.
+  /// Empty when it ran; otherwise the exit status: 0 after --help or --version (printed on `out`), 2 after
+  /// wrong usage (explained on `err`).
+  std::optional<int> parse(int argc, char** argv, std::ostream& out, std::ostream& err);
+
+ private:
+  std::unique_ptr<CLI::App> app_;
+  std::vector<std::unique_ptr<Command>> commands_;
+};
+
+}  // namespace turnpoint::cli
