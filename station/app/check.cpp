@@ -103,10 +103,11 @@ Spread spread_of(std::vector<double> values) {
   return {at(0.05), at(0.5), at(0.95)};
 }
 
-void estimate(const Protocol& protocol, int sessions, Check& check) {
+void estimate(const Protocol& protocol, int sessions, const std::stop_token& stop, Check& check) {
   std::vector<double> durations, trials;
   std::vector<std::vector<double>> by_block;
   for (int i = 0; i < sessions; ++i) {
+    if (stop.stop_requested()) throw protocol::Abandoned();
     // Sequence index 0 throughout: the blocks of all rows are the same, in another order.
     const auto sitting = simulate(protocol, 0, static_cast<std::uint64_t>(i));
     if (i == 0) {
@@ -130,7 +131,8 @@ void estimate(const Protocol& protocol, int sessions, Check& check) {
 
 }  // namespace
 
-Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options) {
+Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options,
+            const std::stop_token& stop) {
   Check check;
   std::optional<Protocol> protocol;
   std::optional<rig::Rig> rig;
@@ -147,12 +149,14 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   check.id = protocol->id, check.title = protocol->title, check.rig_name = rig->name;
   check.protocol_defaults = protocol->defaults_used;
   check.rig_defaults = rig->defaults_used;
-  check.survey = protocol::survey(*protocol, *rig);
+  check.survey = protocol::survey(*protocol, *rig, stop);
   check.problems = check.survey.problems;
   check.warnings = check.survey.warnings;
   check.cues = protocol::cue_guard(*protocol, check.survey);
   try {
-    estimate(*protocol, options.sessions, check);
+    estimate(*protocol, options.sessions, stop, check);
+  } catch (const protocol::Abandoned&) {
+    throw;
   } catch (const std::exception& error) {
     // What the procedures cannot do must stop a session before anybody sits down.
     check.problems.push_back({{protocol_path, 0, 0}, error.what(), ""});

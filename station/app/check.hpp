@@ -1,4 +1,5 @@
 #pragma once
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,9 @@ struct CheckOptions {
   int sessions = 21;
 };
 
-/// Reads and checks both files as `run` would. Throws std::system_error where one cannot be read.
-Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options = {});
+/// Reads and checks both files as `run` would. Throws std::system_error where one cannot be read, and
+/// protocol::Abandoned soon after `stop` asks it to.
+Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options = {},
+            const std::stop_token& stop = {});
 
 }  // namespace turnpoint::app

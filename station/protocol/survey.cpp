@@ -98,9 +98,10 @@ struct Answer {
 };
 
 void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector<Combination>& combinations,
-                std::size_t begin, std::size_t end, scene::Planner& planner, std::vector<Answer>& answers) {
+                std::size_t begin, std::size_t end, scene::Planner& planner, std::vector<Answer>& answers,
+                const std::stop_token& stop) {
   std::set<std::string> explained;
-  for (std::size_t i = begin; i < end; ++i) {
+  for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
     const auto& combination = combinations[i];
     const auto& from = protocol.scenes.at(combination.scene);
     // Roving upwards: the limits must hold for the strongest stimulus that can be drawn.
@@ -117,24 +118,25 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
 // Combinations side by side differ least, and a planner remembers: so each of two threads takes a half, after
 // the first combination has made the maps that all need.
 std::vector<Answer> plan_all(const Protocol& protocol, const rig::Rig& rig,
-                             const std::vector<Combination>& combinations) {
+                             const std::vector<Combination>& combinations, const std::stop_token& stop) {
   std::vector<Answer> answers(combinations.size());
   const auto count = combinations.size(), begun = std::min<std::size_t>(1, count), half = (count + begun) / 2;
   scene::Planner planner(rig);
-  plan_range(protocol, rig, combinations, 0, begun, planner, answers);
+  plan_range(protocol, rig, combinations, 0, begun, planner, answers, stop);
   auto second = std::async(std::launch::async, [&, other = planner]() mutable {
-    plan_range(protocol, rig, combinations, half, count, other, answers);
+    plan_range(protocol, rig, combinations, half, count, other, answers, stop);
   });
-  plan_range(protocol, rig, combinations, begun, half, planner, answers);
+  plan_range(protocol, rig, combinations, begun, half, planner, answers, stop);
   second.get();
+  if (stop.stop_requested()) throw Abandoned();
   return answers;
 }
 
-void plan_scenes(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
+void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop, Survey& survey) {
   const auto all = combinations_of(protocol);
   survey.combinations = all.size();
   const auto combinations = planned(protocol, all);
-  const auto answers = plan_all(protocol, rig, combinations);
+  const auto answers = plan_all(protocol, rig, combinations, stop);
   std::map<std::string, Trouble> unreachable, inexact;
   std::map<std::string, std::string> told;  // warnings of the planner by code
   for (std::size_t i = 0; i < answers.size(); ++i) {
@@ -202,11 +204,11 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
 
 }  // namespace
 
-Survey survey(const Protocol& protocol, const rig::Rig& rig) {
+Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop) {
   Survey survey;
   check_devices(protocol, rig, survey);
   check_limits(protocol, rig, survey);
-  plan_scenes(protocol, rig, survey);
+  plan_scenes(protocol, rig, stop, survey);
   for (auto& warning : advice(protocol)) survey.warnings.push_back(std::move(warning));
   return survey;
 }

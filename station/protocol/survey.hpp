@@ -1,6 +1,8 @@
 #pragma once
 #include <optional>
 #include <set>
+#include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -32,10 +34,17 @@ struct Survey {
   std::set<std::string> models;
 };
 
+/// Thrown by work that was asked to stop before it had a result.
+class Abandoned : public std::runtime_error {
+ public:
+  Abandoned() : std::runtime_error("abandoned before it had a result") {}
+};
+
 /// Plans every scene for the combinations of factors that can occur (a staircase by its limits), and checks
 /// devices, limits and levels. Beyond 120 combinations of a scene, or 6 of one with a zone, it takes those
-/// with extreme values and an even choice of the others: sights.size() against combinations says so.
-Survey survey(const Protocol& protocol, const rig::Rig& rig);
+/// with extreme values and an even choice of the others: sights.size() against combinations says so. Throws
+/// Abandoned soon after `stop` asks it to (within the plan at hand).
+Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop = {});
 
 /// What is probably not meant, whatever the rig: targets that the steps miss, one-point grids, levels below
 /// four times the tolerance or all above what everybody feels, practice that one key passes, parts never

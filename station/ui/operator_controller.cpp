@@ -5,7 +5,6 @@
 #include <sstream>
 #include <utility>
 
-#include "station/app/check.hpp"
 #include "station/app/prepare.hpp"
 #include "station/app/resume.hpp"
 #include "station/ui/facts.hpp"
@@ -29,7 +28,15 @@ std::vector<std::string> lines_of(const std::exception& error) {
 }  // namespace
 
 OperatorController::OperatorController(app::StationRequest request, QObject* parent)
-    : QObject(parent), request_(std::move(request)) {
+    : OperatorController(
+          std::move(request),
+          [](const std::string& protocol, const std::string& rig, const std::stop_token& stop) {
+            return app::check(protocol, rig, {kSessions}, stop);
+          },
+          parent) {}
+
+OperatorController::OperatorController(app::StationRequest request, Checker checker, QObject* parent)
+    : QObject(parent), request_(std::move(request)), checker_(std::move(checker)), worker_(*this) {
   std::filesystem::create_directories(std::filesystem::absolute(request_.database).parent_path());
   refresh();
 }
@@ -47,26 +54,21 @@ void OperatorController::refresh() {
     words_.problems = lines_of(error);
   }
   emit changed();
-  if (selected_ < 0 && !protocols_.empty()) select(0);
+  if (selected_ < 0 && !protocols_.empty()) return select(0);
+  if (checking_) check_selected();  // its check was abandoned for the session
 }
 
 /// The job runs on the worker; what it returns runs here, unless something newer was asked for meanwhile.
-void OperatorController::work(std::function<std::function<void()>()> job,
+void OperatorController::work(std::function<Then(const std::stop_token&)> job,
                               void (OperatorController::*failed)(std::vector<std::string>)) {
-  const int generation = ++generation_;
-  worker_ = std::jthread([this, generation, failed, job = std::move(job)] {
-    std::function<void()> then;
+  worker_.start([this, failed, job = std::move(job)](const std::stop_token& stop) -> Then {
     try {
-      then = job();
+      return job(stop);
+    } catch (const protocol::Abandoned&) {
+      return {};
     } catch (const std::exception& error) {
-      then = [this, failed, lines = lines_of(error)] { (this->*failed)(lines); };
+      return [this, failed, lines = lines_of(error)] { (this->*failed)(lines); };
     }
-    QMetaObject::invokeMethod(
-        this,
-        [this, generation, then = std::move(then)] {
-          if (generation == generation_) then();
-        },
-        Qt::QueuedConnection);
   });
 }
 
@@ -79,7 +81,13 @@ void OperatorController::fail(std::vector<std::string> problems) {
 /// What is chosen cannot begin so; something else of the same protocol may.
 void OperatorController::refuse(std::vector<std::string> reasons) {
   refused_ = std::move(reasons);
+  stay();
+}
+
+/// The page goes on without a session.
+void OperatorController::stay() {
   preparing_ = false;
+  if (checking_) check_selected();  // its check was abandoned for the session
   emit changed();
 }
 
@@ -95,12 +103,18 @@ void OperatorController::select(int index) {
   language_ = -1;
   words_ = {};
   refused_.clear();
+  worker_.abandon();
   if (!entry()->problem.empty()) return fail({entry()->problem});
   checking_ = true;
   emit changed();
+  check_selected();
+}
+
+void OperatorController::check_selected() {
+  if (entry() == nullptr) return;
   work(
-      [this, path = entry()->path, rig = request_.rig]() -> std::function<void()> {
-        auto words = app::words_of(app::check(path, rig, {kSessions}));
+      [this, path = entry()->path, rig = request_.rig](const std::stop_token& stop) -> Then {
+        auto words = app::words_of(checker_(path, rig, stop));
         return [this, words = std::move(words)] {
           words_ = words;
           checking_ = false;
@@ -154,7 +168,7 @@ void OperatorController::begin() {
   refused_.clear();
   emit changed();
   work(
-      [this, request, ask_code, ask_language, arm = armed_]() -> std::function<void()> {
+      [this, request, ask_code, ask_language, arm = armed_](const std::stop_token&) -> Then {
         ChosenSession session{app::prepare(request), ask_language, ask_code, arm};
         return [this, session] {
           preparing_ = false;
@@ -171,16 +185,17 @@ void OperatorController::resume() {
   refused_.clear();
   emit changed();
   work(
-      [this, arm = armed_]() -> std::function<void()> {
+      [this, arm = armed_](const std::stop_token&) -> Then {
         std::ostringstream messages;
         app::ResumeRequest request;
         request.database = request_.database;
         request.session_id = interrupted_->session_id;
         const auto setup = app::prepare_resume(request, messages);
         return [this, setup, arm] {
+          if (!setup) return stay();
           preparing_ = false;
           emit changed();
-          if (setup) emit chosen({*setup, false, false, arm});
+          emit chosen({*setup, false, false, arm});
         };
       },
       &OperatorController::refuse);

@@ -5,11 +5,13 @@
 #include <QVariantList>
 #include <functional>
 #include <optional>
-#include <thread>
+#include <stop_token>
 #include <vector>
 
+#include "station/app/check.hpp"
 #include "station/app/operator_choices.hpp"
 #include "station/session/session.hpp"
+#include "station/ui/newest_job.hpp"
 
 namespace turnpoint::ui {
 
@@ -21,7 +23,8 @@ struct ChosenSession {
 };
 
 /// The operator's start page: protocols with their check, participant, language, run mode, arming, and the
-/// interrupted session. Files are read and checked on a thread of its own; the rest is GUI thread only.
+/// interrupted session. Files are read and checked on a thread of its own, so that the page never waits:
+/// choosing another protocol abandons the check that runs. The rest is GUI thread only.
 class OperatorController : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -47,7 +50,12 @@ class OperatorController : public QObject {
   Q_PROPERTY(QString database READ database CONSTANT)
 
  public:
+  /// Checks a protocol file on a rig file, on the worker; as app::check().
+  using Checker = std::function<app::Check(const std::string& protocol, const std::string& rig,
+                                           const std::stop_token& stop)>;
+
   explicit OperatorController(app::StationRequest request, QObject* parent = nullptr);
+  OperatorController(app::StationRequest request, Checker checker, QObject* parent = nullptr);
   ~OperatorController() override;
 
   QVariantList protocols() const;
@@ -86,13 +94,17 @@ class OperatorController : public QObject {
   void chosen(const turnpoint::ui::ChosenSession& session);
 
  private:
-  void work(std::function<std::function<void()>()> job,
+  using Then = std::function<void()>;
+  void work(std::function<Then(const std::stop_token&)> job,
             void (OperatorController::*failed)(std::vector<std::string>));
+  void check_selected();
+  void stay();
   void fail(std::vector<std::string> problems);
   void refuse(std::vector<std::string> reasons);
   const app::ProtocolEntry* entry() const;
 
   app::StationRequest request_;
+  Checker checker_;
   std::vector<app::ProtocolEntry> protocols_;
   QStringList participants_;
   std::optional<app::InterruptedNote> interrupted_;
@@ -101,8 +113,7 @@ class OperatorController : public QObject {
   int selected_ = -1, language_ = -1;
   QString participant_;
   bool live_ = false, armed_ = false, checking_ = false, preparing_ = false;
-  int generation_ = 0;
-  std::jthread worker_;
+  NewestJob worker_;  // last: its thread has ended before what it uses goes
 };
 
 }  // namespace turnpoint::ui

@@ -173,6 +173,17 @@ TEST_CASE("a check in words names the cues that would give answers away first", 
   CHECK(app::words_of(check).problems.front() == "a.toml:3:1: what; allowed");
 }
 
+TEST_CASE("a check that is no longer wanted is abandoned before it plans anything", "[operator]") {
+  std::stop_source stop;
+  const auto check = [&] {
+    return app::check(kSource + "/protocols/friction-2ifc.toml", kSource + "/deploy/rigs/simulated.toml", {},
+                      stop.get_token());
+  };
+  CHECK(check().problems.empty());
+  stop.request_stop();
+  CHECK_THROWS_AS(check(), protocol::Abandoned);
+}
+
 TEST_CASE("ages are said as people say them", "[operator]") {
   CHECK(app::age_in_words(30) == "30 s");
   CHECK(app::age_in_words(600) == "10 min");

@@ -1,0 +1,46 @@
+#pragma once
+#include <QObject>
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <thread>
+
+namespace turnpoint::ui {
+
+/// Runs slow jobs for a page on one thread of its own, and only the newest counts: starting another asks the
+/// running one to stop and drops one that has not begun. The GUI thread never waits for a job, except in the
+/// destructor.
+class NewestJob {
+ public:
+  /// Runs on the worker. What it returns runs on the owner's thread, unless another job was started
+  /// meanwhile. Must not throw.
+  using Job = std::function<std::function<void()>(const std::stop_token&)>;
+
+  /// The owner must outlive it.
+  explicit NewestJob(QObject& owner);
+  ~NewestJob();  ///< asks the running job to stop, and waits for it
+
+  /// Owner's thread; returns at once.
+  void start(Job job);
+  /// Owner's thread; returns at once. Nothing that was started counts any more.
+  void abandon();
+
+ private:
+  struct Wanted {
+    int number = 0;
+    Job job;
+  };
+  void run(const std::stop_token& stop);
+
+  QObject& owner_;
+  int newest_ = 0;  ///< owner's thread only
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::optional<Wanted> wanted_;
+  std::stop_source running_;
+  std::jthread thread_;  // last: joined before what it uses goes
+};
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,175 @@
+#include <QCoreApplication>
+#include <QTimer>
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+
+#include "station/app/prepare.hpp"
+#include "station/ui/operator_controller.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace turnpoint;
+using ui::OperatorController;
+
+namespace {
+
+const std::string kSource = TURNPOINT_SOURCE_DIR;
+/// Enough for a machine that does much else; what never comes must end the test as well.
+constexpr std::chrono::seconds kPatience{20};
+
+/// Checks that take as long as the test wants, and do not look whether they are still wanted.
+class HeldChecks {
+ public:
+  app::Check operator()(const std::string& protocol, const std::stop_token& stop) {
+    std::unique_lock lock(mutex_);
+    begun_.push_back(std::filesystem::path(protocol).filename());
+    running_ = stop;
+    changed_.notify_all();
+    changed_.wait_for(lock, kPatience, [this] { return open_; });
+    ++ended_;
+    app::Check check;
+    check.rig_name = begun_.back();
+    return check;
+  }
+
+  void let_go() {
+    const std::lock_guard lock(mutex_);
+    open_ = true;
+    changed_.notify_all();
+  }
+  std::vector<std::string> begun() {
+    const std::lock_guard lock(mutex_);
+    return begun_;
+  }
+  int ended() {
+    const std::lock_guard lock(mutex_);
+    return ended_;
+  }
+  bool running_is_abandoned() {
+    const std::lock_guard lock(mutex_);
+    return running_.stop_requested();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::string> begun_;
+  std::stop_token running_;
+  int ended_ = 0;
+  bool open_ = false;
+};
+
+/// The start page without its window, on three protocols: two that can be used and one that cannot.
+struct StartPage {
+  int argc = 1;
+  char name[5] = "test";
+  char* argv[2] = {name, nullptr};
+  QCoreApplication application{argc, argv};
+  TemporaryFolder folder;
+  HeldChecks checks;
+  int events = 0;
+  QTimer ticks;
+  std::unique_ptr<OperatorController> page;
+
+  StartPage() {
+    for (const auto* file : {"a.toml", "b.toml"})
+      std::filesystem::copy_file(kSource + "/protocols/demo.toml", folder / file);
+    std::ofstream(folder / "c.toml") << "format = 3\n";
+    QObject::connect(&ticks, &QTimer::timeout, [this] { ++events; });
+    ticks.start(0);
+  }
+  ~StartPage() { checks.let_go(); }
+
+  void open() {
+    page = std::make_unique<OperatorController>(
+        app::StationRequest{folder.path, kSource + "/deploy/rigs/simulated.toml", folder / "lab.sqlite"},
+        [this](const std::string& protocol, const std::string&, const std::stop_token& stop) {
+          return checks(protocol, stop);
+        });
+  }
+
+  template <typename Condition>
+  bool comes(Condition condition) {
+    const auto until = std::chrono::steady_clock::now() + kPatience;
+    while (!condition()) {
+      if (std::chrono::steady_clock::now() > until) return false;
+      QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents);
+    }
+    return true;
+  }
+
+  std::string shown() const {
+    for (const auto& fact : page->facts())
+      if (fact.toMap()["label"] == "Rig") return fact.toMap()["value"].toString().toStdString();
+    return "";
+  }
+};
+
+}  // namespace
+
+TEST_CASE("choosing another protocol abandons the check that runs, and the page never waits for it",
+          "[start]") {
+  StartPage start;
+  start.open();
+  REQUIRE(start.comes([&] { return start.checks.begun().size() == 1; }));
+  start.page->select(1);
+  start.page->select(0);
+  start.page->select(1);
+  CHECK(start.checks.ended() == 0);  // it returned although the first check is still held
+  CHECK(start.checks.running_is_abandoned());
+  const int before = start.events;
+  CHECK(start.comes([&] { return start.events >= before + 1000; }));
+  CHECK(start.checks.ended() == 0);
+  CHECK(start.page->checking());
+
+  start.checks.let_go();
+  REQUIRE(start.comes([&] { return !start.page->checking(); }));
+  CHECK(start.shown() == "b.toml");
+  CHECK(start.checks.begun() ==
+        std::vector<std::string>{"a.toml", "b.toml"});  // what was replaced never began
+}
+
+TEST_CASE("a check that ends late says nothing about the protocol chosen since", "[start]") {
+  StartPage start;
+  start.open();
+  REQUIRE(start.comes([&] { return start.checks.begun().size() == 1; }));
+  start.page->select(2);
+  CHECK_FALSE(start.page->checking());
+  start.checks.let_go();
+  REQUIRE(start.comes([&] { return start.checks.ended() == 1; }));
+  const int before = start.events;
+  REQUIRE(start.comes([&] { return start.events >= before + 10; }));
+  CHECK(start.shown().empty());
+  REQUIRE(start.page->problems().size() == 1);
+  CHECK(start.page->problems().front().contains("c.toml:"));
+}
+
+TEST_CASE("a session that cannot be resumed leaves the check of the chosen protocol as it was", "[start]") {
+  StartPage start;
+  app::RunRequest request;
+  request.protocol = kSource + "/protocols/demo.toml";
+  request.rig = kSource + "/deploy/rigs/simulated.toml";
+  request.participant = "P01";
+  request.database = start.folder / "lab.sqlite";
+  request.observer = "sim";
+  struct Cut : session::Monitor {
+    void trial_begins(const session::TrialSpec&, const protocol::Block&) override {}
+    void trial_ended(const session::TrialSpec&, const store::TrialRow&) override {
+      throw std::runtime_error("cut");
+    }
+  } cut;
+  session::Inputs inputs;
+  CHECK_THROWS(session::run(app::prepare(request), nullptr, inputs, &cut));
+  start.open();
+  REQUIRE_FALSE(start.page->interrupted().isEmpty());
+  REQUIRE(start.comes([&] { return start.checks.begun().size() == 1; }));
+  std::ofstream(request.database, std::ios::trunc) << "no database";
+  start.page->resume();
+  start.checks.let_go();
+  REQUIRE(start.comes([&] { return !start.page->checking() && !start.page->preparing(); }));
+  CHECK(start.shown() == "a.toml");
+  CHECK_FALSE(start.page->problems().empty());
+}
