@@ -9,9 +9,12 @@
 #include <cerrno>
 #include <cmath>
 #include <fstream>
+#include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "station/session/finger_account.hpp"
+#include "station/session/replay.hpp"
 #include "station/session/sitting.hpp"
 #include "station/session/stage.hpp"
 #include "station/text/canonical.hpp"
@@ -141,17 +144,38 @@ FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
   return FingerAccount(limits, history, origin_ns, now_s);
 }
 
+/// A session's log, and the director that stands where the log does.
+struct Begun {
+  store::SessionLog log;
+  Director director;
+};
+
+Begun begin(const Setup& setup, Stage& stage) {
+  const auto seed = setup.seed ? *setup.seed : setup.protocol.seed.value_or(fresh_seed());
+  auto log = store::SessionLog::begin(setup.database, start_of(setup, seed, stage.realtime_rights()),
+                                      segment("start", stage.now_ns()));
+  Director director(setup.protocol, log.session().sequence_index, seed);
+  return {std::move(log), std::move(director)};
+}
+
+/// The stored trials are replayed before anything is written: a session that cannot be resumed stays as it
+/// is.
+Begun resume(const Setup& setup, Stage& stage) {
+  const auto stored = store::read_session(setup.database, setup.resume_session);
+  auto director = replayed(setup, stored);
+  auto log =
+      store::SessionLog::resume(setup.database, setup.resume_session, segment("resume", stage.now_ns()));
+  if (log.session().trials != stored.session.trials)
+    throw std::runtime_error("resume: another process has added trials to session " + setup.resume_session +
+                             " meanwhile; resume it again");
+  return {std::move(log), std::move(director)};
+}
+
 Summary run_on(const Setup& setup, Display* display, std::unique_ptr<Stage> stage, Monitor* monitor) {
   auto account = account_of(setup, stage->now_ns());
-  const auto seed = setup.seed ? *setup.seed : setup.protocol.seed.value_or(fresh_seed());
-  const bool resuming = !setup.resume_session.empty();
-  auto log = resuming
-                 ? store::SessionLog::resume(setup.database, setup.resume_session,
-                                             segment("resume", stage->now_ns()))
-                 : store::SessionLog::begin(setup.database, start_of(setup, seed, stage->realtime_rights()),
-                                            segment("start", stage->now_ns()));
-  const auto kept_seed = resuming ? log.session().start.seed : seed;
-  Sitting sitting(setup, kept_seed, std::move(log), std::move(stage), std::move(account), display, monitor);
+  auto begun = setup.resume_session.empty() ? begin(setup, *stage) : resume(setup, *stage);
+  Sitting sitting(setup, std::move(begun.director), std::move(begun.log), std::move(stage),
+                  std::move(account), display, monitor);
   return sitting.run();
 }
 

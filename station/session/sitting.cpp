@@ -16,7 +16,7 @@ constexpr std::int64_t kReading_ns = 500'000'000;
 
 }  // namespace
 
-Sitting::Sitting(const Setup& setup, std::uint64_t seed, store::SessionLog log, std::unique_ptr<Stage> stage,
+Sitting::Sitting(const Setup& setup, Director director, store::SessionLog log, std::unique_ptr<Stage> stage,
                  FingerAccount account, Display* display, Monitor* monitor)
     : setup_(setup),
       log_(std::move(log)),
@@ -25,20 +25,20 @@ Sitting::Sitting(const Setup& setup, std::uint64_t seed, store::SessionLog log, 
       display_(display),
       monitor_(monitor),
       plans_(setup.rig, setup.protocol),
-      director_(setup.protocol, log_.session().sequence_index, seed),
-      pages_(setup) {
+      director_(std::move(director)),
+      pages_(setup),
+      trial_index_(log_.session().trials) {
   summary_.session_id = log_.session().session_id;
   summary_.participant = setup.participant;
   summary_.protocol_id = setup.protocol.id;
   summary_.database = setup.database;
   summary_.run_mode = store::name(setup.run_mode);
   summary_.realtime_rights = stage_->realtime_rights();
-  summary_.seed = seed;
+  summary_.seed = log_.session().start.seed;
 }
 
 Summary Sitting::run() {
   started_ns_ = stage_->now_ns();
-  replay_stored_blocks();
   // A pilot without an amplifier has nothing that an operator could arm.
   if (setup_.run_mode != store::RunMode::live && setup_.rig.amplifier_uri == "sim:") stage_->arm();
   if (until_armed({FaultKind::disarmed, ""}) == Flow::go_on)

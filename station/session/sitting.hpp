@@ -18,7 +18,8 @@ namespace turnpoint::session {
 /// happens on the thread that calls run(), but for the planning of the next trial.
 class Sitting {
  public:
-  Sitting(const Setup& setup, std::uint64_t seed, store::SessionLog log, std::unique_ptr<Stage> stage,
+  /// `director` stands where the log does.
+  Sitting(const Setup& setup, Director director, store::SessionLog log, std::unique_ptr<Stage> stage,
           FingerAccount account, Display* display, Monitor* monitor);
 
   /// To the end of the last block, or until somebody stops it.
@@ -85,10 +86,6 @@ class Sitting {
   bool armed() const;
   Flow until_armed(const Fault& why);
   Flow recover();
-
-  // sitting_resume.cpp
-  void replay_stored_blocks();
-  void enter_stored(const store::BlockStart& block);
 
   const Setup& setup_;
   store::SessionLog log_;

@@ -41,7 +41,7 @@ struct stat status_of(int descriptor, const std::string& path) {
 void give_to_owner_of_folder(int descriptor, const std::string& path) {
   if (::geteuid() != 0 || status_of(descriptor, path).st_uid != 0) return;
   struct stat folder {};
-  const auto name = fs::path(path).parent_path();
+  const auto name = fs::absolute(path).parent_path();  // of a bare name as well
   if (::stat(name.c_str(), &folder) != 0 || ::fchown(descriptor, folder.st_uid, folder.st_gid) != 0)
     fail_system(fault_of_errno(errno), "owner of " + path, errno,
                 "run this as the user of the folder " + name.string());

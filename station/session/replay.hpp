@@ -1,0 +1,13 @@
+#pragma once
+#include "station/session/director.hpp"
+#include "station/session/session.hpp"
+#include "station/store/read.hpp"
+
+namespace turnpoint::session {
+
+/// The director of a session that is being resumed, where its stored trials leave it and as `resume_at` wants
+/// it. Writes nothing. Throws std::runtime_error where this program would not have presented the stored
+/// trials: the session cannot be resumed with it.
+Director replayed(const Setup& setup, const store::StoredSession& stored);
+
+}  // namespace turnpoint::session
