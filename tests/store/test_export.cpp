@@ -58,6 +58,76 @@ TEST_CASE("trials.csv has the fixed columns, all of them, with the factors in th
   CHECK(sample::contains(lines[5], ",mode,first,n/a,n/a,timeout,n/a,n/a,n/a,go_cue,n/a,"));
 }
 
+namespace {
+
+/// A session in which no two fields of a row have the same value, so that exchanged columns show.
+std::string session_of_unlike_values(const std::string& db) {
+  auto start = sample::start("P07");
+  start.run_mode = RunMode::pilot;
+  start.observer = "";
+  start.protocol_path = "study/two.toml";
+  start.rig_path = "lab/plate.toml";
+  start.calibration_id = std::string(64, 'c');
+  start.calibration_text = "measured\n";
+  start.language = "de";
+  start.realtime_rights = "fifo 70";
+  start.columns_version = "7";
+  std::string id;
+  {
+    auto log = SessionLog::begin(db, start, sample::segment());
+    log.begin_block({0, 0, "try", "accuracy", true});
+    auto practice = sample::answered(0, 1);
+    practice.type = TrialType::practice;
+    practice.procedure = "";
+    log.append(practice);
+    log.begin_block({1, 2, "main", "speed", false});
+    auto trial = sample::answered(1);
+    trial.type = TrialType::catch_trial;
+    trial.trial_in_block = 4;
+    trial.boundary_mm = 151.5;
+    trial.decision_time_s = 0.21;
+    trial.movement_time_s = 0.22;
+    trial.response_zero = "lift_off";
+    trial.response_time_quality = "kernel";
+    trial.response_offset_s = 0.011;
+    trial.xruns = 3;
+    trial.extra_touches = 5;
+    trial.tones[3].scene_index = 2;
+    trial.tones[3].rove_dB = -1.25;
+    trial.tones[3].reason = "said, \"so\"";
+    trial.tones[3].friction.reset();
+    log.presented(1, 4'000'000'001);
+    log.event({4'100'000'002, "touch", "0.1 0.2", std::nullopt});
+    log.append(trial);
+    log.finish(SessionStatus::interrupted, "the participant left");
+    id = log.session().session_id;
+  }
+  auto log = SessionLog::resume(
+      db, id, {"boot-2", "resume", 9'000'000'000, 2'000'000'000, 1'709'197'300'000'000'000});
+  log.begin_block({1, 2, "main", "speed", false});
+  log.append(sample::timeout(2));
+  log.annotate("first note");
+  log.finish(SessionStatus::stopped, "long enough");
+  return id;
+}
+
+}  // namespace
+
+TEST_CASE("each value of the four tables stands in its column", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  const auto id = session_of_unlike_values(db);
+  const auto files = export_data(db, folder / "out", {});
+  for (std::size_t i = 0; i < 4; ++i) {
+    auto text = sample::bytes_of(files[i].path);
+    for (auto at = text.find(id); at != std::string::npos; at = text.find(id))
+      text.replace(at, id.size(), "ID");
+    const auto name = std::filesystem::path(files[i].path).filename().string();
+    INFO(name);
+    CHECK(text == sample::bytes_of(TURNPOINT_SOURCE_DIR "/tests/store/golden/" + name));
+  }
+}
+
 TEST_CASE("the codebook explains every column of every table", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
