@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 
+#include "station/store/fields.hpp"
 #include "station/store/identity.hpp"
 #include "station/store/rows.hpp"
 #include "station/store/session_log.hpp"
@@ -76,25 +77,17 @@ std::function<void(int)> through_the_log(const std::string& path) {
 struct Bare {
   Bare(const std::string& path, const char* synchronous) : database(path, Database::Access::create) {
     database.execute(std::string("PRAGMA journal_mode = WAL; PRAGMA synchronous = ") + synchronous);
-    database.execute(
-        "CREATE TABLE trial (trial_id INTEGER PRIMARY KEY, session_id, segment_index, block_index, attempt,"
-        " trial_index, trial_in_block, trial_type, procedure, level, factors, boundary_mm, frequency_Hz, "
-        "amplitude,"
-        " correct_response, response, correct, outcome, onset_ns, onset_s, duration_s, response_time_s,"
-        " decision_time_s, movement_time_s, response_zero, response_time_quality, response_offset_s, "
-        "deadline_s,"
-        " xruns, extra_touches, threshold_est, threshold_sd, clock_slope_ns_per_frame, clock_residual_ns, "
-        "state_hash,"
-        " recorded_realtime_ns);"
-        "CREATE TABLE tone (session_id, trial_index, interval_index, scene_index, tone_index, scene, "
-        "boundary_mm,"
-        " frequency_Hz, amplitude_um, displacement_um, friction, rove_dB, model, error_bound_mm, "
-        "uncertainty_mm,"
-        " reason, onset_frame, length_frames);"
-        "CREATE TABLE event (session_id, event_index, segment_index, time_ns, kind, value, trial_index)");
+    create_bare(trial_table());
+    create_bare(tone_table());
+    create_bare(event_table());
     rows = std::make_unique<RowWriter>(database);
     begin = std::make_unique<Statement>(database, "BEGIN IMMEDIATE");
     commit = std::make_unique<Statement>(database, "COMMIT");
+  }
+
+  template <class Record>
+  void create_bare(const Table<Record>& table) {
+    database.execute(std::string("CREATE TABLE ") + table.name + " (" + column_list(table) + ")");
   }
 
   void write(int trial) {

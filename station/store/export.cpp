@@ -107,22 +107,28 @@ void write_table(const std::string& path, const TextTable& table, std::vector<Ex
 
 void export_csv(Database& database, const ProtocolSelection& selection, const TableStyle& style,
                 std::vector<ExportedFile>& files) {
-  TextTable trials(style, names_of(trial_columns(selection.factors)));
-  TextTable intervals(style, names_of(interval_columns()));
-  TextTable events(style, names_of(event_columns()));
-  TextTable sessions(style, names_of(session_columns()));
+  const auto trial_row = trial_columns(selection.factors);
+  const auto interval_row = interval_columns(), event_row = event_columns(), session_row = session_columns();
+  TextTable trials(style, names_of(trial_row));
+  TextTable intervals(style, names_of(interval_row));
+  TextTable events(style, names_of(event_row));
+  TextTable sessions(style, names_of(session_row));
   for (const auto& session : selection.sessions) {
     const auto stored = read_session(database, session.session_id);
-    sessions.row(session_cells(stored.session));
+    sessions.row(cells_of(session_row, {&stored.session}));
     for (const auto& block : stored.blocks)
       for (const auto& trial : block.trials) {
-        trials.row(trial_cells(stored.session, block.start, trial, selection.factors));
-        for (const auto& tone : trial.tones)
-          intervals.row(interval_cells(stored.session, block.start, trial, tone));
+        ExportRow row{&stored.session, &block.start, &trial};
+        trials.row(cells_of(trial_row, row));
+        for (const auto& tone : trial.tones) {
+          row.tone = &tone;
+          intervals.row(cells_of(interval_row, row));
+        }
       }
     for (const auto& event : stored.events) {
       const auto& segment = stored.segments.at(static_cast<std::size_t>(event.segment_index) - 1);
-      events.row(event_cells(stored.session, event, segment.monotonic_ns));
+      events.row(
+          cells_of(event_row, {&stored.session, nullptr, nullptr, nullptr, &event, segment.monotonic_ns}));
     }
   }
   write_table(selection.folder + "/trials.csv", trials, files);

@@ -107,7 +107,8 @@ class BidsWriter {
           fmt::format("Behavioural data of the protocol {}, exported by Turnpoint. One run is one process "
                       "run of the station: a session that was resumed has several.\n",
                       selection_.protocol_id));
-    plain(fmt::format("task-{}_beh.json", task_), sidecar_json(task_, trial_columns(selection_.factors)));
+    plain(fmt::format("task-{}_beh.json", task_),
+          sidecar_json(task_, explanations(trial_columns(selection_.factors))));
     plain(fmt::format("task-{}_events.json", task_), sidecar_json(task_, bids_event_columns()));
     participants();
     for (const auto& session : selection_.sessions) runs(read_session(database, session.session_id));
@@ -139,13 +140,14 @@ class BidsWriter {
       const auto session = "ses-" + labels_.sessions.at(stored.session.session_id);
       const auto base = fmt::format("{0}/{1}/{2}/beh/{1}_{2}_task-{3}_run-{4:02}", selection_.folder, subject,
                                     session, task_, segment);
-      TextTable trials(kBids, names_of(trial_columns(selection_.factors)));
+      const auto columns = trial_columns(selection_.factors);
+      TextTable trials(kBids, names_of(columns));
       for (const auto& block : stored.blocks)
         for (const auto& trial : block.trials)
           if (trial.segment_index == segment)
-            trials.row(trial_cells(stored.session, block.start, trial, selection_.factors));
+            trials.row(cells_of(columns, {&stored.session, &block.start, &trial}));
       write_table(base + "_beh.tsv", trials, files_);
-      TextTable events(kBids, names_of(bids_event_columns()));
+      TextTable events(kBids, {"onset", "duration", "trial_type", "value", "trial_index"});
       for (const auto& event : stored.events)
         if (event.segment_index == segment)
           events.row({cell(static_cast<double>(event.time_ns - stored.segments[i].monotonic_ns) * 1e-9),

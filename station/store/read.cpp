@@ -1,9 +1,7 @@
 #include "station/store/read.hpp"
 
-#include <bit>
-
+#include "station/store/fields.hpp"
 #include "station/store/identity.hpp"
-#include "station/store/names.hpp"
 #include "station/store/open.hpp"
 #include "station/store/rows.hpp"
 #include "station/store/sqlite.hpp"
@@ -12,12 +10,11 @@ namespace turnpoint::store {
 
 namespace {
 
-const char* const kSessions = R"sql(
-SELECT s.session_id, s.session_index, s.sequence_index, s.status, s.status_reason, s.participant, s.run_mode,
-  p.protocol_id, p.version, s.protocol_path, p.text, p.sha256, p.canonical, s.factor_columns, s.level_unit,
-  r.name, s.rig_path, r.text, r.sha256, s.calibration_id, c.text, s.seed, s.language, s.observer,
-  s.software_version, s.columns_version, s.kernel, s.station_id, s.realtime_rights, s.started_local,
-  s.consent_version,
+/// The fields of a whole SessionRecord, in the order in which session_from() reads them, then what is
+/// counted.
+std::string sessions_sql() {
+  return "SELECT " + column_list(session_table(), "s.") + ", " + column_list(protocol_table(), "p.") + ", " +
+         column_list(rig_table(), "r.") + ", " + column_list(calibration_table(), "c.") + R"sql(,
   (SELECT count(*) FROM segment g WHERE g.session_id = s.session_id),
   (SELECT count(*) FROM trial t WHERE t.session_id = s.session_id),
   max((SELECT max(g.realtime_ns) FROM segment g WHERE g.session_id = s.session_id),
@@ -28,104 +25,54 @@ FROM session s JOIN protocol p USING (protocol_key) JOIN rig r USING (rig_key)
 WHERE ?1 IN ('', s.session_id) AND ?2 IN ('', s.participant) AND ?3 IN ('', p.protocol_id)
 ORDER BY s.participant, p.protocol_id, s.session_index, s.session_id
 )sql";
-
-SessionStart start_from(const Statement& s) {
-  SessionStart start;
-  start.participant = s.text(5);
-  start.run_mode = run_mode_named(s.text(6));
-  start.protocol_id = s.text(7);
-  start.protocol_version = s.text(8);
-  start.protocol_path = s.text(9);
-  start.protocol_text = s.text(10);
-  start.protocol_sha256 = s.text(11);
-  start.protocol_canonical = s.text(12);
-  start.factor_columns = list_from_json(s.text(13));
-  start.level_unit = s.text(14);
-  start.rig_name = s.text(15);
-  start.rig_path = s.text(16);
-  start.rig_text = s.text(17);
-  start.rig_sha256 = s.text(18);
-  start.calibration_id = s.maybe_text(19);
-  start.calibration_text = s.text(20);
-  start.seed = std::bit_cast<std::uint64_t>(s.integer(21));
-  start.language = s.text(22);
-  start.observer = s.text(23);
-  start.software_version = s.text(24);
-  start.columns_version = s.text(25);
-  start.kernel = s.text(26);
-  start.station_id = s.text(27);
-  start.realtime_rights = s.text(28);
-  start.started_local = s.text(29);
-  start.consent_version = s.text(30);
-  return start;
 }
 
-SessionRecord session_from(const Statement& s) {
+SessionRecord session_from(const Statement& row) {
   SessionRecord session;
-  session.session_id = s.text(0);
-  session.session_index = static_cast<int>(s.integer(1));
-  session.sequence_index = static_cast<int>(s.integer(2));
-  session.status = session_status_named(s.text(3));
-  session.status_reason = s.text(4);
-  session.start = start_from(s);
-  session.segments = static_cast<int>(s.integer(31));
-  session.trials = static_cast<int>(s.integer(32));
-  session.last_activity_realtime_ns = s.integer(33);
+  session.session_id = row.text(0);
+  int column = 0;
+  const auto read = [&](const Table<SessionRecord>& table) {
+    column += static_cast<int>(table.place.size());
+    read_fields(row, table, column, session);
+    column += static_cast<int>(table.fields.size());
+  };
+  read(session_table());
+  read(protocol_table());
+  read(rig_table());
+  read(calibration_table());
+  session.segments = static_cast<int>(row.integer(column));
+  session.trials = static_cast<int>(row.integer(column + 1));
+  session.last_activity_realtime_ns = row.integer(column + 2);
   return session;
+}
+
+/// The rows of one table that belong to a session.
+template <class Record>
+std::vector<Record> read_rows(Database& database, const Table<Record>& table, const std::string& session_id,
+                              const std::string& order) {
+  std::vector<Record> records;
+  Statement rows(database, "SELECT " + column_list(table) + " FROM " + table.name +
+                               " WHERE session_id = ? ORDER BY " + order);
+  rows.bind(session_id);
+  while (rows.step()) records.push_back(record_of(rows, table));
+  return records;
 }
 
 std::vector<BlockRecord> read_blocks(Database& database, const std::string& session_id) {
   auto trials = read_trials(database, session_id);
   std::vector<BlockRecord> blocks;
-  Statement rows(database,
-                 "SELECT block_index, attempt, name, instruction, practice FROM block WHERE session_id = ?"
-                 " ORDER BY run_order");
-  rows.bind(session_id);
-  while (rows.step()) {
-    BlockRecord block;
-    block.start.block_index = static_cast<int>(rows.integer(0));
-    block.start.attempt = static_cast<int>(rows.integer(1));
-    block.start.name = rows.text(2);
-    block.start.instruction = rows.text(3);
-    block.start.practice = rows.integer(4) != 0;
-    block.trials = std::move(trials[{block.start.block_index, block.start.attempt}]);
-    blocks.push_back(std::move(block));
+  for (auto& start : read_rows(database, block_table(), session_id, "run_order")) {
+    auto& of_block = trials[{start.block_index, start.attempt}];
+    blocks.push_back({std::move(start), std::move(of_block)});
   }
   return blocks;
-}
-
-std::vector<SegmentStart> read_segments(Database& database, const std::string& session_id) {
-  std::vector<SegmentStart> segments;
-  Statement rows(
-      database,
-      "SELECT boot_id, reason, monotonic_ns, boottime_ns, realtime_ns FROM segment WHERE session_id = ?"
-      " ORDER BY segment_index");
-  rows.bind(session_id);
-  while (rows.step())
-    segments.push_back({rows.text(0), rows.text(1), rows.integer(2), rows.integer(3), rows.integer(4)});
-  return segments;
-}
-
-std::vector<EventRow> read_events(Database& database, const std::string& session_id) {
-  std::vector<EventRow> events;
-  Statement rows(database,
-                 "SELECT time_ns, kind, value, trial_index, segment_index FROM event WHERE session_id = ?"
-                 " ORDER BY event_index");
-  rows.bind(session_id);
-  while (rows.step()) {
-    EventRow event{rows.integer(0), rows.text(1), rows.text(2), std::nullopt};
-    if (const auto trial = rows.maybe_integer(3)) event.trial_index = static_cast<int>(*trial);
-    event.segment_index = static_cast<int>(rows.integer(4));
-    events.push_back(std::move(event));
-  }
-  return events;
 }
 
 }  // namespace
 
 std::vector<SessionRecord> list_sessions(Database& database, const SessionFilter& filter) {
   std::vector<SessionRecord> sessions;
-  Statement rows(database, kSessions);
+  Statement rows(database, sessions_sql());
   Statement notes(database,
                   "SELECT text FROM annotation WHERE session_id = ? ORDER BY realtime_ns, annotation_id");
   rows.bind(filter.session_id, filter.participant, filter.protocol_id);
@@ -148,8 +95,8 @@ StoredSession read_session(Database& database, const std::string& session_id) {
   if (session_id.empty() || sessions.empty())
     throw StoreError(Fault::missing, "database " + database.path() + ": it has no session \"" + session_id +
                                          "\"; `turnpoint sessions` lists those that it has");
-  return {std::move(sessions.front()), read_segments(database, session_id), read_blocks(database, session_id),
-          read_events(database, session_id)};
+  return {std::move(sessions.front()), read_rows(database, segment_table(), session_id, "segment_index"),
+          read_blocks(database, session_id), read_rows(database, event_table(), session_id, "event_index")};
 }
 
 StoredSession read_session(const std::string& path, const std::string& session_id) {

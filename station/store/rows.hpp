@@ -18,25 +18,15 @@ struct TrialPlace {
 class RowWriter {
  public:
   explicit RowWriter(Database& database);
-  void trial(const TrialPlace& place, const TrialRow& row, std::int64_t recorded_realtime_ns);
-  void event(const TrialPlace& place, std::int64_t event_index, const EventRow& row);
+  void trial(const TrialPlace& place, TrialRow row, std::int64_t recorded_realtime_ns);
+  void event(const TrialPlace& place, std::int64_t event_index, EventRow row);
 
  private:
-  void tone(const std::string& session_id, int trial_index, const ToneRow& row);
-
   Statement trial_, tone_, event_;
 };
 
 /// A session's trials by (block_index, attempt), each list in the order made, with their tones.
 std::map<std::pair<int, int>, std::vector<TrialRow>> read_trials(Database& database,
                                                                  const std::string& session_id);
-
-/// Factor values as the JSON object of the `factors` column, and back.
-std::string factors_json(const std::map<std::string, FactorValue>& factors);
-std::map<std::string, FactorValue> factors_from_json(const std::string& json);
-
-/// A list of names as JSON, and back.
-std::string list_json(const std::vector<std::string>& list);
-std::vector<std::string> list_from_json(const std::string& json);
 
 }  // namespace turnpoint::store

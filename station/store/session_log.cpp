@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 #include <sys/statvfs.h>
 
-#include <bit>
 #include <filesystem>
 #include <utility>
 
+#include "station/store/fields.hpp"
 #include "station/store/identity.hpp"
 #include "station/store/open.hpp"
 #include "station/store/read.hpp"
@@ -64,23 +64,26 @@ int enrol(Database& database, const SessionStart& start) {
   return free_index;
 }
 
-std::string keep_protocol(Database& database, const SessionStart& start) {
-  const auto key =
-      text::sha256(start.protocol_id + '\n' + start.protocol_version + '\n' + start.protocol_sha256 + '\n' +
-                   start.protocol_text + '\n' + start.protocol_canonical);
-  Statement(database, "INSERT OR IGNORE INTO protocol VALUES (?,?,?,?,?,?)")
-      .bind(key, start.protocol_id, start.protocol_version, start.protocol_sha256, start.protocol_text,
-            start.protocol_canonical)
-      .run();
+/// Keeps a text that several sessions share, once, under the hash of its fields. Returns that key.
+std::string keep(Database& database, const Table<SessionRecord>& table, const SessionRecord& session,
+                 const std::string& key) {
+  auto sql = insert_sql(table);
+  Statement statement(database, sql.replace(0, 6, "INSERT OR IGNORE"));
+  bind_row(statement, table, session, key).run();
   return key;
 }
 
-std::string keep_rig(Database& database, const SessionStart& start) {
-  const auto key = text::sha256(start.rig_name + '\n' + start.rig_sha256 + '\n' + start.rig_text);
-  Statement(database, "INSERT OR IGNORE INTO rig VALUES (?,?,?,?)")
-      .bind(key, start.rig_name, start.rig_sha256, start.rig_text)
-      .run();
-  return key;
+std::string keep_protocol(Database& database, const SessionRecord& session) {
+  const auto& start = session.start;
+  return keep(database, protocol_table(), session,
+              text::sha256(start.protocol_id + '\n' + start.protocol_version + '\n' + start.protocol_sha256 +
+                           '\n' + start.protocol_text + '\n' + start.protocol_canonical));
+}
+
+std::string keep_rig(Database& database, const SessionRecord& session) {
+  const auto& start = session.start;
+  return keep(database, rig_table(), session,
+              text::sha256(start.rig_name + '\n' + start.rig_sha256 + '\n' + start.rig_text));
 }
 
 int next_session_index(Database& database, const SessionStart& start) {
@@ -93,33 +96,27 @@ int next_session_index(Database& database, const SessionStart& start) {
 }
 
 void insert_session(Database& database, const std::string& id, const SessionStart& start) {
-  const int sequence_index = enrol(database, start);
-  if (start.calibration_id)
-    Statement(database, "INSERT OR IGNORE INTO calibration VALUES (?,?)")
-        .bind(*start.calibration_id, start.calibration_text)
-        .run();
-  const auto protocol_key = keep_protocol(database, start);
-  const auto rig_key = keep_rig(database, start);
-  Statement(
-      database,
-      "INSERT INTO session (session_id, participant, protocol_key, protocol_path, rig_key, rig_path,"
-      " calibration_id, run_mode, session_index, sequence_index, seed, language, observer, factor_columns,"
-      " level_unit, software_version, columns_version, kernel, station_id, realtime_rights, started_local,"
-      " consent_version, status, status_reason)"
-      " VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,?,'running','')")
-      .bind(id, start.participant, protocol_key, start.protocol_path, rig_key, start.rig_path,
-            start.calibration_id, name(start.run_mode), next_session_index(database, start), sequence_index,
-            std::bit_cast<std::int64_t>(start.seed), start.language, start.observer,
-            list_json(start.factor_columns), start.level_unit, start.software_version, start.columns_version,
-            start.kernel, start.station_id, start.realtime_rights, start.started_local, start.consent_version)
-      .run();
+  SessionRecord session;
+  session.start = start;
+  session.sequence_index = enrol(database, start);
+  session.session_index = next_session_index(database, start);
+  if (start.calibration_id) keep(database, calibration_table(), session, *start.calibration_id);
+  const auto protocol_key = keep_protocol(database, session);
+  const auto rig_key = keep_rig(database, session);
+  Statement statement(database, insert_sql(session_table()));
+  bind_row(statement, session_table(), session, id, protocol_key, rig_key).run();
 }
 
 void insert_segment(Database& database, const std::string& id, int index, const SegmentStart& segment) {
-  Statement(database, "INSERT INTO segment VALUES (?,?,?,?,?,?,?)")
-      .bind(id, index, segment.boot_id, segment.reason, segment.monotonic_ns, segment.boottime_ns,
-            segment.realtime_ns)
-      .run();
+  Statement statement(database, insert_sql(segment_table()));
+  bind_row(statement, segment_table(), segment, id, index).run();
+}
+
+void insert_block(Database& database, const std::string& id, const BlockStart& block) {
+  Statement last(database, "SELECT coalesce(max(run_order), -1) + 1 FROM block WHERE session_id = ?");
+  last.bind(id).step();
+  Statement statement(database, insert_sql(block_table()));
+  bind_row(statement, block_table(), block, id, last.integer(0)).run();
 }
 
 }  // namespace
@@ -222,12 +219,7 @@ void SessionLog::begin_block(const BlockStart& block) {
                        block.block_index, block.attempt, id));
   known.reset();
   Transaction transaction(database);
-  if (!exists)
-    Statement(database,
-              "INSERT INTO block VALUES (?1, ?2, ?3,"
-              " (SELECT coalesce(max(run_order), -1) + 1 FROM block WHERE session_id = ?1), ?4, ?5, ?6)")
-        .bind(id, block.block_index, block.attempt, block.name, block.instruction, block.practice)
-        .run();
+  if (!exists) insert_block(database, id, block);
   impl_->write_events();
   transaction.commit();
   impl_->events_are_durable();

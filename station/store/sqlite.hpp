@@ -28,8 +28,25 @@ class Statement {
   Statement& bind(const Values&... values) {
     reset();
     int index = 0;
-    (bind_one(++index, values), ...);
+    (bind_value(++index, values), ...);
     return *this;
+  }
+
+  /// Binds one parameter; the first has index 1. The statement must have been reset.
+  template <class Value>
+  void bind_value(int index, const Value& value) {
+    if constexpr (std::is_same_v<Value, std::nullopt_t>)
+      bind_null(index);
+    else if constexpr (std::is_integral_v<Value>)
+      bind_integer(index, static_cast<std::int64_t>(value));
+    else if constexpr (std::is_floating_point_v<Value>)
+      bind_real(index, value);
+    else if constexpr (std::is_convertible_v<Value, std::string>)
+      bind_string(index, value);
+    else if (value)
+      bind_value(index, *value);
+    else
+      bind_null(index);
   }
 
   bool step();  ///< true while there is a row
@@ -37,7 +54,6 @@ class Statement {
   void reset();
 
   int columns() const;
-  std::string column_name(int column) const;
   bool is_null(int column) const;
   bool is_real(int column) const;
   bool is_text(int column) const;
@@ -54,21 +70,6 @@ class Statement {
   void bind_text(int index, const char* value, std::size_t size);
   void bind_null(int index);
 
-  template <class Value>
-  void bind_one(int index, const Value& value) {
-    if constexpr (std::is_same_v<Value, std::nullopt_t>)
-      bind_null(index);
-    else if constexpr (std::is_integral_v<Value>)
-      bind_integer(index, static_cast<std::int64_t>(value));
-    else if constexpr (std::is_floating_point_v<Value>)
-      bind_real(index, value);
-    else if constexpr (std::is_convertible_v<Value, std::string>)
-      bind_string(index, value);
-    else if (value)
-      bind_one(index, *value);
-    else
-      bind_null(index);
-  }
   void bind_string(int index, const std::string& value) { bind_text(index, value.data(), value.size()); }
 
   Database* database_;

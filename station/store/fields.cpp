@@ -1,0 +1,369 @@
+#include "station/store/fields.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace turnpoint::store {
+
+namespace {
+
+void parse(const std::string& word, RunMode& mode) { mode = run_mode_named(word); }
+void parse(const std::string& word, SessionStatus& status) { status = session_status_named(word); }
+void parse(const std::string& word, TrialOutcome& outcome) { outcome = trial_outcome_named(word); }
+void parse(const std::string& word, TrialType& type) { type = trial_type_named(word); }
+
+template <class Value>
+struct Optional : std::false_type {};
+template <class Value>
+struct Optional<std::optional<Value>> : std::true_type {};
+
+/// How a C++ type is kept in SQLite.
+template <class Value>
+constexpr const char* sql_type() {
+  if constexpr (Optional<Value>::value)
+    return sql_type<typename Value::value_type>();
+  else if constexpr (std::is_integral_v<Value>)
+    return "INTEGER";
+  else if constexpr (std::is_floating_point_v<Value>)
+    return "REAL";
+  else
+    return "TEXT";
+}
+
+template <class Value>
+void bind(Statement& statement, int index, const Value& value) {
+  if constexpr (Optional<Value>::value) {
+    if (value)
+      bind(statement, index, *value);
+    else
+      statement.bind_value(index, std::nullopt);
+  } else if constexpr (std::is_same_v<Value, std::uint64_t>) {
+    statement.bind_value(index, std::bit_cast<std::int64_t>(value));
+  } else if constexpr (std::is_enum_v<Value>) {
+    statement.bind_value(index, std::string(name(value)));
+  } else if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
+    statement.bind_value(index, value);
+  } else {
+    statement.bind_value(index, to_json(value));
+  }
+}
+
+template <class Value>
+void read(const Statement& row, int column, Value& value) {
+  if constexpr (Optional<Value>::value) {
+    value.reset();
+    if (!row.is_null(column)) read(row, column, value.emplace());
+  } else if constexpr (std::is_same_v<Value, bool>) {
+    value = row.integer(column) != 0;
+  } else if constexpr (std::is_same_v<Value, std::uint64_t>) {
+    value = std::bit_cast<std::uint64_t>(row.integer(column));
+  } else if constexpr (std::is_integral_v<Value>) {
+    value = static_cast<Value>(row.integer(column));
+  } else if constexpr (std::is_floating_point_v<Value>) {
+    value = row.real(column);
+  } else if constexpr (std::is_enum_v<Value>) {
+    parse(row.text(column), value);
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    value = row.text(column);
+  } else {
+    from_json(row.text(column), value);
+  }
+}
+
+template <class Value>
+Cell cell_of(const Value& value) {
+  if constexpr (Optional<Value>::value)
+    return value ? cell_of(*value) : Cell{};
+  else if constexpr (std::is_same_v<Value, std::uint64_t>)
+    return cell(std::to_string(value));  // all 64 bits are used: digits, whatever the sign in the database
+  else if constexpr (std::is_integral_v<Value>)
+    return cell(static_cast<std::int64_t>(value));
+  else if constexpr (std::is_enum_v<Value>)
+    return cell(std::string(name(value)));
+  else if constexpr (std::is_floating_point_v<Value> || std::is_same_v<Value, std::string>)
+    return cell(value);
+  else
+    return cell(to_json(value));
+}
+
+template <class Member>
+struct MemberOf;
+template <class Class, class Value>
+struct MemberOf<Value Class::*> {
+  using Record = Class;
+};
+
+/// The member that a path of member pointers leads to.
+template <auto First, auto... Rest, class Record>
+auto& member(Record& record) {
+  if constexpr (sizeof...(Rest) == 0)
+    return record.*First;
+  else
+    return member<Rest...>(record.*First);
+}
+
+/// What is fixed about a field besides its member.
+struct About {
+  const char* name;
+  const char* csv = "";
+  const char* description = "";
+  const char* unit = "";
+  const char* values = "";
+};
+
+template <auto First, auto... Rest>
+Field<typename MemberOf<decltype(First)>::Record> field(const About& about) {
+  using Record = typename MemberOf<decltype(First)>::Record;
+  using Value = std::remove_reference_t<decltype(member<First, Rest...>(std::declval<Record&>()))>;
+  return {about.name,
+          about.csv,
+          about.description,
+          about.unit,
+          about.values,
+          sql_type<Value>(),
+          Optional<Value>::value,
+          [](Statement& s, int i, const Record& r) { bind(s, i, member<First, Rest...>(r)); },
+          [](const Statement& s, int i, Record& r) { read(s, i, member<First, Rest...>(r)); },
+          [](const Record& r) { return cell_of(member<First, Rest...>(r)); }};
+}
+
+/// A member of the SessionStart inside a SessionRecord.
+template <auto Member>
+Field<SessionRecord> start(const About& about) {
+  return field<&SessionRecord::start, Member>(about);
+}
+
+/// NULL where there is no response time: the quality of a time that is absent is absent too.
+Field<TrialRow> response_time_quality() {
+  auto quality = field<&TrialRow::response_time_quality>({"response_time_quality", "response_time_quality",
+                                                          "Whose time stamp the answer bears", "",
+                                                          "kernel | toolkit | simulated | n/a"});
+  quality.nullable = true;
+  quality.bind = [](Statement& s, int i, const TrialRow& row) {
+    const auto& word = row.response_time_quality;
+    if (!row.response_time_s || word.empty() || word == "n/a")
+      s.bind_value(i, std::nullopt);
+    else
+      s.bind_value(i, word);
+  };
+  return quality;
+}
+
+}  // namespace
+
+const Table<SegmentStart>& segment_table() {
+  static const Table<SegmentStart> table{
+      "segment",
+      {"session_id", "segment_index"},
+      {field<&SegmentStart::boot_id>({"boot_id"}), field<&SegmentStart::reason>({"reason"}),
+       field<&SegmentStart::monotonic_ns>({"monotonic_ns"}),
+       field<&SegmentStart::boottime_ns>({"boottime_ns"}),
+       field<&SegmentStart::realtime_ns>({"realtime_ns"})}};
+  return table;
+}
+
+const Table<BlockStart>& block_table() {
+  using B = BlockStart;
+  static const Table<B> table{
+      "block",
+      {"session_id", "run_order"},
+      {field<&B::block_index>({"block_index", "block_index", "Block in the order run, from 0"}),
+       field<&B::attempt>(
+           {"attempt", "attempt", "How often this block was begun before; rows of earlier attempts stay"}),
+       field<&B::name>({"name", "block_name", "Name of the block"}),
+       field<&B::instruction>(
+           {"instruction", "instruction", "Instruction in force", "", "speed | accuracy | ... | n/a"}),
+       field<&B::practice>({"practice", "practice", "1 in a practice block", "", "0 | 1"})}};
+  return table;
+}
+
+const Table<TrialRow>& trial_table() {
+  using T = TrialRow;
+  static const Table<T> table{
+      "trial",
+      {"session_id", "block_index", "attempt", "recorded_realtime_ns"},
+      {field<&T::segment_index>(
+           {"segment_index", "segment_id", "Process run within the session, from 1; rises with each resume"}),
+       field<&T::trial_index>(
+           {"trial_index", "trial_index", "Trial of the session, counting every presented one, from 0"}),
+       field<&T::trial_in_block>({"trial_in_block"}),
+       field<&T::type>({"trial_type", "trial_type", "Only experimental trials belong to procedures and fits",
+                        "", "experimental | catch | practice | warmup"}),
+       field<&T::procedure>(
+           {"procedure", "procedure", "Procedure that chose the level; n/a outside procedures"}),
+       field<&T::level>({"level", "level", "Level that was presented", "see level_unit"}),
+       field<&T::factors>({"factors"}),
+       field<&T::boundary_mm>(
+           {"boundary_mm", "boundary_mm", "Boundary presented last in the trial, from the wide end", "mm"}),
+       field<&T::frequency_Hz>(
+           {"frequency_Hz", "frequency_hz", "First tone of the scene presented last", "Hz"}),
+       field<&T::amplitude>(
+           {"amplitude", "amplitude", "Predicted displacement of that scene at its last maximum", "um"}),
+       field<&T::correct_response>(
+           {"correct_response", "correct_response", "Right choice; n/a where nothing is right"}),
+       field<&T::response>(
+           {"response", "response", "Choice made; in an adjustment the setting, in the unit of the level"}),
+       field<&T::correct>({"correct", "correct", "1 where the choice was right; only for scored answers", "",
+                           "0 | 1 | n/a"}),
+       field<&T::outcome>(
+           {"outcome", "outcome",
+            "How the trial ended; only answered trials have a response, a score and a response time", "",
+            "answered | timeout | anticipation | aborted | fault"}),
+       field<&T::onset_ns>({"onset_ns"}),
+       field<&T::onset_s>(
+           {"onset_s", "onset", "Zero of the response time, from the start of the segment", "s"}),
+       field<&T::duration_s>({"duration_s", "duration", "Of the whole trial", "s"}),
+       field<&T::response_time_s>(
+           {"response_time_s", "response_time", "From response_zero to the answer, raw", "s"}),
+       field<&T::decision_time_s>(
+           {"decision_time_s", "decision_time", "From response_zero to the lift-off of the finger", "s"}),
+       field<&T::movement_time_s>({"movement_time_s", "movement_time", "From lift-off to the answer", "s"}),
+       field<&T::response_zero>({"response_zero", "response_zero", "Where response times count from", "",
+                                 "go_cue | change | interval_off | first_contact | lift_off"}),
+       response_time_quality(),
+       field<&T::response_offset_s>({"response_offset_s", "response_offset_s",
+                                     "Latency found by calibration; not subtracted from response_time", "s"}),
+       field<&T::deadline_s>({"deadline_s", "deadline", "Time allowed from response_zero", "s"}),
+       field<&T::xruns>({"xruns", "xruns", "Interruptions of the drive signal during the trial"}),
+       field<&T::extra_touches>(
+           {"extra_touches", "extra_touches", "Touches and presses that were not answers"}),
+       field<&T::threshold_est>({"threshold_est", "threshold_est",
+                                 "Estimate of the trial's procedure after it", "see level_unit"}),
+       field<&T::threshold_sd>(
+           {"threshold_sd", "threshold_sd", "Standard deviation of that estimate", "see level_unit"}),
+       field<&T::clock_slope_ns_per_frame>({"clock_slope_ns_per_frame"}),
+       field<&T::clock_residual_ns>({"clock_residual_ns"}),
+       field<&T::state_hash>({"state_hash"})}};
+  return table;
+}
+
+const Table<ToneRow>& tone_table() {
+  using T = ToneRow;
+  static const Table<T> table{
+      "tone",
+      {"session_id", "trial_index"},
+      {field<&T::interval_index>(
+           {"interval_index", "interval_index", "Interval in the order presented, from 0"}),
+       field<&T::scene_index>({"scene_index", "scene_index", "Scene within the interval's sequence, from 0"}),
+       field<&T::tone_index>({"tone_index", "tone_index", "Tone of the scene, from 0"}),
+       field<&T::scene>({"scene", "scene", "Scene of the protocol"}),
+       field<&T::boundary_mm>(
+           {"boundary_mm", "boundary_mm", "Boundary of the scene, from the wide end", "mm"}),
+       field<&T::frequency_Hz>({"frequency_Hz", "frequency_hz", "Frequency of the tone", "Hz"}),
+       field<&T::amplitude_um>({"amplitude_um", "amplitude_um", "Peak displacement of the drive edge", "um"}),
+       field<&T::displacement_um>(
+           {"displacement_um", "displacement_um", "Predicted displacement at the tone's last maximum", "um"}),
+       field<&T::friction>(
+           {"friction", "friction", "Predicted friction of the scene, relative to the still surface"}),
+       field<&T::rove_dB>({"rove_dB", "rove_db", "Roving of the level added to this interval", "dB"}),
+       field<&T::model>({"model", "model", "Model that planned the tone"}),
+       field<&T::error_bound_mm>({"error_bound_mm", "error_bound_mm", "Bound of the model's error", "mm"}),
+       field<&T::uncertainty_mm>(
+           {"uncertainty_mm", "uncertainty_mm", "From the uncertainty of the rig's parameters", "mm"}),
+       field<&T::reason>({"reason", "reason", "Why this model"}),
+       field<&T::onset_frame>({"onset_frame", "onset_frame",
+                               "First frame at the output, from the start of the segment", "frames"}),
+       field<&T::length_frames>({"length_frames", "length_frames", "Length with both ramps", "frames"})}};
+  return table;
+}
+
+const Table<EventRow>& event_table() {
+  using E = EventRow;
+  static const Table<E> table{
+      "event",
+      {"session_id", "event_index"},
+      {field<&E::segment_index>({"segment_index", "segment_id", "Process run within the session, from 1"}),
+       field<&E::time_ns>({"time_ns", "time_ns", "The same on the station's monotonic clock", "ns"}),
+       field<&E::kind>(
+           {"kind", "kind", "What happened: presented, answer, touch, contact, xrun, fault, aborted, ..."}),
+       field<&E::value>({"value", "value", "Detail"}),
+       field<&E::trial_index>(
+           {"trial_index", "trial_index", "Trial of the session, counting every presented one, from 0"})}};
+  return table;
+}
+
+const Table<SessionRecord>& session_table() {
+  using R = SessionRecord;
+  using S = SessionStart;
+  static const Table<R> table{
+      "session",
+      {"session_id", "protocol_key", "rig_key"},
+      {start<&S::participant>({"participant", "participant_id", "Participant code"}),
+       start<&S::protocol_path>({"protocol_path", "protocol_path", "File it was read from"}),
+       start<&S::rig_path>({"rig_path", "rig_path", "File it was read from"}),
+       start<&S::calibration_id>(
+           {"calibration_id", "calibration_id", "Hash of the calibration in force; n/a on a simulated rig"}),
+       start<&S::run_mode>(
+           {"run_mode", "run_mode", "Whether these are data of a study", "", "live | pilot | simulated"}),
+       field<&R::session_index>(
+           {"session_index", "session_index", "Sitting of this participant with this protocol, from 1"}),
+       field<&R::sequence_index>(
+           {"sequence_index", "sequence_index", "Participant's place in the counterbalancing, from 0"}),
+       start<&S::seed>({"seed", "seed", "Seed of all random draws of the session"}),
+       start<&S::language>({"language", "language", "Language shown"}),
+       start<&S::observer>({"observer", "observer", "Simulated observer, if one answered"}),
+       start<&S::factor_columns>({"factor_columns"}),
+       start<&S::level_unit>({"level_unit", "level_unit", "Unit of the level"}),
+       start<&S::software_version>({"software_version", "software_version", "Version of the program"}),
+       start<&S::columns_version>({"columns_version", "columns_version", "Version of this set of columns"}),
+       start<&S::kernel>({"kernel", "kernel", "Kernel of the station"}),
+       start<&S::station_id>({"station_id", "station_id", "Identifier of the station"}),
+       start<&S::realtime_rights>(
+           {"realtime_rights", "realtime_rights", "What the kernel granted to the real-time threads"}),
+       start<&S::started_local>({"started_local", "started", "Local time with zone", "ISO 8601"}),
+       start<&S::consent_version>({"consent_version", "consent_version", "Version of the consent form"}),
+       field<&R::status>({"status", "status", "How it stands", "",
+                          "running | completed | interrupted | stopped | abandoned"}),
+       field<&R::status_reason>({"status_reason", "status_reason", "Why it ended so"})}};
+  return table;
+}
+
+const Table<SessionRecord>& protocol_table() {
+  using S = SessionStart;
+  static const Table<SessionRecord> table{
+      "protocol",
+      {"protocol_key"},
+      {start<&S::protocol_id>({"protocol_id", "protocol_id", "Identifier of the protocol"}),
+       start<&S::protocol_version>({"version", "protocol_version", "Version that the protocol file states"}),
+       start<&S::protocol_sha256>({"sha256", "protocol_sha256", "Hash of the protocol as it was run"}),
+       start<&S::protocol_text>({"text"}), start<&S::protocol_canonical>({"canonical"})}};
+  return table;
+}
+
+const Table<SessionRecord>& rig_table() {
+  using S = SessionStart;
+  static const Table<SessionRecord> table{
+      "rig",
+      {"rig_key"},
+      {start<&S::rig_name>({"name", "rig_name", "Name of the rig"}),
+       start<&S::rig_sha256>({"sha256", "rig_sha256", "Hash of the rig file"}),
+       start<&S::rig_text>({"text"})}};
+  return table;
+}
+
+const Table<SessionRecord>& calibration_table() {
+  static const Table<SessionRecord> table{
+      "calibration", {"calibration_id"}, {start<&SessionStart::calibration_text>({"text"})}};
+  return table;
+}
+
+std::string to_json(const std::map<std::string, FactorValue>& factors) {
+  auto object = nlohmann::json::object();
+  for (const auto& [key, value] : factors) std::visit([&, &k = key](const auto& v) { object[k] = v; }, value);
+  return object.dump();
+}
+
+void from_json(const std::string& text, std::map<std::string, FactorValue>& factors) {
+  factors.clear();
+  const auto object = nlohmann::json::parse(text);
+  for (const auto& [key, value] : object.items())
+    factors[key] =
+        value.is_string() ? FactorValue(value.get<std::string>()) : FactorValue(value.get<double>());
+}
+
+std::string to_json(const std::vector<std::string>& list) { return nlohmann::json(list).dump(); }
+
+void from_json(const std::string& text, std::vector<std::string>& list) {
+  list = nlohmann::json::parse(text).get<std::vector<std::string>>();
+}
+
+}  // namespace turnpoint::store

@@ -1,0 +1,105 @@
+#pragma once
+#include <bit>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "station/store/names.hpp"
+#include "station/store/session_log.hpp"
+#include "station/store/sqlite.hpp"
+#include "station/store/text_table.hpp"
+
+namespace turnpoint::store {
+
+/// One column of a record: where it is kept in the database, in the C++ struct and in the exports, and what
+/// it means. Everything that handles a record goes by these: the statements that write and read it, the
+/// exports, the codebook and the checksum. The SQL itself stands in schema.cpp, since a released schema never
+/// changes; a test holds both against each other.
+template <class Record>
+struct Field {
+  const char* name;         ///< column of the database
+  const char* csv;          ///< column of the export; "" where it is not exported
+  const char* description;  ///< for the codebook
+  const char* unit;         ///< "" where there is none
+  const char* values;       ///< allowed words, "" where there is nothing to list
+  const char* type;         ///< INTEGER, REAL or TEXT
+  bool nullable;
+  void (*bind)(Statement&, int index, const Record&);
+  void (*read)(const Statement&, int column, Record&);
+  Cell (*cell)(const Record&);
+};
+
+/// A table of the database. Each row begins with its place (keys and what else only the log knows), then come
+/// the fields of its record.
+template <class Record>
+struct Table {
+  const char* name;
+  std::vector<const char*> place;
+  std::vector<Field<Record>> fields;
+};
+
+const Table<SegmentStart>& segment_table();
+const Table<BlockStart>& block_table();
+const Table<TrialRow>& trial_table();
+const Table<ToneRow>& tone_table();
+const Table<EventRow>& event_table();
+
+/// A session's row is spread over four tables, since many sessions share a protocol, a rig and a calibration.
+/// Status and its reason are at the end: they are the only columns that change.
+const Table<SessionRecord>& session_table();
+const Table<SessionRecord>& protocol_table();
+const Table<SessionRecord>& rig_table();
+const Table<SessionRecord>& calibration_table();
+
+/// "a, b, c": the columns in order, place first, each with `prefix` before it.
+template <class Record>
+std::string column_list(const Table<Record>& table, const std::string& prefix = "") {
+  std::string list;
+  const auto add = [&](const char* name) { list += (list.empty() ? "" : ", ") + prefix + name; };
+  for (const auto* name : table.place) add(name);
+  for (const auto& field : table.fields) add(field.name);
+  return list;
+}
+
+template <class Record>
+std::string insert_sql(const Table<Record>& table) {
+  std::string marks = "?";
+  for (std::size_t i = 1; i < table.place.size() + table.fields.size(); ++i) marks += ",?";
+  return std::string("INSERT INTO ") + table.name + " (" + column_list(table) + ") VALUES (" + marks + ")";
+}
+
+/// Binds a whole row: the values of its place, then its fields. Returns the statement, to be run.
+template <class Record, class... Place>
+Statement& bind_row(Statement& statement, const Table<Record>& table, const Record& record,
+                    const Place&... place) {
+  int index = 0;
+  statement.reset();
+  (statement.bind_value(++index, place), ...);
+  for (const auto& field : table.fields) field.bind(statement, ++index, record);
+  return statement;
+}
+
+/// Reads the fields of a record from consecutive columns, beginning with `column`.
+template <class Record>
+void read_fields(const Statement& row, const Table<Record>& table, int column, Record& record) {
+  for (const auto& field : table.fields) field.read(row, column++, record);
+}
+
+/// Reads a record from a row that has the columns of column_list().
+template <class Record>
+Record record_of(const Statement& row, const Table<Record>& table) {
+  Record record;
+  read_fields(row, table, static_cast<int>(table.place.size()), record);
+  return record;
+}
+
+/// Factor values as the JSON object of the `factors` column, and back; the same for a list of names.
+std::string to_json(const std::map<std::string, FactorValue>& factors);
+std::string to_json(const std::vector<std::string>& list);
+void from_json(const std::string& text, std::map<std::string, FactorValue>& factors);
+void from_json(const std::string& text, std::vector<std::string>& list);
+
+}  // namespace turnpoint::store
