@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "station/text/number.hpp"
 
@@ -112,41 +111,6 @@ SharedEzResult shared_ez_diffusion(const std::vector<EzMoments>& conditions) {
   else
     result.parameters = shared;
   return result;
-}
-
-namespace {
-
-/// Distribution of the exit time of standard Brownian motion from (-1, 1); each series where it converges in
-/// a few terms.
-double exit_distribution(double t) {
-  double sum = 0;
-  if (t < 0.6) {
-    for (int k = 0; k < 4; ++k) sum += (k % 2 ? -2 : 2) * std::erfc((2 * k + 1) / std::sqrt(2 * t));
-    return sum;
-  }
-  constexpr double pi = std::numbers::pi;
-  for (int k = 0; k < 4; ++k) {
-    const double n = 2 * k + 1;
-    sum += (k % 2 ? -1 : 1) / n * std::exp(-n * n * pi * pi * t / 8);
-  }
-  return 1 - 4 / pi * sum;
-}
-
-double exit_time(double share) {
-  double low = 0, high = 1;
-  while (exit_distribution(high) < share && high < 64) high *= 2;
-  for (int i = 0; i < 45; ++i) (exit_distribution((low + high) / 2) < share ? low : high) = (low + high) / 2;
-  return (low + high) / 2;
-}
-
-}  // namespace
-
-Decision sample_decision(const EzDiffusion& parameters, random::Draws& draws) {
-  const double half = parameters.boundary / 2, drift = parameters.drift * half / (s * s);
-  double time = exit_time(draws.uniform());
-  while (draws.uniform() >= std::exp(-drift * drift * time / 2)) time = exit_time(draws.uniform());
-  const bool correct = draws.uniform() < 1 / (1 + std::exp(-2 * drift));
-  return {correct, time * half * half / (s * s) + parameters.nondecision_s};
 }
 
 }  // namespace turnpoint::analysis

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "station/analysis/trial_record.hpp"
-#include "station/random/draws.hpp"
 
 namespace turnpoint::analysis {
 
@@ -51,13 +50,5 @@ struct SharedEzResult {
 /// likewise from the means. Conditions with fewer than 10 correct answers are left out. With one condition it
 /// equals ez_diffusion().
 SharedEzResult shared_ez_diffusion(const std::vector<EzMoments>& conditions);
-
-/// One decision of the diffusion between 0 and `boundary` from the middle, exact: the exit time without drift
-/// by inversion of its distribution, accepted with the probability that the drift gives it.
-struct Decision {
-  bool correct = false;
-  double time_s = 0;  ///< with nondecision_s
-};
-Decision sample_decision(const EzDiffusion& parameters, random::Draws& draws);
 
 }  // namespace turnpoint::analysis

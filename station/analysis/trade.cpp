@@ -7,6 +7,7 @@
 
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
+#include "station/random/draws.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::analysis {

@@ -23,19 +23,20 @@ std::string instruction_of(const protocol::Protocol& protocol, const protocol::F
 std::function<double(double)> share_of_ones(const protocol::Protocol& protocol, const procedure::Spec& spec,
                                             const observer::Observer& observer) {
   session::TrialSpec trial;
+  trial.procedure = spec.name;
   trial.level = 0;
   trial.deadline_s = protocol.timing.deadline_s.value_or(0);
   auto question = session::question_of(trial, protocol, 0);
   int choice = 0;
-  if (question.signed_level) {
+  if (question.decides == observer::Decides::right_answer) {
+    if (!spec.tracks.empty()) return {};
+    question.correct = 0;
+  } else {
     const auto& choices = protocol.task.choices;
     const auto tracked = std::find_if(choices.begin(), choices.end(),
                                       [&](const auto& entry) { return entry.id == spec.tracks; });
     if (tracked == choices.end()) return {};
     choice = static_cast<int>(tracked - choices.begin());
-  } else {
-    if (!spec.tracks.empty()) return {};
-    question.correct = 0;
   }
   return [question, choice, &observer](double level) mutable {
     question.level = level;

@@ -163,7 +163,8 @@ void add_power(CommandLine& app, Context& context) {
       ->check(range(0, 1'000'000));
   command
       ->add_option("--observer", options->observer,
-                   "sim[:threshold=...,slope=...,lapse=...,bias=...]: who answers")
+                   "sim[:threshold=...,slope=...,lapse=...,bias=...,criterion=...,bound=...]: who answers; "
+                   "protocols/README.md lists all keys")
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of the first session, 0 to 2^53")
       ->check(range(0, 9007199254740992));

@@ -105,8 +105,10 @@ std::shared_ptr<app::RunRequest> add_run_options(Command& command) {
       ->capture_default_str()
       ->check(one_of({"live", "pilot"}));
   command.add_option("--language", request->language, "One of the protocol's languages; otherwise its first");
-  command.add_option("--observer", request->observer,
-                     "sim[:threshold=...,slope=...]: a simulated observer answers");
+  command.add_option(
+      "--observer", request->observer,
+      "sim[:threshold=...,slope=...,lapse=...,bias=...,criterion=...,bound=...]: a simulated observer "
+      "answers; protocols/README.md lists all keys");
   command.add_option("--seed", request->seed, "Seed of all random draws, 0 to 2^53")
       ->check(range(0, 9007199254740992));
   command.add_option(

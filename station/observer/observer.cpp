@@ -6,92 +6,148 @@
 #include <map>
 #include <stdexcept>
 
+#include "station/observer/first_passage.hpp"
 #include "station/random/elementary.hpp"
 
 namespace turnpoint::observer {
 
 namespace {
 
-constexpr double kStrongest = 100;
+constexpr double kLogStrongest = 4.6;         // 99 times the threshold: nobody errs
 constexpr double kZ75 = 0.67448975019608171;  // 75 % point of the normal
+constexpr double kLn2 = 0.69314718055994531;
+constexpr double kSurest_sd = 6;        // beyond it the normal's tail is 1e-9, and its logarithm loses digits
+constexpr double kRatingStep_sd = 0.5;  // between the criteria of neighbouring ratings
 constexpr int kMoves = 5;
-constexpr double kLook_s = 1.6;              // one slide of the finger across the surface and back
-constexpr double kLn3 = 1.0986122886681098;  // odds of 75 %
+constexpr double kLook_s = 1.6;       // one slide of the finger across the surface and back
+constexpr double kLookSpread = 0.25;  // SD of its logarithm
 
-double strength(const Parameters& p, const Question& q) {
-  const double threshold = p.threshold.value_or(q.default_threshold);
-  // Beyond any strength that tells answers apart; the exponential need not go there.
-  if (q.decibel)
-    return random::exp(std::min((q.level - threshold) * 0.11512925464970228 * p.slope, kStrongest));
-  const double ratio = std::fabs(q.level - (q.signed_level ? p.bias : 0)) / std::fabs(threshold);
-  return ratio > 0 ? random::exp(std::min(p.slope * random::log(ratio), kStrongest)) : 0;
+/// Half the log odds of a normal variable being above -x.
+double half_logit_of_normal(double x) {
+  const double inside = std::clamp(x, -kSurest_sd, kSurest_sd);
+  const double rarer = random::normal_cdf(-std::fabs(inside));
+  const double half = 0.5 * (random::log(1 - rarer) - random::log(rarer));
+  return inside < 0 ? -half : half;
 }
 
-/// The bound that leaves time: with nothing felt the decision takes bound^2 s on the mean, which shall be 60
-/// % of what the deadline leaves.
-double bound_for(const Parameters& p, double deadline_s) {
-  if (deadline_s <= 0) return p.bound;
-  const double left_s = std::max(0.02, 0.6 * (deadline_s - p.residual_s - p.travel_s));
-  return std::min(p.bound, std::sqrt(left_s));
+/// Of `answers` the right one, where a diffusion ends at its upper boundary with probability `upper`:
+/// Weibull's core is what two answers have beyond guessing, and more answers have the same beyond theirs.
+double share_right(double upper, int answers) {
+  const double chance = 1.0 / answers;
+  return std::max(0.0, chance + (1 - chance) * (2 * upper - 1));
+}
+
+/// The mean of a function of the drift over its normal distribution, by the trapezoidal rule.
+template <class Function>
+double mean_over_drift(double drift, double sd, Function function) {
+  if (sd == 0) return function(drift);
+  double sum = 0, weights = 0;
+  for (int i = -50; i <= 50; ++i) {
+    const double z = 0.12 * i, weight = random::exp(-0.5 * z * z);
+    sum += weight * function(drift + sd * z), weights += weight;
+  }
+  return sum / weights;
+}
+
+/// The criterion above rating `rating` of so many, in SDs from the mean of noise: the yes/no criterion is in
+/// the middle of them.
+double rating_criterion(const Parameters& p, int rating, int ratings) {
+  return p.criterion + kRatingStep_sd * (rating - 0.5 * (ratings - 2));
 }
 
 }  // namespace
 
-double accuracy(double bound, double kx) {
-  const double e = std::min(2 * bound * std::fabs(kx), 700.0);
-  return 1 / (1 + random::exp(-e));
+double Observer::strength(const Question& q, double from) const {
+  const double threshold = parameters_.threshold.value_or(q.default_threshold);
+  const auto capped = [](double exponent) { return random::exp(std::min(exponent, kLogStrongest)); };
+  if (q.decibel) return capped((q.level - threshold) * 0.11512925464970228 * parameters_.slope);
+  const double ratio = std::fabs(q.level - from) / std::fabs(threshold);
+  return ratio > 0 ? capped(parameters_.slope * random::log(ratio)) : 0;
 }
 
-double mean_decision_s(double bound, double kx) {
-  const double x = std::fabs(kx);
-  if (bound * x < 1e-6) return bound * bound;
-  const double e = random::exp(-std::min(2 * bound * x, 700.0));
-  return bound / x * (1 - e) / (1 + e);
+double Observer::sensitivity(const Question& q) const { return q.absent ? 0 : 2 * kZ75 * strength(q, 0); }
+
+/// Per square root of a second, towards the right, positive or "yes" answer.
+double Observer::drift(const Question& q) const {
+  double half_logit = 0;
+  switch (q.decides) {
+    case Decides::right_answer:  // 1 - 2^-(1 + strength) of two answers are right
+      half_logit = 0.5 * random::log(2 * random::exp(kLn2 * strength(q, 0)) - 1);
+      break;
+    case Decides::side:
+      half_logit = half_logit_of_normal(kZ75 * strength(q, parameters_.bias));
+      if (q.level < parameters_.bias) half_logit = -half_logit;
+      break;
+    case Decides::presence:
+      half_logit = half_logit_of_normal(sensitivity(q) - parameters_.criterion);
+      break;
+  }
+  return half_logit / parameters_.bound;
+}
+
+double Observer::bound(double deadline_s) const {
+  if (deadline_s <= 0) return parameters_.bound;
+  // P(T > t) is at most 4/pi exp(-pi^2 t / (8 bound^2)).
+  const double left_s = std::max(0.02, deadline_s - nondecision_s() - 0.5 * parameters_.residual_range_s);
+  return std::min(parameters_.bound, std::sqrt(0.35 * left_s));
 }
 
 double Observer::share(const Question& q, int choice) const {
-  const double kx = strength(parameters_, q) * kLn3 / (2 * parameters_.bound);
-  const double p2 = accuracy(bound_for(parameters_, q.deadline_s), kx);
+  const auto& p = parameters_;
+  const double limit = bound(q.deadline_s);
+  const auto upper = [&](double drift) { return upper_probability(drift, limit, p.start_range); };
+  const auto mean = [&](auto function) { return mean_over_drift(drift(q), p.drift_sd, function); };
   const double chance = 1.0 / q.answers;
-  double p = chance;
-  if (q.signed_level) {
-    const int likely = q.level < parameters_.bias ? q.negative_answer : 1 - q.negative_answer;
-    p = choice == likely ? p2 : 1 - p2;
-  } else if (q.correct) {
-    const double right = chance + (1 - chance) * (2 * p2 - 1);
-    p = choice == *q.correct ? right : (1 - right) / std::max(1, q.answers - 1);
+  double share = chance;
+  if (q.decides == Decides::right_answer && q.correct) {
+    const double right = mean([&](double drift) { return share_right(upper(drift), q.answers); });
+    share = choice == *q.correct ? right : (1 - right) / std::max(1, q.answers - 1);
+  } else if (q.decides == Decides::presence && q.answers > 2) {
+    const auto below = [&](int rating) {
+      if (rating < 0) return 0.0;
+      if (rating >= q.answers - 1) return 1.0;
+      return random::normal_cdf(rating_criterion(p, rating, q.answers) - sensitivity(q));
+    };
+    share = below(choice) - below(choice - 1);
+  } else if (q.decides != Decides::right_answer) {
+    const double positive = mean(upper);
+    share = choice == q.positive ? positive : 1 - positive;
   }
-  return (1 - parameters_.lapse) * p + parameters_.lapse * chance;
+  return (1 - p.lapse) * share + p.lapse * chance;
 }
 
 Reply Observer::answer(const Question& q) const {
+  const auto& p = parameters_;
   auto key = q.key;
   key.stream = random::Stream::observer;
   random::Draws draws(key);
-  const double kx = strength(parameters_, q) * kLn3 / (2 * parameters_.bound);
-  const double bound = bound_for(parameters_, q.deadline_s);
-  const double p2 = accuracy(bound, kx);
-  const bool lapses = draws.uniform() < parameters_.lapse;
-  const bool anticipates = draws.uniform() < parameters_.anticipation;
-  const double u = draws.uniform();
+  const bool lapses = draws.uniform() < p.lapse;
+  const bool anticipates = draws.uniform() < p.anticipation;
   const auto any = static_cast<int>(draws.below(static_cast<std::uint64_t>(q.answers)));
-  const double spread = random::exp(parameters_.spread * draws.normal());
+  const auto other = static_cast<int>(draws.below(static_cast<std::uint64_t>(std::max(1, q.answers - 1))));
+  const double u = draws.uniform(), felt = draws.normal();
+  const double residual_s = p.residual_s + p.residual_range_s * (draws.uniform() - 0.5);
+  const double start = p.start_range * (2 * draws.uniform() - 1);
+  const double limit = bound(q.deadline_s), pull = drift(q) + p.drift_sd * draws.normal();
+  const auto passage = first_passage(pull, limit, start, draws);
   Reply reply;
-  if (q.signed_level) {
-    const bool seems_negative = q.level < parameters_.bias;
-    const int likely = seems_negative ? q.negative_answer : 1 - q.negative_answer;
-    reply.choice = u < p2 ? likely : 1 - likely;
-  } else {
-    const double chance = 1.0 / q.answers;
-    const double p = chance + (1 - chance) * (2 * p2 - 1);
+  if (q.decides == Decides::right_answer) {
+    // Of three answers or more some at the upper boundary are wrong too, so that as many are right as
+    // share_right() says.
+    const double upper = upper_probability(pull, limit, p.start_range);
+    const bool found = passage.upper && u * upper < share_right(upper, q.answers);
     const int right = q.correct.value_or(any);
-    const int wrong = (right + 1 + any % std::max(1, q.answers - 1)) % q.answers;
-    reply.choice = u < p ? right : wrong;
+    reply.choice = found ? right : (right + 1 + other) % q.answers;
+  } else if (q.answers > 2) {
+    const double seems = sensitivity(q) + felt;
+    int rating = 0;
+    while (rating < q.answers - 1 && seems > rating_criterion(p, rating, q.answers)) ++rating;
+    reply.choice = rating;
+  } else {
+    reply.choice = passage.upper ? q.positive : 1 - q.positive;
   }
   if (lapses || anticipates) reply.choice = any;
-  reply.response_time_s =
-      anticipates ? 0.05
-                  : mean_decision_s(bound, kx) * spread + parameters_.residual_s + parameters_.travel_s;
+  reply.response_time_s = anticipates ? 0.05 : passage.time_s + residual_s + p.travel_s;
   return reply;
 }
 
@@ -110,23 +166,52 @@ Setting Observer::adjust(const Adjustment& a) const {
   for (int k = 1; k <= kMoves; ++k) {
     // Past the aim and back, each time by half as much: people bracket what they look for.
     const double overshoot = k == kMoves ? 0 : (a.start - wanted) * (k % 2 == 1 ? -0.5 : 0.5) / k;
-    time_s += kLook_s * random::exp(parameters_.spread * draws.normal());
+    time_s += kLook_s * random::exp(kLookSpread * draws.normal());
     setting.moves.push_back({time_s, std::clamp(wanted + overshoot, a.low, a.high)});
   }
   setting.done_s = time_s + parameters_.travel_s;
   return setting;
 }
 
+namespace {
+
+/// Throws std::invalid_argument naming what is out of range.
+void check(const Parameters& p) {
+  const auto require = [](bool good, const char* what) {
+    if (!good) throw std::invalid_argument(std::string("--observer: ") + what);
+  };
+  require(!p.threshold || *p.threshold != 0, "threshold must not be 0");
+  require(p.slope > 0, "slope must be above 0");
+  require(p.lapse >= 0 && p.lapse <= 1 && p.anticipation >= 0 && p.anticipation <= 1,
+          "lapse and anticipation are probabilities from 0 to 1");
+  require(p.bound > 0 && p.residual_s >= 0 && p.travel_s >= 0,
+          "bound is above 0, residual and travel are 0 or more");
+  require(p.drift_sd >= 0 && p.start_range >= 0 && p.start_range < 1,
+          "drift_sd is 0 or more, start_range from 0 to below 1");
+  require(p.residual_range_s >= 0 && p.residual_range_s <= 2 * p.residual_s,
+          "residual_range is from 0 to twice the residual");
+}
+
+}  // namespace
+
 Parameters parse(const std::string& text) {
   Parameters p;
   double threshold = 0;
-  const std::map<std::string, double*> known{
-      {"threshold", &threshold}, {"slope", &p.slope},   {"lapse", &p.lapse},
-      {"bias", &p.bias},         {"bound", &p.bound},   {"residual", &p.residual_s},
-      {"travel", &p.travel_s},   {"spread", &p.spread}, {"anticipation", &p.anticipation}};
+  const std::map<std::string, double*> known{{"threshold", &threshold},
+                                             {"slope", &p.slope},
+                                             {"lapse", &p.lapse},
+                                             {"bias", &p.bias},
+                                             {"criterion", &p.criterion},
+                                             {"bound", &p.bound},
+                                             {"residual", &p.residual_s},
+                                             {"travel", &p.travel_s},
+                                             {"drift_sd", &p.drift_sd},
+                                             {"start_range", &p.start_range},
+                                             {"residual_range", &p.residual_range_s},
+                                             {"anticipation", &p.anticipation}};
   const std::string allowed =
-      "sim, or sim: and threshold, slope, lapse, bias, bound, residual, travel, spread, anticipation with "
-      "numbers, as in sim:threshold=6,slope=1.2";
+      "sim, or sim: and threshold, slope, lapse, bias, criterion, bound, residual, travel, drift_sd, "
+      "start_range, residual_range, anticipation with numbers, as in sim:threshold=6,slope=1.2";
   const auto colon = text.find(':');
   if (text.substr(0, colon) != "sim") throw std::invalid_argument("--observer " + text + ": " + allowed);
   for (std::size_t at = colon; at != std::string::npos;) {
@@ -144,15 +229,7 @@ Parameters parse(const std::string& text) {
     if (found->first == "threshold") p.threshold = value;
     at = end;
   }
-  const auto check = [](bool good, const char* what) {
-    if (!good) throw std::invalid_argument(std::string("--observer: ") + what);
-  };
-  check(!p.threshold || *p.threshold != 0, "threshold must not be 0");
-  check(p.slope > 0, "slope must be above 0");
-  check(p.lapse >= 0 && p.lapse <= 1 && p.anticipation >= 0 && p.anticipation <= 1,
-        "lapse and anticipation are probabilities from 0 to 1");
-  check(p.bound > 0 && p.residual_s >= 0 && p.travel_s >= 0 && p.spread >= 0,
-        "bound is above 0, residual, travel and spread are 0 or more");
+  check(p);
   return p;
 }
 

@@ -35,4 +35,12 @@ double exp(double x) {
   return std::ldexp(sum, static_cast<int>(n));
 }
 
+double normal_cdf(double x) {
+  if (!(std::fabs(x) < 8)) return x > 0 ? 1 : 0;
+  // x + x^3 / 3 + x^5 / (3 5) + ..., of one sign throughout (Marsaglia 2004).
+  double sum = x, term = x;
+  for (int k = 1; std::fabs(term) > 1e-17; ++k) term *= x * x / (2 * k + 1), sum += term;
+  return 0.5 + 0.39894228040143267794 * exp(-0.5 * x * x) * sum;
+}
+
 }  // namespace turnpoint::random

@@ -11,4 +11,7 @@ double log(double x);
 /// e to the x; 0 below -745, throws std::domain_error above 709 or for NaN.
 double exp(double x);
 
+/// Standard normal distribution function, to 1e-15 (absolute: beyond 8 it is 0 or 1).
+double normal_cdf(double x);
+
 }  // namespace turnpoint::random

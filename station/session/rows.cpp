@@ -7,11 +7,21 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "station/protocol/answers.hpp"
+#include "station/protocol/sources.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::session {
 
 namespace {
+
+/// The factor that the trial's level is of: its procedure's, else that of the first trials that have one.
+std::string level_factor(const TrialSpec& spec, const protocol::Protocol& protocol) {
+  if (const auto* procedure = protocol::find_procedure(protocol, spec.procedure)) return procedure->level;
+  if (!protocol.procedures.empty()) return protocol.procedures.front().level;
+  const auto sources = protocol::sources_of(protocol);
+  return sources.empty() ? "" : sources.front().level;
+}
 
 const char* name_of(protocol::ResponseZero zero) {
   switch (zero) {
@@ -266,23 +276,22 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
   question.deadline_s = spec.deadline_s;
   question.answers = static_cast<int>(protocol.task.choices.size());
   question.key = {seed, random::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
-  const auto& levels = protocol.procedures;
-  for (const auto& procedure : levels) {
-    const auto& values = procedure.values.empty() ? procedure.stimuli.values : procedure.values;
-    question.decibel = procedure.level.ends_with("_dB");
-    double sum = 0;
-    for (const double value : values) sum += question.decibel ? value : 0.5 * std::fabs(value);
-    if (!values.empty()) question.default_threshold = sum / static_cast<double>(values.size());
-    if (!values.empty()) break;
-  }
-  // Two answers, told apart by the sign of the level: the observer may be biased.
-  if (protocol.task.kind == protocol::TaskKind::single_interval && protocol.task.correct_answer.size() == 2) {
-    question.signed_level = true;
-    const auto& [id, comparison] = protocol.task.correct_answer.front();
-    const bool first_is_negative = comparison.relation == protocol::Relation::less ||
-                                   comparison.relation == protocol::Relation::less_equal;
-    const int first = protocol.task.choices.front().id == id ? 0 : 1;
-    question.negative_answer = first_is_negative ? first : 1 - first;
+  const auto level = level_factor(spec, protocol);
+  question.decibel = level.ends_with("_dB");
+  question.default_threshold = protocol::middle_level(protocol, level);
+  const auto rule = protocol::answer_rule(protocol, level);
+  question.positive = rule.positive;
+  switch (rule.kind) {
+    case protocol::AnswerKind::right_answer:
+      break;
+    case protocol::AnswerKind::side:
+      question.decides = observer::Decides::side;
+      break;
+    case protocol::AnswerKind::presence:
+      question.decides = observer::Decides::presence;
+      question.absent = protocol.task.kind == protocol::TaskKind::same_different && spec.correct &&
+                        *spec.correct != rule.positive;
+      break;
   }
   return question;
 }

@@ -1,51 +1,211 @@
-#include <cmath>
-
 #include "station/observer/observer.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "station/analysis/diffusion.hpp"
+#include "station/analysis/quantile.hpp"
+#include "station/random/elementary.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
 using namespace turnpoint::observer;
 
-TEST_CASE("accuracy and response time follow Palmer, Huk and Shadlen", "[observer]") {
-  // A' = .85, k = 9, tR = .35 at x = .1 (their proportional-rate model).
-  CHECK(accuracy(0.85, 0.9) == Approx(0.82201).margin(1e-5));
-  CHECK(mean_decision_s(0.85, 0.9) + 0.35 == Approx(0.95823).margin(1e-5));
-  CHECK(mean_decision_s(0.85, 0) == Approx(0.85 * 0.85));
-  CHECK(accuracy(0.85, 0) == 0.5);
+namespace {
+
+Question at_level(double level) {
+  Question question;
+  question.level = level;
+  question.correct = 0;
+  return question;
 }
 
-TEST_CASE("a simulated observer is right 75 % of the time at its threshold", "[observer]") {
-  auto parameters = parse("sim:threshold=6,lapse=0");
-  const Observer observer(parameters);
-  int right = 0;
-  const int n = 20'000;
-  for (int trial = 0; trial < n; ++trial) {
-    Question question;
-    question.level = 6;
-    question.correct = trial % 2;
-    question.key.seed = 1;
+/// How often each answer comes in so many trials.
+std::vector<double> shares(const Observer& observer, Question question, int trials) {
+  std::vector<double> counts(static_cast<std::size_t>(question.answers));
+  for (int trial = 0; trial < trials; ++trial) {
     question.key.trial = trial;
-    right += observer.answer(question).choice == trial % 2 ? 1 : 0;
+    counts[static_cast<std::size_t>(*observer.answer(question).choice)] += 1.0 / trials;
   }
-  CHECK(right / static_cast<double>(n) == Approx(0.75).margin(5 * std::sqrt(0.75 * 0.25 / n)));
+  return counts;
 }
 
-TEST_CASE("a biased observer is balanced at its bias", "[observer]") {
+void check_shares(const Observer& observer, const Question& question) {
+  const int n = 40'000;
+  const auto found = shares(observer, question, n);
+  double sum = 0;
+  for (int choice = 0; choice < question.answers; ++choice) {
+    const double p = observer.share(question, choice);
+    sum += p;
+    INFO("choice " << choice << " at level " << question.level);
+    CHECK(found[static_cast<std::size_t>(choice)] == Approx(p).margin(4.5 * std::sqrt(p * (1 - p) / n)));
+  }
+  CHECK(sum == Approx(1));
+}
+
+}  // namespace
+
+TEST_CASE("EZ-diffusion finds the drift, boundary and residual time of the observer", "[observer]") {
+  // a = 0.2 A' = .17, Ter = .35 + .15; v = .1 logit(Pc) / (2 A'). 100 fits of 10 000 trials each.
+  const Observer observer(parse("sim:threshold=1,lapse=0"));
+  const int fits = 100, trials = 10'000;
+  for (const double proportion : {0.8, 0.9, 0.97}) {
+    auto question = at_level(std::log2(0.5 / (1 - proportion)));
+    std::vector<double> drift, boundary, nondecision;
+    for (int fit = 0; fit < fits; ++fit) {
+      std::vector<double> times;
+      for (int trial = 0; trial < trials; ++trial) {
+        question.key = {1, random::Stream::observer, fit, 0, trial};
+        const auto reply = observer.answer(question);
+        if (reply.choice == 0) times.push_back(reply.response_time_s);
+      }
+      const auto ez = analysis::ez_diffusion({static_cast<double>(times.size()) / trials,
+                                              analysis::variance(times), analysis::mean(times), trials});
+      REQUIRE(ez.parameters);
+      drift.push_back(ez.parameters->drift);
+      boundary.push_back(ez.parameters->boundary);
+      nondecision.push_back(ez.parameters->nondecision_s);
+    }
+    INFO("proportion correct " << proportion);
+    const double v = 0.1 * std::log(proportion / (1 - proportion)) / (2 * 0.85);
+    CHECK(analysis::mean(drift) == Approx(v).epsilon(0.01));
+    CHECK(analysis::mean(boundary) == Approx(0.17).epsilon(0.01));
+    CHECK(analysis::mean(nondecision) == Approx(0.50).epsilon(0.01));
+  }
+}
+
+TEST_CASE("an observer answers as often as its shares say", "[observer]") {
+  for (const auto* text :
+       {"sim:threshold=4,lapse=0.05", "sim:threshold=4,slope=2,drift_sd=0.6,start_range=0.5"}) {
+    INFO(text);
+    const Observer observer(parse(text));
+    for (const double level : {0.0, 2.0, 4.0, 9.0}) {
+      auto question = at_level(level);
+      check_shares(observer, question);
+      question.answers = 3;
+      check_shares(observer, question);
+      question.deadline_s = 0.9;
+      check_shares(observer, question);
+      question.answers = 2, question.decides = Decides::side, question.level = -level;
+      check_shares(observer, question);
+      question.decides = Decides::presence, question.level = level;
+      check_shares(observer, question);
+    }
+  }
+}
+
+TEST_CASE("at its threshold an observer is right 75 % of the time, whatever is asked", "[observer]") {
+  const Observer observer(parse("sim:threshold=6,lapse=0"));
+  auto question = at_level(6);
+  CHECK(observer.share(question, 0) == Approx(0.75));
+  question.decides = Decides::side;
+  CHECK(observer.share(question, question.positive) == Approx(0.75));
+  question.decides = Decides::presence;
+  CHECK(observer.share(question, question.positive) == Approx(0.75));
+  question.level = 0;
+  CHECK(observer.share(question, question.positive) == Approx(0.25));
+  question = at_level(-20), question.decibel = true;
+  CHECK(Observer(parse("sim:threshold=-20,lapse=0")).share(question, 0) == Approx(0.75));
+}
+
+TEST_CASE("answers of which one is right follow a Weibull function with the observer's slope", "[observer]") {
+  const Observer observer(parse("sim:threshold=3,slope=1.7,lapse=0.04"));
+  for (const double level : {0.5, 2.0, 3.0, 5.0})
+    for (const int answers : {2, 3}) {
+      auto question = at_level(level);
+      question.answers = answers;
+      const double guess = 1.0 / answers, core = 1 - std::exp2(-std::pow(level / 3, 1.7));
+      CHECK(observer.share(question, 0) == Approx(0.96 * (guess + (1 - guess) * core) + 0.04 * guess));
+    }
+}
+
+TEST_CASE("answers on two sides follow a normal distribution about the bias", "[observer]") {
   const Observer observer(parse("sim:threshold=4,lapse=0,bias=3"));
-  int positive = 0;
-  for (int trial = 0; trial < 4000; ++trial) {
-    Question question;
-    question.level = 3;
-    question.signed_level = true;
-    question.key.trial = trial;
-    positive += observer.answer(question).choice == 1 ? 1 : 0;
+  auto question = at_level(0);
+  question.decides = Decides::side, question.positive = 0;
+  for (const double level : {-5.0, 0.0, 3.0, 4.0, 11.0}) {
+    question.level = level;
+    const double z = (level - 3) / 4 * 0.6744897501960817;
+    CHECK(observer.share(question, 0) == Approx(0.5 * std::erfc(-z / std::sqrt(2.0))).epsilon(1e-9));
   }
-  CHECK(positive == Approx(2000).margin(160));
+}
+
+TEST_CASE("yes and no fall about the criterion", "[observer]") {
+  auto question = at_level(6);
+  question.decides = Decides::presence;
+  for (const double criterion : {-0.5, 0.2, 1.5}) {
+    const Observer observer(parse("sim:threshold=3,lapse=0,criterion=" + std::to_string(criterion)));
+    const auto z = [&](double p) {  // the inverse by bisection on another normal distribution function
+      double low = -9, high = 9;
+      for (int i = 0; i < 80; ++i) {
+        const double middle = 0.5 * (low + high);
+        (0.5 * std::erfc(-middle / std::sqrt(2.0)) < p ? low : high) = middle;
+      }
+      return low;
+    };
+    question.absent = true;
+    const double false_alarms = observer.share(question, 1);
+    question.absent = false;
+    const double hits = observer.share(question, 1);
+    CHECK(z(false_alarms) == Approx(-criterion).margin(1e-7));
+    CHECK(z(hits) - z(false_alarms) == Approx(2 * 2 * 0.6744897501960817).margin(1e-6));
+  }
+}
+
+TEST_CASE("ratings of signal and noise overlap by d'", "[observer]") {
+  const Observer observer(parse("sim:threshold=5,lapse=0"));
+  auto question = at_level(5);
+  question.decides = Decides::presence, question.answers = 6;
+  check_shares(observer, question);
+  double area = 0, below = 0;
+  for (int rating = 0; rating < 6; ++rating) {
+    question.absent = true;
+    const double noise = observer.share(question, rating);
+    question.absent = false;
+    const double signal = observer.share(question, rating);
+    area += signal * (below + 0.5 * noise), below += noise;
+  }
+  // Phi(d' / sqrt 2) is the area under the whole curve; six ratings cut its corners.
+  const double whole = 0.5 * std::erfc(-1.349 / 2);
+  CHECK(area < whole);
+  CHECK(area > whole - 0.02);
+}
+
+TEST_CASE("a deadline lowers the bound so that few decisions come too late", "[observer]") {
+  const Observer observer(parse("sim:threshold=1,lapse=0"));
+  auto question = at_level(0);
+  question.deadline_s = 0.8;
+  int late = 0;
+  for (int trial = 0; trial < 20'000; ++trial) {
+    question.key.trial = trial;
+    late += observer.answer(question).response_time_s > 0.8;
+  }
+  CHECK(late < 0.045 * 20'000);
+  CHECK(late > 0.01 * 20'000);
+  auto easy = at_level(1);
+  const double careful = observer.share(easy, 0);
+  easy.deadline_s = 0.8;
+  CHECK(observer.share(easy, 0) < careful - 0.05);
+}
+
+TEST_CASE("times outside the decision vary within their range", "[observer]") {
+  // A decision on 99 times the threshold takes a few hundredths of a second.
+  const Observer observer(parse("sim:threshold=1,slope=4,bound=0.01,residual=0.5,residual_range=0.4"));
+  auto question = at_level(100);
+  std::vector<double> times;
+  for (int trial = 0; trial < 20'000; ++trial) {
+    question.key.trial = trial;
+    times.push_back(observer.answer(question).response_time_s);
+  }
+  CHECK(analysis::mean(times) == Approx(0.65).margin(4 * 0.4 / std::sqrt(12.0 * 20'000) + 1e-4));
+  CHECK(analysis::variance(times) == Approx(0.16 / 12).epsilon(0.05));
 }
 
 TEST_CASE("an observer that is not understood is refused with what is allowed", "[observer]") {
   for (const auto* text :
-       {"human", "sim:treshold=3", "sim:threshold=x", "sim:lapse=2", "sim:threshold=0", "sim:slope"})
+       {"human", "sim:treshold=3", "sim:threshold=x", "sim:lapse=2", "sim:threshold=0", "sim:slope",
+        "sim:spread=0.25", "sim:start_range=1", "sim:drift_sd=-1", "sim:residual=0.1,residual_range=0.3"})
     CHECK_THROWS_AS(parse(text), std::invalid_argument);
   CHECK(parse("sim").lapse == 0.02);
+  CHECK(parse("sim:criterion=-0.3,drift_sd=0.2").criterion == -0.3);
 }

@@ -70,3 +70,9 @@ TEST_CASE("log and exp agree with libm to the last bits and refuse what they can
   CHECK_THROWS_AS(turnpoint::random::log(0), std::domain_error);
   CHECK_THROWS_AS(turnpoint::random::exp(710), std::domain_error);
 }
+
+TEST_CASE("the normal distribution function agrees with another to 1e-15", "[random]") {
+  for (double x = -9; x <= 9; x += 0.0625)
+    CHECK(normal_cdf(x) == Approx(0.5 * std::erfc(-x / std::sqrt(2.0))).margin(1e-15));
+  CHECK(normal_cdf(0) == 0.5);
+}

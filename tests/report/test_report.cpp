@@ -2,11 +2,11 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "station/analysis/diffusion.hpp"
 #include "station/plot/chart.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/html.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/diffusion.hpp"
 
 using namespace turnpoint;
 using namespace turnpoint::report;
@@ -43,7 +43,7 @@ SessionData speed_accuracy(int per_level) {
         trial.level = level;
         trial.difficulty = std::abs(level);
         trial.right_choice = level > 0;
-        const auto decision = analysis::sample_decision({0.6 * std::abs(level), boundary, 0.3}, draws);
+        const auto decision = tests::sample_decision({0.6 * std::abs(level), boundary, 0.3}, draws);
         trial.correct = decision.correct;
         trial.response = decision.correct ? *trial.right_choice : 1 - *trial.right_choice;
         trial.response_time_s = decision.time_s;

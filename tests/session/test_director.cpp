@@ -2,6 +2,7 @@
 #include <map>
 
 #include "station/session/director.hpp"
+#include "station/session/rows.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -105,4 +106,20 @@ TEST_CASE("the same seed gives the same session and another one another", "[sess
   };
   CHECK(levels(5) == levels(5));
   CHECK(levels(5) != levels(6));
+}
+
+TEST_CASE("an observer without a threshold of its own gets the protocol's middle, staircases included",
+          "[session]") {
+  const auto protocol =
+      protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-staircase.toml");
+  session::Director director(protocol, 0, 1);
+  const auto practice = director.next();
+  REQUIRE(practice);
+  session::TrialSpec stair = *practice;
+  stair.procedure = protocol.procedures.back().name;
+  for (const auto& spec : {*practice, stair}) {
+    const auto question = session::question_of(spec, protocol, 1);
+    CHECK(question.default_threshold == Approx(-18.5));  // limits -34 and -3 dB
+    CHECK(question.decibel);
+  }
 }

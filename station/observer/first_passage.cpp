@@ -1,0 +1,77 @@
+#include "station/observer/first_passage.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "station/random/elementary.hpp"
+
+namespace turnpoint::observer {
+
+namespace {
+
+/// Beyond this product of drift and bound nobody errs, and the exponentials need not go there.
+constexpr double kSurest = 300;
+
+/// The density of the passage through -1 or +1 without drift, over twice that through +1 alone (whose walks
+/// may have been below -1): the share of inverse Gaussian times to keep. Each of the two forms of the series
+/// is taken where a few of its terms are enough.
+double kept_share(double time) {
+  double sum = 0, term = 1;
+  if (time < 0.7) {
+    for (int n = 0; term > 1e-17; ++n) {
+      term = (2 * n + 1) * random::exp(-2.0 * n * (n + 1) / time);
+      sum += n % 2 ? -term : term;
+    }
+    return sum;
+  }
+  constexpr double pi = 3.14159265358979323846;
+  for (int n = 0; term > 1e-17; ++n) {
+    const double m = n + 0.5;
+    term = m * random::exp(0.5 / time - 0.5 * m * m * pi * pi * time);
+    sum += n % 2 ? -term : term;
+  }
+  return sum * pi * std::sqrt(0.5 * pi * time * time * time);
+}
+
+/// Time from 0 to -1 or +1 with this drift, at least 0. Proposals are kept at least every second time.
+double unit_passage(double drift, random::Draws& draws) {
+  for (;;) {
+    const double normal = draws.normal(), y = normal * normal;
+    const double small = 2 / (2 * drift + y + std::sqrt(y * (y + 4 * drift)));
+    const bool first = draws.uniform() * (1 + drift * small) < 1;
+    const double time = first ? small : 1 / (drift * drift * small);
+    const double keep = draws.uniform();
+    if (time > 0 && time < 1e6 && keep < kept_share(time)) return time;
+  }
+}
+
+}  // namespace
+
+Passage first_passage(double drift, double bound, double start, random::Draws& draws) {
+  Passage passage;
+  double at = start;
+  for (;;) {
+    const double radius = 1 - std::fabs(at);
+    const double width = radius * bound;
+    const double pull = std::clamp(drift * width, -kSurest, kSurest);
+    passage.time_s += width * width * unit_passage(std::fabs(pull), draws);
+    passage.upper = draws.uniform() < upper_probability(pull, 1);
+    if (at == 0 || passage.upper == (at > 0)) return passage;
+    at += passage.upper ? radius : -radius;
+  }
+}
+
+double upper_probability(double drift, double bound) {
+  return 1 / (1 + random::exp(std::clamp(-2 * drift * bound, -2 * kSurest, 2 * kSurest)));
+}
+
+double upper_probability(double drift, double bound, double range) {
+  const double pull = std::clamp(drift * bound, -kSurest, kSurest), inner = 2 * pull * range;
+  if (std::fabs(inner) < 1e-4) return upper_probability(pull, 1);
+  if (pull < 0) return 1 - upper_probability(-drift, bound, range);
+  // The mean over the start of (1 - exp(-2 pull (1 + start))) / (1 - exp(-4 pull)).
+  const double hit = random::exp(inner - 2 * pull), miss = random::exp(-inner - 2 * pull);
+  return (1 - (hit - miss) / (2 * inner)) / (1 - random::exp(-4 * pull));
+}
+
+}  // namespace turnpoint::observer

@@ -1,0 +1,75 @@
+#include "station/protocol/answers.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "station/protocol/expression.hpp"
+#include "station/protocol/sources.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+int index_of(const Task& task, const std::string& id) {
+  for (std::size_t i = 0; i < task.choices.size(); ++i)
+    if (task.choices[i].id == id) return static_cast<int>(i);
+  return -1;
+}
+
+/// The choice that is right at this level, -1 for none.
+int right_at(const Protocol& protocol, const std::string& level, double value) {
+  auto factors = any_factors(protocol);
+  factors[level] = value;
+  for (const auto& [id, comparison] : protocol.task.correct_answer)
+    if (holds(comparison, factors)) return index_of(protocol.task, id);
+  return -1;
+}
+
+/// Levels between the limits of a staircase stand for all that it may reach.
+std::vector<double> levels_of(const Source& source) {
+  if (!source.spec || !source.spec->min || !source.spec->max) return source.levels;
+  constexpr int steps = 100;
+  const double low = *source.spec->min, high = *source.spec->max;
+  std::vector<double> levels;
+  for (int i = 0; i <= steps; ++i) levels.push_back(low + i * (high - low) / steps);
+  return levels;
+}
+
+}  // namespace
+
+AnswerRule answer_rule(const Protocol& protocol, const std::string& level) {
+  const auto& task = protocol.task;
+  if (task.kind == TaskKind::same_different) return {AnswerKind::presence, index_of(task, "different")};
+  const auto* factor = find_factor(protocol.factors, level);
+  if (task.kind != TaskKind::single_interval || task.correct_answer.size() != 2 || !factor) return {};
+  std::vector<double> ends;
+  if (factor->range) ends = {factor->range->first, factor->range->second};
+  for (const auto& value : factor->levels)
+    if (const auto* number = std::get_if<double>(&value)) ends.push_back(*number);
+  if (ends.empty()) return {};
+  const auto [low, high] = std::minmax_element(ends.begin(), ends.end());
+  const int below = *low < 0 ? right_at(protocol, level, *low) : -1;
+  const int above = *high > 0 ? right_at(protocol, level, *high) : -1;
+  const int at_zero = *low <= 0 && *high >= 0 ? right_at(protocol, level, 0) : -1;
+  if (below >= 0 && above >= 0 && below != above) return {AnswerKind::side, above};
+  const int off = std::max(below, above);
+  if (at_zero >= 0 && off >= 0 && off != at_zero) return {AnswerKind::presence, off};
+  return {};
+}
+
+double middle_level(const Protocol& protocol, const std::string& level) {
+  const bool decibel = level.ends_with("_dB");
+  std::vector<double> by_procedures, by_blocks;
+  for (const auto& source : sources_of(protocol)) {
+    if (source.level != level) continue;
+    for (const double value : levels_of(source))
+      if (decibel || value != 0)
+        (source.spec ? by_procedures : by_blocks).push_back(decibel ? value : std::fabs(value));
+  }
+  auto& all = by_procedures.empty() ? by_blocks : by_procedures;
+  if (all.empty()) return 1;
+  std::sort(all.begin(), all.end());
+  return 0.5 * (all[(all.size() - 1) / 2] + all[all.size() / 2]);
+}
+
+}  // namespace turnpoint::protocol

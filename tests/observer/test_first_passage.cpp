@@ -1,0 +1,109 @@
+#include "station/observer/first_passage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <vector>
+
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+using observer::first_passage;
+
+namespace {
+
+struct Row {
+  double time, upper;
+};
+
+/// By (drift, start): the probability of having left at the upper boundary by a time, with bound 1.
+std::map<std::pair<double, double>, std::vector<Row>> oracle() {
+  std::ifstream file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/observer/first_passage.csv");
+  std::map<std::pair<double, double>, std::vector<Row>> table;
+  for (std::string line; std::getline(file, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream cells(line);
+    double drift = 0, start = 0;
+    Row row{};
+    char comma = 0;
+    cells >> drift >> comma >> start >> comma >> row.time >> comma >> row.upper;
+    table[{drift, start}].push_back(row);
+  }
+  return table;
+}
+
+/// The largest distance, in standard errors, of 200 000 draws from a row of the table.
+double distance(double drift, double start, const std::vector<Row>& rows) {
+  random::Draws draws({17, random::Stream::observer, 0, 0, 0});
+  const int n = 200'000;
+  const double bound = 0.7;  // times go with its square
+  std::vector<int> counts(rows.size());
+  for (int i = 0; i < n; ++i) {
+    const auto passage = first_passage(drift / bound, bound, start, draws);
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      counts[r] += passage.upper && passage.time_s <= rows[r].time * bound * bound;
+  }
+  double largest = 0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const double p = rows[r].upper, error = std::sqrt(std::max(p * (1 - p), 1e-5) / n);
+    largest = std::max(largest, std::fabs(counts[r] / static_cast<double>(n) - p) / error);
+  }
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("first passages have the distribution of the known series", "[observer]") {
+  const auto table = oracle();
+  REQUIRE(table.size() == 10);
+  for (const auto& [at, rows] : table) {
+    INFO("drift " << at.first << ", start " << at.second);
+    CHECK(distance(at.first, at.second, rows) < 4.5);
+  }
+}
+
+TEST_CASE("the comparison with the series sees a drift that is 3 % off, and a start that is", "[observer]") {
+  const auto table = oracle();
+  CHECK(distance(0.9 * 1.03, 0, table.at({0.9, 0.0})) > 4.5);
+  CHECK(distance(0.9, 0.03, table.at({0.9, 0.0})) > 4.5);
+}
+
+TEST_CASE("accuracy and mean time are those of Palmer, Huk and Shadlen", "[observer]") {
+  // A' = .85, k = 9 and x = .1; tR = .35 makes .95823 s of the decision's .60823 s.
+  CHECK(observer::upper_probability(0.9, 0.85) == Approx(0.82201).margin(1e-5));
+  CHECK(observer::upper_probability(0, 0.85) == 0.5);
+  random::Draws draws({3, random::Stream::observer, 0, 0, 0});
+  const int n = 200'000;
+  double sum = 0, squares = 0;
+  for (int i = 0; i < n; ++i) {
+    const double time = first_passage(0.9, 0.85, 0, draws).time_s;
+    sum += time, squares += time * time;
+  }
+  const double sd = std::sqrt(squares / n - sum * sum / n / n);
+  CHECK(sum / n + 0.35 == Approx(0.95823).margin(4 * sd / std::sqrt(n)));
+}
+
+TEST_CASE("a start between the boundaries shifts who is hit as the closed form says", "[observer]") {
+  random::Draws draws({4, random::Stream::observer, 0, 0, 0});
+  const int n = 100'000;
+  for (const double drift : {-0.8, 0.0, 0.8}) {
+    int upper = 0;
+    for (int i = 0; i < n; ++i)
+      upper += first_passage(drift, 1, 0.6 * (2 * draws.uniform() - 1), draws).upper;
+    const double p = observer::upper_probability(drift, 1, 0.6);
+    CHECK(upper / static_cast<double>(n) == Approx(p).margin(4 * std::sqrt(p * (1 - p) / n)));
+  }
+  CHECK(observer::upper_probability(0.8, 1, 0.6) < observer::upper_probability(0.8, 1) - 0.01);
+}
+
+TEST_CASE("a passage is found for any drift and bound", "[observer]") {
+  random::Draws draws({5, random::Stream::observer, 0, 0, 0});
+  for (const double drift : {-1e12, -1.0, 0.0, 1e-12, 40.0, 1e12})
+    for (const double bound : {1e-3, 1.0, 50.0}) {
+      const auto passage = first_passage(drift, bound, 0, draws);
+      CHECK((std::isfinite(passage.time_s) && passage.time_s > 0));
+      if (std::fabs(drift * bound) > 100) CHECK(passage.upper == (drift > 0));
+    }
+}

@@ -1,0 +1,19 @@
+#pragma once
+#include "station/analysis/diffusion.hpp"
+#include "station/observer/first_passage.hpp"
+
+namespace turnpoint::tests {
+
+struct Decision {
+  bool correct = false;
+  double time_s = 0;  ///< with the time outside the decision
+};
+
+/// One decision of a diffusion with these parameters, for s = 0.1.
+inline Decision sample_decision(const analysis::EzDiffusion& parameters, random::Draws& draws) {
+  const double s = analysis::kDiffusionScale;
+  const auto passage = observer::first_passage(parameters.drift / s, parameters.boundary / (2 * s), 0, draws);
+  return {passage.upper, passage.time_s + parameters.nondecision_s};
+}
+
+}  // namespace turnpoint::tests
