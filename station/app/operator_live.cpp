@@ -92,14 +92,15 @@ Facts course_of(const std::vector<LiveTrial>& trials) {
   return facts;
 }
 
-Facts limits_used(const std::vector<LiveTrial>& trials, const scene::DrivePlan* plan, const rig::Rig& rig) {
+Facts limits_used(const std::vector<LiveTrial>& trials, std::optional<double> peak_displacement_m,
+                  const rig::Rig& rig) {
   const auto& limits = rig.limits;
   Facts facts;
-  if (plan != nullptr)
+  if (peak_displacement_m)
     facts.emplace_back("Displacement",
-                       fmt::format("{} of {} \u00b5m ({})", number(1e6 * plan->peak_displacement_m, 3),
+                       fmt::format("{} of {} \u00b5m ({})", number(1e6 * *peak_displacement_m, 3),
                                    number(1e6 * limits.displacement_m, 3),
-                                   percent(plan->peak_displacement_m / limits.displacement_m)));
+                                   percent(*peak_displacement_m / limits.displacement_m)));
   const double now_s = trials.empty() ? 0 : trials.back().ended_s;
   double on_s = 0;
   for (const auto& trial : trials) {
@@ -167,13 +168,16 @@ std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials) {
 
 LiveView::LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state)
     : on_state_(std::move(on_state)),
-      preview_(protocol, rig),
+      level_(protocol.procedures.empty() ? "Level" : protocol.procedures.front().level),
+      rig_(rig),
+      planner_(rig_),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
 
 LiveView::~LiveView() = default;
 
-void LiveView::trial_begins(const session::TrialSpec& spec, const protocol::Block& block) {
-  push({Begun{spec, block.name}, std::nullopt});
+void LiveView::trial_begins(const session::TrialSpec& spec, const protocol::Block& block,
+                            const session::PlanAhead::Plans& plans) {
+  push({Begun{spec, block.name, plans}, std::nullopt});
 }
 
 void LiveView::trial_ended(const session::TrialSpec& spec, const store::TrialRow& row) {
@@ -188,7 +192,7 @@ void LiveView::trial_ended(const session::TrialSpec& spec, const store::TrialRow
   trial.type = row.type;
   trial.onset_s = row.onset_s;
   trial.ended_s = row.onset_s + row.duration_s;
-  trial.stimulus_s = stimulus_s(row, preview_.rig().output.rate_Hz);
+  trial.stimulus_s = stimulus_s(row, rig_.output.rate_Hz);
   trial.xruns = row.xruns;
   trial.extra_touches = row.extra_touches;
   push({std::nullopt, trial});
@@ -217,36 +221,38 @@ void LiveView::work(const std::stop_token& stop) {
 }
 
 void LiveView::take(const News& news) {
-  if (news.begun) plan(*news.begun);
+  if (news.begun) show(*news.begun);
   if (!news.ended) return;
   trials_.push_back(*news.ended);
-  const auto& procedures = preview_.protocol().procedures;
-  const auto trace = live_trace(trials_, procedures.empty() ? "Level" : procedures.front().level);
+  const auto trace = live_trace(trials_, level_);
   const auto times = live_times(trials_);
   state_.trace = trace ? drawing_of(*trace) : Drawing();
   state_.times = times ? drawing_of(*times) : Drawing();
 }
 
-void LiveView::plan(const Begun& begun) {
+void LiveView::show(const Begun& begun) {
   const auto& spec = begun.spec;
   state_.heading = fmt::format("Block {}, trial {}{}: {}", begun.block, spec.trial_in_block + 1,
                                spec.level ? ", level " + number(*spec.level, 4) : "", in_words(spec));
-  looks_.clear();
+  state_.scene.clear();
   state_.surfaces.clear();
-  for (const auto& interval : spec.intervals) {
-    looks_.push_back(preview_.look(interval.back(), spec.factors));
-    if (looks_.back().problem.empty())
-      state_.surfaces.push_back(drawing_of_surface(looks_.back(), preview_.rig()));
+  peak_displacement_m_.reset();
+  std::vector<Look> looks;
+  for (const auto& interval : begun.plans)
+    for (const auto& plan : interval) looks.push_back(look_at(plan, spec.factors, planner_));
+  for (const auto& look : looks) {
+    if (looks.size() > 1)
+      state_.scene.emplace_back("Scene", fmt::format("{} {}", state_.surfaces.size() + 1, look.scene));
+    state_.scene.insert(state_.scene.end(), look.facts.begin(), look.facts.end());
+    state_.surfaces.push_back(drawing_of_surface(look, rig_));
+    peak_displacement_m_ = std::max(peak_displacement_m_.value_or(0), look.plan.peak_displacement_m);
   }
-  const auto& last = looks_.back();
-  state_.scene = last.problem.empty() ? last.facts : Facts{{"Problem", last.problem}};
-  state_.profile = last.problem.empty() ? drawing_of(profile_figure(last)) : Drawing();
+  state_.profile = drawing_of(profile_figure(looks));
 }
 
 void LiveView::tell() {
   state_.course = course_of(trials_);
-  const bool planned = !looks_.empty() && looks_.back().problem.empty();
-  state_.limits = limits_used(trials_, planned ? &looks_.back().plan : nullptr, preview_.rig());
+  state_.limits = limits_used(trials_, peak_displacement_m_, rig_);
   on_state_(state_);
 }
 

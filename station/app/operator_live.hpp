@@ -21,8 +21,8 @@ namespace turnpoint::app {
 struct LiveState {
   std::string heading;                                                     ///< which trial, at which level
   std::vector<std::pair<std::string, std::string>> scene, course, limits;  ///< (label, value)
-  std::vector<Drawing> surfaces;  ///< one an interval, in the order presented
-  Drawing profile, trace, times;  ///< of the last interval; levels; response times. Empty where none
+  std::vector<Drawing> surfaces;  ///< one for each scene, in the order presented
+  Drawing profile, trace, times;  ///< of all scenes; levels; response times. Empty where none
 };
 
 /// What is kept of a trial that has ended.
@@ -41,17 +41,18 @@ struct LiveTrial {
 /// Course of the session in words: accuracy, response times, what was lost. Pure.
 std::vector<std::pair<std::string, std::string>> course_of(const std::vector<LiveTrial>& trials);
 
-/// How much of the rig's limits is used, by what was presented in the last 60 s and the plan at hand.
+/// How much of the rig's limits is used, by what was presented in the last 60 s and the largest displacement
+/// of the trial at hand (m).
 std::vector<std::pair<std::string, std::string>> limits_used(const std::vector<LiveTrial>& trials,
-                                                             const scene::DrivePlan* plan,
+                                                             std::optional<double> peak_displacement_m,
                                                              const rig::Rig& rig);
 
 /// Levels in order, one series a procedure; open markers are wrong answers, a line the running estimate.
 std::optional<plot::Figure> live_trace(const std::vector<LiveTrial>& trials, const std::string& label);
 std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials);
 
-/// Follows a session on a thread of its own: plans each trial's scenes a second time (so the session spends
-/// nothing on the operator), and hands on a state whenever there is something new.
+/// Follows a session on a thread of its own, which describes and draws the session's own plans, and hands on
+/// a state whenever there is something new. An adjustment is shown as it begins.
 class LiveView : public session::Monitor {
  public:
   /// `on_state` is called on the view's own thread.
@@ -59,13 +60,15 @@ class LiveView : public session::Monitor {
   LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state);
   ~LiveView() override;
 
-  void trial_begins(const session::TrialSpec& spec, const protocol::Block& block) override;
+  void trial_begins(const session::TrialSpec& spec, const protocol::Block& block,
+                    const session::PlanAhead::Plans& plans) override;
   void trial_ended(const session::TrialSpec& spec, const store::TrialRow& row) override;
 
  private:
   struct Begun {
     session::TrialSpec spec;
     std::string block;
+    session::PlanAhead::Plans plans;
   };
   struct News {
     std::optional<Begun> begun;
@@ -74,13 +77,15 @@ class LiveView : public session::Monitor {
   void push(News news);
   void work(const std::stop_token& stop);
   void take(const News& news);
-  void plan(const Begun& begun);
+  void show(const Begun& begun);
   void tell();
 
   OnState on_state_;
-  Preview preview_;
+  std::string level_;  ///< what the protocol calls it
+  rig::Rig rig_;
+  scene::Planner planner_;  // worker thread only
   std::vector<LiveTrial> trials_;
-  std::vector<Look> looks_;
+  std::optional<double> peak_displacement_m_;
   LiveState state_;
   std::mutex mutex_;
   std::condition_variable_any arrived_;

@@ -50,6 +50,38 @@ std::optional<Knob> knob_of(const protocol::Factor& factor) {
   return knob;
 }
 
+/// The look in words.
+void describe(Look& look) {
+  const auto& plan = look.plan;
+  look.facts = {{"Boundary", in_mm(plan.boundary_m) + " (" + physics::format(plan.scene.edge) + ")"},
+                {"Model", plan.reason.empty() ? std::string(physics::name(plan.model)) : plan.reason},
+                {"Model error", "at most " + number(1e3 * plan.error_bound_m, 3) + " mm" +
+                                    (plan.inside_tolerance ? "" : ", OUTSIDE the scene's tolerance")},
+                {"Parameter uncertainty", number(1e3 * plan.uncertainty_m, 3) + " mm"}};
+  for (const auto& tone : plan.tones)
+    look.facts.emplace_back("Tone", number(1e-3 * tone.frequency_Hz, 6) + " kHz, drive " +
+                                        um(tone.amplitude_m) + " on " + tone.transducer + " (" +
+                                        number(100 * tone.full_scale, 3) + " % of full scale)");
+  if (plan.zone_friction)
+    look.facts.emplace_back("Zone", "mean friction " + number(*plan.zone_friction, 3) + ", rms " +
+                                        number(plan.residual.value_or(0), 2) + " about it");
+  look.facts.emplace_back(
+      "Surface", um(plan.peak_displacement_m) + " at most, crest factor " + number(plan.crest_factor, 3));
+  look.facts.emplace_back("Lowest friction", number(plan.lowest_friction, 3) + " of the surface at rest");
+  for (const auto& product : plan.audible_products)
+    look.facts.emplace_back("Audible product",
+                            number(product.frequency_Hz, 5) + " Hz, order " + std::to_string(product.order));
+  for (const auto& warning : plan.warnings) look.facts.emplace_back("Warning", warning.text);
+  const auto& cues = plan.cues;
+  look.cues = {{"Pitch", cues.pitch_Hz > 0 ? number(cues.pitch_Hz, 5) + " Hz" : "inaudible"},
+               {"Loudness", cues.pitch_Hz > 0 ? number(cues.loudness_dB, 3) + " dB re 1 \u00b5m" : "silent"},
+               {"Amplitude at the wide end", um(cues.wide_end_amplitude_m)},
+               {"Stripes at the wide end", in_mm(cues.stripe_pitch_m, 3) + " apart"},
+               {"Width of the edge", in_mm(cues.edge_width_m, 3)},
+               {"Strip width at the boundary", in_mm(cues.strip_width_m, 3)},
+               {"Displacement at the last maximum", um(cues.displacement_m)}};
+}
+
 }  // namespace
 
 Preview::Preview(const std::string& protocol_path, const std::string& rig_path)
@@ -87,9 +119,7 @@ Look Preview::look(const std::string& scene, const protocol::Factors& factors) {
   look.factors = factors;
   if (!protocol_.scenes.count(scene)) throw std::out_of_range("no scene named \"" + scene + "\"");
   try {
-    look.plan = planner_.plan(protocol::resolve(protocol_, scene, factors, 0));
-    look.profile = planner_.profile(look.plan, kProfilePoints);
-    describe(look);
+    return look_at(planner_.plan(protocol::resolve(protocol_, scene, factors, 0)), factors, planner_);
   } catch (const scene::Unreachable& error) {
     look.problem = error.what();
   }
@@ -128,35 +158,14 @@ protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vec
   return factors;
 }
 
-void describe(Look& look) {
-  const auto& plan = look.plan;
-  look.facts = {{"Boundary", in_mm(plan.boundary_m) + " (" + physics::format(plan.scene.edge) + ")"},
-                {"Model", plan.reason.empty() ? std::string(physics::name(plan.model)) : plan.reason},
-                {"Model error", "at most " + number(1e3 * plan.error_bound_m, 3) + " mm" +
-                                    (plan.inside_tolerance ? "" : ", OUTSIDE the scene's tolerance")},
-                {"Parameter uncertainty", number(1e3 * plan.uncertainty_m, 3) + " mm"}};
-  for (const auto& tone : plan.tones)
-    look.facts.emplace_back("Tone", number(1e-3 * tone.frequency_Hz, 6) + " kHz, drive " +
-                                        um(tone.amplitude_m) + " on " + tone.transducer + " (" +
-                                        number(100 * tone.full_scale, 3) + " % of full scale)");
-  if (plan.zone_friction)
-    look.facts.emplace_back("Zone", "mean friction " + number(*plan.zone_friction, 3) + ", rms " +
-                                        number(plan.residual.value_or(0), 2) + " about it");
-  look.facts.emplace_back(
-      "Surface", um(plan.peak_displacement_m) + " at most, crest factor " + number(plan.crest_factor, 3));
-  look.facts.emplace_back("Lowest friction", number(plan.lowest_friction, 3) + " of the surface at rest");
-  for (const auto& product : plan.audible_products)
-    look.facts.emplace_back("Audible product",
-                            number(product.frequency_Hz, 5) + " Hz, order " + std::to_string(product.order));
-  for (const auto& warning : plan.warnings) look.facts.emplace_back("Warning", warning.text);
-  const auto& cues = plan.cues;
-  look.cues = {{"Pitch", cues.pitch_Hz > 0 ? number(cues.pitch_Hz, 5) + " Hz" : "inaudible"},
-               {"Loudness", cues.pitch_Hz > 0 ? number(cues.loudness_dB, 3) + " dB re 1 \u00b5m" : "silent"},
-               {"Amplitude at the wide end", um(cues.wide_end_amplitude_m)},
-               {"Stripes at the wide end", in_mm(cues.stripe_pitch_m, 3) + " apart"},
-               {"Width of the edge", in_mm(cues.edge_width_m, 3)},
-               {"Strip width at the boundary", in_mm(cues.strip_width_m, 3)},
-               {"Displacement at the last maximum", um(cues.displacement_m)}};
+Look look_at(scene::DrivePlan planned, protocol::Factors factors, scene::Planner& planner) {
+  Look look;
+  look.scene = planned.scene.name;
+  look.factors = std::move(factors);
+  look.plan = std::move(planned);
+  look.profile = planner.profile(look.plan, kProfilePoints);
+  describe(look);
+  return look;
 }
 
 }  // namespace turnpoint::app

@@ -66,7 +66,7 @@ class Preview {
 protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vector<std::string>& set,
                               std::vector<std::string>& assumed);
 
-/// The look in words for a planned scene.
-void describe(Look& look);
+/// A planned scene for eyes: its profile by the planner that made it, and both in words.
+Look look_at(scene::DrivePlan plan, protocol::Factors factors, scene::Planner& planner);
 
 }  // namespace turnpoint::app

@@ -184,29 +184,39 @@ std::string surface_svg(const Look& look, const rig::Rig& rig, double width_px, 
   return svg.finish();
 }
 
-plot::Figure profile_figure(const Look& look) {
-  require_plan(look);
-  std::vector<double> x_mm, um;
-  for (const double x : look.profile.x_m) x_mm.push_back(1e3 * x);
-  for (const double v : look.profile.displacement_m) um.push_back(1e6 * v);
-  const double most = *std::max_element(um.begin(), um.end());
-  const plot::Axis along{"Distance from the wide end (mm)", 0, x_mm.back()};
-  const auto panel = [&](const char* title, plot::Axis y, const std::vector<double>& values, int series) {
-    plot::Panel made{title, along, std::move(y), {}};
-    plot::Line line;
-    line.x = x_mm, line.y = values, line.series = series;
-    made.layers.push_back(line);
-    if (look.plan.boundary_m)
-      made.layers.push_back(
-          plot::Rule{plot::Rule::Direction::vertical, 1e3 * *look.plan.boundary_m, "boundary"});
-    return made;
-  };
+plot::Figure profile_figure(const std::vector<Look>& looks) {
+  if (looks.empty()) throw std::invalid_argument("no scene to draw");
   plot::Figure figure;
-  figure.title = "Displacement and friction, scene " + look.scene;
-  figure.panels.push_back(
-      panel("Displacement", {"Displacement (\u00b5m)", 0, most > 0 ? 1.15 * most : 1}, um, 0));
-  figure.panels.push_back(
-      panel("Friction under a fingertip", {"Friction, relative", 0, 1.2}, look.profile.friction, 1));
+  figure.title = "Displacement and friction";
+  plot::Panel displacement{"Displacement", {}, {"Displacement (\u00b5m)", 0, 1}, {}};
+  plot::Panel friction{"Friction under a fingertip", {}, {"Friction, relative", 0, 1.2}, {}};
+  const bool several = looks.size() > 1;
+  double most_um = 0;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const auto& look = looks[i];
+    require_plan(look);
+    figure.title += (i == 0 ? ", scene " : " and ") + look.scene;
+    plot::Line line;
+    line.series = static_cast<int>(i);
+    line.name = several ? std::to_string(i + 1) + " " + look.scene : "";
+    for (const double x : look.profile.x_m) line.x.push_back(1e3 * x);
+    line.y = look.profile.friction;
+    friction.layers.push_back(line);
+    for (std::size_t k = 0; k < line.y.size(); ++k) line.y[k] = 1e6 * look.profile.displacement_m[k];
+    most_um = std::max(most_um, *std::max_element(line.y.begin(), line.y.end()));
+    // A single picture has one series a panel; its friction curve looks different from its displacement.
+    if (!several) std::get<plot::Line>(friction.layers.back()).series = 1;
+    displacement.layers.push_back(line);
+  }
+  if (most_um > 0) displacement.y.high = 1.15 * most_um;
+  for (auto* panel : {&displacement, &friction}) {
+    panel->x = {"Distance from the wide end (mm)", 0, 1e3 * looks.front().profile.x_m.back()};
+    for (const auto& look : looks)
+      if (look.plan.boundary_m)
+        panel->layers.push_back(plot::Rule{plot::Rule::Direction::vertical, 1e3 * *look.plan.boundary_m,
+                                           several ? "" : "boundary"});
+    figure.panels.push_back(std::move(*panel));
+  }
   figure.columns = 2;
   figure.panel_width_px = 430, figure.panel_height_px = 260;
   return figure;

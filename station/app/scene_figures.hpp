@@ -2,6 +2,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "station/app/preview.hpp"
 #include "station/plot/chart.hpp"
@@ -22,8 +23,9 @@ Drawing drawing_of_surface(const Look& look, const rig::Rig& rig);
 /// model error, turning points of the tones, and a mark where one is asked about. An SVG document.
 std::string surface_svg(const Look& look, const rig::Rig& rig, double width_px = 860, double height_px = 190);
 
-/// Displacement and friction along the centre line, with the boundary.
-plot::Figure profile_figure(const Look& look);
+/// Displacement and friction along the centre line, with the boundary; several scenes in the order presented,
+/// numbered. Throws std::invalid_argument for no look at all.
+plot::Figure profile_figure(const std::vector<Look>& looks);
 
 /// The drive's tones: displacement of the drive edge against frequency.
 plot::Figure spectrum_figure(const Look& look);

@@ -52,7 +52,7 @@ void preview_to_files(const Options& options, Context& context) {
     for (const auto* list : {&look.facts, &look.cues})
       for (const auto& [label, value] : *list) fmt::print(context.out, "  {}: {}\n", label, value);
     write(folder / (scene + "-surface.svg"), app::surface_svg(look, preview.rig()), context.out);
-    write(folder / (scene + "-profile.svg"), plot::render(app::profile_figure(look)), context.out);
+    write(folder / (scene + "-profile.svg"), plot::render(app::profile_figure({look})), context.out);
     write(folder / (scene + "-spectrum.svg"), plot::render(app::spectrum_figure(look)), context.out);
   }
 }

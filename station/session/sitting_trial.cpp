@@ -39,7 +39,7 @@ Sitting::Flow Sitting::run_trial(const TrialSpec& spec) {
                 row_of(spec, setup_.protocol, trial_index_),
                 {}};
   if (spec.slider) trial.slider.emplace(*spec.slider, spec.level.value_or(spec.slider->low));
-  if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block());
+  if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block(), plans_.take(spec));
   const auto kept = keep([&] { log_.presented(trial_index_, stage_->now_ns()); });
   drive_trial(trial, kept == Kept::after_waiting ? open_again() : std::nullopt);
   stage_->close_amplifier();

@@ -94,7 +94,7 @@ PreviewController::Drawn PreviewController::draw(const Wanted& wanted) {
   }
   if (!drawn.look.problem.empty()) return drawn;
   drawn.surface = to_variant(app::drawing_of_surface(drawn.look, preview_.rig()));
-  drawn.profile = to_variant(app::drawing_of(app::profile_figure(drawn.look)));
+  drawn.profile = to_variant(app::drawing_of(app::profile_figure({drawn.look})));
   drawn.spectrum = to_variant(app::drawing_of(app::spectrum_figure(drawn.look)));
   return drawn;
 }

@@ -9,6 +9,8 @@
 #include "station/app/operator_live.hpp"
 #include "station/app/operator_report.hpp"
 #include "station/app/prepare.hpp"
+#include "station/store/read.hpp"
+#include "station/text/number.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -41,6 +43,31 @@ app::LiveTrial answered(bool correct, double response_time_s) {
   trial.correct = correct;
   trial.response_time_s = response_time_s;
   return trial;
+}
+
+/// Hands on the beginnings of the first trials, and cuts the session off after them.
+struct FirstTrials : session::Monitor {
+  session::Monitor& to;
+  int left;
+  FirstTrials(session::Monitor& monitor, int trials) : to(monitor), left(trials) {}
+  void trial_begins(const session::TrialSpec& spec, const protocol::Block& block,
+                    const session::PlanAhead::Plans& plans) override {
+    to.trial_begins(spec, block, plans);
+  }
+  void trial_ended(const session::TrialSpec&, const store::TrialRow&) override {
+    if (--left == 0) throw std::runtime_error("enough");
+  }
+};
+
+/// The drive of each tone that is shown, as "0.512 um on", in order.
+std::vector<std::string> drives_shown(const app::LiveState& state) {
+  std::vector<std::string> drives;
+  for (const auto& [label, value] : state.scene) {
+    if (label != "Tone") continue;
+    const auto from = value.find("drive ") + 6;
+    drives.push_back(value.substr(from, value.find(" on ") + 3 - from));
+  }
+  return drives;
 }
 
 app::RunRequest demo_in(const Folder& folder) {
@@ -76,15 +103,13 @@ TEST_CASE("the course of a session counts what was scored, and timeouts give no 
 TEST_CASE("limits used look back one minute", "[operator]") {
   rig::Rig rig;
   rig.limits.displacement_m = 8e-6;
-  scene::DrivePlan plan;
-  plan.peak_displacement_m = 2e-6;
   std::vector<app::LiveTrial> trials(3, answered(true, 1));
   for (int i = 0; i < 3; ++i) {
     trials[static_cast<std::size_t>(i)].onset_s = 60.0 * i;
     trials[static_cast<std::size_t>(i)].stimulus_s = 15;
     trials[static_cast<std::size_t>(i)].ended_s = 60.0 * i + 20;
   }
-  const auto facts = app::limits_used(trials, &plan, rig);
+  const auto facts = app::limits_used(trials, 2e-6, rig);
   CHECK(value_of(facts, "Displacement") == "2 of 8 \u00b5m (25 %)");
   // Of the minute up to 140 s only the trial from 120 s on is inside.
   CHECK(value_of(facts, "Stimulus time, last minute") == "25 % (limit 80 %)");
@@ -113,6 +138,50 @@ TEST_CASE("the live view follows a session trial by trial and draws what is on t
   CHECK(state.surfaces.front()(600, 120).find(" mm</text>") != std::string::npos);
   CHECK(state.trace);
   CHECK(state.times);
+}
+
+TEST_CASE("the live view shows what is played: each scene of each interval, with its roved amplitude",
+          "[operator]") {
+  const auto* protocol = GENERATE("demo", "speed-accuracy", "two-spots-oddity");
+  CAPTURE(protocol);
+  constexpr int trials = 6;
+  const Folder folder;
+  auto request = demo_in(folder);
+  request.protocol = kSource + "/protocols/" + protocol + ".toml";
+  const auto setup = app::prepare(request);
+  std::vector<app::LiveState> begun;
+  {
+    std::mutex mutex;
+    std::condition_variable told;
+    app::LiveView view(setup.protocol, setup.rig, [&](app::LiveState state) {
+      const std::lock_guard lock(mutex);
+      begun.push_back(std::move(state));
+      told.notify_one();
+    });
+    FirstTrials first(view, trials);
+    session::Inputs inputs;
+    CHECK_THROWS(session::run(setup, nullptr, inputs, &first));
+    std::unique_lock lock(mutex);
+    told.wait(lock, [&] { return begun.size() == trials; });
+  }
+  const auto stored = app::interrupted_note(request.database);
+  REQUIRE(stored.has_value());
+  int trial = 0, roved = 0, scenes = 0;
+  for (const auto& block : store::read_session(request.database, stored->session_id).blocks)
+    for (const auto& row : block.trials) {
+      const auto& state = begun.at(static_cast<std::size_t>(trial++));
+      std::vector<std::string> played;
+      scenes = 0;
+      for (const auto& tone : row.tones) {
+        played.push_back(text::number(tone.amplitude_um, 3) + " \u00b5m on");
+        roved += tone.rove_dB != 0 ? 1 : 0;
+        scenes += tone.tone_index == 0 ? 1 : 0;
+      }
+      CHECK(drives_shown(state) == played);
+      CHECK(state.surfaces.size() == static_cast<std::size_t>(scenes));
+    }
+  CHECK(trial == trials);
+  CHECK((roved > 0 || scenes > 1));  // otherwise the first look at a scene's plan would have been enough
 }
 
 TEST_CASE("the report on the screen has the trade's numbers and pictures", "[operator]") {
@@ -146,7 +215,8 @@ TEST_CASE("participants are known once a session of theirs is stored, and an int
   CHECK_FALSE(app::interrupted_note(request.database).has_value());
   struct Cut : session::Monitor {
     int left = 3;
-    void trial_begins(const session::TrialSpec&, const protocol::Block&) override {}
+    void trial_begins(const session::TrialSpec&, const protocol::Block&,
+                      const session::PlanAhead::Plans&) override {}
     void trial_ended(const session::TrialSpec&, const store::TrialRow&) override {
       if (--left == 0) throw std::runtime_error("cut");
     }

@@ -121,6 +121,6 @@ TEST_CASE("the same look is the same picture, and another boundary another one",
   CHECK(draw("9") == draw("9"));
   CHECK(draw("9") != draw("-9"));
   const auto look = preview.look("edge", factors(preview, {}));
-  CHECK(plot::render(app::profile_figure(look)).find("<svg") != std::string::npos);
+  CHECK(plot::render(app::profile_figure({look})).find("<svg") != std::string::npos);
   CHECK(app::spectrum_figure(look).panels.front().layers.size() >= 1);
 }

@@ -71,7 +71,8 @@ struct Acknowledgements : session::Monitor {
 
   Acknowledgements(World& w, const Room& r, std::string id, const bool& d)
       : world(w), room(r), session_id(std::move(id)), dead(d) {}
-  void trial_begins(const session::TrialSpec&, const protocol::Block&) override {}
+  void trial_begins(const session::TrialSpec&, const protocol::Block&,
+                    const session::PlanAhead::Plans&) override {}
   void trial_ended(const session::TrialSpec&, const store::TrialRow& row) override {
     if (dead) return;  // said by a process that is no more
     world.trials.acknowledged(session_id, row);

@@ -55,7 +55,8 @@ std::vector<store::TrialRow> trials_of(const std::string& database, const std::s
 /// Counts what it is told.
 struct Watch : session::Monitor {
   std::vector<std::optional<double>> announced, ended;
-  void trial_begins(const session::TrialSpec& spec, const protocol::Block&) override {
+  void trial_begins(const session::TrialSpec& spec, const protocol::Block&,
+                    const session::PlanAhead::Plans&) override {
     announced.push_back(spec.level);
   }
   void trial_ended(const session::TrialSpec&, const store::TrialRow& row) override {

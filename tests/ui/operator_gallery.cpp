@@ -26,8 +26,9 @@ struct FirstTrials : session::Monitor {
   session::Monitor& to;
   int left;
   FirstTrials(session::Monitor& monitor, int trials) : to(monitor), left(trials) {}
-  void trial_begins(const session::TrialSpec& spec, const protocol::Block& block) override {
-    to.trial_begins(spec, block);
+  void trial_begins(const session::TrialSpec& spec, const protocol::Block& block,
+                    const session::PlanAhead::Plans& plans) override {
+    to.trial_begins(spec, block, plans);
     if (left == 0) throw std::runtime_error("enough");
   }
   void trial_ended(const session::TrialSpec& spec, const store::TrialRow& row) override {
@@ -37,7 +38,8 @@ struct FirstTrials : session::Monitor {
 };
 
 struct Nobody : session::Monitor {
-  void trial_begins(const session::TrialSpec&, const protocol::Block&) override {}
+  void trial_begins(const session::TrialSpec&, const protocol::Block&,
+                    const session::PlanAhead::Plans&) override {}
   void trial_ended(const session::TrialSpec&, const store::TrialRow&) override {}
 };
 

@@ -189,6 +189,7 @@ int shoot_operator(const QString& out, const QStringList& sizes) {
       {source + "/protocols/friction-2ifc.toml", source + "/deploy/rigs/simulated.toml", "", {}});
   wait_for([&] { return !preview.busy() && !zones.busy(); });
   const auto live = ui::live_exhibit("boundary-adaptive", 40), live2 = ui::live_exhibit("friction-2ifc", 12);
+  const auto live3 = ui::live_exhibit("two-spots-oddity", 12);
   const auto report = ui::report_exhibit("speed-accuracy"), report2 = ui::report_exhibit("boundary-constant");
   ui::LatencyController latency(calibration::LatencyReference::photodiode);
   int count = 0;
@@ -199,6 +200,7 @@ int shoot_operator(const QString& out, const QStringList& sizes) {
                  {{"operating", QVariant::fromValue(&operating)}, {"typing", true}});
     camera.shoot_live(live, "live");
     camera.shoot_live(live2, "live-2ifc");
+    camera.shoot_live(live3, "live-oddity");
     camera.shoot_report(report, "report-trade");
     camera.shoot_report(report2, "report-boundary");
     camera.shoot("PreviewPage.qml", "preview", {{"controller", QVariant::fromValue(&preview)}});

@@ -156,7 +156,8 @@ TEST_CASE("a session that cannot be resumed leaves the check of the chosen proto
   request.database = start.folder / "lab.sqlite";
   request.observer = "sim";
   struct Cut : session::Monitor {
-    void trial_begins(const session::TrialSpec&, const protocol::Block&) override {}
+    void trial_begins(const session::TrialSpec&, const protocol::Block&,
+                      const session::PlanAhead::Plans&) override {}
     void trial_ended(const session::TrialSpec&, const store::TrialRow&) override {
       throw std::runtime_error("cut");
     }
