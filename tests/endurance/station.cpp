@@ -1,9 +1,11 @@
 #include "tests/endurance/station.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "station/app/prepare.hpp"
+#include "station/session/replay.hpp"
 #include "station/session/sitting.hpp"
 #include "station/store/error.hpp"
 #include "station/store/read.hpp"
@@ -148,8 +150,12 @@ bool Station::live(session::Setup setup) {
   const auto segment =
       store::SegmentStart{std::to_string(lives), interrupted ? "resume" : "start", 0, 0, now_ns};
   if (interrupted) setup.resume_session = interrupted->session.session_id;
+  std::optional<session::Director> director;
+  if (interrupted)
+    director.emplace(session::replayed(setup, store::read_session(database_, setup.resume_session)));
   auto log = interrupted ? store::SessionLog::resume(database_, setup.resume_session, segment)
                          : store::SessionLog::begin(database_, start_of(setup), segment);
+  if (!director) director.emplace(setup.protocol, log.session().sequence_index, *setup.seed);
   const auto id = session_id_ = log.session().session_id;
   const auto stream = session::stream_of(setup.rig);
   session::Inputs nobody;
@@ -158,8 +164,8 @@ bool Station::live(session::Setup setup) {
       stream.output.rate_Hz);
   Room& room = *owned;
   Acknowledgements monitor(world_, room, id, dead_);
-  session::Sitting sitting(setup, *setup.seed, std::move(log), std::move(owned), std::move(account), &room,
-                           &monitor);
+  session::Sitting sitting(setup, std::move(*director), std::move(log), std::move(owned), std::move(account),
+                           &room, &monitor);
   const auto summary = sitting.run();
   if (summary.reason.find("session's time") != std::string::npos) world_.now_ns += kRest_ns;
   return !dead_ && (summary.status == store::SessionStatus::completed ||
