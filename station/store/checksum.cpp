@@ -1,8 +1,11 @@
 #include "station/store/checksum.hpp"
 
-#include <bit>
-#include <cstdint>
+#include <fmt/format.h>
 
+#include <bit>
+#include <utility>
+
+#include "station/store/fields.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::store {
@@ -16,8 +19,7 @@ void add_row(std::string& bytes, const Statement& row) {
                       : row.is_real(i) ? std::to_string(std::bit_cast<std::int64_t>(row.real(i)))
                       : row.is_text(i) ? row.text(i)
                                        : std::to_string(row.integer(i));
-    const char kind = row.is_null(i) ? 'n' : row.is_real(i) ? 'r' : row.is_text(i) ? 't' : 'i';
-    bytes += kind;
+    bytes += row.is_null(i) ? 'n' : row.is_real(i) ? 'r' : row.is_text(i) ? 't' : 'i';
     bytes += std::to_string(text.size());
     bytes += ':';
     bytes += text;
@@ -25,44 +27,264 @@ void add_row(std::string& bytes, const Statement& row) {
   bytes += '\n';
 }
 
-}  // namespace
+/// The rows of one session as bytes, in one of the encodings.
+class Encoder {
+ public:
+  Encoder(Database& database, std::string schema, std::string session_id, std::int64_t encoding = kEncoding)
+      : database_(database), schema_(std::move(schema)), id_(std::move(session_id)), encoding_(encoding) {}
 
-std::string session_checksum(Database& database, const std::string& schema, const std::string& session_id) {
-  const struct {
-    const char *table, *columns, *order;
-  } parts[] = {
-      {"session",
-       "session_id, participant, protocol_key, rig_key, calibration_id, run_mode, session_index, "
-       "sequence_index, seed,"
-       " language, observer, factor_columns, level_unit, software_version, columns_version, kernel, "
-       "station_id,"
-       " realtime_rights, started_local, consent_version",
-       "session_id"},
-      {"segment", "*", "segment_index"},
-      {"block", "*", "run_order"},
-      {"trial",
-       "segment_index, block_index, attempt, trial_index, trial_in_block, trial_type, procedure, level, "
-       "factors,"
-       " boundary_mm, frequency_Hz, amplitude, correct_response, response, correct, outcome, onset_ns, "
-       "onset_s,"
-       " duration_s, response_time_s, decision_time_s, movement_time_s, response_zero, response_time_quality,"
-       " response_offset_s, deadline_s, xruns, extra_touches, threshold_est, threshold_sd, "
-       "clock_slope_ns_per_frame,"
-       " clock_residual_ns, state_hash, recorded_realtime_ns",
-       "trial_index"},
-      {"tone", "*", "trial_index, interval_index, scene_index, tone_index"},
-      {"event", "*", "event_index"},
-      {"annotation", "*", "annotation_id"},
-  };
-  std::string bytes;
-  for (const auto& part : parts) {
-    bytes += part.table;
+  Encoder in(std::int64_t encoding) const { return {database_, schema_, id_, encoding}; }
+
+  /// What the session was begun with. Its status changes later: the links cover that.
+  std::string provenance() const {
+    auto session = session_table();
+    session.fields.resize(session.fields.size() - 2);
+    std::string bytes;
+    Statement row(database_,
+                  fmt::format("SELECT {1}, {2}, {3}, {4} FROM {0}.session s LEFT JOIN {0}.protocol p"
+                              " USING (protocol_key) LEFT JOIN {0}.rig r USING (rig_key)"
+                              " LEFT JOIN {0}.calibration c USING (calibration_id) WHERE s.session_id = ?",
+                              schema_, column_list(covered(session, encoding_), "s."),
+                              column_list(covered(protocol_table(), encoding_), "p."),
+                              column_list(covered(rig_table(), encoding_), "r."),
+                              column_list(covered(calibration_table(), encoding_), "c.")));
+    row.bind(id_);
+    while (row.step()) add_row(bytes, row);
+    return bytes;
+  }
+
+  /// The rows after `from` up to `to`, table by table.
+  std::string rows(const Extent& from, const Extent& to) const {
+    std::string bytes;
+    add(bytes, segment_table(), "segment_index", "segment_index", from.segment, to.segment);
+    add(bytes, block_table(), "run_order", "run_order", from.block, to.block);
+    add(bytes, trial_table(), "trial_index", "trial_index", from.trial, to.trial);
+    add(bytes, tone_table(), "trial_index", "trial_index, interval_index, scene_index, tone_index",
+        from.trial, to.trial);
+    add(bytes, event_table(), "event_index", "event_index", from.event, to.event);
+    return bytes;
+  }
+
+  Extent extent() const {
+    Extent last;
+    Statement row(database_,
+                  fmt::format("SELECT (SELECT max(segment_index) FROM {0}.segment WHERE session_id = ?1),"
+                              " (SELECT max(run_order) FROM {0}.block WHERE session_id = ?1),"
+                              " (SELECT max(trial_index) FROM {0}.trial WHERE session_id = ?1),"
+                              " (SELECT max(event_index) FROM {0}.event WHERE session_id = ?1)",
+                              schema_));
+    row.bind(id_).step();
+    last.segment = row.maybe_integer(0).value_or(last.segment);
+    last.block = row.maybe_integer(1).value_or(last.block);
+    last.trial = row.maybe_integer(2).value_or(last.trial);
+    last.event = row.maybe_integer(3).value_or(last.event);
+    return last;
+  }
+
+  /// Whether each tone belongs to a trial that a link covers.
+  bool tone_beyond(std::int64_t last_trial) const {
+    Statement row(database_,
+                  "SELECT 1 FROM " + schema_ + ".tone WHERE session_id = ? AND trial_index > ? LIMIT 1");
+    row.bind(id_, last_trial);
+    return row.step();
+  }
+
+ private:
+  template <class Record>
+  void add(std::string& bytes, const Table<Record>& table, const std::string& key, const std::string& order,
+           std::int64_t from, std::int64_t to) const {
+    if (from == to) return;
+    bytes += table.name;
     bytes += '\n';
-    Statement rows(database, std::string("SELECT ") + part.columns + " FROM " + schema + "." + part.table +
-                                 " WHERE session_id = ? ORDER BY " + part.order);
-    rows.bind(session_id);
+    Statement rows(database_,
+                   fmt::format("SELECT {} FROM {}.{} WHERE session_id = ? AND {} > ? AND {} <= ?"
+                               " ORDER BY {}",
+                               column_list(covered(table, encoding_)), schema_, table.name, key, key, order));
+    rows.bind(id_, from, to);
     while (rows.step()) add_row(bytes, rows);
   }
+
+  Database& database_;
+  std::string schema_, id_;
+  std::int64_t encoding_;
+};
+
+std::string checksum_of(const Encoder& encoder, const Link& previous, const Link& link) {
+  auto bytes = fmt::format("turnpoint/{} {} {}\n{}\n{}:{}\n", link.encoding, link.index, previous.sha256,
+                           link.status, link.status_reason.size(), link.status_reason);
+  if (link.index == 0) bytes += encoder.provenance();
+  return text::sha256(bytes + encoder.rows(previous.last, link.last));
+}
+
+constexpr const char* kLinkColumns =
+    "link_index, encoding, last_segment, last_block, last_trial, last_event, status, status_reason, sha256";
+
+Link link_from(const Statement& row) {
+  Link link;
+  link.index = row.integer(0);
+  link.encoding = row.integer(1);
+  link.last = {row.integer(2), row.integer(3), row.integer(4), row.integer(5)};
+  link.status = row.text(6);
+  link.status_reason = row.text(7);
+  link.sha256 = row.text(8);
+  return link;
+}
+
+std::vector<Link> links_of(Database& database, const std::string& schema, const std::string& session_id) {
+  std::vector<Link> links;
+  Statement rows(database, fmt::format("SELECT {} FROM {}.link WHERE session_id = ? ORDER BY link_index",
+                                       kLinkColumns, schema));
+  rows.bind(session_id);
+  while (rows.step()) links.push_back(link_from(rows));
+  return links;
+}
+
+/// What opening a database does to sessions whose process died needs no link: these words and no others.
+bool follows(const Link& last, const std::string& status, const std::string& reason) {
+  if (status == last.status && reason == last.status_reason) return true;
+  const std::string running = name(SessionStatus::running), interrupted = name(SessionStatus::interrupted);
+  const bool lost = status == interrupted && reason == kLostReason;
+  const bool abandoned = status == name(SessionStatus::abandoned) && reason == kAbandonedReason;
+  return (last.status == running && (lost || abandoned)) || (last.status == interrupted && abandoned);
+}
+
+std::string place(const Link& previous, const Link& link) {
+  std::string rows;
+  const auto part = [&](const char* what, std::int64_t from, std::int64_t to) {
+    if (to > from)
+      rows += fmt::format("{}{} {}", rows.empty() ? "" : ", ", what,
+                          from + 1 == to ? fmt::format("{}", to) : fmt::format("{} to {}", from + 1, to));
+  };
+  part("segment", previous.last.segment, link.last.segment);
+  part("block", previous.last.block, link.last.block);
+  part("trial", previous.last.trial, link.last.trial);
+  part("event", previous.last.event, link.last.event);
+  if (link.index == 0) rows = "what the session was begun with, " + rows;
+  return rows.empty() ? "the session's status" : rows;
+}
+
+void check_links(const Encoder& encoder, const std::vector<Link>& links, std::vector<std::string>& problems) {
+  Link previous;
+  for (const auto& link : links) {
+    if (link.encoding < 1 || link.encoding > kEncoding)
+      problems.push_back(fmt::format("link {} has encoding {}, which this release does not know", link.index,
+                                     link.encoding));
+    else if (link.index != previous.index + 1)
+      problems.push_back(fmt::format("link {} is missing", previous.index + 1));
+    else if (checksum_of(encoder.in(link.encoding), previous, link) != link.sha256)
+      problems.push_back(
+          fmt::format("{} is not as it was recorded (link {})", place(previous, link), link.index));
+    previous = link;
+  }
+}
+
+/// Whether the participant's place in the counterbalancing is the session's. It was given by the station of
+/// one of the participant's sessions, unless that session has been withdrawn.
+bool is_enrolled(Database& database, const std::string& schema, const std::string& session_id) {
+  Statement row(
+      database,
+      fmt::format("SELECT 1 FROM {0}.session s JOIN {0}.protocol p USING (protocol_key)"
+                  " JOIN {0}.enrolment e ON e.participant = s.participant AND e.protocol_id = p.protocol_id"
+                  "  AND e.sequence_index = s.sequence_index"
+                  " WHERE s.session_id = ? AND (EXISTS (SELECT 1 FROM {0}.tombstone) OR EXISTS"
+                  "  (SELECT 1 FROM {0}.session x WHERE x.participant = s.participant"
+                  "   AND x.station_id = e.station_id))",
+                  schema));
+  row.bind(session_id);
+  return row.step();
+}
+
+}  // namespace
+
+Chain::Chain(Database& database, std::string session_id)
+    : database_(&database), session_id_(std::move(session_id)) {
+  auto links = links_of(database, "main", session_id_);
+  if (!links.empty()) last_ = std::move(links.back());
+}
+
+Link Chain::add() {
+  const Encoder encoder(*database_, "main", session_id_);
+  Link link;
+  link.index = last_.index + 1;
+  link.last = encoder.extent();
+  Statement status(*database_, "SELECT status, status_reason FROM session WHERE session_id = ?");
+  status.bind(session_id_).step();
+  link.status = status.text(0);
+  link.status_reason = status.text(1);
+  link.sha256 = checksum_of(encoder, last_, link);
+  Statement(*database_,
+            fmt::format("INSERT INTO link (session_id, {}) VALUES (?,?,?,?,?,?,?,?,?,?)", kLinkColumns))
+      .bind(session_id_, link.index, link.encoding, link.last.segment, link.last.block, link.last.trial,
+            link.last.event, link.status, link.status_reason, link.sha256)
+      .run();
+  return link;
+}
+
+VerifiedSession verify_session(Database& database, const std::string& session_id, const std::string& schema) {
+  VerifiedSession verified;
+  verified.session_id = session_id;
+  Statement row(
+      database,
+      fmt::format("SELECT participant, protocol_id, status, status_reason,"
+                  " (SELECT count(*) FROM {0}.trial t WHERE t.session_id = s.session_id)"
+                  " FROM {0}.session s LEFT JOIN {0}.protocol p USING (protocol_key) WHERE session_id = ?",
+                  schema));
+  row.bind(session_id);
+  if (!row.step()) {
+    verified.problems.push_back("there is no session of that id");
+    return verified;
+  }
+  verified.participant = row.text(0);
+  verified.protocol_id = row.text(1);
+  verified.trials = row.integer(4);
+  if (!is_enrolled(database, schema, session_id))
+    verified.problems.push_back("the participant's place in the counterbalancing is not the session's");
+  const Encoder encoder(database, schema, session_id);
+  const auto links = links_of(database, schema, session_id);
+  if (links.empty()) {
+    Statement earlier(database, "SELECT 1 FROM " + schema + ".unsealed WHERE session_id = ?");
+    earlier.bind(session_id);
+    if (!earlier.step()) verified.problems.push_back("its checksums are missing");
+    return verified;
+  }
+  verified.links = static_cast<std::int64_t>(links.size());
+  verified.last_sha256 = links.back().sha256;
+  check_links(encoder, links, verified.problems);
+  if (!(encoder.extent() == links.back().last) || encoder.tone_beyond(links.back().last.trial))
+    verified.problems.push_back("rows at the end are missing, or were added, since the last link");
+  if (!follows(links.back(), row.text(2), row.text(3)))
+    verified.problems.push_back("the status is not as it was recorded");
+  return verified;
+}
+
+bool holds_link(Database& database, const std::string& session_id, const std::string& sha256) {
+  Statement row(database, "SELECT 1 FROM link WHERE session_id = ? AND sha256 = ?");
+  row.bind(session_id, sha256);
+  return row.step();
+}
+
+std::string last_checksum(Database& database, const std::string& session_id) {
+  Statement row(database, "SELECT sha256 FROM link WHERE session_id = ? ORDER BY link_index DESC LIMIT 1");
+  row.bind(session_id);
+  return row.step() ? row.text(0) : "";
+}
+
+std::vector<VerifiedSession> verify_database(Database& database, const std::string& schema) {
+  std::vector<std::string> ids;
+  Statement rows(database, "SELECT session_id FROM " + schema + ".session ORDER BY participant, session_id");
+  while (rows.step()) ids.push_back(rows.text(0));
+  std::vector<VerifiedSession> verified;
+  for (const auto& id : ids) verified.push_back(verify_session(database, id, schema));
+  return verified;
+}
+
+std::string session_checksum(Database& database, const std::string& schema, const std::string& session_id) {
+  const Encoder encoder(database, schema, session_id);
+  auto bytes = encoder.provenance() + encoder.rows({}, encoder.extent());
+  Statement notes(database,
+                  "SELECT * FROM " + schema + ".annotation WHERE session_id = ? ORDER BY annotation_id");
+  notes.bind(session_id);
+  while (notes.step()) add_row(bytes, notes);
   return text::sha256(bytes);
 }
 

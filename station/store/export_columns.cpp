@@ -73,6 +73,15 @@ ExportColumn annotations() {
           }};
 }
 
+ExportColumn checksum() {
+  return {
+      {"checksum",
+       "Last link of the chain of checksums over the session's rows; `turnpoint verify --against` compares "
+       "it with a database",
+       "", ""},
+      [](const ExportRow& row) { return cell(row.session->checksum); }};
+}
+
 ExportColumn factor_value(const std::string& factor, const std::string& name) {
   return {{name, "Factor of the protocol: its value in this trial", "", ""}, [factor](const ExportRow& row) {
             const auto found = row.trial->factors.find(factor);
@@ -176,6 +185,7 @@ ExportColumns session_columns() {
        "rig_path", "calibration_id", "seed", "language", "observer", "software_version", "kernel",
        "station_id", "realtime_rights", "consent_version"});
   columns.push_back(annotations());
+  columns.push_back(checksum());
   add(columns, session, {"columns_version"});
   return columns;
 }

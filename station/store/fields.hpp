@@ -30,6 +30,7 @@ struct Field {
   void (*bind)(Statement&, int index, const Record&);
   void (*read)(const Statement&, int column, Record&);
   Cell (*cell)(const Record&);
+  int since = 1;  ///< first encoding of the checksum that covers it (checksum.hpp)
 };
 
 /// A table of the database. Each row begins with its place (keys and what else only the log knows), then come
@@ -62,6 +63,13 @@ std::string column_list(const Table<Record>& table, const std::string& prefix = 
   for (const auto* name : table.place) add(name);
   for (const auto& field : table.fields) add(field.name);
   return list;
+}
+
+/// The table with only the fields that an encoding of the checksum covers.
+template <class Record>
+Table<Record> covered(Table<Record> table, std::int64_t encoding) {
+  std::erase_if(table.fields, [&](const auto& field) { return field.since > encoding; });
+  return table;
 }
 
 template <class Record>

@@ -38,6 +38,8 @@ const std::vector<Part>& parts() {
       {"trial", "session_id,trial_index", "trial_id", kBySession},
       {"tone", "session_id,trial_index,interval_index,scene_index,tone_index", "", kBySession},
       {"event", "session_id,event_index", "", kBySession},
+      {"link", "session_id,link_index", "", kBySession},
+      {"unsealed", "session_id", "", kBySession},
       {"annotation", "annotation_id", "", kBySession},
   };
   return all;
@@ -138,6 +140,17 @@ std::vector<MergedSession> list_incoming(Database& database) {
   return sessions;
 }
 
+/// What was changed behind the store's back must not spread.
+void refuse_changed(Database& database, const std::string& source) {
+  for (const auto& session : verify_database(database, "source"))
+    if (!session.problems.empty())
+      throw StoreError(
+          Fault::corrupt,
+          fmt::format("merge: {}: session {} of {}: {}; nothing was merged; `turnpoint verify --db {}` "
+                      "lists all that differs; merge a backup of that station instead",
+                      source, session.session_id, session.participant, session.problems.front(), source));
+}
+
 /// The status of a session that came in goes with its newest rows.
 void take_status(Database& database, const std::string& id) {
   Statement(
@@ -170,9 +183,10 @@ void settle(Database& database, MergedSession& session, std::int64_t trials_befo
       .run();
 }
 
-MergeReport merge_attached(Database& database) {
+MergeReport merge_attached(Database& database, const std::string& source) {
   MergeReport report;
   Transaction transaction(database);
+  refuse_changed(database, source);
   report.sessions = list_incoming(database);
   Statement gone(database, "SELECT session_id FROM source.tombstone JOIN main.session USING (session_id)");
   while (gone.step()) report.withdrawn_there.push_back(gone.text(0));
@@ -241,7 +255,7 @@ MergeReport merge(const std::string& path, const std::string& source) {
   Statement(database, "ATTACH ? AS source").bind(copy.path()).run();
   database.execute(
       "CREATE TEMP TABLE incoming (session_id, participant, protocol_key, rig_key, calibration_id)");
-  return merge_attached(database);
+  return merge_attached(database, source);
 }
 
 }  // namespace turnpoint::store

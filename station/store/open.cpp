@@ -10,6 +10,7 @@
 
 #include "station/store/files.hpp"
 #include "station/store/identity.hpp"
+#include "station/store/records.hpp"
 #include "station/store/schema.hpp"
 
 namespace turnpoint::store {
@@ -59,12 +60,15 @@ void create_file(const std::string& path) {
 
 void recover_sessions(Database& database) {
   Transaction transaction(database);
-  database.execute(
-      "UPDATE session SET status = 'interrupted', status_reason = 'the process ended without a word'"
-      " WHERE status = 'running';"
-      "UPDATE session SET status = 'abandoned', status_reason = 'no trial was made'"
-      " WHERE status = 'interrupted' AND NOT EXISTS"
-      " (SELECT 1 FROM trial WHERE trial.session_id = session.session_id)");
+  Statement(database, "UPDATE session SET status = 'interrupted', status_reason = ? WHERE status = 'running'")
+      .bind(kLostReason)
+      .run();
+  Statement(
+      database,
+      "UPDATE session SET status = 'abandoned', status_reason = ? WHERE status = 'interrupted' AND NOT EXISTS"
+      " (SELECT 1 FROM trial WHERE trial.session_id = session.session_id)")
+      .bind(kAbandonedReason)
+      .run();
   transaction.commit();
 }
 

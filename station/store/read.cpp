@@ -19,7 +19,8 @@ std::string sessions_sql() {
   (SELECT count(*) FROM trial t WHERE t.session_id = s.session_id),
   max((SELECT max(g.realtime_ns) FROM segment g WHERE g.session_id = s.session_id),
       coalesce((SELECT t.recorded_realtime_ns FROM trial t WHERE t.session_id = s.session_id
-                ORDER BY t.trial_index DESC LIMIT 1), 0))
+                ORDER BY t.trial_index DESC LIMIT 1), 0)),
+  (SELECT l.sha256 FROM link l WHERE l.session_id = s.session_id ORDER BY l.link_index DESC LIMIT 1)
 FROM session s JOIN protocol p USING (protocol_key) JOIN rig r USING (rig_key)
   LEFT JOIN calibration c USING (calibration_id)
 WHERE ?1 IN ('', s.session_id) AND ?2 IN ('', s.participant) AND ?3 IN ('', p.protocol_id)
@@ -43,6 +44,7 @@ SessionRecord session_from(const Statement& row) {
   session.segments = static_cast<int>(row.integer(column));
   session.trials = static_cast<int>(row.integer(column + 1));
   session.last_activity_realtime_ns = row.integer(column + 2);
+  session.checksum = row.text(column + 3);
   return session;
 }
 

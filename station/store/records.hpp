@@ -10,6 +10,10 @@ namespace turnpoint::store {
 
 enum class RunMode { live, pilot, simulated };
 enum class SessionStatus { running, completed, interrupted, stopped, abandoned };
+/// The words that opening a database writes for a session whose process died.
+inline constexpr const char* kLostReason = "the process ended without a word";
+inline constexpr const char* kAbandonedReason = "no trial was made";
+
 enum class TrialOutcome { answered, timeout, anticipation, aborted, fault };
 enum class TrialType { experimental, catch_trial, practice, warmup };
 

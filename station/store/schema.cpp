@@ -235,6 +235,33 @@ CREATE TRIGGER session_stays_gone BEFORE INSERT ON session
   BEGIN SELECT RAISE(ABORT, 'the session was withdrawn'); END;
 )sql";
 
+// Version 3: a chain of checksums over each session (checksum.hpp). The sessions that an earlier release recorded
+// have none until they are resumed, and are listed, so that a chain that is missing can be told from them.
+const char* const kStep3 = R"sql(
+CREATE TABLE link (
+  session_id TEXT NOT NULL REFERENCES session (session_id),
+  link_index INTEGER NOT NULL CHECK (link_index >= 0),
+  encoding INTEGER NOT NULL CHECK (encoding >= 1),
+  last_segment INTEGER NOT NULL,
+  last_block INTEGER NOT NULL,
+  last_trial INTEGER NOT NULL,
+  last_event INTEGER NOT NULL,
+  status TEXT NOT NULL,
+  status_reason TEXT NOT NULL,
+  sha256 TEXT NOT NULL CHECK (length(sha256) = 64),
+  PRIMARY KEY (session_id, link_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE unsealed (session_id TEXT PRIMARY KEY REFERENCES session (session_id)) STRICT, WITHOUT ROWID;
+INSERT INTO unsealed SELECT session_id FROM session;
+
+CREATE TRIGGER link_is_never_changed BEFORE UPDATE ON link
+  BEGIN SELECT RAISE(ABORT, 'link is append-only'); END;
+CREATE TRIGGER link_is_never_deleted BEFORE DELETE ON link
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'link is append-only'); END;
+)sql";
+
 [[noreturn]] void refuse(Fault fault, const Database& database, const std::string& what) {
   throw StoreError(fault, fmt::format("database {}: {}", database.path(), what));
 }
@@ -248,7 +275,7 @@ void apply(Database& database, int from, int to) {
 }  // namespace
 
 const std::vector<std::string>& schema_steps() {
-  static const std::vector<std::string> steps = {kStep1, kStep2};
+  static const std::vector<std::string> steps = {kStep1, kStep2, kStep3};
   return steps;
 }
 

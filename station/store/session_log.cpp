@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "station/store/checksum.hpp"
 #include "station/store/fields.hpp"
 #include "station/store/identity.hpp"
 #include "station/store/open.hpp"
@@ -129,13 +130,19 @@ struct SessionLog::Impl {
     auto index = next_event;
     for (const auto& event : events) rows.event(place, index++, event);
   }
-  void events_are_durable() {
+  /// Seals what the transaction wrote, and commits it. The events gathered so far are durable then.
+  void commit(Transaction& transaction) {
+    auto link = chain->add();
+    transaction.commit();
+    session.checksum = link.sha256;
+    chain->accept(std::move(link));
     next_event += static_cast<std::int64_t>(events.size());
     events.clear();
   }
 
   Writer writer;
   RowWriter rows;
+  std::optional<Chain> chain;  ///< from the moment on at which the session is known
   TrialPlace place;
   SessionRecord session;
   std::vector<BlockRecord> blocks;
@@ -158,7 +165,8 @@ SessionLog SessionLog::begin(const std::string& path, const SessionStart& start,
   Transaction transaction(database);
   insert_session(database, id, start);
   insert_segment(database, id, 1, segment);
-  transaction.commit();
+  impl->chain.emplace(database, id);
+  impl->commit(transaction);
   impl->place = {id, 1, 0, 0};
   impl->session = list_sessions(database, {id, "", ""}).front();
   return SessionLog(std::move(impl));
@@ -195,8 +203,8 @@ SessionLog SessionLog::resume(const std::string& path, const std::string& id, co
   Statement(database, "UPDATE session SET status = 'running', status_reason = '' WHERE session_id = ?")
       .bind(id)
       .run();
-  transaction.commit();
-  impl->events_are_durable();
+  impl->chain.emplace(database, id);
+  impl->commit(transaction);
   impl->session = list_sessions(database, {id, "", ""}).front();
   impl->blocks = std::move(stored.blocks);
   return SessionLog(std::move(impl));
@@ -221,8 +229,7 @@ void SessionLog::begin_block(const BlockStart& block) {
   Transaction transaction(database);
   if (!exists) insert_block(database, id, block);
   impl_->write_events();
-  transaction.commit();
-  impl_->events_are_durable();
+  impl_->commit(transaction);
   impl_->place.block_index = block.block_index;
   impl_->place.attempt = block.attempt;
   impl_->in_block = true;
@@ -235,8 +242,7 @@ void SessionLog::presented(int trial_index, std::int64_t time_ns) {
   Transaction transaction(impl_->writer.database);
   impl_->write_events();
   impl_->rows.event(impl_->place, impl_->next_event + static_cast<std::int64_t>(impl_->events.size()), row);
-  transaction.commit();
-  impl_->events_are_durable();
+  impl_->commit(transaction);
   ++impl_->next_event;
 }
 
@@ -247,8 +253,7 @@ void SessionLog::append(const TrialRow& trial) {
   Transaction transaction(impl_->writer.database);
   impl_->rows.trial(impl_->place, trial, now);
   impl_->write_events();
-  transaction.commit();
-  impl_->events_are_durable();
+  impl_->commit(transaction);
   ++impl_->session.trials;
   impl_->session.last_activity_realtime_ns = now;
 }
@@ -268,8 +273,7 @@ void SessionLog::finish(SessionStatus status, const std::string& reason) {
   Statement(impl_->writer.database, "UPDATE session SET status = ?, status_reason = ? WHERE session_id = ?")
       .bind(name(status), reason, impl_->place.session_id)
       .run();
-  transaction.commit();
-  impl_->events_are_durable();
+  impl_->commit(transaction);
   impl_->session.status = status;
   impl_->session.status_reason = reason;
 }

@@ -38,6 +38,8 @@ void remove_sessions(Database& database, Withdrawal& withdrawal) {
         .run();
     withdrawal.annotations += remove(database, "annotation", id);
     remove(database, "merged", id);
+    remove(database, "link", id);
+    remove(database, "unsealed", id);
     withdrawal.events += remove(database, "event", id);
     withdrawal.tones += remove(database, "tone", id);
     withdrawal.trials += remove(database, "trial", id);

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "station/store/read.hpp"
 #include "station/store/text_table.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
@@ -122,6 +123,10 @@ TEST_CASE("each value of the four tables stands in its column", "[store]") {
     auto text = sample::bytes_of(files[i].path);
     for (auto at = text.find(id); at != std::string::npos; at = text.find(id))
       text.replace(at, id.size(), "ID");
+    // The one value that hangs on the drawn id.
+    const auto checksum = list_sessions(db).front().checksum;
+    if (const auto at = text.find(checksum); at != std::string::npos)
+      text.replace(at, checksum.size(), "CHECKSUM");
     const auto name = std::filesystem::path(files[i].path).filename().string();
     INFO(name);
     CHECK(text == sample::bytes_of(TURNPOINT_SOURCE_DIR "/tests/store/golden/" + name));

@@ -1,0 +1,269 @@
+#include "station/store/checksum.hpp"
+
+#include <bit>
+#include <random>
+
+#include "station/store/annotate.hpp"
+#include "station/store/export.hpp"
+#include "station/store/fields.hpp"
+#include "station/store/merge.hpp"
+#include "station/store/open.hpp"
+#include "station/store/read.hpp"
+#include "tests/store/sample.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::store;
+
+namespace {
+
+/// Everything that `turnpoint verify` looks at: pages, references, and each session's chain.
+std::vector<std::string> problems_of(const std::string& db) {
+  Database database(db, Database::Access::read_only);
+  std::vector<std::string> problems;
+  try {
+    check_pages(database);
+  } catch (const StoreError& error) {
+    problems.push_back(error.what());
+  }
+  for (const auto& session : verify_database(database))
+    problems.insert(problems.end(), session.problems.begin(), session.problems.end());
+  return problems;
+}
+
+/// A database with a resumed session, one of another participant, and a calibration.
+void make(const std::string& db) {
+  auto start = sample::start();
+  start.calibration_id = std::string(64, 'c');
+  start.calibration_text = "measured\n";
+  const auto id = sample::session(db, 6, start, SessionStatus::interrupted);
+  auto log = SessionLog::resume(db, id, sample::segment("resume"));
+  log.begin_block(sample::block());
+  log.presented(6, 9'000'000'000);
+  log.append(sample::answered(6));
+  log.finish(SessionStatus::completed, "");
+  log = SessionLog(std::move(log));
+}
+
+/// Past everything that guards the rows: as somebody with an SQLite shell could do it.
+Database unguarded(const std::string& db) {
+  auto database = sample::raw(db);
+  std::vector<std::string> triggers;
+  {
+    Statement rows(database, "SELECT name FROM sqlite_schema WHERE type = 'trigger'");
+    while (rows.step()) triggers.push_back(rows.text(0));
+  }
+  for (const auto& name : triggers) database.execute("DROP TRIGGER " + name);
+  database.execute("PRAGMA foreign_keys = OFF; PRAGMA ignore_check_constraints = ON");
+  return database;
+}
+
+const std::vector<std::pair<std::string, std::string>> kTables = {
+    {"session", "session_id"},
+    {"segment", "session_id, segment_index"},
+    {"block", "session_id, block_index, attempt"},
+    {"trial", "trial_id"},
+    {"tone", "session_id, trial_index, interval_index, scene_index, tone_index"},
+    {"event", "session_id, event_index"},
+    {"protocol", "protocol_key"},
+    {"rig", "rig_key"},
+    {"calibration", "calibration_id"},
+    {"participant", "code"},
+    {"enrolment", "station_id, protocol_id, participant"},
+    {"link", "session_id, link_index"}};
+
+struct Damage {
+  std::mt19937_64 random;
+
+  std::uint64_t below(std::uint64_t n) { return random() % n; }
+
+  /// A condition that only the chosen row of the table meets.
+  std::string some_row(Database& database, const std::string& table, const std::string& key) {
+    const auto count = database.integer("SELECT count(*) FROM " + table);
+    return "(" + key + ") = (SELECT " + key + " FROM " + table + " ORDER BY " + key + " LIMIT 1 OFFSET " +
+           std::to_string(below(static_cast<std::uint64_t>(count))) + ")";
+  }
+
+  /// One bit of one stored value. False where that value has none, or the schema refuses the new one.
+  bool flip(Database& database) {
+    const auto& [table, key] = kTables[below(kTables.size())];
+    std::vector<std::string> columns;
+    {
+      Statement rows(database, "SELECT name FROM pragma_table_info(?)");
+      rows.bind(table);
+      while (rows.step()) columns.push_back(rows.text(0));
+    }
+    const auto& column = columns[below(columns.size())];
+    if (column == "trial_id") return false;  // a row number, which merging gives anew
+    const auto row = some_row(database, table, key);
+    Statement value(database, "SELECT " + column + " FROM " + table + " WHERE " + row);
+    value.step();
+    Statement update(database, "UPDATE " + table + " SET " + column + " = ? WHERE " + row);
+    if (value.is_null(0)) return false;
+    if (value.is_real(0)) {
+      const auto bits = std::bit_cast<std::uint64_t>(value.real(0)) ^ (std::uint64_t{1} << below(52));
+      update.bind(std::bit_cast<double>(bits));
+    } else if (value.is_text(0)) {
+      auto text = value.text(0);
+      if (text.empty()) return false;
+      text[below(text.size())] ^= static_cast<char>(1U << below(8));
+      update.bind(text);
+    } else {
+      update.bind(std::bit_cast<std::int64_t>(std::bit_cast<std::uint64_t>(value.integer(0)) ^
+                                              (std::uint64_t{1} << below(63))));
+    }
+    value.reset();
+    return run(update);
+  }
+
+  /// An edit to a value that the schema allows: it leaves no trace but in the chain.
+  bool edit(Database& database) {
+    const std::vector<std::string> edits = {
+        "UPDATE trial SET level = level + 0.5 WHERE ", "UPDATE trial SET response_time_s = 0.4 WHERE ",
+        "UPDATE trial SET correct = 1 - correct, response = correct_response WHERE correct = 0 AND ",
+        "UPDATE trial SET factors = '{}' WHERE "};
+    Statement update(database, edits[below(edits.size())] + some_row(database, "trial", "trial_id"));
+    return run(update) && database.changes() > 0;
+  }
+
+  bool remove(Database& database) {
+    const auto& [table, key] = kTables[below(kTables.size())];
+    Statement statement(database, "DELETE FROM " + table + " WHERE " + some_row(database, table, key));
+    return run(statement);
+  }
+
+  static bool run(Statement& statement) {
+    try {
+      statement.run();
+      return true;
+    } catch (const StoreError&) {
+      return false;
+    }
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a session's rows are as they were recorded, whatever it went through", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  make(db);
+  annotate(db, list_sessions(db).front().session_id, "notes are outside of the chain");
+  CHECK(problems_of(db).empty());
+  {
+    auto died = SessionLog::begin(db, sample::start("P02"), sample::segment());
+    died.begin_block(sample::block());
+    died.append(sample::answered(0));
+    died.presented(1, 1);
+  }
+  sample::session(db, 1, sample::start("P03"));  // opening the database marks the one that died
+  CHECK(list_sessions(db, {"", "P02", ""}).front().status == SessionStatus::interrupted);
+  CHECK(problems_of(db).empty());
+  const auto other = folder / "b.sqlite";
+  merge(other, db);
+  CHECK(problems_of(other).empty());
+}
+
+TEST_CASE("of 1000 flipped bits, edited rows and missing rows every one is found", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", damaged = folder / "damaged.sqlite";
+  make(db);
+  sample::raw(db).execute("PRAGMA journal_mode = DELETE");
+  Damage damage{std::mt19937_64(20261122)};
+  int found = 0;
+  for (int made = 0; made < 1000;) {
+    std::filesystem::copy_file(db, damaged, std::filesystem::copy_options::overwrite_existing);
+    const bool done = [&] {
+      auto database = unguarded(damaged);
+      return made % 3 == 0   ? damage.flip(database)
+             : made % 3 == 1 ? damage.edit(database)
+                             : damage.remove(database);
+    }();
+    if (!done) continue;
+    ++made;
+    if (!problems_of(damaged).empty()) ++found;
+  }
+  CHECK(found == 1000);
+  // Without any damage, taking the guards off is not a difference by itself.
+  std::filesystem::copy_file(db, damaged, std::filesystem::copy_options::overwrite_existing);
+  unguarded(damaged);
+  CHECK(problems_of(damaged).empty());
+}
+
+TEST_CASE("rows that were edited and sealed again differ from a checksum exported before", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  make(db);
+  const auto id = list_sessions(db).front().session_id;
+  std::string exported;
+  {
+    auto database = unguarded(db);
+    exported = last_checksum(database, id);
+    REQUIRE(exported.size() == 64);
+    CHECK(holds_link(database, id, exported));
+    database.execute("UPDATE trial SET response_time_s = 0.3 WHERE trial_index = 2; DELETE FROM link");
+    Transaction transaction(database);
+    Chain chain(database, id);
+    chain.accept(chain.add());
+    transaction.commit();
+    CHECK_FALSE(holds_link(database, id, exported));
+  }
+  CHECK(problems_of(db).empty());
+}
+
+TEST_CASE("a session that grew still holds the checksum of an earlier export", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  const auto id = sample::session(db, 3, sample::start(), SessionStatus::interrupted);
+  std::string exported;
+  {
+    auto database = sample::raw(db);
+    exported = last_checksum(database, id);
+  }
+  {
+    auto log = SessionLog::resume(db, id, sample::segment("resume"));
+    log.finish(SessionStatus::completed, "");
+  }
+  auto database = sample::raw(db);
+  CHECK(last_checksum(database, id) != exported);
+  CHECK(holds_link(database, id, exported));
+}
+
+TEST_CASE("a database whose rows were changed is not merged", "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
+  sample::session(a, 2);
+  sample::session(b, 4, sample::start("P05"));
+  { unguarded(b).execute("UPDATE trial SET level = 7 WHERE trial_index = 3"); }
+  const auto [fault, message] = sample::failure([&] { merge(a, b); });
+  CHECK(fault == Fault::corrupt);
+  CHECK(sample::contains(message, "trial 3"));
+  CHECK(list_sessions(a).size() == 1);
+}
+
+TEST_CASE("the first encoding of a session never changes", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  sample::session(db, 2);
+  auto database = unguarded(db);
+  // What is drawn or read from a clock when a session is made.
+  database.execute(
+      "UPDATE session SET session_id = '00000000-0000-4000-8000-000000000000';"
+      "UPDATE trial SET session_id = (SELECT session_id FROM session), recorded_realtime_ns = 5;"
+      "UPDATE tone SET session_id = (SELECT session_id FROM session);"
+      "UPDATE event SET session_id = (SELECT session_id FROM session);"
+      "UPDATE block SET session_id = (SELECT session_id FROM session);"
+      "UPDATE segment SET session_id = (SELECT session_id FROM session); DELETE FROM link");
+  Transaction transaction(database);
+  Chain chain(database, "00000000-0000-4000-8000-000000000000");
+  CHECK(chain.add().sha256 == "c275fe84323e1a082fe788a852eb881d43a855f55c0f18d3c438929bac35aee8");
+}
+
+TEST_CASE("a column that a later encoding adds leaves earlier checksums alone", "[store]") {
+  auto table = event_table();
+  auto later = table.fields.back();
+  later.name = "force_N";
+  later.since = kEncoding + 1;
+  table.fields.push_back(later);
+  CHECK(column_list(covered(table, kEncoding)) == column_list(event_table()));
+  CHECK(column_list(covered(table, kEncoding + 1)) == column_list(event_table()) + ", force_N");
+}
