@@ -33,7 +33,8 @@ Json to_json(const session::Summary& summary) {
     estimates.push_back({{"procedure", e.procedure},
                          {"parameter", e.parameter},
                          {"mean", json_number(e.mean)},
-                         {"sd", json_number(e.sd)}});
+                         {"sd", json_number(e.sd)},
+                         {"basis", e.basis.empty() ? Json(nullptr) : Json(e.basis)}});
   return {{"session_id", summary.session_id},
           {"participant", summary.participant},
           {"protocol", summary.protocol_id},
@@ -66,7 +67,8 @@ void print_summary(std::ostream& out, const session::Summary& s) {
              s.anticipations, s.voided);
   if (s.accuracy) fmt::print(out, "  {} % of the scored answers right\n", number(100 * *s.accuracy, 3));
   for (const auto& e : s.estimates)
-    fmt::print(out, "  {}: {} {} (SD {})\n", e.procedure, e.parameter, number(e.mean, 4), number(e.sd, 3));
+    fmt::print(out, "  {}: {} {} (SD {}{})\n", e.procedure, e.parameter, number(e.mean, 4), number(e.sd, 3),
+               e.basis.empty() ? "" : ", " + e.basis);
   if (s.stretched_s > 0)
     fmt::print(out, "  intervals stretched by {} s in all to keep the rig's limits\n",
                number(s.stretched_s, 3));

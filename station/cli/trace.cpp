@@ -52,8 +52,10 @@ void trace(const Options& options, Context& context) {
   if (context.json) {
     Json estimates = Json::object();
     for (const auto& [parameter, e] : result.estimates)
-      estimates[parameter] = {
-          {"mode", json_number(e.mode)}, {"mean", json_number(e.mean)}, {"sd", json_number(e.sd)}};
+      estimates[parameter] = {{"mode", json_number(e.mode)},
+                              {"mean", json_number(e.mean)},
+                              {"sd", json_number(e.sd)},
+                              {"basis", e.basis.empty() ? Json(nullptr) : Json(e.basis)}};
     context.out << Json{{"levels", json_numbers(result.levels)},
                         {"next", json_number(result.next)},
                         {"estimates", estimates},
@@ -67,8 +69,8 @@ void trace(const Options& options, Context& context) {
     fmt::print(context.out, "{:>4} {:>10} {}\n", i + 1, text::number(result.levels[i]), options.answers[i]);
   fmt::print(context.out, "next {}\n", result.next ? text::number(*result.next) : "none: it has stopped");
   for (const auto& [parameter, e] : result.estimates)
-    fmt::print(context.out, "{}: mode {}, mean {}, SD {}\n", parameter, text::number(e.mode),
-               text::number(e.mean), text::number(e.sd));
+    fmt::print(context.out, "{}: mode {}, mean {}, SD {}{}\n", parameter, text::number(e.mode),
+               text::number(e.mean), text::number(e.sd), e.basis.empty() ? "" : ", " + e.basis);
 }
 
 }  // namespace
@@ -83,7 +85,7 @@ void add_trace(CommandLine& app, Context& context) {
   command->add_option("--seed", options->seed, "Seed of shuffles; otherwise the file's, or 0");
   add_json(*command, context);
   command->footer(
-      "Example: turnpoint trace protocols/friction-2ifc-questplus.toml --procedure qp --answers 11101");
+      "Example: turnpoint trace protocols/friction-2ifc.toml --procedure threshold --answers 11101");
   command->callback([options, &context] { trace(*options, context); });
 }
 

@@ -24,6 +24,7 @@ enum class Answer { one, zero, none };  ///< one: correct, or the tracked answer
 
 struct Estimate {
   double mode = 0, mean = 0, sd = 0;
+  std::string basis;  ///< of a staircase: the reversals averaged, "reversals 5 to 12 of 12"; else empty
 };
 
 /// What constant stimuli must know of the protocol: how many levels each balanced factor has, and which
@@ -44,8 +45,8 @@ class Procedure {
   virtual void record(Answer answer) = 0;            ///< of the proposal that next() gives; not after done
   /// The same for a setting of an adjustment; other kinds throw std::logic_error.
   virtual void record_setting(double setting);
-  virtual int recorded() const = 0;                  ///< trials that counted
-  virtual int expected() const = 0;                  ///< in all, an estimate where a rule stops it
+  virtual int recorded() const = 0;  ///< trials that counted
+  virtual int expected() const = 0;  ///< in all, an estimate where a rule stops it
   virtual std::map<std::string, Estimate> estimates() const { return {}; }
   virtual std::optional<double> entropy_nats() const { return std::nullopt; }
   virtual std::vector<double> reversals() const { return {}; }

@@ -39,6 +39,10 @@ void validate_staircase(const Spec& spec, std::vector<Fault>& faults) {
     faults.push_back({"step", "missing for one direction", "step, or both step_down and step_up"});
   if (!spec.stop.trials && !spec.stop.reversals)
     faults.push_back({"stop", "nothing stops it", "trials or reversals"});
+  if (spec.discard_reversals < 0 || (spec.stop.reversals && spec.stop.rule == StopRule::any &&
+                                     spec.discard_reversals + 2 > *spec.stop.reversals))
+    faults.push_back({"discard_reversals", "leaves fewer than two reversals to average",
+                      "at least two fewer than the reversals at which the staircase stops"});
 }
 
 }  // namespace

@@ -54,6 +54,7 @@ struct Spec {
   std::optional<double> target;                  ///< weighted: the probability it converges on
   int n_down = 1, n_up = 1;
   std::optional<int> initial_down;  ///< so many right answers step down until the first reversal
+  int discard_reversals = 0;        ///< so many of the first ones are left out of the estimate
 
   // adaptive by a posterior
   Function function = Function::weibull;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "station/procedure/state_hash.hpp"
 #include "station/random/elementary.hpp"
@@ -100,9 +101,10 @@ int Staircase::expected() const {
 }
 
 std::map<std::string, Estimate> Staircase::estimates() const {
-  // The mean of the reversals, without the first where the count is odd: as many peaks as valleys.
-  if (reversals_.size() < 2) return {};
-  const std::size_t first = reversals_.size() % 2;
+  // One more is left out where the count is odd: as many peaks as valleys.
+  const auto discarded = static_cast<std::size_t>(spec_.discard_reversals);
+  if (reversals_.size() < discarded + 2) return {};
+  const std::size_t first = discarded + (reversals_.size() - discarded) % 2;
   const bool logs = spec_.scale != Scale::linear;
   double sum = 0, squares = 0;
   const auto n = static_cast<double>(reversals_.size() - first);
@@ -115,6 +117,8 @@ std::map<std::string, Estimate> Staircase::estimates() const {
   Estimate estimate;
   estimate.mean = estimate.mode = logs ? std::exp(mean) : mean;
   estimate.sd = logs ? estimate.mean * sd : sd;
+  const auto count = std::to_string(reversals_.size());
+  estimate.basis = "reversals " + std::to_string(first + 1) + " to " + count + " of " + count;
   return {{"threshold", estimate}};
 }
 

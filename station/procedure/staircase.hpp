@@ -10,7 +10,8 @@ namespace turnpoint::procedure {
 /// staircases. A step follows the answer at once; a reversal is the level at which the direction changed;
 /// step sizes move on with each reversal. On a log10 or dB scale steps multiply. An unanswered trial brings
 /// the same level again, at most three times in a row, then the staircase is left as it is and goes on
-/// asking.
+/// asking. The estimate is the mean of the reversals (of their logarithms where steps multiply) without the
+/// first `discard_reversals`, and without one more where an odd number is left.
 class Staircase : public Procedure {
  public:
   Staircase(const Spec& spec, const Context& context);

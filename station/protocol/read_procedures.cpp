@@ -141,6 +141,7 @@ void read_staircase(TableReader& reader, Spec& spec, const Reading& reading) {
   spec.min = reader.number("min", any_level);
   spec.max = reader.number("max", any_level);
   read_steps(reader, spec);
+  spec.discard_reversals = reader.integer("discard_reversals", 0, 1000, 0);
   if (spec.kind == Kind::up_down) {
     spec.n_down = reader.integer("n_down", 1, 20);
     spec.n_up = reader.integer("n_up", 1, 20, 1);

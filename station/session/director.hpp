@@ -39,6 +39,7 @@ struct TrialEnd {
 struct ProcedureEstimate {
   std::string procedure, parameter;
   double mean = 0, sd = 0;
+  std::string basis;  ///< of a staircase: which reversals the mean and SD are of
 };
 
 /// Decides what comes next: blocks in the participant's order, practice with its pass criterion, procedures

@@ -162,7 +162,8 @@ Page Pages::end(const Summary& summary, const Director& director) const {
   if (summary.accuracy) page.summary.push_back({"Right", text::number(100 * *summary.accuracy, 3) + " %"});
   for (const auto& e : summary.estimates)
     page.summary.push_back(
-        {e.procedure + ", " + e.parameter, text::number(e.mean, 4) + " (SD " + text::number(e.sd, 3) + ")"});
+        {e.procedure + ", " + e.parameter, text::number(e.mean, 4) + " (SD " + text::number(e.sd, 3) +
+                                               (e.basis.empty() ? "" : ", " + e.basis) + ")"});
   return page;
 }
 

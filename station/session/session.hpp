@@ -54,11 +54,7 @@ struct Summary {
   int xruns = 0;
   double stretched_s = 0;       ///< by how much intervals between trials were lengthened to keep the duty
   std::string realtime_rights;  ///< what the operating system granted to the audio thread
-  struct Estimate {
-    std::string procedure, parameter;
-    double mean = 0, sd = 0;
-  };
-  std::vector<Estimate> estimates;
+  std::vector<ProcedureEstimate> estimates;
 };
 
 /// Runs one sitting to its end on the calling thread: real clock, pages to `display`, input from `inputs`.

@@ -70,8 +70,7 @@ Sitting::Flow Sitting::run_block() {
     ++trials;
     if (rest_if_due(trials) == Flow::stop) return Flow::stop;
   }
-  for (const auto& e : director_.estimates())
-    summary_.estimates.push_back({e.procedure, e.parameter, e.mean, e.sd});
+  for (auto& e : director_.estimates()) summary_.estimates.push_back(std::move(e));
   ++summary_.blocks;
   director_.finish_block();
   return Flow::go_on;

@@ -26,6 +26,26 @@ TEST_CASE("2-down-1-up with an initial 1-down rule steps and reverses as Levitt 
   CHECK(result.reversals == std::vector<double>{8, 10, 9, 11});
 }
 
+TEST_CASE("a staircase averages the reversals that it is told to, and says which", "[procedure]") {
+  auto spec = two_down_one_up();  // reversals 8, 10, 9, 11
+  const auto estimate = [&spec](int discard) {
+    spec.discard_reversals = discard;
+    return trace(spec, {}, "11101110011").estimates;
+  };
+  CHECK(estimate(0).at("threshold").mean == 9.5);
+  CHECK(estimate(0).at("threshold").basis == "reversals 1 to 4 of 4");
+  CHECK(estimate(2).at("threshold").mean == 10);
+  CHECK(estimate(2).at("threshold").basis == "reversals 3 to 4 of 4");
+  CHECK(estimate(1).at("threshold").mean == 10);  // three are left: the first of them goes too
+  CHECK(estimate(1).at("threshold").basis == "reversals 3 to 4 of 4");
+  CHECK(estimate(3).empty());
+  spec.stop.reversals = 4;
+  CHECK(validate(spec).size() == 1);
+  CHECK(validate(spec).front().key == "discard_reversals");
+  spec.discard_reversals = 2;
+  CHECK(validate(spec).empty());
+}
+
 TEST_CASE("a weighted staircase balances at its target", "[procedure]") {
   Spec spec;
   spec.name = "q75";
