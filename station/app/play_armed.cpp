@@ -50,7 +50,7 @@ void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::funct
       if (const auto trouble = trouble_of(*event, stream.config().output); !trouble.empty())
         throw std::runtime_error(trouble);
     if (amplifier.state() == drive::AmplifierState::faulted)
-      throw std::runtime_error("amplifier: " + amplifier.fault());
+      throw std::runtime_error("amplifier: " + terms::describe(amplifier.fault()));
     if (const auto signal = StopSignals::told(); !signal.empty())
       throw std::runtime_error("the program was told to end (" + signal + "); not all was played");
     drive::sleep_until_ns(drive::monotonic_ns() + kPoll_ns);
@@ -101,8 +101,8 @@ drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
   const auto stream = drive::open_realtime(config);  // on its way out it ramps down what sounds
   attend(*stream, *amplifier,
          [until_ns = drive::monotonic_ns() + kFirstBlocks_ns] { return drive::monotonic_ns() >= until_ns; });
-  amplifier->arm();
-  amplifier->enable();
+  for (const auto& refusal : {amplifier->arm(), amplifier->enable()})
+    if (refusal) throw std::runtime_error("amplifier: " + terms::describe(*refusal));
   const auto onset_frame = play(*stream, *amplifier, bursts);
   amplifier->disarm();
   auto report = drive::report_of(*stream);

@@ -1,7 +1,5 @@
 #include "station/drive/amplifier.hpp"
 
-#include <stdexcept>
-
 #include "station/drive/monotonic.hpp"
 
 namespace turnpoint::drive {
@@ -9,43 +7,42 @@ namespace {
 
 class SimulatedAmplifier final : public Amplifier {
  public:
-  void arm() override {
-    if (state_ == AmplifierState::faulted)
-      throw std::runtime_error("amplifier sim: cannot be armed: " + fault_);
+  Refusal arm() override {
+    if (state_ == AmplifierState::faulted) return fault_;
     if (state_ == AmplifierState::disarmed) state_ = AmplifierState::armed;
+    return std::nullopt;
   }
   void disarm() noexcept override {
     if (state_ != AmplifierState::faulted) state_ = AmplifierState::disarmed;
   }
-  void enable() override {
-    if (state_ != AmplifierState::armed && state_ != AmplifierState::enabled)
-      throw std::runtime_error(std::string("amplifier sim: cannot be enabled while ") + name(state_));
+  Refusal enable() override {
+    if (state_ == AmplifierState::faulted) return fault_;
+    if (state_ == AmplifierState::disarmed) return terms::Fault{terms::FaultKind::disarmed, ""};
     state_ = AmplifierState::enabled;
+    return std::nullopt;
   }
   void disable() noexcept override {
     if (state_ == AmplifierState::enabled) state_ = AmplifierState::armed;
   }
-  void trip(std::string_view reason) noexcept override {
+  void trip(terms::FaultKind kind, std::string_view detail) noexcept override {
     if (state_ == AmplifierState::faulted) return;
     state_ = AmplifierState::faulted;
-    fault_ = reason;
-    fault_time_ns_ = monotonic_ns();
+    fault_ = {{kind, std::string(detail)}, monotonic_ns()};
   }
-  void clear() override {
+  Refusal clear() override {
     if (state_ == AmplifierState::faulted) state_ = AmplifierState::disarmed;
-    fault_.clear();
+    return std::nullopt;
   }
   void audio_alive() noexcept override {}
   void session_alive() noexcept override {}
+  void page_alive(std::int64_t) noexcept override {}
   AmplifierState state() const noexcept override { return state_; }
-  std::string fault() const override { return fault_; }
-  std::int64_t fault_time_ns() const noexcept override { return fault_time_ns_; }
+  AmplifierFault fault() const override { return fault_; }
   std::int64_t reaction_ns() const noexcept override { return -1; }
 
  private:
   AmplifierState state_ = AmplifierState::disarmed;
-  std::string fault_;
-  std::int64_t fault_time_ns_ = 0;
+  AmplifierFault fault_;
 };
 
 }  // namespace

@@ -8,8 +8,9 @@ namespace turnpoint::panel {
 
 /// The rig's amplifier: `sim:` or `gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB` (all but
 /// enable may be absent). Fault and stop are active high unless `active=low` (both), `fault_active=low` or
-/// `stop_active=low` is given. Both have a guard thread (SCHED_FIFO 75 where that is allowed); `sim:` keeps
-/// its lines in memory. Throws std::invalid_argument, LineError.
+/// `stop_active=low` is given. `read_back=off` is for a chip that cannot read the level of an output and says
+/// nothing about it. Both have a guard thread (see guarded_amplifier.hpp); `sim:` keeps its lines in memory.
+/// Throws std::invalid_argument, LineError.
 std::unique_ptr<drive::Amplifier> open_amplifier(const std::string& uri);
 
 }  // namespace turnpoint::panel

@@ -19,11 +19,15 @@ std::vector<std::string> chip_paths() {
   return paths;
 }
 
-std::optional<std::size_t> wait_readable(std::vector<pollfd>& descriptors, std::int64_t timeout_ns) {
+std::optional<std::size_t> wait_readable(std::vector<pollfd>& descriptors, std::int64_t timeout_ns,
+                                         int wake) {
   const timespec timeout{timeout_ns / 1'000'000'000, timeout_ns % 1'000'000'000};
+  descriptors.push_back({wake, POLLIN, 0});  // poll passes over a negative one
   const int ready = ::ppoll(descriptors.data(), descriptors.size(), &timeout, nullptr);
-  if (ready < 0 && errno == EINTR) return std::nullopt;
-  if (ready < 0) throw std::system_error(errno, std::generic_category(), "gpio lines: poll");
+  const int error = errno;
+  descriptors.pop_back();
+  if (ready < 0 && error == EINTR) return std::nullopt;
+  if (ready < 0) throw std::system_error(error, std::generic_category(), "gpio lines: poll");
   for (std::size_t k = 0; ready > 0 && k < descriptors.size(); ++k) {
     if (descriptors[k].revents & (POLLHUP | POLLERR | POLLNVAL))
       throw std::system_error(ENODEV, std::generic_category(), "gpio lines: the chip is gone");

@@ -67,11 +67,11 @@ class GpioLines final : public Lines {
     }
   }
 
-  std::optional<Edge> wait(std::int64_t timeout_ns) override {
-    auto ready = wait_readable(descriptors_, 0);
+  std::optional<Edge> wait(std::int64_t timeout_ns, int wake) override {
+    auto ready = wait_readable(descriptors_, 0, -1);
     if (!ready) {  // nothing was waiting: all buffers are empty
       for (Last& last : last_) last.waiting = 0;
-      ready = wait_readable(descriptors_, timeout_ns);
+      ready = wait_readable(descriptors_, timeout_ns, wake);
     }
     if (!ready) return std::nullopt;
     gpiod_line_event event{};
@@ -100,6 +100,13 @@ class GpioLines final : public Lines {
   void drive(int index, int level) override {
     if (gpiod_line_set_value(lines_.at(static_cast<std::size_t>(index)).line, level) != 0)
       throw std::system_error(errno, std::generic_category(), "gpio lines: driving a line");
+  }
+
+  std::optional<bool> read_back(int index) override {
+    const int value = gpiod_line_get_value(lines_.at(static_cast<std::size_t>(index)).line);
+    if (value < 0 && errno == ENODEV)
+      throw std::system_error(errno, std::generic_category(), "gpio lines: reading back a level");
+    return value < 0 ? std::nullopt : std::optional(value != 0);
   }
 
  private:

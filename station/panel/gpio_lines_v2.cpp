@@ -98,8 +98,8 @@ class GpioLines final : public Lines {
     }
   }
 
-  std::optional<Edge> wait(std::int64_t timeout_ns) override {
-    const auto ready = wait_readable(descriptors_, timeout_ns);
+  std::optional<Edge> wait(std::int64_t timeout_ns, int wake) override {
+    const auto ready = wait_readable(descriptors_, timeout_ns, wake);
     if (!ready) return std::nullopt;
     const int line = inputs_[*ready];
     gpiod_line_request* held = lines_[static_cast<std::size_t>(line)].request.get();
@@ -124,6 +124,14 @@ class GpioLines final : public Lines {
     const auto value = level != 0 ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
     if (gpiod_line_request_set_value(held.request.get(), held.offset, value) != 0)
       throw std::system_error(errno, std::generic_category(), "gpio lines: driving a line");
+  }
+
+  std::optional<bool> read_back(int index) override {
+    const Held& held = lines_.at(static_cast<std::size_t>(index));
+    const gpiod_line_value value = gpiod_line_request_get_value(held.request.get(), held.offset);
+    if (value == GPIOD_LINE_VALUE_ERROR && errno == ENODEV)
+      throw std::system_error(errno, std::generic_category(), "gpio lines: reading back a level");
+    return value == GPIOD_LINE_VALUE_ERROR ? std::nullopt : std::optional(value == GPIOD_LINE_VALUE_ACTIVE);
   }
 
  private:

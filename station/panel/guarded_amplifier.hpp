@@ -1,7 +1,9 @@
 #pragma once
+#include <functional>
 #include <memory>
 
 #include "station/drive/amplifier.hpp"
+#include "station/panel/guard.hpp"
 #include "station/panel/lines.hpp"
 
 namespace turnpoint::panel {
@@ -14,12 +16,22 @@ struct GuardLines {
   int stop = -1;
   bool fault_active_low = false;
   bool stop_active_low = false;
+  bool read_back = true;  ///< compare the enable line's level with what was driven, where the chip can tell
+};
+
+struct GuardOptions {
+  Guard::Config config;
+  /// Called on the caller's thread between the steps of each call, never on the guard's: a test stalls the
+  /// caller there.
+  std::function<void()> scheduler_point;
 };
 
 /// An amplifier on lines (kernel or simulated) with its guard thread, SCHED_FIFO 75 where that is granted.
-/// The enable line is low on return and after destruction. Lines whose chip has gone are a latched fault, and
-/// are looked for until they are back; then an operator can clear and arm. Throws what `open` throws at the
-/// start.
-std::unique_ptr<drive::Amplifier> guard_amplifier(OpenLines open, const GuardLines& roles);
+/// Once the lines are open only that thread uses them. It reads fault and stop in every beat and before each
+/// arming and enabling, so a lost edge does not matter. The enable line is low on return and after
+/// destruction. Lines whose chip has gone are a latched fault, and are looked for until they are back; then
+/// an operator can clear and arm. Throws what `open` throws at the start.
+std::unique_ptr<drive::Amplifier> guard_amplifier(OpenLines open, const GuardLines& roles,
+                                                  GuardOptions options = {});
 
 }  // namespace turnpoint::panel

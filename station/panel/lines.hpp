@@ -28,18 +28,22 @@ struct Edge {
 };
 
 /// Lines requested together. Outputs start low and go low when this is destroyed, as far as the kernel
-/// releases them. One thread at a time, except that reading edges and setting outputs may be on two.
+/// releases them. One thread uses them.
 class Lines {
  public:
   virtual ~Lines() = default;
 
-  /// Waits at most `timeout_ns` (0: not at all) for an edge. Edges come in the order of their time stamps per
-  /// line. Throws std::system_error: ENODEV when the chip has gone.
-  virtual std::optional<Edge> wait(std::int64_t timeout_ns) = 0;
+  /// Waits at most `timeout_ns` (0: not at all) for an edge, and no longer than until the descriptor `wake`
+  /// (-1: none) can be read. Edges come in the order of their time stamps per line. Throws std::system_error:
+  /// ENODEV when the chip has gone.
+  virtual std::optional<Edge> wait(std::int64_t timeout_ns, int wake = -1) = 0;
   /// The level of line `index` now. Throws std::system_error.
   virtual bool level(int index) = 0;
   /// Drives output `index`. Throws std::system_error. Safe on a real-time thread: one system call.
   virtual void drive(int index, int level) = 0;
+  /// The level that output `index` really has; none where the chip cannot tell. Throws std::system_error:
+  /// ENODEV when the chip has gone.
+  virtual std::optional<bool> read_back(int index) = 0;
 };
 
 /// Why a line could not be had: it is on no chip (ENOENT), in use by another (EBUSY; the message says by

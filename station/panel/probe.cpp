@@ -14,7 +14,7 @@ using Status = Check::Status;
 // Keys of a URI that do not name a line.
 bool names_line(const std::string& key) {
   return key != "active" && key != "fault_active" && key != "stop_active" && key != "refractory_ms" &&
-         key != "axis";
+         key != "axis" && key != "read_back";
 }
 
 Check check_line(const std::string& device, const std::string& role, const std::string& line) {

@@ -1,6 +1,8 @@
 #include "station/panel/simulated_lines.hpp"
 
-#include <chrono>
+#include <poll.h>
+
+#include <algorithm>
 
 #include "station/drive/monotonic.hpp"
 
@@ -10,14 +12,25 @@ void SimulatedLines::check() const {
   if (gone_) throw std::system_error(ENODEV, std::generic_category(), "simulated gpio chip");
 }
 
-std::optional<Edge> SimulatedLines::wait(std::int64_t timeout_ns) {
-  std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), [this] { return gone_ || !edges_.empty(); });
+std::optional<Edge> SimulatedLines::next_edge() {
+  const std::lock_guard lock(mutex_);
   check();
+  changed_.clear();
   if (edges_.empty()) return std::nullopt;
   const Edge edge = edges_.front();
   edges_.pop_front();
   return edge;
+}
+
+std::optional<Edge> SimulatedLines::wait(std::int64_t timeout_ns, int wake) {
+  const std::int64_t end_ns = drive::monotonic_ns() + timeout_ns;
+  for (;;) {
+    if (auto edge = next_edge()) return edge;
+    const std::int64_t left_ns = std::max<std::int64_t>(0, end_ns - drive::monotonic_ns());
+    const timespec left{left_ns / 1'000'000'000, left_ns % 1'000'000'000};
+    pollfd news[] = {{changed_.descriptor(), POLLIN, 0}, {wake, POLLIN, 0}};
+    if (::ppoll(news, 2, &left, nullptr) == 0 || (news[1].revents & POLLIN) != 0) return next_edge();
+  }
 }
 
 bool SimulatedLines::level(int index) {
@@ -43,7 +56,7 @@ void SimulatedLines::set(int index, bool level, std::int64_t time_ns) {
   const std::lock_guard lock(mutex_);
   levels_.at(static_cast<std::size_t>(index)) = level ? 1 : 0;
   edges_.push_back({time_ns, index, level, ++sequences_.at(static_cast<std::size_t>(index))});
-  changed_.notify_all();
+  changed_.ring();
 }
 
 void SimulatedLines::lose_edges(int index, std::uint32_t count) {
@@ -54,7 +67,7 @@ void SimulatedLines::lose_edges(int index, std::uint32_t count) {
 void SimulatedLines::remove() {
   const std::lock_guard lock(mutex_);
   gone_ = true;
-  changed_.notify_all();
+  changed_.ring();
 }
 
 void SimulatedLines::put_back() {

@@ -1,10 +1,10 @@
 #pragma once
-#include <condition_variable>
 #include <deque>
 #include <mutex>
 #include <vector>
 
 #include "station/panel/lines.hpp"
+#include "station/panel/wake_up.hpp"
 
 namespace turnpoint::panel {
 
@@ -15,9 +15,10 @@ class SimulatedLines : public Lines {
   explicit SimulatedLines(int count)
       : levels_(static_cast<std::size_t>(count), 0), sequences_(levels_.size(), 0) {}
 
-  std::optional<Edge> wait(std::int64_t timeout_ns) override;
+  std::optional<Edge> wait(std::int64_t timeout_ns, int wake = -1) override;
   bool level(int index) override;
   void drive(int index, int level) override;
+  std::optional<bool> read_back(int index) override { return level(index); }
 
   /// An input changes, at that time.
   void set(int index, bool level, std::int64_t time_ns);
@@ -36,9 +37,10 @@ class SimulatedLines : public Lines {
 
  private:
   void check() const;
+  std::optional<Edge> next_edge();
 
   mutable std::mutex mutex_;
-  std::condition_variable changed_;
+  WakeUp changed_;
   std::deque<Edge> edges_;
   std::vector<int> levels_;
   std::vector<std::uint32_t> sequences_;

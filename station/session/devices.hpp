@@ -1,17 +1,24 @@
 #pragma once
+#include <functional>
 #include <memory>
 
 #include "station/drive/amplifier.hpp"
+#include "station/drive/engine.hpp"
 #include "station/panel/buttons.hpp"
 #include "station/rig/rig.hpp"
+#include "station/session/clock_watch.hpp"
 #include "station/session/inputs.hpp"
 
 namespace turnpoint::session {
 
-/// What a real session has beside its stream. The panel may be null (no buttons, no contact).
+/// What a real session works with. The panel may be null (no buttons, no contact). Stream and clocks are the
+/// real ones unless a test puts others in their place.
 struct Devices {
   std::unique_ptr<drive::Amplifier> amplifier;
   std::unique_ptr<panel::Panel> panel;
+  std::function<std::unique_ptr<drive::Stream>(const drive::StreamConfig&)> open_stream =
+      drive::open_realtime;
+  std::function<Clocks()> clocks = read_clocks;
 };
 
 /// Opens what the rig names: lines by name, the amplifier disarmed and off. `sim:` has the same guard on

@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -52,7 +53,13 @@ class Inputs {
   /// Throws away what has gathered, and returns it for the log.
   std::deque<Input> drain();
 
+  /// The participant's page lives, at that time (CLOCK_MONOTONIC); -1 before its first sign. A display that
+  /// begins to say so has to go on: the amplifier's guard counts on it from then.
+  void page_alive(std::int64_t time_ns) noexcept { page_alive_ns_.store(time_ns); }
+  std::int64_t page_alive_ns() const noexcept { return page_alive_ns_.load(); }
+
  private:
+  std::atomic<std::int64_t> page_alive_ns_{-1};
   std::mutex mutex_;
   std::condition_variable arrived_;
   std::deque<Input> queue_;

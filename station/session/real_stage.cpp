@@ -1,7 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
+#include <cstdlib>
+#include <cstring>
 #include <utility>
 
 #include "station/drive/monotonic.hpp"
@@ -22,9 +23,9 @@ constexpr std::int64_t kTail_ns = 20'000'000;  // and goes down after it
 class RealStage : public Stage {
  public:
   RealStage(drive::StreamConfig config, Devices devices, Inputs& inputs)
-      : devices_(std::move(devices)), inputs_(inputs), clocks_(read_clocks()) {
+      : devices_(std::move(devices)), inputs_(inputs), clocks_(devices_.clocks()) {
     config.amplifier = devices_.amplifier.get();
-    stream_ = drive::open_realtime(config);
+    stream_ = devices_.open_stream(config);
   }
 
   std::int64_t now_ns() override { return drive::monotonic_ns(); }
@@ -63,29 +64,29 @@ class RealStage : public Stage {
 
   std::int64_t silence() override { return quiet_ns_ = ramp_down(*stream_, sounding_.ramp); }
 
-  std::string arm() override {
+  Refusal arm() override {
     // The audio thread proves its life by its first blocks, which at a session's start are yet to come.
     const auto until_ns = now_ns() + kFirstBlocks_ns;
     const auto begun = 2 * stream_->config().output.period_frames;
     wait_for([&] { return stream_->counters().frames > begun || now_ns() > until_ns; });
-    return attempt([this] { amplifier_().arm(); });
+    if (wrong_rate_) return wrong_rate_;
+    show_life();
+    return amplifier_().arm();
   }
-  std::string disarm() override {
-    amplifier_().disarm();
-    return "";
-  }
-  std::string clear() override {
-    const auto why_not = attempt([this] { amplifier_().clear(); });
-    if (why_not.empty()) fault_told_ = false;
-    return why_not;
+  void disarm() override { amplifier_().disarm(); }
+  Refusal clear() override {
+    auto refusal = amplifier_().clear();
+    if (!refusal) fault_told_ = false;
+    return refusal;
   }
   drive::AmplifierState amplifier() const override { return devices_.amplifier->state(); }
 
-  std::string open_amplifier() override {
+  Refusal open_amplifier() override {
     closing_ = false;
-    if (amplifier() == drive::AmplifierState::enabled) return "";
+    if (amplifier() == drive::AmplifierState::enabled) return std::nullopt;
     opened_ns_ = now_ns();
-    return attempt([this] { amplifier_().enable(); });
+    show_life();
+    return amplifier_().enable();
   }
   void close_amplifier() override { closing_ = true; }
 
@@ -107,36 +108,42 @@ class RealStage : public Stage {
  private:
   drive::Amplifier& amplifier_() { return *devices_.amplifier; }
 
-  std::string attempt(const std::function<void()>& step) {
+  /// The session lives, since it gets here; whether the page does, it says itself.
+  void show_life() {
     amplifier_().session_alive();
-    try {
-      step();
-      return "";
-    } catch (const std::exception& error) {
-      return error.what();
-    }
+    if (const auto page_ns = inputs_.page_alive_ns(); page_ns >= 0) amplifier_().page_alive(page_ns);
   }
 
   /// Hears what drive, guard and clocks have to say, and tells the guard that the session lives.
   void attend() {
     const auto now = now_ns();
-    amplifier_().session_alive();
+    show_life();
     if (closing_ && now >= quiet_ns_ + kTail_ns) {
       amplifier_().disable();
       closing_ = false;
     }
     while (const auto event = stream_->poll()) hear(*event, now);
+    look_at_samples();
     if (amplifier() == drive::AmplifierState::faulted && !std::exchange(fault_told_, true))
-      push_fault(amplifier_().fault_time_ns(), fault_of_amplifier(amplifier_().fault()), amplifier_fault());
+      tell_amplifier_fault();
     if (now >= clocks_due_ns_) look_at_clocks(now);
   }
 
-  std::string amplifier_fault() const {
-    const auto reaction_ns = devices_.amplifier->reaction_ns();
-    const auto& what = devices_.amplifier->fault();
-    return reaction_ns < 0 ? what
-                           : fmt::format("{} (amplifier off after {:.0f} us)", what,
-                                         1e-3 * static_cast<double>(reaction_ns));
+  void tell_amplifier_fault() {
+    auto fault = amplifier_().fault();
+    const auto reaction_ns = amplifier_().reaction_ns();
+    const bool by_edge = fault.kind == FaultKind::amplifier || fault.kind == FaultKind::stop_pressed;
+    if (by_edge && reaction_ns >= 0)
+      fault.detail = fmt::format("amplifier off after {:.0f} us", 1e-3 * static_cast<double>(reaction_ns));
+    push_fault(fault.time_ns, fault.kind, fault.detail);
+  }
+
+  void look_at_samples() {
+    const auto saturated = stream_->counters().saturated;
+    if (saturated > saturated_)
+      amplifier_().trip(FaultKind::converter_saturated,
+                        fmt::format("{} samples clipped", saturated - saturated_));
+    saturated_ = saturated;
   }
 
   void hear(const drive::Event& event, std::int64_t now) {
@@ -150,15 +157,17 @@ class RealStage : public Stage {
       case drive::EventKind::burst_missed:
         return push_fault(now, FaultKind::stimulus_missed, "a stimulus came too late to be played");
       case drive::EventKind::device_lost:
-        amplifier_().trip(kConverterGone);
-        return;  // the latched fault tells it
+        amplifier_().trip(FaultKind::converter_gone,
+                          event.error == 0 ? "" : std::strerror(std::abs(event.error)));
+        return;  // attend() tells what is latched
       case drive::EventKind::device_back:
-        return push(InputKind::notice, now, "the converter is back");
+        wrong_rate_.reset();  // this may be another device
+        return push(InputKind::notice, now, "the sound device is back");
       case drive::EventKind::rate_wrong:
-        amplifier_().trip("the converter's rate is wrong");
-        return push(InputKind::failure, now,
-                    fmt::format("the converter runs at {:.1f} Hz: what is felt would be wrong",
-                                1e-3 * static_cast<double>(event.frames)));
+        wrong_rate_ = Fault{FaultKind::converter_rate, fmt::format("{:.1f} Hz instead of {} Hz",
+                                                                   1e-3 * static_cast<double>(event.frames),
+                                                                   stream_->config().output.rate_Hz)};
+        return amplifier_().trip(wrong_rate_->kind, wrong_rate_->detail);
       case drive::EventKind::burst_started:
       case drive::EventKind::burst_ended:
         return;
@@ -167,12 +176,13 @@ class RealStage : public Stage {
 
   void look_at_clocks(std::int64_t now) {
     clocks_due_ns_ = now + kClocks_ns;
-    const auto news = clocks_.look(read_clocks());
+    const auto news = clocks_.look(devices_.clocks());
     if (news.jump_s)
       push(InputKind::notice, now, fmt::format("the wall clock was set by {:+.3f} s", *news.jump_s));
     if (!news.suspended_s) return;
-    push(InputKind::notice, now, fmt::format("the machine slept for {:.1f} s", *news.suspended_s));
-    amplifier_().trip("the machine was suspended");
+    const auto slept = fmt::format("the machine slept for {:.1f} s", *news.suspended_s);
+    push(InputKind::notice, now, slept);
+    amplifier_().trip(FaultKind::suspended, slept);
   }
 
   void push_fault(std::int64_t time_ns, FaultKind kind, std::string detail) {
@@ -203,6 +213,8 @@ class RealStage : public Stage {
   std::int64_t quiet_ns_ = 0;   ///< when the surface will be silent
   std::int64_t opened_ns_ = 0;  ///< when the amplifier was enabled
   bool closing_ = false, fault_told_ = false;
+  std::int64_t saturated_ = 0;  ///< samples clipped so far
+  Refusal wrong_rate_;          ///< until the device has been opened anew
 };
 
 }  // namespace

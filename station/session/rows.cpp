@@ -106,6 +106,8 @@ const char* kind_of(InputKind kind) {
 }
 
 std::string value_of(const Input& input) {
+  if (input.kind == InputKind::fault)
+    return input.text.empty() ? name(input.fault) : fmt::format("{}: {}", name(input.fault), input.text);
   if (!input.text.empty()) return input.text;
   if (input.kind == InputKind::slider) return text::exact(input.number);
   if (input.kind == InputKind::contact && input.number >= 0)

@@ -41,10 +41,6 @@ class Sitting {
   struct OnSurface {
     std::int64_t on_ns = 0, off_ns = 0;
   };
-  struct Fault {
-    FaultKind kind = FaultKind::other;
-    std::string detail;
-  };
 
   // sitting.cpp: blocks and pages
   Flow run_block();
@@ -85,6 +81,7 @@ class Sitting {
   bool space_again(const std::string& detail);
   bool armed() const;
   Flow until_armed(const Fault& why);
+  Flow end_at_limit(const std::string& what);
   Flow recover();
 
   const Setup& setup_;

@@ -26,14 +26,15 @@ std::optional<int> answer_of(const std::string& button, const protocol::Task& ta
 /// Does what the operator asks and logs what came of it; a button comes back as the answer that it chooses,
 /// or as a mere touch.
 Input Sitting::received(Input input) {
-  const auto outcome = [](const std::string& why_not, const char* done) {
-    return why_not.empty() ? done : "refused: " + why_not;
-  };
   if (input.kind == InputKind::arm) {
-    const auto not_cleared = stage_->clear();
-    input.text = outcome(not_cleared.empty() ? stage_->arm() : not_cleared, "armed");
+    auto refusal = stage_->clear();
+    if (!refusal) refusal = stage_->arm();
+    input.text = refusal ? "refused: " + terms::describe(*refusal) : "armed";
   }
-  if (input.kind == InputKind::disarm) input.text = outcome(stage_->disarm(), "disarmed");
+  if (input.kind == InputKind::disarm) {
+    stage_->disarm();
+    input.text = "disarmed";
+  }
   log(input);
   if (input.kind == InputKind::note && !input.text.empty()) keep([&] { log_.annotate(input.text); });
   if (input.kind != InputKind::button) return input;
@@ -140,6 +141,28 @@ Sitting::Flow Sitting::recover() {
       fault_ = Fault{FaultKind::lines_gone, missing};
   }
   return Flow::go_on;
+}
+
+/// A limit of the rig ends the session. The page says which one before the summary is shown.
+Sitting::Flow Sitting::end_at_limit(const std::string& what) {
+  stage_->close_amplifier();
+  Input fault;
+  fault.time_ns = stage_->now_ns();
+  fault.kind = InputKind::fault;
+  fault.fault = FaultKind::limits;
+  fault.text = what;
+  log(fault);
+  show(pages_.fault(FaultKind::limits, what, director_));
+  for (auto over = false; !over;) {
+    const auto input = stage_->wait_until(kForever);
+    if (!input) continue;
+    log(*input);
+    over =
+        input->kind == InputKind::next || input->kind == InputKind::stop || input->kind == InputKind::failure;
+  }
+  stop_asked_ = true;
+  stop_reason_ = what;
+  return Flow::stop;
 }
 
 void Sitting::log(const Input& input) { log_.event(event_row(input, trial_index_)); }

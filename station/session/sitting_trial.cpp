@@ -64,13 +64,11 @@ Sitting::Flow Sitting::prepare_trial(const TrialSpec& spec) {
   } catch (const std::domain_error& unreachable) {
     stop_asked_ = true, stop_reason_ = unreachable.what();
   } catch (const drive::LimitExceeded& limit) {
-    stop_asked_ = true, stop_reason_ = limit.what();
+    return end_at_limit(limit.what());
   }
   for (auto& stale : stage_->drain()) note(received(std::move(stale)));
   while (!stop_asked_) {
-    if (!fault_)
-      if (const auto why_not = stage_->open_amplifier(); !why_not.empty())
-        fault_ = Fault{FaultKind::amplifier, why_not};
+    if (!fault_) fault_ = stage_->open_amplifier();
     if (!fault_) break;
     if (recover() == Flow::stop) return Flow::stop;
   }
@@ -80,9 +78,7 @@ Sitting::Flow Sitting::prepare_trial(const TrialSpec& spec) {
 /// The amplifier went off while a full disk held a trial up; whatever keeps it off now makes the trial void.
 std::optional<trial::EventKind> Sitting::open_again() {
   if (stop_asked_) return trial::EventKind::abort;
-  if (!fault_)
-    if (const auto why_not = stage_->open_amplifier(); !why_not.empty())
-      fault_ = Fault{FaultKind::amplifier, why_not};
+  if (!fault_) fault_ = stage_->open_amplifier();
   return fault_ ? std::optional(trial::EventKind::fault) : std::nullopt;
 }
 
@@ -122,7 +118,8 @@ Sitting::Flow Sitting::after_trial(const store::TrialRow& row) {
   voids_in_a_row_ = is_void ? voids_in_a_row_ + 1 : 0;
   if (voids_in_a_row_ >= kVoidsBeforeStop) {
     stop_asked_ = true;
-    stop_reason_ = "three trials in a row were void" + (fault_ ? "; the last: " + fault_->detail : "");
+    stop_reason_ =
+        "three trials in a row were void" + (fault_ ? "; the last: " + terms::describe(*fault_) : "");
     return Flow::stop;
   }
   if (fault_) return recover();

@@ -57,13 +57,15 @@ class Stage {
   /// Ramps whatever sounds down, now. Returns when the surface will be silent.
   virtual std::int64_t silence() = 0;
 
-  /// The amplifier, by the operator: arms, disarms, clears. Each returns "" or why not.
-  virtual std::string arm() = 0;
-  virtual std::string disarm() = 0;
-  virtual std::string clear() = 0;
+  /// Why the amplifier does not do what was asked; none when it was done.
+  using Refusal = std::optional<Fault>;
+  /// The amplifier, by the operator: arms, disarms, clears.
+  [[nodiscard]] virtual Refusal arm() = 0;
+  virtual void disarm() = 0;
+  [[nodiscard]] virtual Refusal clear() = 0;
   virtual drive::AmplifierState amplifier() const = 0;
-  /// Before the stimuli of a trial, in silence: amplifier on. Returns "" or why not.
-  virtual std::string open_amplifier() = 0;
+  /// Before the stimuli of a trial, in silence: amplifier on.
+  [[nodiscard]] virtual Refusal open_amplifier() = 0;
   /// After them: amplifier off as soon as the surface is silent.
   virtual void close_amplifier() = 0;
 

@@ -15,7 +15,7 @@ class VirtualStage : public Stage {
  public:
   VirtualStage(const drive::StreamConfig& config, observer::Observer observer, Inputs& inputs)
       : stream_(drive::open_synchronous(config)), observer_(std::move(observer)), inputs_(inputs) {
-    amplifier_->arm();
+    static_cast<void>(amplifier_->arm());  // nothing can be wrong with it
   }
 
   std::int64_t now_ns() override { return now_ns_; }
@@ -65,11 +65,11 @@ class VirtualStage : public Stage {
 
   std::int64_t silence() override { return ramp_down(*stream_, sounding_.ramp); }
 
-  std::string arm() override { return amplifier_->arm(), ""; }
-  std::string disarm() override { return amplifier_->disarm(), ""; }
-  std::string clear() override { return amplifier_->clear(), ""; }
+  Refusal arm() override { return amplifier_->arm(); }
+  void disarm() override { amplifier_->disarm(); }
+  Refusal clear() override { return amplifier_->clear(); }
   drive::AmplifierState amplifier() const override { return amplifier_->state(); }
-  std::string open_amplifier() override { return amplifier_->enable(), ""; }
+  Refusal open_amplifier() override { return amplifier_->enable(); }
   void close_amplifier() override { amplifier_->disable(); }
 
   const std::vector<std::string>& buttons() const override { return no_buttons_; }

@@ -116,30 +116,34 @@ session::Onset Room::present(drive::Burst burst, std::int64_t earliest_ns) {
 
 std::int64_t Room::silence() { return quiet_ns_ = inner_->silence(); }
 
-std::string Room::arm() {
+Room::Refusal Room::arm() {
   attend();
-  const auto why_not = guard_.arm(now_ns());
-  if (why_not.empty()) world_.amplifier.armed(world_ns()), fault_told_ = false;
-  return why_not;
+  const auto refusal = guard_.arm(now_ns());
+  if (refusal) return session::Fault{refusal->kind, ""};
+  world_.amplifier.armed(world_ns()), fault_told_ = false;
+  return std::nullopt;
 }
 
-std::string Room::clear() { return missing_.empty() ? guard_.clear() : "its lines are gone"; }
+Room::Refusal Room::clear() {
+  if (!missing_.empty()) return session::Fault{FaultKind::lines_gone, missing_};
+  const auto refusal = guard_.clear();
+  return refusal ? Refusal(session::Fault{refusal->kind, ""}) : std::nullopt;
+}
 
-std::string Room::disarm() {
+void Room::disarm() {
   world_.amplifier.cause(world_ns(), "disarmed by the operator");
   guard_.disarm();
   line();
-  return "";
 }
 
-std::string Room::open_amplifier() {
+Room::Refusal Room::open_amplifier() {
   attend();
   closing_ = false;
-  if (amplifier() == AmplifierState::enabled) return "";
+  if (amplifier() == AmplifierState::enabled) return std::nullopt;
   opened_ns_ = now_ns();
-  auto why_not = guard_.enable(now_ns());
+  const auto refusal = guard_.enable(now_ns());
   line();
-  return why_not;
+  return refusal ? Refusal(session::Fault{refusal->kind, ""}) : std::nullopt;
 }
 
 void Room::finish() {
@@ -166,10 +170,10 @@ void Room::show(const session::Page& page) {
 void Room::tell_guard_fault() {
   line();
   if (guard_.state() != AmplifierState::faulted || std::exchange(fault_told_, true)) return;
-  push(InputKind::fault, session::fault_of_amplifier(guard_.fault()), guard_.fault());
+  push(InputKind::fault, guard_.fault().kind, guard_.fault().detail);
 }
 
-void Room::strike_line(const char* what, void (panel::Guard::*change)(std::int64_t, bool)) {
+void Room::strike_line(const char* what, void (panel::Guard::*change)(std::int64_t, bool) noexcept) {
   world_.amplifier.cause(world_ns(), what);
   world_.amplifier.lasts(what);
   if (world_.plant != Plant::deaf_guard) (guard_.*change)(now_ns(), true);
@@ -182,7 +186,7 @@ void Room::strike_line(const char* what, void (panel::Guard::*change)(std::int64
 
 void Room::strike_device() {
   world_.amplifier.cause(world_ns(), "converter gone");
-  guard_.trip(now_ns(), session::kConverterGone);
+  guard_.trip(now_ns(), FaultKind::converter_gone);
   tell_guard_fault();
   plan(world_.course.seconds(0.5, 10), [this] { push(InputKind::notice, {}, "the converter is back"); });
 }
@@ -193,7 +197,7 @@ void Room::strike_chip() {
   world_.amplifier.lasts("lines gone");
   missing_ = "the chip is gone";
   push(InputKind::fault, FaultKind::lines_gone, "panel: " + missing_);
-  guard_.trip(now_ns(), "its lines are gone: " + missing_);
+  guard_.trip(now_ns(), FaultKind::lines_gone);
   tell_guard_fault();
   plan(world_.course.seconds(0.1, 20), [this] {
     world_.amplifier.over("lines gone");

@@ -66,11 +66,11 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
     return inner_->glide(to, seconds);
   }
   std::int64_t silence() override;
-  std::string arm() override;
-  std::string disarm() override;
-  std::string clear() override;
+  Refusal arm() override;
+  void disarm() override;
+  Refusal clear() override;
   turnpoint::drive::AmplifierState amplifier() const override { return guard_.state(); }
-  std::string open_amplifier() override;
+  Refusal open_amplifier() override;
   void close_amplifier() override { closing_ = world_.plant != Plant::never_off; }
   const std::vector<std::string>& buttons() const override { return inner_->buttons(); }
   std::string missing() const override { return missing_; }
@@ -99,7 +99,7 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   void plan(std::int64_t in_ns, std::function<void()> happens);
   void push(InputKind kind, turnpoint::session::FaultKind fault = {}, const std::string& text = "");
   void strike(Fault fault);
-  void strike_line(const char* what, void (turnpoint::panel::Guard::*change)(std::int64_t, bool));
+  void strike_line(const char* what, void (turnpoint::panel::Guard::*change)(std::int64_t, bool) noexcept);
   void strike_device();
   void strike_chip();
   void tell_guard_fault();

@@ -3,10 +3,17 @@
 
 using namespace turnpoint::panel;
 using turnpoint::drive::AmplifierState;
+using turnpoint::terms::FaultKind;
 
 namespace {
 
 constexpr std::int64_t ms = 1'000'000;
+
+/// "" for what was done.
+std::string why_not(const std::optional<Guard::Refusal>& refusal) {
+  if (!refusal) return "";
+  return std::string(name(refusal->kind)) + (refusal->latched ? " latched" : "");
+}
 
 void show_life(Guard& guard, std::int64_t now_ns) {
   guard.audio_alive(now_ns);
@@ -16,8 +23,8 @@ void show_life(Guard& guard, std::int64_t now_ns) {
 Guard enabled_guard() {
   Guard guard;
   show_life(guard, 0);
-  REQUIRE(guard.arm(0).empty());
-  REQUIRE(guard.enable(0).empty());
+  REQUIRE(why_not(guard.arm(0)).empty());
+  REQUIRE(why_not(guard.enable(0)).empty());
   return guard;
 }
 
@@ -29,10 +36,10 @@ TEST_CASE("after a start the amplifier is disarmed and cannot be enabled before 
   show_life(guard, 0);
   CHECK(guard.state() == AmplifierState::disarmed);
   CHECK(guard.outputs().enable == 0);
-  CHECK(guard.enable(0) == "disarmed: an operator has to arm it");
-  CHECK(guard.arm(0).empty());
+  CHECK(why_not(guard.enable(0)) == "disarmed");
+  CHECK(why_not(guard.arm(0)).empty());
   CHECK(guard.outputs().enable == 0);
-  CHECK(guard.enable(0).empty());
+  CHECK(why_not(guard.enable(0)).empty());
   CHECK(guard.outputs().enable == 1);
   guard.disable();
   CHECK(guard.outputs().enable == 0);
@@ -41,11 +48,11 @@ TEST_CASE("after a start the amplifier is disarmed and cannot be enabled before 
 
 TEST_CASE("it cannot be armed before audio and session have given signs of life", "[panel][guard]") {
   Guard guard;
-  CHECK(guard.arm(0) == "the audio thread gives no sign");
+  CHECK(why_not(guard.arm(0)) == "audio_silent");
   guard.audio_alive(0);
-  CHECK(guard.arm(0) == "the session gives no sign");
+  CHECK(why_not(guard.arm(0)) == "session_silent");
   guard.session_alive(0);
-  CHECK(guard.arm(0).empty());
+  CHECK(why_not(guard.arm(0)).empty());
 }
 
 TEST_CASE("a fault drops the line and stays latched until the cause is gone and an operator clears it",
@@ -54,20 +61,20 @@ TEST_CASE("a fault drops the line and stays latched until the cause is gone and 
   guard.fault_line(5 * ms, true);
   CHECK(guard.outputs().enable == 0);
   CHECK(guard.state() == AmplifierState::faulted);
-  CHECK(guard.fault() == "the amplifier reports a fault");
-  CHECK(guard.fault_time_ns() == 5 * ms);
+  CHECK(guard.fault().kind == FaultKind::amplifier);
+  CHECK(guard.fault().time_ns == 5 * ms);
   guard.stop_line(6 * ms, true);
-  CHECK(guard.fault() == "the amplifier reports a fault");  // the first cause
-  CHECK(guard.clear() == "the amplifier's fault line is still active");
+  CHECK(guard.fault().kind == FaultKind::amplifier);  // the first cause
+  CHECK(why_not(guard.clear()) == "amplifier");
   guard.fault_line(7 * ms, false);
   CHECK(guard.outputs().enable == 0);
-  CHECK(guard.clear() == "the stop is still pressed");
+  CHECK(why_not(guard.clear()) == "stop_pressed");
   guard.stop_line(8 * ms, false);
-  CHECK_FALSE(guard.enable(9 * ms).empty());
-  CHECK(guard.clear().empty());
+  CHECK_FALSE(why_not(guard.enable(9 * ms)).empty());
+  CHECK(why_not(guard.clear()).empty());
   CHECK(guard.state() == AmplifierState::disarmed);
-  CHECK_FALSE(guard.enable(9 * ms).empty());
-  CHECK(guard.arm(9 * ms).empty());
+  CHECK_FALSE(why_not(guard.enable(9 * ms)).empty());
+  CHECK(why_not(guard.arm(9 * ms)).empty());
 }
 
 TEST_CASE("the heartbeat toggles only while both audio and session are alive", "[panel][guard]") {
@@ -86,12 +93,68 @@ TEST_CASE("the heartbeat toggles only while both audio and session are alive", "
   CHECK(toggles(0, 1000, true, true) == 100);
   SECTION("audio hangs") {
     CHECK(toggles(1000, 3000, false, true) <= 10);
-    CHECK(guard.fault() == "the audio thread gives no sign");
+    CHECK(guard.fault().kind == FaultKind::audio_silent);
     CHECK(guard.outputs().enable == 0);
   }
   SECTION("the session hangs") {
     CHECK(toggles(1000, 6000, true, false) <= 200);
     CHECK(toggles(6000, 8000, true, false) == 0);
-    CHECK(guard.fault() == "the session gives no sign");
+    CHECK(guard.fault().kind == FaultKind::session_silent);
+  }
+}
+
+TEST_CASE("a page that has given a sign of life has to go on doing so", "[panel][guard]") {
+  Guard guard = enabled_guard();
+  for (std::int64_t t = 0; t < 5000; t += 10) {
+    show_life(guard, t * ms);
+    guard.tick(t * ms);
+  }
+  CHECK(guard.outputs().enable == 1);  // a session without a screen gives none
+  guard.page_alive(5000 * ms);
+  int beats = 0, last = guard.outputs().heartbeat;
+  for (std::int64_t t = 5000; t < 9000; t += 10) {
+    show_life(guard, t * ms);
+    guard.tick(t * ms);
+    CHECK(guard.outputs().enable == (t <= 7000 ? 1 : 0));
+    beats += t > 7000 && guard.outputs().heartbeat != last ? 1 : 0;
+    last = guard.outputs().heartbeat;
+  }
+  CHECK(beats == 0);
+  CHECK(guard.fault().kind == FaultKind::page_silent);
+  CHECK(why_not(guard.arm(9000 * ms)) == "page_silent latched");
+  CHECK_FALSE(guard.clear());
+  CHECK(why_not(guard.arm(9000 * ms)) == "page_silent");
+  guard.page_alive(9000 * ms);
+  CHECK_FALSE(guard.arm(9000 * ms));
+}
+
+TEST_CASE("an enable line that does not follow is a fault; one that stays high ends the heartbeat as well",
+          "[panel][guard]") {
+  Guard guard = enabled_guard();
+  guard.enable_line(1 * ms, true);
+  CHECK(guard.state() == AmplifierState::enabled);
+  SECTION("low although driven high") {
+    guard.enable_line(2 * ms, false);
+    CHECK(guard.fault().kind == FaultKind::enable_line);
+    CHECK(guard.outputs().enable == 0);
+    guard.enable_line(3 * ms, false);
+    CHECK_FALSE(guard.clear());
+  }
+  SECTION("high although driven low") {
+    guard.disable();
+    guard.enable_line(2 * ms, true);
+    CHECK(guard.fault().kind == FaultKind::enable_line);
+    const int heartbeat = guard.outputs().heartbeat;
+    for (std::int64_t t = 10; t < 100; t += 10) {
+      show_life(guard, t * ms);
+      guard.tick(t * ms);
+      CHECK(guard.outputs().heartbeat == heartbeat);
+    }
+    CHECK(why_not(guard.clear()) == "enable_line");
+    guard.enable_line(200 * ms, false);
+    CHECK_FALSE(guard.clear());
+    show_life(guard, 200 * ms);
+    guard.tick(200 * ms);
+    CHECK(guard.outputs().heartbeat != heartbeat);
   }
 }

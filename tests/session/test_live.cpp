@@ -121,7 +121,7 @@ TEST_CASE(
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.lines->remove();
     if (page.kind == PageKind::fault && page.fault == session::FaultKind::lines_gone &&
-        page.detail.find("refused: amplifier: its lines are gone") == 0 && ++refused == 2)
+        page.detail.find("refused: GPIO lines disconnected") == 0 && ++refused == 2)
       room.lines->put_back();
     room.cooperate(page);
   };

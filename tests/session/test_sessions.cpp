@@ -1,7 +1,7 @@
 #include <unistd.h>
 #include <filesystem>
 #include <fstream>
-
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -216,9 +216,8 @@ TEST_CASE("a monitor is told of every trial before and after, and changes none",
 
 TEST_CASE("every fault says what happened, what is safe and what to do in each language", "[session]") {
   using session::FaultKind;
-  for (const auto kind : {FaultKind::other, FaultKind::converter_gone, FaultKind::converter_rate,
-                          FaultKind::amplifier, FaultKind::stop_pressed, FaultKind::touch_gone,
-                          FaultKind::lines_gone, FaultKind::disk_full, FaultKind::stimulus_missed})
+  std::set<std::string> pages;
+  for (const auto kind : terms::fault_kinds)
     for (const auto* language : {"en", "de", "ja"}) {
       const auto text = session::fault_text(kind, language);
       INFO(session::name(kind) << " " << language);
@@ -226,6 +225,7 @@ TEST_CASE("every fault says what happened, what is safe and what to do in each l
       CHECK_FALSE(text.safe.empty());
       CHECK_FALSE(text.to_do.empty());
       if (std::string(language) != "en") CHECK(text.happened != session::fault_text(kind, "en").happened);
+      CHECK(pages.insert(text.happened).second);  // no two kinds share a page
     }
   CHECK(session::fault_text(FaultKind::amplifier, "fi").safe ==
         session::fault_text(FaultKind::amplifier, "en").safe);

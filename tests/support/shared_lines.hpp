@@ -10,11 +10,12 @@ struct SharedLines : turnpoint::panel::Lines {
   static constexpr int enable = 0, heartbeat = 1, fault = 2, stop = 3, count = 4;
 
   explicit SharedLines(std::shared_ptr<turnpoint::panel::SimulatedLines> shared) : lines(std::move(shared)) {}
-  std::optional<turnpoint::panel::Edge> wait(std::int64_t timeout_ns) override {
-    return lines->wait(timeout_ns);
+  std::optional<turnpoint::panel::Edge> wait(std::int64_t timeout_ns, int wake) override {
+    return lines->wait(timeout_ns, wake);
   }
   bool level(int index) override { return lines->level(index); }
   void drive(int index, int level) override { lines->drive(index, level); }
+  std::optional<bool> read_back(int index) override { return lines->read_back(index); }
 
   std::shared_ptr<turnpoint::panel::SimulatedLines> lines;
 };
@@ -29,6 +30,5 @@ inline turnpoint::panel::OpenLines opener(const std::shared_ptr<turnpoint::panel
 
 inline auto guarded(const std::shared_ptr<turnpoint::panel::SimulatedLines>& lines) {
   return turnpoint::panel::guard_amplifier(
-      opener(lines),
-      {SharedLines::enable, SharedLines::heartbeat, SharedLines::fault, SharedLines::stop, false, false});
+      opener(lines), {SharedLines::enable, SharedLines::heartbeat, SharedLines::fault, SharedLines::stop});
 }

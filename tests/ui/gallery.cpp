@@ -1,5 +1,6 @@
 #include "tests/ui/gallery.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "station/session/fault.hpp"
@@ -96,19 +97,25 @@ void add_trials(std::vector<Exhibit>& all, const Words& words) {
 void add_faults(std::vector<Exhibit>& all, const Words& words) {
   using session::FaultKind;
   const std::pair<FaultKind, const char*> faults[] = {
-      {FaultKind::converter_gone, "alsa hw:CARD=DAC,DEV=0: No such device"},
-      {FaultKind::amplifier, "line AMP_FAULT active"},
-      {FaultKind::stop_pressed, "line STOP active"},
-      {FaultKind::touch_gone, "/dev/input/by-id/usb-panel-event: No such device"},
+      {FaultKind::converter_gone, "No such device"},
+      {FaultKind::converter_rate, "191713.4 Hz instead of 192000 Hz"},
+      {FaultKind::converter_saturated, "384 samples clipped"},
+      {FaultKind::audio_silent, ""},
+      {FaultKind::session_silent, ""},
+      {FaultKind::page_silent, ""},
+      {FaultKind::suspended, "the machine slept for 5421.3 s"},
+      {FaultKind::amplifier, "amplifier off after 85 us"},
+      {FaultKind::enable_line, "driven low, reads high"},
+      {FaultKind::stop_pressed, "amplifier off after 85 us"},
       {FaultKind::lines_gone,
-       "refused: amplifier: its lines are gone (gpio line AMP_EN: no chip has a line of this name: No such "
-       "file "
-       "or directory)"},
+       "refused: GPIO lines disconnected: gpio line AMP_EN: no chip has a line of this name: No such file or "
+       "directory"},
+      {FaultKind::touch_gone, "/dev/input/by-id/usb-panel-event: No such device"},
       {FaultKind::disk_full, "lab.sqlite: database or disk is full"},
-      {FaultKind::stimulus_missed, "384 frames lost"},
-      {FaultKind::converter_rate, ""},
-      {FaultKind::other, "the panel does not answer"},
       {FaultKind::disarmed, ""},
+      {FaultKind::limits, "1.8 s of stimulus would exceed the session's time"},
+      {FaultKind::stimulus_missed, "384 frames lost"},
+      {FaultKind::other, "panel: 3 edges of line 0 were lost"},
   };
   for (const auto& [kind, detail] : faults) {
     Page page = base(words, PageKind::fault);
@@ -120,9 +127,10 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
     page.to_do = text.to_do;
     page.detail = detail;
     if (kind == FaultKind::disarmed) page.amplifier = "disarmed";
-    if (kind == FaultKind::amplifier || kind == FaultKind::stop_pressed ||
-        kind == FaultKind::converter_gone || kind == FaultKind::lines_gone)
-      page.amplifier = "faulted";
+    // Of these the amplifier knows nothing: it stays armed.
+    const auto armed = {FaultKind::disarmed,  FaultKind::limits,          FaultKind::touch_gone,
+                        FaultKind::disk_full, FaultKind::stimulus_missed, FaultKind::other};
+    if (std::find(armed.begin(), armed.end(), kind) == armed.end()) page.amplifier = "faulted";
     all.push_back({std::string("fault-") + session::name(kind), page});
   }
 }

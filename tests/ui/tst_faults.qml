@@ -80,7 +80,7 @@ Item {
 
             untilAsked()
             sitting.setStop(true)
-            explained("stop button")
+            explained("emergency stop")
             arm()
             tryVerify(() => page.detail.includes("refused"), 5000)   // it is still pressed
             sitting.setStop(false)
@@ -109,19 +109,19 @@ Item {
 
             tryCompare(page, "kind", PageModel.Rest, 20000)
             sitting.find("converter_gone")
-            explained("converter is gone")
+            explained("sound device was disconnected")
             tap("proceed")
             tryCompare(page, "kind", PageModel.Rest, 5000)
 
             untilAsked()
             sitting.find("touch_gone")
-            explained("touch panel is gone")
+            explained("touch panel was disconnected")
             tap("proceed")
             answer()
             untilAsked()
             sitting.loseFrames(3)
             sitting.find("stimulus_missed")
-            explained("not whole")
+            explained("was interrupted")
             tap("proceed")
             answer()
 

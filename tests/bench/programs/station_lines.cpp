@@ -23,17 +23,13 @@ void say(const std::string& line) {
 }
 
 bool begin(turnpoint::drive::Amplifier& amplifier) {
-  try {
-    amplifier.audio_alive();
-    amplifier.session_alive();
-    if (amplifier.state() == AmplifierState::faulted) amplifier.clear();
-    amplifier.arm();
-    amplifier.enable();
-    return true;
-  } catch (const std::runtime_error& refused) {
-    say(std::string("refused ") + refused.what());
-    return false;
-  }
+  amplifier.audio_alive();
+  amplifier.session_alive();
+  auto refusal = amplifier.clear();
+  if (!refusal) refusal = amplifier.arm();
+  if (!refusal) refusal = amplifier.enable();
+  if (refusal) say("refused " + turnpoint::terms::describe(*refusal));
+  return !refusal;
 }
 
 void run_amplifier(const std::string& uri) {
@@ -44,7 +40,7 @@ void run_amplifier(const std::string& uri) {
     amplifier->session_alive();
     if (running && amplifier->state() == AmplifierState::faulted) {
       say(std::string("fault ") + name(amplifier->state()) + " " + std::to_string(amplifier->reaction_ns()) +
-          " " + amplifier->fault());
+          " " + turnpoint::terms::describe(amplifier->fault()));
       running = false;
     } else if (!running) {
       ::usleep(200'000);

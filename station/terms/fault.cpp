@@ -1,0 +1,51 @@
+#include "station/terms/fault.hpp"
+
+#include <iterator>
+
+namespace turnpoint::terms {
+
+namespace {
+
+struct Entry {
+  FaultKind kind;
+  const char *name, *description;
+};
+
+constexpr Entry entries[] = {
+    {FaultKind::other, "other", "a fault of the station"},
+    {FaultKind::converter_gone, "converter_gone", "sound device disconnected"},
+    {FaultKind::converter_rate, "converter_rate", "sound device running at a wrong rate"},
+    {FaultKind::converter_saturated, "converter_saturated", "signal beyond full scale"},
+    {FaultKind::audio_silent, "audio_silent", "audio thread not responding"},
+    {FaultKind::session_silent, "session_silent", "session not responding"},
+    {FaultKind::page_silent, "page_silent", "participant's page not responding"},
+    {FaultKind::suspended, "suspended", "machine was suspended"},
+    {FaultKind::amplifier, "amplifier", "amplifier reports a fault"},
+    {FaultKind::enable_line, "enable_line", "enable line does not follow"},
+    {FaultKind::stop_pressed, "stop_pressed", "emergency stop pressed"},
+    {FaultKind::lines_gone, "lines_gone", "GPIO lines disconnected"},
+    {FaultKind::touch_gone, "touch_gone", "touch panel disconnected"},
+    {FaultKind::disk_full, "disk_full", "disk full"},
+    {FaultKind::disarmed, "disarmed", "amplifier not armed"},
+    {FaultKind::limits, "limits", "safety limit reached"},
+    {FaultKind::stimulus_missed, "stimulus_missed", "stimulus incomplete"},
+};
+static_assert(std::size(entries) == fault_kinds.size());
+
+constexpr const Entry& entry(FaultKind kind) {
+  for (const Entry& candidate : entries)
+    if (candidate.kind == kind) return candidate;
+  return entries[0];
+}
+
+}  // namespace
+
+const char* name(FaultKind kind) { return entry(kind).name; }
+const char* describe(FaultKind kind) { return entry(kind).description; }
+
+std::string describe(const Fault& fault) {
+  const std::string kind = describe(fault.kind);
+  return fault.detail.empty() ? kind : kind + ": " + fault.detail;
+}
+
+}  // namespace turnpoint::terms
