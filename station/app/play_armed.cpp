@@ -26,7 +26,7 @@ constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // by which the audio thr
 std::string trouble_of(const drive::Event& event, const drive::OutputConfig& output) {
   switch (event.kind) {
     case drive::EventKind::underrun:
-      return fmt::format("{}: {} frames passed in silence; begin again", output.uri, event.frames);
+      return fmt::format("{}: {} frames were lost; begin again", output.uri, event.frames);
     case drive::EventKind::device_lost:
       return output.uri + ": the converter is gone";
     case drive::EventKind::burst_missed:
@@ -36,23 +36,30 @@ std::string trouble_of(const drive::Event& event, const drive::OutputConfig& out
                          output.uri, 1e-3 * static_cast<double>(event.frames), output.rate_Hz);
     case drive::EventKind::burst_started:
     case drive::EventKind::burst_ended:
+    case drive::EventKind::burst_heard:
     case drive::EventKind::device_back:
       return "";
   }
   return "";
 }
 
-/// The stream while the guard sees that somebody lives; throws what went wrong, also a signal to end.
+/// Attends to the stream until `done`, and shows the guard that somebody lives. Throws what went wrong, also
+/// a signal to end.
 void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::function<bool()>& done) {
-  while (!done()) {
+  for (;;) {
+    const bool last = done();  // asked before the events: what happened until then is among them
     amplifier.session_alive();
     while (const auto event = stream.poll())
       if (const auto trouble = trouble_of(*event, stream.config().output); !trouble.empty())
         throw std::runtime_error(trouble);
+    if (const auto clipped = stream.counters().saturated; clipped > 0)
+      throw std::runtime_error(
+          fmt::format("{}: {} samples were clipped", stream.config().output.uri, clipped));
     if (amplifier.state() == drive::AmplifierState::faulted)
       throw std::runtime_error("amplifier: " + terms::describe(amplifier.fault()));
     if (const auto signal = StopSignals::told(); !signal.empty())
       throw std::runtime_error("the program was told to end (" + signal + "); not all was played");
+    if (last) return;
     drive::sleep_until_ns(drive::monotonic_ns() + kPoll_ns);
   }
 }
@@ -75,7 +82,7 @@ std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier,
     stream.schedule(burst);
     end = burst.start_frame + burst.length_frames;
   }
-  attend(stream, amplifier, [&] { return drive::monotonic_ns() >= stream.time_of(end); });
+  attend(stream, amplifier, [&] { return stream.counters().heard >= end; });
   return onset;
 }
 

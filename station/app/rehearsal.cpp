@@ -36,7 +36,7 @@ std::int64_t zero_after_onset_ns(const protocol::Protocol& protocol, const Trial
   }
 }
 
-/// One trial on a clock that only its machine moves: each interval sounds when it is asked for, the answer
+/// One trial on a clock that only its machine moves: the intervals sound when they are asked for, the answer
 /// comes when the observer gives it.
 class Bench {
  public:
@@ -75,12 +75,23 @@ class Bench {
   void perform(const std::vector<trial::Action>& actions, const observer::Reply& reply) {
     for (const auto& action : actions) {
       if (action.kind != trial::ActionKind::present) continue;
-      const auto onset_ns = std::max(now_ns_, action.time_ns);
-      perform(machine_.handle({onset_ns, trial::EventKind::onset, action.value}), reply);
-      if (action.value + 1 != static_cast<int>(spec_.intervals.size()) || !reply.choice) continue;
+      const auto onset_ns = present(std::max(now_ns_, action.time_ns), reply);
+      if (!reply.choice) continue;
       const auto at_ns = onset_ns + zero_after_onset_ns(protocol_, spec_) + ns(reply.response_time_s);
       answer_ = trial::Event{std::max(now_ns_, at_ns), trial::EventKind::answer, *reply.choice};
     }
+  }
+
+  /// Returns the onset of the last interval. Nothing is lost on the way to the surface.
+  std::int64_t present(std::int64_t onset_ns, const observer::Reply& reply) {
+    const auto times = session::interval_times(protocol_, spec_);
+    for (int i = 0; i < static_cast<int>(times.size()); ++i) {
+      if (i > 0)
+        onset_ns += ns(times[static_cast<std::size_t>(i) - 1].length_s + protocol_.task.gap_s.value_or(0));
+      perform(machine_.handle({onset_ns, trial::EventKind::onset, i}), reply);
+      perform(machine_.handle({now_ns_, trial::EventKind::heard, i}), reply);
+    }
+    return onset_ns;
   }
 
   const protocol::Protocol& protocol_;

@@ -1,7 +1,7 @@
 #include "station/drive/alsa_output.hpp"
 
+#include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <system_error>
 
 #include "station/drive/alsa_device.hpp"
@@ -23,27 +23,24 @@ class AlsaOutput final : public Output {
   bool paced() const noexcept override { return true; }
 
   WriteResult write(std::span<const std::int32_t> interleaved) noexcept override {
-    if (recovery_.lost()) return absent();
-    const std::int32_t* at = interleaved.data();
-    auto left = interleaved.size() / static_cast<std::size_t>(config_.channels);
+    const auto frames = static_cast<std::int64_t>(interleaved.size()) / config_.channels;
+    if (recovery_.lost()) return absent(frames);
     WriteResult result;
     // Not before the first block is there: what comes between opening and that would be an underrun.
     if (!running_) {
       running_ = true;
-      if (const int error = start(); error < 0 && !follow(recovery_.transferred({error}), error, result))
-        return result;
+      if (const int error = start(); error < 0) follow(recovery_.transferred({error}), error, frames, result);
     }
-    while (left > 0) {
-      const snd_pcm_sframes_t done = transfer(at, left, result);
+    while (result.status == WriteStatus::ok && result.taken < frames) {
+      const snd_pcm_sframes_t done = transfer(interleaved.data() + result.taken * config_.channels,
+                                              static_cast<std::size_t>(frames - result.taken), result);
       if (done > 0) {
-        at += done * config_.channels;
-        left -= static_cast<std::size_t>(done);
+        result.taken += done;
         frames_ += done;
-        continue;
+      } else if (result.status == WriteStatus::ok) {
+        const bool gone = snd_pcm_state(pcm()) == SND_PCM_STATE_DISCONNECTED;
+        follow(recovery_.transferred({static_cast<int>(done), gone}), static_cast<int>(done), frames, result);
       }
-      const RecoveryAction action =
-          recovery_.transferred({static_cast<int>(done), snd_pcm_state(pcm()) == SND_PCM_STATE_DISCONNECTED});
-      if (!follow(action, static_cast<int>(done), result)) return result;
     }
     return result;
   }
@@ -55,6 +52,7 @@ class AlsaOutput final : public Output {
     snd_htimestamp_t stamp{};
     if (snd_pcm_htimestamp(pcm(), &free, &stamp) < 0 || free > device_.buffer_frames) return std::nullopt;
     if (stamp.tv_sec == 0 && stamp.tv_nsec == 0) return std::nullopt;
+    note_played(free);
     const auto queued = static_cast<std::int64_t>(device_.buffer_frames - free);
     return Position{frames_ - queued, std::int64_t{1'000'000'000} * stamp.tv_sec + stamp.tv_nsec};
   }
@@ -79,44 +77,67 @@ class AlsaOutput final : public Output {
     return snd_pcm_start(pcm());
   }
 
-  // Waits for room and writes some frames; the frames written or a negative errno. Where the device has run
-  // past what was written it goes on in silence, and the frames that it played are skipped.
+  // Waits for room and writes some frames; returns the frames written or a negative errno.
   snd_pcm_sframes_t transfer(const std::int32_t* at, std::size_t frames, WriteResult& result) noexcept {
-    const snd_pcm_sframes_t room = snd_pcm_avail_update(pcm());
-    if (room < 0) return room;
-    if (room > static_cast<snd_pcm_sframes_t>(device_.buffer_frames)) {
-      const auto late = static_cast<snd_pcm_uframes_t>(room) - device_.buffer_frames + device_.period_frames;
-      const snd_pcm_sframes_t skipped = snd_pcm_forward(pcm(), late);
-      if (skipped < 0) return skipped;
-      frames_ += skipped;
-      result.status = WriteStatus::skipped;
-      result.error = -EPIPE;
-      result.lost_frames += skipped;
-      return -EAGAIN;
-    }
-    if (room < static_cast<snd_pcm_sframes_t>(device_.period_frames)) {
+    const auto buffer = static_cast<snd_pcm_sframes_t>(device_.buffer_frames);
+    const auto period = static_cast<snd_pcm_sframes_t>(device_.period_frames);
+    snd_pcm_sframes_t room = snd_pcm_avail(pcm());
+    if (room >= 0 && room < period) {
       const int periods_ms = static_cast<int>(4000LL * config_.period_frames / config_.rate_Hz) + 100;
       const int ready = snd_pcm_wait(pcm(), periods_ms);
       if (ready < 0) return ready;
       if (ready == 0) return stalled();
       stalls_ = 0;
+      room = snd_pcm_avail(pcm());  // the wait may have been longer than the buffer lasts
     }
-    return snd_pcm_writei(pcm(), at, frames);
+    if (room < 0) return room;
+    // With less than an eighth of a period left, the device could overtake the block while it is written.
+    // Plug-ins without a device (null, file) never have anything queued.
+    const bool hardware = snd_pcm_type(pcm()) == SND_PCM_TYPE_HW;
+    const snd_pcm_sframes_t queued = buffer - room;
+    if (queued < (hardware ? period / 8 + 1 : 0))
+      return skip(std::max(period - queued, static_cast<snd_pcm_sframes_t>(frames)), result);
+    note_played(static_cast<snd_pcm_uframes_t>(room));
+    const snd_pcm_sframes_t done = snd_pcm_writei(pcm(), at, frames);
+    if (hardware && done > 0 && snd_pcm_avail(pcm()) + done > buffer) return overtaken(done, frames, result);
+    return done;
+  }
+
+  // The device goes on in silence where it has nothing to play: it gets silence for the next `late` frames.
+  snd_pcm_sframes_t skip(snd_pcm_sframes_t late, WriteResult& result) noexcept {
+    const snd_pcm_sframes_t skipped = snd_pcm_forward(pcm(), static_cast<snd_pcm_uframes_t>(late));
+    if (skipped < 0) return skipped;
+    if (skipped < late) return -EPIPE;
+    frames_ += skipped;
+    result.status = WriteStatus::skipped;
+    result.error = -EPIPE;
+    result.passed = skipped;
+    return 0;
+  }
+
+  // All the same it did: what was written is taken for lost, and the rest of the block is left out.
+  snd_pcm_sframes_t overtaken(snd_pcm_sframes_t done, std::size_t frames, WriteResult& result) noexcept {
+    result.taken += done;
+    result.dropped = done;
+    frames_ += done;
+    return skip(static_cast<snd_pcm_sframes_t>(frames) - done, result);
+  }
+
+  void note_played(snd_pcm_uframes_t room) noexcept {
+    played_ = std::max(played_, frames_ - static_cast<std::int64_t>(device_.buffer_frames - room));
   }
 
   // A device that neither plays nor fails: after five waits it is taken for lost.
   int stalled() noexcept { return ++stalls_ > 5 ? -ENODEV : -EAGAIN; }
 
-  // Carries a recovery out; false where this write is over.
-  bool follow(RecoveryAction action, int error, WriteResult& result) noexcept {
-    for (;;) {
+  // Carries a recovery out, until the device goes on, has been started anew, or is gone.
+  void follow(RecoveryAction action, int error, std::int64_t frames, WriteResult& result) noexcept {
+    while (action != RecoveryAction::go_on) {
       int outcome = 0;
       switch (action) {
-        case RecoveryAction::go_on:
-          return true;
         case RecoveryAction::restart:
           outcome = start();
-          note_gap(error, result);
+          if (outcome >= 0) note_gap(error, result);
           break;
         case RecoveryAction::resume:
           outcome = snd_pcm_resume(pcm());
@@ -126,34 +147,48 @@ class AlsaOutput final : public Output {
           outcome = snd_pcm_resume(pcm());
           break;
         default:
-          device_.pcm.reset();
-          lost_at_ns_ = monotonic_ns();
-          result = {WriteStatus::lost, error, 0};
-          return false;
+          return lose(error, frames, result);
       }
       action = recovery_.acted({outcome, snd_pcm_state(pcm()) == SND_PCM_STATE_DISCONNECTED});
     }
   }
 
+  // The silence that the device was started with counts as frames that passed. What it had before and did not
+  // play is gone.
   void note_gap(int error, WriteResult& result) noexcept {
-    const auto gap =
-        static_cast<std::int64_t>(device_.buffer_frames - device_.period_frames);  // the silence ahead
-    frames_ += gap;
+    const auto gap = static_cast<std::int64_t>(device_.buffer_frames - device_.period_frames);
     result.status = WriteStatus::restarted;
     result.error = error;
-    result.lost_frames += gap;
+    result.passed = gap;
+    result.dropped = frames_ - played_;
+    frames_ += gap;
+    played_ = frames_ - gap;
+  }
+
+  void lose(int error, std::int64_t frames, WriteResult& result) noexcept {
+    device_.pcm.reset();
+    lost_at_ns_ = monotonic_ns();
+    if (result.status == WriteStatus::ok) result.dropped = frames_ - played_;
+    const auto passed = std::max(result.passed, frames - result.taken);
+    frames_ += passed - result.passed;
+    played_ = frames_;
+    result.status = WriteStatus::lost;
+    result.error = error;
+    result.passed = passed;
   }
 
   // Lost: time goes on at the stream's own pace, and the device is tried again by its name.
-  WriteResult absent() noexcept {
+  WriteResult absent(std::int64_t frames) noexcept {
     sleep_until_ns(monotonic_ns() + period_ns());
-    frames_ += config_.period_frames;
-    if (recovery_.absent(monotonic_ns() - lost_at_ns_) != RecoveryAction::reopen)
-      return {WriteStatus::lost, -ENODEV, 0};
-    const int error = reopen();
-    if (recovery_.reopened(error) != RecoveryAction::back) return {WriteStatus::lost, error, 0};
+    frames_ += frames;
+    played_ = frames_;
+    WriteResult result{WriteStatus::lost, -ENODEV, 0, frames, 0};
+    if (recovery_.absent(monotonic_ns() - lost_at_ns_) != RecoveryAction::reopen) return result;
+    result.error = reopen();
+    if (recovery_.reopened(result.error) != RecoveryAction::back) return result;
     stalls_ = 0;
-    return {WriteStatus::reopened, 0, 0};
+    result.status = WriteStatus::reopened;
+    return result;
   }
 
   int reopen() noexcept {
@@ -179,7 +214,8 @@ class AlsaOutput final : public Output {
   AlsaDevice device_;
   std::vector<std::int32_t> silence_;
   Recovery recovery_;
-  std::int64_t frames_ = 0;
+  std::int64_t frames_ = 0;  ///< given to the device, or passed
+  std::int64_t played_ = 0;  ///< of them, as far as is known
   std::int64_t lost_at_ns_ = 0;
   int stalls_ = 0;
   bool running_ = false;

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,35 +10,46 @@
 #include "station/drive/burst.hpp"
 #include "station/drive/frame_clock.hpp"
 #include "station/drive/output.hpp"
+#include "station/drive/prepared_burst.hpp"
 #include "station/drive/rate_check.hpp"
 #include "station/drive/synth.hpp"
 
 namespace turnpoint::drive {
 
+/// Rendered is not heard: a device is given each frame a buffer's length before it plays it. A burst that
+/// began therefore ends twice: burst_ended when its last frame is rendered, and burst_heard when that has
+/// been played and none of its frames were lost. The underrun that costs a burst frames names it instead.
 enum class EventKind : std::int32_t {
   burst_started,  ///< frame: first frame of the burst, as scheduled
-  burst_ended,    ///< frame: first silent frame
-  burst_missed,   ///< the command came when its first frame was already rendered: nothing sounds
-  underrun,       ///< frames: how many passed in silence; what sounded goes on, ramped in
-  device_lost,    ///< the device is gone: nothing sounds until it is back and the operator re-arms
-  device_back,    ///< reopened by name; frames count on
-  rate_wrong,  ///< the measured rate is more than 200 ppm off (`frames`: the rate in mHz): stop the session
+  burst_ended,    ///< frame: first silent frame; the burst's first one where it was stopped before it began
+  burst_heard,   ///< frame: first silent frame; every frame before it has left the device as it was scheduled
+  burst_missed,  ///< the command came when its first frame was already rendered: nothing sounds
+  underrun,      ///< frames [frame, frame + frames) were not played; what sounded goes on, ramped in
+  device_lost,   ///< from `frame` on nothing is played until the device is back and the operator re-arms
+  device_back,   ///< reopened by name; frames count on from `frame`
+  rate_wrong,    ///< the measured rate is more than 200 ppm off (`frames`: the rate in mHz): stop the session
 };
 
 struct Event {
   EventKind kind = EventKind::burst_started;
-  std::uint32_t burst = 0;
+  std::uint32_t burst =
+      0;  ///< of an underrun or a loss: the first burst that lost frames by it; 0 where none did
   std::int64_t frame = 0;
   std::int64_t frames = 0;
   int error = 0;  ///< negative errno of the device, where there is one
+  /// Of an underrun: the device was started anew, so what follows is played at another time than was
+  /// predicted. A burst that was not heard to its end by then has lost frames, even if none of them fell into
+  /// the gap.
+  bool retimed = false;
 };
 
 struct Counters {
   std::int64_t frames = 0;  ///< rendered
+  std::int64_t heard = 0;   ///< left the device, or were lost, as far as is known; losses before are reported
   std::int64_t bursts = 0;  ///< begun
   std::int64_t missed = 0;
   std::int64_t underruns = 0;
-  std::int64_t lost_frames = 0;  ///< passed in silence by underruns
+  std::int64_t lost_frames = 0;  ///< not played, by underruns
   std::int64_t saturated = 0;    ///< samples out of range: a fault if not 0
   std::int64_t device_losses = 0;
   std::int64_t events_dropped = 0;  ///< nobody polled
@@ -62,6 +74,9 @@ struct StreamConfig {
   SynthLimits limits;
   int fifo_priority = 70;
   double converter_delay_s = 0;  ///< group delay of the converter, added to predicted times
+  /// How far a synchronous stream renders ahead of what is heard, as a device with a buffer does: commands
+  /// take effect so many frames later. Other streams have their device's buffer.
+  std::int64_t virtual_lead_frames = 0;
   /// Told audio_alive() after each block that a device took; must outlive the stream. None: null.
   Amplifier* amplifier = nullptr;
 };
@@ -82,9 +97,13 @@ class Stream {
   /// Checks and sends a burst; returns its number (from 1). Throws BurstRefused (limits, sum of overlapping
   /// peaks, start frame already gone, too many waiting).
   virtual std::uint32_t schedule(const Burst& burst) = 0;
-  /// The same at the soonest frame that it is sure to reach once it is checked, which can take longer than a
-  /// buffer lasts (see prepare); not before its own start frame.
-  virtual Scheduled schedule_soon(const Burst& burst) = 0;
+  /// Sends bursts that were checked for this stream's format and limits, in the order of their start frames
+  /// and at exactly their distances: as they say or, where the first one could not be reached any more, all
+  /// later by the same number of frames. Takes microseconds. Throws BurstRefused, and then none of them
+  /// sounds.
+  virtual std::vector<Scheduled> schedule_together(std::span<const PreparedBurst> bursts) = 0;
+  /// Checks one burst, which can take longer than a buffer lasts (see prepare), and sends it as above.
+  Scheduled schedule_soon(const Burst& burst);
   /// Changes a burst that waits or sounds; `at_frame` counts from its start. Throws BurstRefused.
   virtual void change(std::uint32_t burst, const Change& change) = 0;
   /// Ramps one burst (0: all) down as soon as possible, or from an absolute frame. Throws std::runtime_error
@@ -97,13 +116,16 @@ class Stream {
 
   /// The soonest frame that a burst scheduled now is sure to reach.
   virtual std::int64_t earliest_frame() const = 0;
-  /// Frames <-> CLOCK_MONOTONIC (virtual time for a synchronous stream).
+  /// Frames <-> CLOCK_MONOTONIC (virtual time for a synchronous stream). No pairs: nothing is known, as
+  /// before the device has first told its position, while it is lost, and just after it was started anew.
   virtual ClockFit clock() = 0;
-  /// Predicted time at which a frame leaves the converter, group delay included; ns.
-  virtual std::int64_t time_of(std::int64_t frame) = 0;
-  virtual std::int64_t frame_at(std::int64_t time_ns) = 0;
+  /// Predicted time at which a frame leaves the converter, group delay included; ns. None while nothing is
+  /// known.
+  virtual std::optional<std::int64_t> time_of(std::int64_t frame) = 0;
+  virtual std::optional<std::int64_t> frame_at(std::int64_t time_ns) = 0;
 
-  /// What the device's clock was measured at; none before 2 s, and for streams without a device.
+  /// What the clock of the device that is open was measured at; none before 2 s, and for streams without a
+  /// device.
   virtual std::optional<MeasuredRate> measured_rate() = 0;
   virtual Counters counters() const = 0;
   virtual Rights rights() const = 0;

@@ -3,28 +3,36 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace turnpoint::drive {
+namespace {
+
+constexpr const char* not_taken = "burst refused: the audio thread has not taken the last 16 commands";
+
+}  // namespace
 
 EngineCore::EngineCore(const StreamConfig& config)
     : config_(config), synth_(format_of(config.output), config.precision) {}
 
 void EngineCore::send(const Command& command) {
-  if (!commands_->push(command))
-    throw BurstRefused("burst refused: the audio thread has not taken the last 16 commands");
+  if (!commands_->push(command)) throw BurstRefused(not_taken);
 }
 
 // Peaks of bursts that overlap add up, channel by channel.
 void EngineCore::check_room(const PreparedBurst& burst) const {
-  if (open_.size() >= Synth::max_voices)
-    throw BurstRefused(fmt::format("burst refused: {} bursts wait or sound already", open_.size()));
   std::array<double, max_channels> sum = burst.peak;
-  for (const PreparedBurst& other : open_) {
-    if (other.start_frame + other.length_frames <= burst.start_frame ||
-        burst.start_frame + burst.length_frames <= other.start_frame)
+  std::size_t voices = 0;
+  for (const Open& other : open_) {
+    if (other.rendered || other.burst.id == burst.id) continue;
+    ++voices;
+    if (other.end_frame <= burst.start_frame ||
+        burst.start_frame + burst.length_frames <= other.burst.start_frame)
       continue;
-    for (std::size_t c = 0; c < max_channels; ++c) sum[c] += other.peak[c];
+    for (std::size_t c = 0; c < max_channels; ++c) sum[c] += other.burst.peak[c];
   }
+  if (voices >= Synth::max_voices)
+    throw BurstRefused(fmt::format("burst refused: {} bursts wait or sound already", voices));
   for (std::size_t c = 0; c < max_channels; ++c)
     if (sum[c] > config_.limits.peak)
       throw BurstRefused(
@@ -33,43 +41,56 @@ void EngineCore::check_room(const PreparedBurst& burst) const {
 }
 
 std::uint32_t EngineCore::schedule(const Burst& burst, const Earliest& earliest_frame) {
-  gather();
-  PreparedBurst prepared = prepare(burst, format_of(config_.output), config_.limits);
-  if (const auto earliest = earliest_frame(); burst.start_frame < earliest)
-    throw BurstRefused(
-        fmt::format("burst refused: frame {} is gone; the soonest is {}", burst.start_frame, earliest));
-  return start(prepared);
+  const PreparedBurst prepared = prepare(burst, format_of(config_.output), config_.limits);
+  const auto only_then = [&] {
+    const auto earliest = earliest_frame();
+    if (burst.start_frame < earliest)
+      throw BurstRefused(
+          fmt::format("burst refused: frame {} is gone; the soonest is {}", burst.start_frame, earliest));
+    return earliest;
+  };
+  return schedule_together({&prepared, 1}, only_then).front().burst;
 }
 
-Scheduled EngineCore::schedule_soon(const Burst& burst, const Earliest& earliest_frame) {
+std::vector<Scheduled> EngineCore::schedule_together(std::span<const PreparedBurst> bursts,
+                                                     const Earliest& earliest_frame) {
   gather();
-  PreparedBurst prepared = prepare(burst, format_of(config_.output), config_.limits);
-  prepared.start_frame = std::max(prepared.start_frame, earliest_frame());
-  return {start(prepared), prepared.start_frame};
-}
-
-std::uint32_t EngineCore::start(PreparedBurst& burst) {
-  check_room(burst);
-  burst.id = ++last_id_;
+  if (commands_->room() < bursts.size()) throw BurstRefused(not_taken);
+  const auto before = open_.size();
+  std::vector<Scheduled> scheduled;
+  const auto later = std::max<std::int64_t>(0, earliest_frame() - bursts.front().start_frame);
+  try {
+    for (PreparedBurst burst : bursts) {
+      burst.id = ++last_id_;
+      burst.start_frame += later;
+      check_room(burst);
+      open_.push_back({burst, burst.start_frame + burst.length_frames});
+      scheduled.push_back({burst.id, burst.start_frame});
+    }
+  } catch (const BurstRefused&) {
+    open_.resize(before);
+    throw;
+  }
   outgoing_->kind = CommandKind::start;
-  outgoing_->start = burst;
-  send(*outgoing_);
-  open_.push_back(burst);
-  return burst.id;
+  for (std::size_t i = before; i < open_.size(); ++i) {
+    outgoing_->start = open_[i].burst;
+    send(*outgoing_);
+  }
+  return scheduled;
 }
 
 void EngineCore::change(std::uint32_t burst, const Change& change) {
   gather();
-  const auto found = std::find_if(open_.begin(), open_.end(), [&](const auto& b) { return b.id == burst; });
-  if (found == open_.end()) throw BurstRefused(fmt::format("change refused: burst {} has ended", burst));
+  Open* const found = find(burst);
+  if (found == nullptr || found->rendered)
+    throw BurstRefused(fmt::format("change refused: burst {} has ended", burst));
   outgoing_->kind = CommandKind::change;
   outgoing_->burst = burst;
-  outgoing_->change = prepare_change(change, *found, format_of(config_.output), config_.limits);
+  PreparedBurst changed = found->burst;
+  outgoing_->change = prepare_change(change, changed, format_of(config_.output), config_.limits);
+  check_room(changed);
   send(*outgoing_);
-  const PreparedChange& sent = outgoing_->change;
-  for (auto i = static_cast<std::size_t>(found->tone_count); i < static_cast<std::size_t>(sent.count); ++i)
-    found->tones[i] = sent.to[i];
-  found->tone_count = sent.count;
+  found->burst = changed;
 }
 
 void EngineCore::stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame) {
@@ -80,13 +101,65 @@ void EngineCore::stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::
   send(*outgoing_);
 }
 
+EngineCore::Open* EngineCore::find(std::uint32_t burst) {
+  const auto found =
+      std::find_if(open_.begin(), open_.end(), [&](const Open& open) { return open.burst.id == burst; });
+  return found == open_.end() ? nullptr : &*found;
+}
+
+// Which bursts lost frames of [first_frame, end_frame); the first of them, or 0.
+std::uint32_t EngineCore::damage(std::int64_t first_frame, std::int64_t end_frame) {
+  std::uint32_t first = 0;
+  for (Open& open : open_) {
+    if (open.damaged || open.burst.start_frame >= end_frame || open.end_frame <= first_frame) continue;
+    open.damaged = true;
+    if (first == 0) first = open.burst.id;
+  }
+  return first;
+}
+
+// Keeps the list of open bursts as an event of the audio side says.
+void EngineCore::follow(Event& event) {
+  constexpr auto forever = std::numeric_limits<std::int64_t>::max();
+  switch (event.kind) {
+    case EventKind::burst_started:
+      if (Open* const open = find(event.burst)) open->begun = true;
+      break;
+    case EventKind::burst_ended:
+      if (Open* const open = find(event.burst)) open->rendered = true, open->end_frame = event.frame;
+      std::erase_if(open_, [](const Open& open) { return open.rendered && !open.begun; });
+      break;
+    case EventKind::burst_missed:
+      std::erase_if(open_, [&](const Open& open) { return open.burst.id == event.burst; });
+      break;
+    case EventKind::underrun:
+      event.burst = damage(event.frame, event.retimed ? forever : event.frame + event.frames);
+      break;
+    case EventKind::device_lost:
+      event.burst = damage(event.frame, forever);
+      break;
+    case EventKind::device_back:
+      event.burst = damage(0, forever);
+      break;
+    case EventKind::burst_heard:
+    case EventKind::rate_wrong:
+      break;
+  }
+}
+
 void EngineCore::gather() {
+  // Read before the events: a loss before this frame is then among them.
+  const std::int64_t heard = atomics_.heard.load();
   Event event;
   while (events_->pop(event)) {
-    if (event.kind == EventKind::burst_ended || event.kind == EventKind::burst_missed)
-      std::erase_if(open_, [&](const PreparedBurst& burst) { return burst.id == event.burst; });
+    follow(event);
     gathered_.push_back(event);
   }
+  const auto over = [heard](const Open& open) { return open.rendered && open.end_frame <= heard; };
+  for (const Open& open : open_)
+    if (over(open) && !open.damaged)
+      gathered_.push_back({EventKind::burst_heard, open.burst.id, open.end_frame});
+  std::erase_if(open_, over);
 }
 
 std::optional<Event> EngineCore::poll() {
@@ -98,9 +171,17 @@ std::optional<Event> EngineCore::poll() {
 }
 
 Counters EngineCore::counters() const noexcept {
-  return {atomics_.frames.load(),        atomics_.bursts.load(),        atomics_.missed.load(),
-          atomics_.underruns.load(),     atomics_.lost_frames.load(),   atomics_.saturated.load(),
-          atomics_.device_losses.load(), atomics_.events_dropped.load()};
+  Counters counters;
+  counters.frames = atomics_.frames.load();
+  counters.heard = atomics_.heard.load();
+  counters.bursts = atomics_.bursts.load();
+  counters.missed = atomics_.missed.load();
+  counters.underruns = atomics_.underruns.load();
+  counters.lost_frames = atomics_.lost_frames.load();
+  counters.saturated = atomics_.saturated.load();
+  counters.device_losses = atomics_.device_losses.load();
+  counters.events_dropped = atomics_.events_dropped.load();
+  return counters;
 }
 
 void EngineCore::report(const Event& event) noexcept {
@@ -119,11 +200,19 @@ void EngineCore::report(const Event& event) noexcept {
       atomics_.device_losses.fetch_add(1);
       break;
     case EventKind::burst_ended:
+    case EventKind::burst_heard:
     case EventKind::device_back:
     case EventKind::rate_wrong:
       break;
   }
   if (!events_->push(event)) atomics_.events_dropped.fetch_add(1);
+}
+
+void EngineCore::lose(const Event& event, std::int64_t next_frame) noexcept {
+  synth_.skip_to(next_frame);
+  // Before the event: whoever has read that schedules nothing into the gap.
+  atomics_.frames.store(next_frame);
+  report(event);
 }
 
 void EngineCore::take_commands() noexcept {

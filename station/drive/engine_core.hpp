@@ -10,7 +10,8 @@
 namespace turnpoint::drive {
 
 /// What every transport drives: commands go in and events come out through rings, blocks are rendered in
-/// between. `process` and `report` belong to the audio side, everything else to one control thread.
+/// between. `process`, `pass`, `heard`, `lose` and `report` belong to the audio side, everything else to one
+/// control thread.
 class EngineCore {
  public:
   explicit EngineCore(const StreamConfig& config);
@@ -18,7 +19,8 @@ class EngineCore {
   /// The soonest frame that can be reached, asked once the burst is checked.
   using Earliest = std::function<std::int64_t()>;
   std::uint32_t schedule(const Burst& burst, const Earliest& earliest_frame);
-  Scheduled schedule_soon(const Burst& burst, const Earliest& earliest_frame);
+  std::vector<Scheduled> schedule_together(std::span<const PreparedBurst> bursts,
+                                           const Earliest& earliest_frame);
   void change(std::uint32_t burst, const Change& change);
   void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame);
   std::optional<Event> poll();
@@ -28,6 +30,11 @@ class EngineCore {
   void process(std::int64_t frame, std::span<std::int32_t> samples) noexcept;
   /// The same without samples: commands and events alone.
   void pass(std::int64_t frame, std::int64_t frames) noexcept;
+  /// Everything before `frame` has been played, but for what was reported as lost before this call.
+  void heard(std::int64_t frame) noexcept { atomics_.heard.store(frame); }
+  /// Frames were lost as the event says, and the next one to be rendered is `next_frame`, at or after the end
+  /// of what was rendered.
+  void lose(const Event& event, std::int64_t next_frame) noexcept;
   /// An event of the transport; counts it too.
   void report(const Event& event) noexcept;
 
@@ -41,21 +48,29 @@ class EngineCore {
     PreparedChange change;
     PreparedBurst start;
   };
+  /// A burst that has been sent and was neither heard nor named by a loss yet.
+  struct Open {
+    PreparedBurst burst;
+    std::int64_t end_frame = 0;  ///< as scheduled, or once it is rendered as it really is
+    bool begun = false, rendered = false, damaged = false;
+  };
   struct Atomics {
-    std::atomic<std::int64_t> frames{0}, bursts{0}, missed{0}, underruns{0}, lost_frames{0}, saturated{0},
-        device_losses{0}, events_dropped{0};
+    std::atomic<std::int64_t> frames{0}, heard{0}, bursts{0}, missed{0}, underruns{0}, lost_frames{0},
+        saturated{0}, device_losses{0}, events_dropped{0};
   };
 
   void take_commands() noexcept;
   void report_until(std::int64_t frame) noexcept;
   void send(const Command& command);
   void gather();
+  void follow(Event& event);
+  std::uint32_t damage(std::int64_t first_frame, std::int64_t end_frame);
+  Open* find(std::uint32_t burst);
   void check_room(const PreparedBurst& burst) const;
-  std::uint32_t start(PreparedBurst& burst);
 
   StreamConfig config_;
   std::uint32_t last_id_ = 0;
-  std::vector<PreparedBurst> open_;  ///< waiting or sounding, as far as the control side knows
+  std::vector<Open> open_;  ///< in the order sent
   std::deque<Event> gathered_;
   std::unique_ptr<Command> outgoing_ = std::make_unique<Command>();
   std::unique_ptr<Command> incoming_ = std::make_unique<Command>();

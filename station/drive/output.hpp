@@ -24,14 +24,22 @@ struct OutputConfig {
 
 Format format_of(const OutputConfig& config) noexcept;
 
-/// How a write ended. skipped: the device ran on in silence and the lost frames were passed over. restarted:
-/// it had to be started anew, so frames and time have a new relation. lost: the device is gone (said at every
-/// write until it is back). reopened: it takes frames again.
+/// How a write ended. skipped: the device ran past what it had and played silence, and those frames were
+/// passed over. restarted: the device had to be started anew, so frames and time have a new relation. lost:
+/// the device is gone (reported by every write until it is back). reopened: the device takes frames again.
 enum class WriteStatus { ok, skipped, restarted, lost, reopened };
+
+/// Unless `status` is ok, the frames of the block after the first `taken` were not written, and must not be:
+/// they belong to a time that has passed. The next frame to write is then `taken + passed` after the block's
+/// first.
 struct WriteResult {
   WriteStatus status = WriteStatus::ok;
-  int error = 0;                 ///< negative errno
-  std::int64_t lost_frames = 0;  ///< that passed in silence
+  int error = 0;            ///< negative errno
+  std::int64_t taken = 0;   ///< frames of this block that the device took
+  std::int64_t passed = 0;  ///< frames after those that pass in silence
+  /// Frames up to and including the taken ones that the device was given and (as far as is known) never
+  /// played.
+  std::int64_t dropped = 0;
 };
 
 /// A frame and when it was at the converter.
@@ -45,8 +53,8 @@ class Output {
  public:
   virtual ~Output() = default;
   virtual const OutputConfig& config() const noexcept = 0;
-  /// Writes whole frames; blocks as long as the device does (files and null do not). Allocates and locks
-  /// nothing.
+  /// Writes whole frames; blocks as long as the device does (files and null do not). Comes back at once,
+  /// without writing the rest, where frames were lost. Allocates and locks nothing.
   virtual WriteResult write(std::span<const std::int32_t> interleaved) noexcept = 0;
   /// The newest known position, if the device tells; frames count from the first one written.
   virtual std::optional<Position> position() noexcept = 0;

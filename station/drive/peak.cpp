@@ -34,24 +34,39 @@ Response impulse_response(const PreparedNoise& noise) {
   return response;
 }
 
+using Channels = std::array<double, max_channels>;
+
+Channels sum_of(const std::array<PreparedTone, max_tones>& tones, int count) {
+  Channels sum{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i)
+    sum[static_cast<std::size_t>(tones[i].channel)] += tones[i].amplitude;
+  return sum;
+}
+
+Channels with_marker_and_noise(Channels tones, const PreparedBurst& burst) {
+  if (burst.marker.kind != MarkerKind::none)
+    tones[static_cast<std::size_t>(burst.marker.channel)] += std::abs(burst.marker.amplitude);
+  if (burst.noise.gain > 0)
+    tones[static_cast<std::size_t>(burst.noise.channel)] +=
+        burst.noise.gain * impulse_response(burst.noise).magnitude;
+  return tones;
+}
+
 }  // namespace
 
 double noise_rms(const PreparedNoise& noise) { return std::sqrt(impulse_response(noise).energy / 3); }
 
 std::array<double, max_channels> peak_bound(const PreparedBurst& burst) {
-  std::array<double, max_channels> bound{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(burst.tone_count); ++i) {
-    double largest = burst.tones[i].amplitude;
-    for (std::size_t c = 0; c < static_cast<std::size_t>(burst.change_count); ++c)
-      largest = std::max(largest, burst.changes[c].to[i].amplitude);
-    bound[static_cast<std::size_t>(burst.tones[i].channel)] += largest;
+  Channels largest = sum_of(burst.tones, burst.tone_count);
+  for (std::size_t k = 0; k < static_cast<std::size_t>(burst.change_count); ++k) {
+    const Channels sum = sum_of(burst.changes[k].to, burst.changes[k].count);
+    for (std::size_t c = 0; c < max_channels; ++c) largest[c] = std::max(largest[c], sum[c]);
   }
-  if (burst.marker.kind != MarkerKind::none)
-    bound[static_cast<std::size_t>(burst.marker.channel)] += std::abs(burst.marker.amplitude);
-  if (burst.noise.gain > 0)
-    bound[static_cast<std::size_t>(burst.noise.channel)] +=
-        burst.noise.gain * impulse_response(burst.noise).magnitude;
-  return bound;
+  return with_marker_and_noise(largest, burst);
+}
+
+std::array<double, max_channels> peak_bound(const PreparedBurst& burst, const PreparedChange& change) {
+  return with_marker_and_noise(sum_of(change.to, change.count), burst);
 }
 
 std::array<double, max_channels> rendered_peak(const PreparedBurst& burst, const Format& format) {

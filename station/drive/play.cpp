@@ -35,6 +35,11 @@ PlayReport played(const StreamConfig& config, Burst burst) {
 
 }  // namespace
 
+Scheduled Stream::schedule_soon(const Burst& burst) {
+  const PreparedBurst prepared = prepare(burst, format_of(config().output), config().limits);
+  return schedule_together({&prepared, 1}).front();
+}
+
 PlayReport report_of(Stream& stream) {
   PlayReport report;
   report.counters = stream.counters();

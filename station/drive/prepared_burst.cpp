@@ -177,22 +177,24 @@ PreparedBurst prepare(const Burst& burst, const Format& format, const SynthLimit
   return out;
 }
 
-PreparedChange prepare_change(const Change& change, const PreparedBurst& burst, const Format& format,
+PreparedChange prepare_change(const Change& change, PreparedBurst& burst, const Format& format,
                               const SynthLimits& limits) {
   PreparedChange out = prepare(change, burst.tones, burst.tone_count, format, limits);
   out.live = true;
   PreparedBurst with = burst;
-  with.changes[0] = out;
-  with.change_count = 1;
   for (auto i = static_cast<std::size_t>(burst.tone_count); i < static_cast<std::size_t>(out.count); ++i) {
     with.tones[i] = out.to[i];
     with.tones[i].amplitude = 0;
   }
   with.tone_count = out.count;
-  const auto peak = peak_bound(with);
-  for (std::size_t c = 0; c < max_channels; ++c)
-    if (peak[c] > limits.peak)
-      refuse("change may reach {:.6f} of full scale on channel {}; allowed {:.6f}", peak[c], c, limits.peak);
+  const auto own = peak_bound(with), live = peak_bound(with, out);
+  for (std::size_t c = 0; c < max_channels; ++c) {
+    with.peak[c] = std::max({burst.peak[c], own[c], live[c]});
+    if (with.peak[c] > limits.peak)
+      refuse("change may reach {:.6f} of full scale on channel {}; allowed {:.6f}", with.peak[c], c,
+             limits.peak);
+  }
+  burst = with;
   return out;
 }
 

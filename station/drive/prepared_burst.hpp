@@ -92,9 +92,12 @@ static_assert(std::is_trivially_copyable_v<PreparedBurst>);
 /// values that are not finite.
 PreparedBurst prepare(const Burst& burst, const Format& format, const SynthLimits& limits = {});
 
-/// A change for a burst that may be sounding already (`current` are its tones now): same checks. Peaks are
-/// bounded by sums of the larger amplitudes, since a live change cannot wait for a rendering.
-PreparedChange prepare_change(const Change& change, const PreparedBurst& burst, const Format& format,
+/// A change for a burst that may be sounding already: the same checks. `burst` is what the control side knows
+/// of it, and gets the change's tones and the new peak. All tones glide by the same weight, so no mixture of
+/// the sets that they pass between is larger than the largest: the peak is the largest sum of amplitudes of
+/// the burst's first tones, of its own changes, and of all live ones so far, since a live change cannot wait
+/// for a rendering.
+PreparedChange prepare_change(const Change& change, PreparedBurst& burst, const Format& format,
                               const SynthLimits& limits = {});
 
 }  // namespace turnpoint::drive

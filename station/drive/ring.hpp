@@ -23,6 +23,11 @@ class Ring {
     return true;
   }
 
+  /// Producer only. How many more are sure to fit.
+  std::size_t room() const noexcept {
+    return Capacity - (head_.load(std::memory_order_relaxed) - tail_.load(std::memory_order_acquire));
+  }
+
   /// Consumer only. False, and `value` untouched, when empty.
   [[nodiscard]] bool pop(T& value) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);

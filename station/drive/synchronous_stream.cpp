@@ -23,17 +23,17 @@ class Synchronous final : public SynchronousStream {
   }
 
   std::uint32_t schedule(const Burst& burst) override {
-    return core_.schedule(burst, [this] { return frame_; });
+    return core_.schedule(burst, [this] { return earliest_frame(); });
   }
-  Scheduled schedule_soon(const Burst& burst) override {
-    return core_.schedule_soon(burst, [this] { return frame_; });
+  std::vector<Scheduled> schedule_together(std::span<const PreparedBurst> bursts) override {
+    return core_.schedule_together(bursts, [this] { return earliest_frame(); });
   }
   void change(std::uint32_t burst, const Change& change) override { core_.change(burst, change); }
   void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame) override {
-    core_.stop(burst, ramp, frame);
+    core_.stop(burst, ramp, std::max(earliest_frame(), frame.value_or(0)));
   }
   std::optional<Event> poll() override { return core_.poll(); }
-  std::int64_t earliest_frame() const override { return frame_; }
+  std::int64_t earliest_frame() const override { return frame_ + config_.virtual_lead_frames; }
   Counters counters() const override { return core_.counters(); }
   Rights rights() const override { return {}; }
   std::optional<MeasuredRate> measured_rate() override { return std::nullopt; }
@@ -42,9 +42,9 @@ class Synchronous final : public SynchronousStream {
   std::int64_t now_ns() const override { return exact_time(frame_); }
   void finish() override { output_->finish(); }
 
-  ClockFit clock() override { return {frame_, exact_time(frame_), 1e9 / config_.output.rate_Hz, 0, 0}; }
-  std::int64_t time_of(std::int64_t frame) override { return exact_time(frame) + delay_ns(); }
-  std::int64_t frame_at(std::int64_t time_ns) override {
+  ClockFit clock() override { return {frame_, exact_time(frame_), 1e9 / config_.output.rate_Hz, 0, 1}; }
+  std::optional<std::int64_t> time_of(std::int64_t frame) override { return exact_time(frame) + delay_ns(); }
+  std::optional<std::int64_t> frame_at(std::int64_t time_ns) override {
     const std::int64_t since = time_ns - delay_ns() - origin_ns_, rate = config_.output.rate_Hz;
     const std::int64_t seconds = since / 1'000'000'000, rest = since % 1'000'000'000;
     return seconds * rate + std::llround(static_cast<double>(rest * rate) / 1e9);
@@ -56,6 +56,7 @@ class Synchronous final : public SynchronousStream {
       if (config_.samples == Samples::passed) {
         core_.pass(frame_, count);
         frame_ += count, frames -= count;
+        core_.heard(frame_);
         continue;
       }
       const auto samples = std::span(block_).first(static_cast<std::size_t>(count) *
@@ -67,6 +68,7 @@ class Synchronous final : public SynchronousStream {
         throw std::system_error(-result.error, std::generic_category(), config_.output.uri);
       frame_ += count;
       frames -= count;
+      core_.heard(frame_);
     }
   }
 

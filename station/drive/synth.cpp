@@ -35,13 +35,13 @@ struct Synth::State {
   }
 
   // Frames between the last block and `frame` were lost: what sounds comes back ramped.
-  void enter(std::int64_t frame) noexcept {
-    if (frame == next_frame) return;
+  void skip_to(std::int64_t frame) noexcept {
     for (Slot& slot : slots) {
       if (slot.phase == Phase::unused) continue;
       const std::int64_t start = slot.voice.burst().start_frame;
       if (start < frame) slot.voice.resume(frame - start);
     }
+    next_frame = frame;
   }
 
   bool active() const noexcept {
@@ -62,7 +62,7 @@ struct Synth::State {
   /// Takes every voice over these frames by `go(voice, frame of the burst)`, and says what began and ended.
   template <class Go>
   void step(std::int64_t frame, int frames, const Go& go) noexcept {
-    enter(frame);
+    if (frame != next_frame) skip_to(frame);
     for (Slot& slot : slots) {
       if (slot.phase == Phase::unused) continue;
       const PreparedBurst& burst = slot.voice.burst();
@@ -180,6 +180,8 @@ void Synth::render(std::int64_t frame, std::span<double> samples) noexcept {
         samples[(done + n) * channels + c] = state_->mix.samples[c][n];
   }
 }
+
+void Synth::skip_to(std::int64_t frame) noexcept { state_->skip_to(std::max(frame, state_->next_frame)); }
 
 void Synth::pass(std::int64_t frame, std::int64_t frames) noexcept {
   for (std::int64_t done = 0; done < frames; done += max_block) {

@@ -45,8 +45,9 @@ class Synth {
   /// start. One whose frame is already gone begins with the next block; the newest supersedes one that still
   /// waits, and takes over from a glide in progress. False when the burst is gone.
   [[nodiscard]] bool change(std::uint32_t burst, const PreparedChange& change) noexcept;
-  /// Ramps a burst (0: all) down from `frame`, or from the next block where that is gone. A ramp in progress
-  /// is followed by product, so that nothing jumps. Bursts that have not begun by then never do.
+  /// Ramps a burst (0: all) down from `frame`, or from the next block where that is gone. A second stop that
+  /// ends sooner multiplies with the ramp in progress, so that nothing jumps; one that ends later changes
+  /// nothing. Bursts that have not begun by then never do.
   void stop(std::uint32_t burst, std::int64_t frame, const Ramp& ramp) noexcept;
 
   /// Writes frames [frame, frame + samples.size() / channels) left-aligned into interleaved `samples`. Where
@@ -55,6 +56,9 @@ class Synth {
   void render(std::int64_t frame, std::span<std::int32_t> samples) noexcept;
   /// The same before dither and quantisation, as doubles, for measurement.
   void render(std::int64_t frame, std::span<double> samples) noexcept;
+  /// The last block, or its end, was not played: the next one begins at `frame`, which is at or after the end
+  /// of what was rendered, and what has begun by then comes back ramped in.
+  void skip_to(std::int64_t frame) noexcept;
   /// Goes on by so many frames without computing them: the same events, and the same samples afterwards
   /// (masking noise excepted).
   void pass(std::int64_t frame, std::int64_t frames) noexcept;

@@ -29,7 +29,7 @@ void Voice::begin(const PreparedBurst& burst) noexcept {
   glide_end_ = never;
   next_change_ = 0;
   live_waits_ = false;
-  stop_at_ = never;
+  stop_count_ = 0;
   resume_at_ = -never;
   high_[0] = high_[1] = low_[0] = low_[1] = 0;
 }
@@ -40,9 +40,9 @@ void Voice::change(const PreparedChange& change) noexcept {
 }
 
 void Voice::stop(std::int64_t at, const Ramp& ramp) noexcept {
-  if (stop_at_ != never && stop_at_ + stop_ramp_.frames <= at + ramp.frames) return;  // ends sooner already
-  stop_at_ = at;
-  stop_ramp_ = ramp;
+  const Stop stop{at, ramp};
+  if (stop_count_ == stops_.size() || stop.end() >= end()) return;
+  stops_[stop_count_++] = stop;
 }
 
 void Voice::resume(std::int64_t at) noexcept {
@@ -51,8 +51,7 @@ void Voice::resume(std::int64_t at) noexcept {
 }
 
 std::int64_t Voice::end() const noexcept {
-  if (stop_at_ == never) return burst_.length_frames;
-  return std::min(burst_.length_frames, std::max<std::int64_t>(0, stop_at_ + stop_ramp_.frames));
+  return stop_count_ == 0 ? burst_.length_frames : std::max<std::int64_t>(0, stops_[stop_count_ - 1].end());
 }
 
 const PreparedChange* Voice::due_change(std::int64_t at) const noexcept {
@@ -154,7 +153,7 @@ void Voice::tones(std::int64_t at, int offset, int count, Scratch& scratch, cons
 // The product of all ramps that touch these frames; false where there is none and the gain is 1.
 bool Voice::gains(std::int64_t at, int count, Scratch& scratch) const noexcept {
   const std::int64_t last = at + count, ramp = burst_.ramp.frames, fall = burst_.length_frames - ramp;
-  const bool rising = at<ramp, falling = last> fall, stopping = last > stop_at_,
+  const bool rising = at<ramp, falling = last> fall, stopping = stop_count_ > 0,
              resuming = resume_at_ != -never && at < resume_at_ + ramp;
   if (!(rising || falling || stopping || resuming)) return false;
   for (int n = 0; n < count; ++n) {
@@ -162,8 +161,9 @@ bool Voice::gains(std::int64_t at, int count, Scratch& scratch) const noexcept {
     double gain = 1;
     if (f < ramp) gain *= ramp_at(burst_.ramp.shape, f, ramp);
     if (f >= fall) gain *= ramp_at(burst_.ramp.shape, burst_.length_frames - 1 - f, ramp);
-    if (f >= stop_at_)
-      gain *= ramp_at(stop_ramp_.shape, stop_at_ + stop_ramp_.frames - 1 - f, stop_ramp_.frames);
+    for (std::size_t s = 0; s < stop_count_; ++s)
+      if (f >= stops_[s].at)
+        gain *= ramp_at(stops_[s].ramp.shape, stops_[s].end() - 1 - f, stops_[s].ramp.frames);
     if (resuming && f < resume_at_ + ramp) gain *= ramp_at(burst_.ramp.shape, f - resume_at_, ramp);
     scratch.gain[static_cast<std::size_t>(n)] = gain;
   }

@@ -37,6 +37,7 @@ class Voice {
   void begin(const PreparedBurst& burst) noexcept;
   /// Supersedes any live change that still waits.
   void change(const PreparedChange& change) noexcept;
+  /// Ignored where the burst ends as soon already, and after eight stops.
   void stop(std::int64_t at, const Ramp& ramp) noexcept;
   /// Frames were lost: from `at` the sound comes back ramped.
   void resume(std::int64_t at) noexcept;
@@ -71,8 +72,13 @@ class Voice {
   int next_change_ = 0;
   bool live_waits_ = false;
   PreparedChange live_;
-  std::int64_t stop_at_ = never;
-  Ramp stop_ramp_;
+  struct Stop {
+    std::int64_t at = 0;
+    Ramp ramp;
+    std::int64_t end() const noexcept { return at + ramp.frames; }
+  };
+  std::array<Stop, 8> stops_;  ///< each ends sooner than the one before it; their gains multiply
+  std::size_t stop_count_ = 0;
   std::int64_t resume_at_ = -never;
   double high_[2] = {}, low_[2] = {};  ///< filter states of the noise
 };

@@ -83,7 +83,9 @@ class WavOutput final : public Output {
   WriteResult write(std::span<const std::int32_t> interleaved) noexcept override {
     if (error_ == 0 && data_bytes_ + interleaved.size_bytes() > most_bytes) error_ = EFBIG;
     if (error_ == 0) error_ = write_all(descriptor_, interleaved.data(), interleaved.size_bytes());
-    if (error_ != 0) return {WriteStatus::lost, -error_, 0};
+    if (error_ != 0)
+      return {WriteStatus::lost, -error_, 0,
+              static_cast<std::int64_t>(interleaved.size()) / config_.channels};
     data_bytes_ += interleaved.size_bytes();
     return {};
   }

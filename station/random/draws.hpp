@@ -22,6 +22,7 @@ enum class Stream : std::uint32_t {
   observer = 11,
   bootstrap = 12,
   adjustment_start = 13,
+  masking_noise = 14,
 };
 
 /// The place of a draw: the same key gives the same numbers, whatever was drawn elsewhere, so that a repeated

@@ -20,7 +20,8 @@ enum class InputKind {
   contact,      ///< value 1: finger on the surface, 0: lifted; number: where along it, 0 to 1, or below 0
   stop,         ///< participant or operator wants to stop, or whoever text says; what was done is kept
   pause,        ///< operator
-  xrun,         ///< the drive lost frames
+  xrun,         ///< the drive lost frames; value 1: of what was presented last, 0: of silence
+  heard,        ///< value = index of the interval of which every frame has been played; never logged
   fault,        ///< `fault` says what, text the detail; from drive, amplifier or panel: the trial is void
   failure,      ///< text says what: the session cannot go on
   notice,       ///< text says what; for the log only

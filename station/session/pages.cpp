@@ -28,7 +28,6 @@ std::string instruction_of(const protocol::Block& block) {
 PageKind kind_of(Phase phase) {
   switch (phase) {
     case Phase::cue:
-    case Phase::onset:
       return PageKind::cue;
     case Phase::stimulus:
       return PageKind::stimulus;

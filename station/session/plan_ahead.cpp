@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 #include "station/protocol/resolve.hpp"
+#include "station/random/draws.hpp"
+#include "station/session/burst.hpp"
+#include "station/session/stage.hpp"
+#include "station/session/trial_plan.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::session {
@@ -30,8 +35,8 @@ std::string key_of(const TrialSpec& trial) {
 
 }  // namespace
 
-PlanAhead::PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol)
-    : protocol_(protocol), planner_(rig) {
+PlanAhead::PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol, std::uint64_t seed)
+    : rig_(rig), protocol_(protocol), seed_(seed), planner_(rig) {
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
@@ -52,7 +57,7 @@ bool PlanAhead::ready(const TrialSpec& trial) {
   return done_key_ == key;
 }
 
-const PlanAhead::Plans& PlanAhead::take(const TrialSpec& trial) {
+const PlanAhead::Planned& PlanAhead::take(const TrialSpec& trial) {
   begin(trial);
   const auto key = key_of(trial);
   std::unique_lock lock(mutex_);
@@ -66,30 +71,51 @@ void PlanAhead::run(const std::stop_token& stop) {
   while (changed_.wait(lock, stop, [this] { return wanted_.has_value(); })) {
     const TrialSpec trial = *std::exchange(wanted_, std::nullopt);
     lock.unlock();
-    Plans plans;
+    Planned planned;
     std::exception_ptr failed;
     try {
-      plans = plan(trial);
+      planned = plan(trial);
     } catch (...) {
       failed = std::current_exception();
     }
     lock.lock();
-    done_ = std::move(plans);
+    done_ = std::move(planned);
     failed_ = failed;
     done_key_ = key_of(trial);
     changed_.notify_all();
   }
 }
 
-PlanAhead::Plans PlanAhead::plan(const TrialSpec& trial) {
-  Plans plans;
+PlanAhead::Planned PlanAhead::plan(const TrialSpec& trial) {
+  Planned planned;
   for (std::size_t i = 0; i < trial.intervals.size(); ++i) {
-    plans.emplace_back();
+    auto& scenes = planned.plans.emplace_back();
     for (const auto& name : trial.intervals[i])
-      plans.back().push_back(
-          planner_.plan(protocol::resolve(protocol_, name, trial.factors, trial.rove_dB[i])));
+      scenes.push_back(planner_.plan(protocol::resolve(protocol_, name, trial.factors, trial.rove_dB[i])));
   }
-  return plans;
+  planned.bursts = bursts_of(trial, planned.plans);
+  return planned;
+}
+
+std::vector<drive::PreparedBurst> PlanAhead::bursts_of(const TrialSpec& trial, const Plans& plans) const {
+  const auto stream = stream_of(rig_);
+  const int rate_Hz = stream.output.rate_Hz;
+  const auto times = interval_times(protocol_, trial);
+  const auto& task = protocol_.task;
+  random::Draws noise(
+      {seed_, random::Stream::masking_noise, trial.block_index, trial.attempt, trial.trial_in_block});
+  std::vector<drive::PreparedBurst> bursts;
+  std::int64_t start_frame = 0;
+  for (std::size_t i = 0; i < plans.size(); ++i) {
+    auto burst = burst_of(plans[i], times[i].starts_s, task.transition_ms.value_or(50) * 1e-3,
+                          times[i].length_s, rate_Hz);
+    if (rig_.marker) mark(burst, *rig_.marker, rate_Hz);
+    if (rig_.noise && task.sound == protocol::Sound::masking_noise) mask(burst, *rig_.noise, noise.bits());
+    burst.start_frame = start_frame;
+    start_frame += burst.length_frames + std::llround(task.gap_s.value_or(0) * rate_Hz);
+    bursts.push_back(drive::prepare(burst, drive::format_of(stream.output), stream.limits));
+  }
+  return bursts;
 }
 
 }  // namespace turnpoint::session

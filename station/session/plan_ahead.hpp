@@ -1,5 +1,6 @@
 #pragma once
 #include <condition_variable>
+#include <cstdint>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -7,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "station/drive/prepared_burst.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
@@ -14,16 +16,21 @@
 
 namespace turnpoint::session {
 
-/// Plans trials before they are wanted, on a thread of its own: the session begins the next one as soon as
-/// the last is decided, and takes it at its start. The planner's results do not depend on when it is asked,
-/// so neither do the stimuli.
+/// Plans trials, down to the peaks of their bursts, before they are wanted, on a thread of its own: the
+/// session begins the next one as soon as the last is decided, and takes it at its start. The planner's
+/// results do not depend on when it is asked, so neither do the stimuli.
 class PlanAhead {
  public:
-  /// For each interval of a trial the plans of its scenes.
+  /// For each interval of a trial the plans of its scenes, and what the drive plays: checked, with its peaks,
+  /// and with start frames that count from the first interval's onset.
   using Plans = std::vector<std::vector<scene::DrivePlan>>;
+  struct Planned {
+    Plans plans;
+    std::vector<drive::PreparedBurst> bursts;
+  };
 
-  /// The rig and the protocol must outlive it. Throws as scene::Planner.
-  PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol);
+  /// The rig and the protocol must outlive it. `seed` is the session's. Throws as scene::Planner.
+  PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol, std::uint64_t seed);
   ~PlanAhead();
 
   /// Begins a trial; one that waits and was not begun yet is dropped for it. Beginning the same again does
@@ -32,19 +39,23 @@ class PlanAhead {
   /// True where take() would not wait.
   bool ready(const TrialSpec& trial);
   /// The plans of a trial, waiting for them if need be. Throws what planning them threw.
-  const Plans& take(const TrialSpec& trial);
+  const Planned& take(const TrialSpec& trial);
 
  private:
   void run(const std::stop_token& stop);
-  Plans plan(const TrialSpec& trial);
+  Planned plan(const TrialSpec& trial);
+  std::vector<drive::PreparedBurst> bursts_of(const TrialSpec& trial,
+                                              const std::vector<std::vector<scene::DrivePlan>>& plans) const;
 
+  const rig::Rig& rig_;
   const protocol::Protocol& protocol_;
+  const std::uint64_t seed_;
   scene::Planner planner_;  // worker thread only
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<TrialSpec> wanted_;  ///< newest trial asked for and not yet begun
   std::string wanted_key_, done_key_;
-  Plans done_;
+  Planned done_;
   std::exception_ptr failed_;
   std::jthread thread_;  // last: joined before what it uses goes
 };

@@ -18,7 +18,8 @@ constexpr std::int64_t kPoll_ns = 5'000'000;        // how often drive and guard
 constexpr std::int64_t kClocks_ns = 1'000'000'000;  // how often the clocks are compared
 constexpr std::int64_t kSettle_ns = 50'000'000;     // an amplifier comes up in silence
 constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
-constexpr std::int64_t kTail_ns = 20'000'000;  // and goes down after it
+constexpr std::int64_t kFirstPosition_ns = 500'000'000;  // of a device that was started anew
+constexpr std::int64_t kTail_ns = 20'000'000;            // and goes down after it
 
 class RealStage : public Stage {
  public:
@@ -52,17 +53,23 @@ class RealStage : public Stage {
     }
   }
 
-  Onset present(drive::Burst burst, std::int64_t earliest_ns) override {
-    const auto onset = schedule(*stream_, burst, std::max(earliest_ns, opened_ns_ + kSettle_ns), sounding_);
-    quiet_ns_ = std::max(quiet_ns_, stream_->time_of(onset.frame + burst.length_frames));
-    return onset;
+  std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
+                             std::int64_t earliest_ns) override {
+    const auto until_ns = now_ns() + kFirstPosition_ns;
+    wait_for([&] { return stream_->clock().pairs > 0 || now_ns() > until_ns; });
+    auto onsets = schedule(*stream_, intervals, std::max(earliest_ns, opened_ns_ + kSettle_ns), presented_);
+    if (onsets.empty())
+      push_fault(now_ns(), FaultKind::stimulus_missed, "the converter does not say what it is playing");
+    else
+      quiet_ns_ = std::max(quiet_ns_, end_ns(onsets.back(), intervals.back().length_frames));
+    return onsets;
   }
 
   std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
-    return glide_to(*stream_, sounding_, to, seconds);
+    return glide_to(*stream_, presented_, to, seconds);
   }
 
-  std::int64_t silence() override { return quiet_ns_ = ramp_down(*stream_, sounding_.ramp); }
+  std::int64_t silence() override { return quiet_ns_ = ramp_down(*stream_, presented_, now_ns()); }
 
   Refusal arm() override {
     // The audio thread proves its life by its first blocks, which at a session's start are yet to come.
@@ -146,10 +153,16 @@ class RealStage : public Stage {
     saturated_ = saturated;
   }
 
+  std::int64_t end_ns(const Onset& onset, std::int64_t length_frames) const {
+    return onset.time_ns + length_frames * 1'000'000'000 / stream_->config().output.rate_Hz;
+  }
+
   void hear(const drive::Event& event, std::int64_t now) {
+    const auto interval = interval_of(presented_, event.burst);
     switch (event.kind) {
       case drive::EventKind::underrun:
-        push(InputKind::xrun, now, fmt::format("{} frames lost", event.frames));
+        push(InputKind::xrun, now, fmt::format("{} frames lost from frame {}", event.frames, event.frame),
+             interval ? 1 : 0);
         if (underruns_.exceeded_by(now))
           push(InputKind::failure, now,
                "more than three underruns within a minute; see `turnpoint doctor`, then resume");
@@ -170,6 +183,9 @@ class RealStage : public Stage {
         return amplifier_().trip(wrong_rate_->kind, wrong_rate_->detail);
       case drive::EventKind::burst_started:
       case drive::EventKind::burst_ended:
+        return;
+      case drive::EventKind::burst_heard:
+        if (interval) push(InputKind::heard, now, "", *interval);
         return;
     }
   }
@@ -194,10 +210,11 @@ class RealStage : public Stage {
     inputs_.push(std::move(input));
   }
 
-  void push(InputKind kind, std::int64_t time_ns, std::string text) {
+  void push(InputKind kind, std::int64_t time_ns, std::string text, int value = 0) {
     Input input;
     input.time_ns = time_ns;
     input.kind = kind;
+    input.value = value;
     input.text = std::move(text);
     inputs_.push(std::move(input));
   }
@@ -206,7 +223,7 @@ class RealStage : public Stage {
   Devices devices_;  // before the stream: it goes silent first, then the amplifier's line goes low
   Inputs& inputs_;
   std::unique_ptr<drive::Stream> stream_;
-  Sounding sounding_;
+  std::vector<Presented> presented_;
   drive::UnderrunLimit underruns_;
   ClockWatch clocks_;
   std::int64_t clocks_due_ns_ = 0;

@@ -87,6 +87,8 @@ const char* kind_of(InputKind kind) {
       return "frames_lost";
     case InputKind::xrun:
       return "xrun";
+    case InputKind::heard:
+      return "heard";
     case InputKind::fault:
       return "fault";
     case InputKind::failure:
@@ -182,7 +184,7 @@ store::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protocol
 }
 
 void add_tones(store::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
-               std::int64_t onset_frame, const drive::Burst& burst) {
+               std::int64_t onset_frame, const drive::PreparedBurst& burst) {
   for (std::size_t s = 0; s < scenes.size(); ++s) {
     const auto start = s == 0 ? 0 : burst.changes[s - 1].at_frame;
     const auto end = s + 1 < scenes.size() ? burst.changes[s].at_frame : burst.length_frames;
@@ -248,7 +250,9 @@ std::optional<trial::Event> event_of(const Input& input) {
     case InputKind::contact:
       return trial::Event{input.time_ns, EventKind::contact, input.value};
     case InputKind::xrun:
-      return trial::Event{input.time_ns, EventKind::xrun, 0};
+      return trial::Event{input.time_ns, EventKind::xrun, input.value};
+    case InputKind::heard:
+      return trial::Event{input.time_ns, EventKind::heard, input.value};
     case InputKind::fault:
       return trial::Event{input.time_ns, EventKind::fault, 0};
     case InputKind::stop:

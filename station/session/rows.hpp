@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "station/drive/burst.hpp"
+#include "station/drive/prepared_burst.hpp"
 #include "station/observer/observer.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/scene/planner.hpp"
@@ -23,7 +23,7 @@ store::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protocol
 
 /// Appends an interval's tones, and takes boundary, frequency and amplitude of the trial from its last scene.
 void add_tones(store::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
-               std::int64_t onset_frame, const drive::Burst& burst);
+               std::int64_t onset_frame, const drive::PreparedBurst& burst);
 
 /// An adjustment's surface has begun to follow the slider at this frame: scene 0 stays what the trial began
 /// with, scene 1 becomes this one; boundary, frequency and amplitude of the trial are its.

@@ -127,6 +127,7 @@ namespace {
 /// what a rig's allowed plug-in takes.
 drive::StreamConfig simulated_stream(const rig::Rig& rig) {
   auto config = stream_of(rig);
+  config.virtual_lead_frames = std::int64_t{config.output.periods} * config.output.period_frames;
   const bool hardware = config.output.uri.starts_with("alsa:") && config.output.allow_plugin.empty();
   if (hardware) config.output.uri = "null:";
   // A session of half an hour is 300 million frames that nobody hears.

@@ -24,7 +24,7 @@ Sitting::Sitting(const Setup& setup, Director director, store::SessionLog log, s
       account_(std::move(account)),
       display_(display),
       monitor_(monitor),
-      plans_(setup.rig, setup.protocol),
+      plans_(setup.rig, setup.protocol, log_.session().start.seed),
       director_(std::move(director)),
       pages_(setup),
       trial_index_(log_.session().trials) {

@@ -34,10 +34,12 @@ class Sitting {
     trial::Machine machine;
     store::TrialRow row;
     std::optional<Slider> slider;  ///< in an adjustment
+    std::vector<Onset> onsets;     ///< of all intervals, once they are scheduled
+    std::size_t begun = 0;         ///< of them, so far
     bool decided = false;
     bool by_button = false;  ///< answered so: the touch panel's latency is not in it
   };
-  /// A stimulus that is on the surface, or was last.
+  /// An interval of the trial, as it is scheduled, on the surface, or was.
   struct OnSurface {
     std::int64_t on_ns = 0, off_ns = 0;
   };
@@ -56,11 +58,12 @@ class Sitting {
   Flow keep_limits(const TrialSpec& spec);
   Flow after_trial(const store::TrialRow& row);
   void check_plans(const TrialSpec& spec);
-  std::optional<trial::EventKind> open_again();
+  std::optional<trial::EventKind> open_amplifier();
   void drive_trial(Running& trial, std::optional<trial::EventKind> cut_by);
   void handle_in_trial(Input raw, Running& trial);
   void perform(const std::vector<trial::Action>& actions, Running& trial);
-  void present(int interval, std::int64_t earliest_ns, Running& trial);
+  void present(std::int64_t earliest_ns, Running& trial);
+  void interval_begins(Running& trial);
   void ask_observer(const Running& trial, std::int64_t onset_ns);
   void decide(Running& trial);
   void finish_row(Running& trial);
@@ -76,8 +79,7 @@ class Sitting {
   Input received(Input input);
   void note(const Input& input);
   void log(const Input& input);
-  enum class Kept { at_once, after_waiting };
-  Kept keep(const std::function<void()>& write);
+  void keep(const std::function<void()>& write);
   bool space_again(const std::string& detail);
   bool armed() const;
   Flow until_armed(const Fault& why);
@@ -98,7 +100,7 @@ class Sitting {
   int scored_ = 0, right_ = 0;
   int voids_in_a_row_ = 0;
   std::int64_t started_ns_ = 0;
-  std::optional<OnSurface> surface_;
+  std::vector<OnSurface> surface_;
   bool stop_asked_ = false, pause_asked_ = false;
   std::string stop_reason_;
   std::optional<Fault> fault_;  ///< what happened and nobody has dealt with yet

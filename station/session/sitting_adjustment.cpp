@@ -33,7 +33,7 @@ void Sitting::glide(Running& trial) {
   spec.factors[setup_.protocol.task.adjusts] = wanted;
   plans_.begin(spec);
   stage_->wait_for([&] { return plans_.ready(spec); });
-  const auto plan = plans_.take(spec).front().back();
+  const auto plan = plans_.take(spec).plans.front().back();
   account_.check(plan.peak_displacement_m, interval_times(setup_.protocol, spec).front().length_s);
   const auto at_frame = stage_->glide(tones_of(plan), kGlide_s);
   if (!at_frame) return;

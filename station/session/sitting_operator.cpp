@@ -75,12 +75,11 @@ void Sitting::note(const Input& input) {
 
 /// Makes rows durable before the session goes on. On a full disk the screen says so, nothing sounds, and the
 /// same rows are written once there is space; what the operator does meanwhile is kept in memory.
-Sitting::Kept Sitting::keep(const std::function<void()>& write) {
-  for (auto kept = Kept::at_once;; kept = Kept::after_waiting) {
+void Sitting::keep(const std::function<void()>& write) {
+  for (;;) {
     std::string detail;
     try {
-      write();
-      return kept;
+      return write();
     } catch (const store::StoreError& error) {
       // Nobody stands before a simulated session who could make space.
       if (error.fault() != store::Fault::disk_full || !setup_.observer.empty()) throw;
@@ -165,6 +164,8 @@ Sitting::Flow Sitting::end_at_limit(const std::string& what) {
   return Flow::stop;
 }
 
-void Sitting::log(const Input& input) { log_.event(event_row(input, trial_index_)); }
+void Sitting::log(const Input& input) {
+  if (input.kind != InputKind::heard) log_.event(event_row(input, trial_index_));
+}
 
 }  // namespace turnpoint::session

@@ -3,7 +3,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "station/session/burst.hpp"
 #include "station/session/rows.hpp"
 #include "station/session/sitting.hpp"
 #include "station/session/trial_plan.hpp"
@@ -34,14 +33,15 @@ store::EventRow event(std::int64_t time_ns, const char* kind, double value, int 
 
 Sitting::Flow Sitting::run_trial(const TrialSpec& spec) {
   if (prepare_trial(spec) == Flow::stop) return Flow::stop;
-  Running trial{spec,
-                trial::Machine(trial_plan(setup_.protocol, *director_.block(), spec)),
+  Running trial{spec, trial::Machine(trial_plan(setup_.protocol, *director_.block(), spec)),
                 row_of(spec, setup_.protocol, trial_index_),
+                {},
                 {}};
   if (spec.slider) trial.slider.emplace(*spec.slider, spec.level.value_or(spec.slider->low));
-  if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block(), plans_.take(spec));
-  const auto kept = keep([&] { log_.presented(trial_index_, stage_->now_ns()); });
-  drive_trial(trial, kept == Kept::after_waiting ? open_again() : std::nullopt);
+  if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block(), plans_.take(spec).plans);
+  // Durable before the amplifier is on: a disk may take seconds, and nothing else happens meanwhile.
+  keep([&] { log_.presented(trial_index_, stage_->now_ns()); });
+  drive_trial(trial, open_amplifier());
   stage_->close_amplifier();
   if (!trial.decided) decide(trial);
   leave_surface();
@@ -54,7 +54,7 @@ Sitting::Flow Sitting::run_trial(const TrialSpec& spec) {
 }
 
 /// Everything that may take time or go wrong before a trial: what has gathered since the last one, its plans,
-/// the rig's limits, the amplifier.
+/// the rig's limits, an amplifier that is not armed.
 Sitting::Flow Sitting::prepare_trial(const TrialSpec& spec) {
   plans_.begin(spec);
   try {
@@ -65,18 +65,20 @@ Sitting::Flow Sitting::prepare_trial(const TrialSpec& spec) {
     stop_asked_ = true, stop_reason_ = unreachable.what();
   } catch (const drive::LimitExceeded& limit) {
     return end_at_limit(limit.what());
+  } catch (const drive::BurstRefused& refused) {
+    stop_asked_ = true, stop_reason_ = refused.what();
   }
   for (auto& stale : stage_->drain()) note(received(std::move(stale)));
   while (!stop_asked_) {
-    if (!fault_) fault_ = stage_->open_amplifier();
-    if (!fault_) break;
+    if (!fault_ && armed()) break;
+    if (!fault_) fault_ = Fault{FaultKind::disarmed, ""};
     if (recover() == Flow::stop) return Flow::stop;
   }
   return stop_asked_ ? Flow::stop : Flow::go_on;
 }
 
-/// The amplifier went off while a full disk held a trial up; whatever keeps it off now makes the trial void.
-std::optional<trial::EventKind> Sitting::open_again() {
+/// Whatever keeps the amplifier off now makes the trial void.
+std::optional<trial::EventKind> Sitting::open_amplifier() {
   if (stop_asked_) return trial::EventKind::abort;
   if (!fault_) fault_ = stage_->open_amplifier();
   return fault_ ? std::optional(trial::EventKind::fault) : std::nullopt;
@@ -98,7 +100,7 @@ Sitting::Flow Sitting::keep_limits(const TrialSpec& spec) {
 
 /// The last look at what is about to be felt and heard. Throws drive::LimitExceeded.
 void Sitting::check_plans(const TrialSpec& spec) {
-  const auto& plans = plans_.take(spec);
+  const auto& plans = plans_.take(spec).plans;
   const auto times = interval_times(setup_.protocol, spec);
   for (std::size_t i = 0; i < plans.size(); ++i)
     for (const auto& plan : plans[i]) {
@@ -163,39 +165,43 @@ void Sitting::perform(const std::vector<trial::Action>& actions, Running& trial)
         const auto phase = static_cast<trial::Phase>(action.value);
         if (phase == trial::Phase::response || is_over(phase)) stage_->close_amplifier();
         if (phase == trial::Phase::done) break;
-        if (is_over(phase) && !trial.decided) decide(trial);
+        if (phase == trial::Phase::stimulus) interval_begins(trial);
+        if (trial.machine.decided() && !trial.decided) decide(trial);
         show_phase(phase, trial);
         break;
       }
       case trial::ActionKind::present:
-        present(action.value, action.time_ns, trial);
+        present(action.time_ns, trial);
         break;
       case trial::ActionKind::silence: {
         const auto silent_ns = stage_->silence();
-        if (surface_) surface_->off_ns = std::min(surface_->off_ns, silent_ns);
+        for (auto& interval : surface_) interval.off_ns = std::min(interval.off_ns, silent_ns);
         break;
       }
     }
   }
+  if (trial.machine.decided() && !trial.machine.done() && !trial.decided) decide(trial);
 }
 
-void Sitting::present(int interval, std::int64_t earliest_ns, Running& trial) {
-  const auto index = static_cast<std::size_t>(interval);
-  const auto& spec = trial.spec;
-  const auto times = interval_times(setup_.protocol, spec)[index];
-  const auto& plans = plans_.take(spec)[index];
-  const auto& rig = setup_.rig;
-  auto burst = burst_of(plans, times.starts_s, setup_.protocol.task.transition_ms.value_or(50) * 1e-3,
-                        times.length_s, rig.output.rate_Hz);
-  if (rig.marker) mark(burst, *rig.marker, rig.output.rate_Hz);
-  if (rig.noise && setup_.protocol.task.sound == protocol::Sound::masking_noise)
-    mask(burst, *rig.noise, summary_.seed + 16 * static_cast<std::uint64_t>(trial_index_) + index);
-  leave_surface();
-  const auto onset = stage_->present(burst, earliest_ns);
-  surface_ = OnSurface{onset.time_ns, onset.time_ns + static_cast<std::int64_t>(times.length_s * 1e9)};
-  add_tones(trial.row, plans, interval, onset.frame, burst);
-  perform(trial.machine.handle({onset.time_ns, trial::EventKind::onset, interval}), trial);
-  if (interval + 1 == static_cast<int>(spec.intervals.size())) ask_observer(trial, onset.time_ns);
+/// All intervals at once: what comes between two of them is then a number of frames.
+void Sitting::present(std::int64_t earliest_ns, Running& trial) {
+  const auto& bursts = plans_.take(trial.spec).bursts;
+  trial.onsets = stage_->present(bursts, earliest_ns);
+  if (trial.onsets.empty()) return;  // a fault that says why is on its way
+  const auto times = interval_times(setup_.protocol, trial.spec);
+  for (std::size_t i = 0; i < bursts.size(); ++i) {
+    const auto on_ns = trial.onsets[i].time_ns;
+    surface_.push_back({on_ns, on_ns + static_cast<std::int64_t>(times[i].length_s * 1e9)});
+    perform(trial.machine.handle({on_ns, trial::EventKind::onset, static_cast<int>(i)}), trial);
+  }
+  ask_observer(trial, trial.onsets.back().time_ns);
+}
+
+/// What reaches the surface is in the row, and what is cancelled before is not.
+void Sitting::interval_begins(Running& trial) {
+  const auto i = trial.begun++;
+  const auto& planned = plans_.take(trial.spec);
+  add_tones(trial.row, planned.plans[i], static_cast<int>(i), trial.onsets[i].frame, planned.bursts[i]);
 }
 
 void Sitting::ask_observer(const Running& trial, std::int64_t onset_ns) {
@@ -230,11 +236,12 @@ void Sitting::decide(Running& trial) {
 
 /// Books what was on the surface, for the finger's account and for the log.
 void Sitting::leave_surface() {
-  const auto left = std::exchange(surface_, std::nullopt);
-  if (!left || left->off_ns <= left->on_ns) return;
-  account_.add(left->on_ns, left->off_ns);
-  log_.event(
-      event(left->on_ns, "stimulus", static_cast<double>(left->off_ns - left->on_ns) * 1e-9, trial_index_));
+  for (const auto& left : std::exchange(surface_, {})) {
+    if (left.off_ns <= left.on_ns) continue;
+    account_.add(left.on_ns, left.off_ns);
+    log_.event(
+        event(left.on_ns, "stimulus", static_cast<double>(left.off_ns - left.on_ns) * 1e-9, trial_index_));
+  }
 }
 
 void Sitting::finish_row(Running& trial) {

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,14 +48,20 @@ class Stage {
   /// The virtual clock stands still meanwhile.
   virtual void wait_for(const std::function<bool()>& ready) = 0;
 
-  /// Schedules the burst at the first frame that is safely ahead, no earlier than `earliest_ns`.
-  virtual Onset present(drive::Burst burst, std::int64_t earliest_ns) = 0;
+  /// Schedules the intervals of a trial: the first at the soonest frame that is safely ahead and no earlier
+  /// than `earliest_ns`, the others at exactly the distances of their start frames from it. Returns their
+  /// onsets; none where nothing can be scheduled, which is then told as a fault among the inputs. So are,
+  /// later, frames that were lost (InputKind::xrun), and each interval once it has been heard whole
+  /// (InputKind::heard).
+  virtual std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
+                                     std::int64_t earliest_ns) = 0;
 
   /// What sounds glides to other tones within `seconds`, from now on. Returns the frame at which it begins;
   /// none, and nothing happens, when nothing sounds or it is about to end.
   virtual std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) = 0;
 
-  /// Ramps whatever sounds down, now. Returns when the surface will be silent.
+  /// Ramps whatever sounds down, now, and cancels what has not begun. Returns when the surface will be
+  /// silent, or is sure to be where the converter does not tell.
   virtual std::int64_t silence() = 0;
 
   /// Why the amplifier does not do what was asked; none when it was done.

@@ -21,6 +21,9 @@ class VirtualStage : public Stage {
   std::int64_t now_ns() override { return now_ns_; }
 
   std::optional<Input> wait_until(std::int64_t deadline_ns) override {
+    if (auto heard =
+            next_heard(script_.empty() ? deadline_ns : std::min(deadline_ns, script_.front().time_ns)))
+      return heard;
     if (!script_.empty() && script_.front().time_ns <= deadline_ns) {
       auto input = std::move(script_.front());
       script_.pop_front();
@@ -55,15 +58,24 @@ class VirtualStage : public Stage {
 
   void wait_for(const std::function<bool()>&) override {}  // who needs it next waits without time passing
 
-  Onset present(drive::Burst burst, std::int64_t earliest_ns) override {
-    return schedule(*stream_, burst, earliest_ns, sounding_);
+  std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
+                             std::int64_t earliest_ns) override {
+    const auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
+    unheard_ = presented_;
+    return onsets;
   }
 
   std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
-    return glide_to(*stream_, sounding_, to, seconds);
+    return glide_to(*stream_, presented_, to, seconds);
   }
 
-  std::int64_t silence() override { return ramp_down(*stream_, sounding_.ramp); }
+  std::int64_t silence() override {
+    const auto from = stream_->earliest_frame();
+    std::erase_if(unheard_, [from](const Presented& interval) { return interval.start_frame >= from; });
+    for (auto& interval : unheard_)
+      interval.end_frame = std::min(interval.end_frame, from + presented_.back().ramp.frames);
+    return ramp_down(*stream_, presented_, now_ns_);
+  }
 
   Refusal arm() override { return amplifier_->arm(); }
   void disarm() override { amplifier_->disarm(); }
@@ -108,11 +120,26 @@ class VirtualStage : public Stage {
   }
 
  private:
+  /// The interval that is heard to its end next, if that is no later than `until_ns`.
+  std::optional<Input> next_heard(std::int64_t until_ns) {
+    if (unheard_.empty()) return std::nullopt;
+    const auto end_ns = stream_->time_of(unheard_.front().end_frame).value();
+    if (end_ns > until_ns) return std::nullopt;
+    advance_to(end_ns);
+    Input input;
+    input.time_ns = now_ns_;
+    input.kind = InputKind::heard;
+    input.value = *interval_of(presented_, unheard_.front().burst);
+    input.quality = TimeQuality::simulated;
+    unheard_.erase(unheard_.begin());
+    return input;
+  }
+
   static constexpr std::int64_t kContinue_ns = 1'000'000'000;  // a page is read for so long
 
   void advance_to(std::int64_t time_ns) {
     now_ns_ = std::max(now_ns_, time_ns);
-    const auto frames = stream_->frame_at(now_ns_) - stream_->frame();
+    const auto frames = stream_->frame_at(now_ns_).value() - stream_->frame();
     if (frames > 0) stream_->advance(frames);
     while (stream_->poll()) {
     }
@@ -125,7 +152,7 @@ class VirtualStage : public Stage {
   Inputs& inputs_;
   std::int64_t now_ns_ = 0;
   std::deque<Input> script_;  ///< what the observer will do, in time
-  Sounding sounding_;
+  std::vector<Presented> presented_, unheard_;
 };
 
 }  // namespace

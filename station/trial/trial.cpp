@@ -34,13 +34,18 @@ void check(const Plan& plan) {
 
 }  // namespace
 
-Machine::Machine(Plan plan) : plan_(std::move(plan)) { check(plan_); }
+Machine::Machine(Plan plan)
+    : plan_(std::move(plan)),
+      onsets_ns_(plan_.intervals.size(), kNever),
+      heard_(plan_.intervals.size(), false) {
+  check(plan_);
+}
 
 std::vector<Action> Machine::start(std::int64_t now_ns) {
   if (phase_ != Phase::idle) throw std::logic_error("trial: started twice");
   result_.started_ns = now_ns_ = now_ns;
-  enter(Phase::cue, now_ns + plan_.cue_ns);
-  advance(now_ns);
+  enter(Phase::cue, kNever);
+  actions_.push_back({ActionKind::present, 0, now_ns + plan_.cue_ns});
   return std::exchange(actions_, {});
 }
 
@@ -54,7 +59,10 @@ std::vector<Action> Machine::handle(const Event& event) {
     case EventKind::tick:
       break;
     case EventKind::onset:
-      if (phase_ == Phase::onset && event.value == interval_) until_ns_ = event.time_ns;
+      onset(event);
+      break;
+    case EventKind::heard:
+      heard_.at(static_cast<std::size_t>(event.value)) = true;
       break;
     case EventKind::answer:
       answer(event);
@@ -67,7 +75,7 @@ std::vector<Action> Machine::handle(const Event& event) {
       break;
     case EventKind::xrun:
       ++result_.xruns;
-      if (sounding_) conclude(Outcome::fault, event.time_ns);
+      if (event.value != 0 && !decided()) end(Outcome::fault, event.time_ns);
       break;
     case EventKind::fault:
       conclude(Outcome::fault, event.time_ns);
@@ -82,6 +90,7 @@ std::vector<Action> Machine::handle(const Event& event) {
 
 std::optional<std::int64_t> Machine::wake_ns() const {
   if (phase_ == Phase::idle || phase_ == Phase::done) return std::nullopt;
+  if (phase_ == Phase::interval && !decided()) return std::nullopt;  // it ends with the last heard event
   const bool answering = phase_ == Phase::stimulus || phase_ == Phase::response;
   const auto deadline = answering ? deadline_at() : kNever;
   const auto wake = deadline == kNever ? until_ns_ : std::min(until_ns_, deadline + plan_.watermark_ns);
@@ -93,16 +102,21 @@ bool Machine::answers_open() const {
   return phase_ == Phase::stimulus && plan_.answer_ends_stimulus;
 }
 
+bool Machine::decided() const {
+  if (phase_ == Phase::done) return true;
+  return concluded_ && std::find(heard_.begin(), heard_.end(), false) == heard_.end();
+}
+
 void Machine::enter(Phase phase, std::int64_t until_ns) {
   phase_ = phase;
   until_ns_ = until_ns;
   actions_.push_back({ActionKind::enter, static_cast<int>(phase), until_ns});
 }
 
-void Machine::present(int interval, std::int64_t earliest_ns) {
-  interval_ = interval;
-  enter(Phase::onset, kNever);
-  actions_.push_back({ActionKind::present, interval, earliest_ns});
+// The first one ends the cue, and the others their gaps.
+void Machine::onset(const Event& event) {
+  onsets_ns_.at(static_cast<std::size_t>(event.value)) = event.time_ns;
+  if (phase_ == Phase::cue && event.value == 0) until_ns_ = event.time_ns;
 }
 
 void Machine::advance(std::int64_t now_ns) {
@@ -121,22 +135,21 @@ bool Machine::step(std::int64_t now_ns) {
   const auto at = until_ns_;
   switch (phase_) {
     case Phase::cue:
-      present(0, at);
-      return true;
-    case Phase::onset:
       begin_interval(at);
       return true;
     case Phase::stimulus:
       end_stimulus(at);
       return true;
     case Phase::gap:
-      present(interval_ + 1, at);
+      ++interval_;
+      begin_interval(at);
       return true;
     case Phase::feedback:
     case Phase::late:
       enter(Phase::interval, at + plan_.iti_ns);
       return true;
     case Phase::interval:
+      if (!decided()) return false;
       result_.ended_ns = at;
       enter(Phase::done, kNever);
       return false;
@@ -149,7 +162,6 @@ void Machine::begin_interval(std::int64_t onset_ns) {
   const auto& interval = plan_.intervals[static_cast<std::size_t>(interval_)];
   const bool last = interval_ + 1 == static_cast<int>(plan_.intervals.size());
   result_.onsets_ns.push_back(onset_ns);
-  sounding_ = true;
   enter(Phase::stimulus, onset_ns + interval.duration_ns);
   if (!last) return;
   switch (plan_.response_zero) {
@@ -170,9 +182,8 @@ void Machine::begin_interval(std::int64_t onset_ns) {
 }
 
 void Machine::end_stimulus(std::int64_t at_ns) {
-  sounding_ = false;
   if (interval_ + 1 < static_cast<int>(plan_.intervals.size())) {
-    enter(Phase::gap, at_ns + plan_.gap_ns);
+    enter(Phase::gap, onsets_ns_[static_cast<std::size_t>(interval_) + 1]);
     return;
   }
   if (plan_.response_zero == ResponseZero::interval_off) set_zero(at_ns);
@@ -219,16 +230,31 @@ void Machine::answer(const Event& event) {
 }
 
 void Machine::conclude(Outcome outcome, std::int64_t at_ns) {
-  const bool over = phase_ == Phase::feedback || phase_ == Phase::late || phase_ == Phase::interval;
-  if (sounding_ || phase_ == Phase::onset) actions_.push_back({ActionKind::silence, interval_, at_ns});
-  sounding_ = false;
-  if (!over) result_.outcome = outcome;
-  if (outcome == Outcome::aborted || outcome == Outcome::fault) {
-    result_.ended_ns = at_ns;
-    enter(Phase::done, kNever);
-  } else {
-    settle(at_ns);
+  const bool cut = outcome == Outcome::aborted || outcome == Outcome::fault;
+  if (cut && !concluded_) return end(outcome, at_ns);
+  if (cut) {
+    // The outcome is there, and stands if what was presented turns out whole. A fault leaves nobody to tell.
+    if (outcome == Outcome::fault && !decided()) return end(outcome, at_ns);
+    return enter(Phase::interval, at_ns);
   }
+  if (phase_ == Phase::stimulus) actions_.push_back({ActionKind::silence, interval_, at_ns});
+  concluded_ = true;
+  result_.outcome = outcome;
+  settle(at_ns);
+}
+
+// At once, and without a response.
+void Machine::end(Outcome outcome, std::int64_t at_ns) {
+  if (phase_ == Phase::cue || phase_ == Phase::stimulus || phase_ == Phase::gap)
+    actions_.push_back({ActionKind::silence, interval_, at_ns});
+  result_.outcome = outcome;
+  result_.response.reset();
+  result_.correct.reset();
+  result_.response_time_ns.reset();
+  result_.decision_time_ns.reset();
+  result_.movement_time_ns.reset();
+  result_.ended_ns = at_ns;
+  enter(Phase::done, kNever);
 }
 
 void Machine::settle(std::int64_t at_ns) {
@@ -246,8 +272,6 @@ const char* name(Phase phase) {
       return "idle";
     case Phase::cue:
       return "cue";
-    case Phase::onset:
-      return "onset";
     case Phase::stimulus:
       return "stimulus";
     case Phase::gap:

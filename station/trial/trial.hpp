@@ -11,8 +11,7 @@ enum class ResponseZero { go_cue, change, interval_off, first_contact, lift_off 
 
 enum class Phase {
   idle,      ///< not started
-  cue,       ///< get ready; the surface is silent
-  onset,     ///< an interval has been asked for and its first frame is not yet reached
+  cue,       ///< get ready; the surface is silent, and all intervals are scheduled
   stimulus,  ///< an interval is on the surface
   gap,       ///< between two intervals
   response,  ///< silence, answers open
@@ -52,10 +51,11 @@ struct Plan {
 enum class EventKind {
   tick,     ///< time has passed
   onset,    ///< value: interval; time_ns: when its first frame reaches the surface (may lie ahead)
+  heard,    ///< value: interval; all of it has been played, as it was scheduled
   answer,   ///< value: index of the answer
   touch,    ///< a touch that chose nothing
   contact,  ///< value 1: finger on the surface, 0: lifted
-  xrun,     ///< the drive lost frames
+  xrun,     ///< the drive lost frames; value 1: of an interval of this trial, 0: of silence
   fault,    ///< drive, amplifier or panel cannot go on
   abort,    ///< participant or operator stopped
 };
@@ -68,8 +68,9 @@ struct Event {
 
 enum class ActionKind {
   enter,    ///< value: the Phase entered; show its page
-  present,  ///< value: the interval to schedule, no earlier than time_ns; reply with an onset event
-  silence,  ///< ramp the stimulus down now
+  present,  ///< schedule all intervals at the plan's distances, the first no earlier than time_ns; reply with
+            ///< an onset event for each, and with a heard event once it was
+  silence,  ///< ramp down what sounds, now, and cancel what has not begun
 };
 
 struct Action {
@@ -94,6 +95,10 @@ struct Result {
 /// The trial as a pure state machine: time-stamped events in, actions out. Events must come in the order of
 /// their time stamps, but an answer stamped before a deadline is honoured until watermark_ns after it.
 /// Neither a clock nor a thread is inside; the same events give the same actions.
+///
+/// What is played is known to have been whole only some time after it was felt. An outcome therefore stands
+/// only once every interval has been heard; a loss that is told until then, however late, makes the trial
+/// void. The phases go on meanwhile, and the trial ends no sooner.
 class Machine {
  public:
   /// Throws std::invalid_argument for a plan without intervals, with a negative time, no answers, or a
@@ -109,20 +114,23 @@ class Machine {
   Phase phase() const { return phase_; }
   bool done() const { return phase_ == Phase::done; }
   bool answers_open() const;
+  /// The outcome stands: nothing that may still come changes it.
+  bool decided() const;
   int interval() const { return interval_; }
   const Result& result() const { return result_; }
 
  private:
   void enter(Phase phase, std::int64_t until_ns);
-  void present(int interval, std::int64_t earliest_ns);
   void advance(std::int64_t now_ns);
   bool step(std::int64_t now_ns);
   void answer(const Event& event);
   void contact(const Event& event);
+  void onset(const Event& event);
   void begin_interval(std::int64_t onset_ns);
   void end_stimulus(std::int64_t at_ns);
   void set_zero(std::int64_t at_ns);
   void conclude(Outcome outcome, std::int64_t at_ns);
+  void end(Outcome outcome, std::int64_t at_ns);
   void settle(std::int64_t at_ns);
   std::int64_t deadline_at() const;
 
@@ -131,7 +139,9 @@ class Machine {
   std::int64_t until_ns_ = 0;
   std::int64_t now_ns_ = 0;
   int interval_ = 0;
-  bool sounding_ = false;
+  std::vector<std::int64_t> onsets_ns_;  ///< scheduled, of all intervals
+  std::vector<bool> heard_;
+  bool concluded_ = false;
   bool touching_ = false;
   std::optional<std::int64_t> lift_off_ns_, no_contact_deadline_ns_;
   Result result_;

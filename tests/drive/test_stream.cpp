@@ -107,7 +107,7 @@ TEST_CASE("frames that are passed by have the events of frames that are rendered
 TEST_CASE("virtual time is frame over rate, exactly, at any age", "[drive][stream]") {
   const auto stream = open_synchronous({}, 1'000);
   CHECK(stream->time_of(192000LL * 86400 * 30) == 1'000 + 1'000'000'000LL * 86400 * 30);
-  CHECK(stream->frame_at(stream->time_of(123456789012)) == 123456789012);
+  CHECK(stream->frame_at(stream->time_of(123456789012).value()) == 123456789012);
 }
 
 TEST_CASE("a burst too late, one too many, or too loud beside another is refused", "[drive][stream]") {
@@ -156,6 +156,56 @@ TEST_CASE("a live change moves the tone under the finger and a stop ends the bur
   CHECK(ended->kind == EventKind::burst_ended);
   CHECK(ended->frame == 109600);
   CHECK_THROWS_AS(stream->change(id, change), BurstRefused);
+}
+
+TEST_CASE(
+    "a live change counts with what sounds beside it and with the burst's own later changes: nothing clips",
+    "[drive][stream]") {
+  const auto stream = open_synchronous({});
+  Burst first = one_tone(20000, 0.2);
+  first.length_frames = 400'000;
+  first.change_count = 1;
+  first.changes[0] = {300'000, 9600, one_tone(20000, 0.6).tones};
+  const auto id = stream->schedule(first);
+  stream->advance(20'000);
+  Change louder{30'000, 9600, one_tone(20000, 0.5).tones};
+  stream->change(id, louder);
+  Burst second = one_tone(20500, 0.45);
+  second.start_frame = 60'000;
+  CHECK_THROWS_AS(stream->schedule(second), BurstRefused);  // 0.6 + 0.45, even before the burst's own change
+  second.tones.tones[0].amplitude = 0.39;
+  stream->schedule(second);
+  louder.at_frame = 80'000;
+  louder.to.tones[0].amplitude = 0.65;
+  CHECK_THROWS_AS(stream->change(id, louder), BurstRefused);  // beside the second
+  stream->advance(200'000);                                   // once that is over it may
+  louder.at_frame = 250'000;
+  CHECK_NOTHROW(stream->change(id, louder));
+  stream->advance(400'000);
+  CHECK(stream->counters().saturated == 0);
+  CHECK(stream->largest_sample() < 1);
+}
+
+TEST_CASE("bursts that are scheduled together keep their distances, or none is taken", "[drive][stream]") {
+  const auto stream = open_synchronous({});
+  stream->advance(5000);
+  std::vector<PreparedBurst> bursts(3, prepare(one_tone(20000, 0.6), Format{}));
+  bursts[0].start_frame = 1000;
+  bursts[1].start_frame = 98'765;
+  bursts[2].start_frame = 200'001;
+  const auto scheduled = stream->schedule_together(bursts);
+  REQUIRE(scheduled.size() == 3);
+  CHECK(scheduled[0].start_frame == 5000);
+  CHECK(scheduled[1].start_frame == 5000 + 97'765);
+  CHECK(scheduled[2].start_frame == 5000 + 199'001);
+  stream->stop(0, {}, {});  // before the first one begins
+  stream->advance(384);
+  while (stream->poll()) {
+  }
+  bursts[1].start_frame = 2000;  // two at once are too loud
+  CHECK_THROWS_AS(stream->schedule_together(bursts), BurstRefused);
+  stream->advance(400'000);
+  CHECK(stream->counters().bursts == 0);
 }
 
 TEST_CASE("play renders a file with the predicted peak", "[drive][stream]") {

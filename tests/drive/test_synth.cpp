@@ -206,6 +206,37 @@ TEST_CASE("a stop ramps down and frames that were lost come back ramped", "[driv
   }
 }
 
+TEST_CASE("stops that follow one another go on from the gain that is reached, each of them sooner at its end",
+          "[drive][synth]") {
+  Synth synth({rate, 1, 24}, Precision::exact);
+  Burst burst = one_tone(rate / 4.0, 1 / std::sqrt(0.5) / 2, M_PI / 4);  // every sample has the magnitude 1/2
+  REQUIRE(synth.start(prepare(burst, {rate, 1, 24})));
+  std::vector<double> samples;
+  const auto render = [&](std::size_t frames) {
+    std::vector<double> block(frames);
+    synth.render(static_cast<std::int64_t>(samples.size()), std::span<double>(block));
+    samples.insert(samples.end(), block.begin(), block.end());
+  };
+  render(20'000);
+  synth.stop(0, 0, {RampShape::raised_cosine, 38'400});
+  render(14'000);
+  synth.stop(0, 0, {RampShape::raised_cosine, 9'600});
+  render(2'000);
+  synth.stop(0, 36'500, {RampShape::smoothstep, 1'000});  // from a later frame: until then the others go on
+  synth.stop(0, 0, {RampShape::raised_cosine, 48'000});   // ends later: changes nothing
+  render(4'000);
+  double largest_step = 0;
+  for (std::size_t k = 20'000; k < samples.size(); ++k) {
+    const double rise = 2 * (std::abs(samples[k]) - std::abs(samples[k - 1]));
+    REQUIRE(rise < 1e-9);
+    largest_step = std::max(largest_step, -rise);
+  }
+  CHECK(largest_step < 3.0 / 1'000);
+  CHECK(samples[37'498] != 0);
+  for (std::size_t k = 37'500; k < samples.size(); ++k) REQUIRE(samples[k] == 0);
+  CHECK(synth.events().back().frame == 37'500);
+}
+
 TEST_CASE("masking noise has the band and the rms that were asked for", "[drive][synth]") {
   Burst burst;
   burst.length_frames = 400000;

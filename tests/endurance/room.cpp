@@ -105,16 +105,35 @@ std::vector<Input> Room::drain() {
           std::make_move_iterator(std::exchange(inputs_, {}).end())};
 }
 
-session::Onset Room::present(drive::Burst burst, std::int64_t earliest_ns) {
+std::vector<session::Onset> Room::present(std::span<const drive::PreparedBurst> intervals,
+                                          std::int64_t earliest_ns) {
   attend();
-  const auto onset = inner_->present(burst, std::max(earliest_ns, opened_ns_ + kSettle_ns));
-  const auto length_ns = static_cast<std::int64_t>(static_cast<double>(burst.length_frames) * ns_per_frame_);
-  quiet_ns_ = std::max(quiet_ns_, onset.time_ns + length_ns);
-  world_.amplifier.stimulus(born_ns_ + onset.time_ns, born_ns_ + onset.time_ns + length_ns);
-  return onset;
+  const auto onsets = inner_->present(intervals, std::max(earliest_ns, opened_ns_ + kSettle_ns));
+  stimuli_.clear();
+  for (std::size_t i = 0; i < onsets.size(); ++i) {
+    const auto length_ns =
+        static_cast<std::int64_t>(static_cast<double>(intervals[i].length_frames) * ns_per_frame_);
+    stimuli_.emplace_back(onsets[i].time_ns, onsets[i].time_ns + length_ns);
+    quiet_ns_ = std::max(quiet_ns_, onsets[i].time_ns + length_ns);
+    world_.amplifier.stimulus(born_ns_ + onsets[i].time_ns, born_ns_ + onsets[i].time_ns + length_ns);
+  }
+  return onsets;
 }
 
-std::int64_t Room::silence() { return quiet_ns_ = inner_->silence(); }
+std::int64_t Room::silence() {
+  quiet_ns_ = inner_->silence();
+  for (auto& [from_ns, until_ns] : stimuli_) until_ns = std::min(until_ns, quiet_ns_);
+  return quiet_ns_;
+}
+
+/// The loss has been told when it is over: it touches the stimulus that is on the surface.
+void Room::strike_underrun() {
+  const auto now = now_ns();
+  push(InputKind::xrun, {}, "960 frames lost");
+  inputs_.back().value = std::any_of(stimuli_.begin(), stimuli_.end(), [now](const auto& stimulus) {
+    return stimulus.first <= now && now < stimulus.second;
+  });
+}
 
 Room::Refusal Room::arm() {
   attend();
@@ -223,7 +242,7 @@ void Room::strike(Fault fault) {
       return tell_guard_fault();
     }
     case Fault::underrun:
-      return push(InputKind::xrun, {}, "960 frames lost");
+      return strike_underrun();
     case Fault::touch_gone:
       return push(InputKind::fault, FaultKind::touch_gone, "panel: it was unplugged");
     case Fault::disarm:

@@ -61,7 +61,8 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   std::optional<Input> wait_until(std::int64_t deadline_ns) override;
   std::vector<Input> drain() override;
   void wait_for(const std::function<bool()>&) override {}
-  turnpoint::session::Onset present(turnpoint::drive::Burst burst, std::int64_t earliest_ns) override;
+  std::vector<turnpoint::session::Onset> present(std::span<const turnpoint::drive::PreparedBurst> intervals,
+                                                 std::int64_t earliest_ns) override;
   std::optional<std::int64_t> glide(const turnpoint::drive::ToneSet& to, double seconds) override {
     return inner_->glide(to, seconds);
   }
@@ -101,6 +102,7 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   void strike(Fault fault);
   void strike_line(const char* what, void (turnpoint::panel::Guard::*change)(std::int64_t, bool) noexcept);
   void strike_device();
+  void strike_underrun();
   void strike_chip();
   void tell_guard_fault();
 
@@ -113,6 +115,7 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   std::int64_t born_ns_;
   std::vector<Planned> planned_;
   std::deque<Input> inputs_;
+  std::vector<std::pair<std::int64_t, std::int64_t>> stimuli_;  ///< from when until when, of the trial
   std::int64_t quiet_ns_ = 0, opened_ns_ = 0;
   bool closing_ = false, arm_planned_ = false, fault_told_ = false;
 };

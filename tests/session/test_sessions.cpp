@@ -143,7 +143,7 @@ TEST_CASE("a session cut at any page goes on with the very trial that the unbrok
   const Folder folder;
   const auto whole = run(request_for("demo", folder / "whole.sqlite"));
   const auto expected = trials_of(folder / "whole.sqlite", whole.session_id);
-  for (int page = 8; page < 50; page += 7) {
+  for (int page = 8; page < 40; page += 6) {
     INFO("cut at page " << page);
     const auto database = folder / ("cut" + std::to_string(page) + ".sqlite");
     Cut cut(page);

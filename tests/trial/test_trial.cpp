@@ -46,8 +46,19 @@ bool enters(const std::vector<Action>& actions, Phase phase) {
 Machine exploring(const Plan& plan = exploration()) {
   Machine machine(plan);
   machine.start(0);
-  machine.handle({500 * ms, EventKind::tick, 0});
   machine.handle({500 * ms, EventKind::onset, 0});
+  machine.handle({500 * ms, EventKind::tick, 0});
+  return machine;
+}
+
+/// Two intervals from 10 ms on, answered with the first choice 300 ms after the end of the second.
+Machine answered_after_two() {
+  Machine machine(two_intervals());
+  machine.start(0);
+  machine.handle({10 * ms, EventKind::onset, 0});
+  machine.handle({2510 * ms, EventKind::onset, 1});
+  machine.handle({1520 * ms, EventKind::heard, 0});
+  machine.handle({4310 * ms, EventKind::answer, 0});
   return machine;
 }
 
@@ -55,15 +66,21 @@ Machine exploring(const Plan& plan = exploration()) {
 
 TEST_CASE("an exploration runs cue, stimulus, answer, interval, and counts from the go cue", "[trial]") {
   Machine machine(exploration());
-  CHECK(enters(machine.start(0), Phase::cue));
-  CHECK(machine.wake_ns() == 500 * ms);
-  const auto asked = machine.handle({500 * ms, EventKind::tick, 0});
+  const auto asked = machine.start(0);
+  CHECK(enters(asked, Phase::cue));
   CHECK(has(asked, ActionKind::present, 0));
-  CHECK(enters(machine.handle({500 * ms, EventKind::onset, 0}), Phase::stimulus));
+  CHECK_FALSE(machine.wake_ns());  // not before the onset is known
+  machine.handle({10 * ms, EventKind::tick, 0});
+  CHECK_FALSE(enters(machine.handle({500 * ms, EventKind::onset, 0}), Phase::stimulus));
+  CHECK(machine.wake_ns() == 500 * ms);
+  CHECK(enters(machine.handle({500 * ms, EventKind::tick, 0}), Phase::stimulus));
   CHECK(machine.answers_open());
   const auto answered = machine.handle({1700 * ms, EventKind::answer, 1});
   CHECK(has(answered, ActionKind::silence, 0));
   CHECK(enters(answered, Phase::interval));
+  CHECK_FALSE(machine.decided());
+  machine.handle({1760 * ms, EventKind::heard, 0});
+  CHECK(machine.decided());
   machine.handle({2700 * ms, EventKind::tick, 0});
   REQUIRE(machine.done());
   CHECK(machine.result().outcome == Outcome::answered);
@@ -78,7 +95,7 @@ TEST_CASE("an onset in the future starts the interval at its own time, not when 
   machine.start(0);
   machine.handle({510 * ms, EventKind::tick, 0});
   machine.handle({530 * ms, EventKind::onset, 0});
-  CHECK(machine.phase() == Phase::onset);
+  CHECK(machine.phase() == Phase::cue);
   CHECK(machine.wake_ns() == 530 * ms);
   machine.handle({600 * ms, EventKind::tick, 0});
   REQUIRE(machine.phase() == Phase::stimulus);
@@ -118,10 +135,9 @@ TEST_CASE("after the exploration the surface is silent and the answer still coun
 TEST_CASE("an answer before the stimulus or after another is logged and never scored", "[trial]") {
   Machine machine(exploration());
   machine.start(0);
+  machine.handle({500 * ms, EventKind::onset, 0});
   machine.handle({100 * ms, EventKind::answer, 0});
   CHECK(machine.phase() == Phase::cue);
-  machine.handle({500 * ms, EventKind::tick, 0});
-  machine.handle({500 * ms, EventKind::onset, 0});
   machine.handle({1000 * ms, EventKind::answer, 1});
   machine.handle({1001 * ms, EventKind::answer, 0});
   CHECK(machine.result().response == 1);
@@ -139,10 +155,11 @@ TEST_CASE("two intervals are presented in turn and answers open at the end of th
   Machine machine(two_intervals());
   CHECK(has(machine.start(0), ActionKind::present, 0));
   machine.handle({10 * ms, EventKind::onset, 0});
+  machine.handle({2520 * ms, EventKind::onset, 1});  // known from the beginning, to the frame
   machine.handle({500 * ms, EventKind::answer, 0});
   CHECK(enters(machine.handle({1510 * ms, EventKind::tick, 0}), Phase::gap));
-  CHECK(has(machine.handle({2510 * ms, EventKind::tick, 0}), ActionKind::present, 1));
-  machine.handle({2520 * ms, EventKind::onset, 1});
+  CHECK(machine.wake_ns() == 2520 * ms);
+  CHECK(enters(machine.handle({2520 * ms, EventKind::tick, 0}), Phase::stimulus));
   machine.handle({3000 * ms, EventKind::answer, 0});
   CHECK_FALSE(machine.result().response.has_value());
   CHECK(enters(machine.handle({4020 * ms, EventKind::tick, 0}), Phase::response));
@@ -197,20 +214,91 @@ TEST_CASE("with first contact as zero nothing counts before the finger arrives",
   CHECK(untouched.result().outcome == Outcome::timeout);
 }
 
-TEST_CASE("an underrun or a fault during a stimulus voids the trial, and silence is ordered", "[trial]") {
+TEST_CASE("lost frames of a stimulus or a fault void the trial at once, and silence is ordered", "[trial]") {
   auto machine = exploring();
   const auto kind = GENERATE(EventKind::xrun, EventKind::fault);
-  const auto actions = machine.handle({900 * ms, kind, 0});
+  const auto actions = machine.handle({900 * ms, kind, 1});
   CHECK(has(actions, ActionKind::silence, 0));
   CHECK(machine.done());
   CHECK(machine.result().outcome == Outcome::fault);
   CHECK_FALSE(machine.result().response.has_value());
 }
 
+TEST_CASE("lost frames of silence are counted and void nothing", "[trial]") {
+  auto machine = exploring();
+  CHECK(machine.handle({900 * ms, EventKind::xrun, 0}).empty());
+  CHECK(machine.result().xruns == 1);
+  CHECK(machine.phase() == Phase::stimulus);
+}
+
+TEST_CASE("lost frames that are told after the stimulus, or after the answer, void the trial all the same",
+          "[trial]") {
+  SECTION("in the pause that follows") {
+    Machine machine(two_intervals());
+    machine.start(0);
+    machine.handle({10 * ms, EventKind::onset, 0});
+    machine.handle({2510 * ms, EventKind::onset, 1});
+    const auto actions = machine.handle({1511 * ms, EventKind::xrun, 1});
+    CHECK(has(actions, ActionKind::silence, 0));  // the second interval is cancelled
+    CHECK(machine.done());
+    CHECK(machine.result().onsets_ns.size() == 1);
+    CHECK(machine.result().outcome == Outcome::fault);
+  }
+  SECTION("after the answer, whatever was shown") {
+    auto machine = answered_after_two();
+    CHECK_FALSE(machine.decided());
+    CHECK(machine.result().response == 0);
+    machine.handle({4311 * ms, EventKind::xrun, 1});
+    CHECK(machine.done());
+    CHECK(machine.result().outcome == Outcome::fault);
+    CHECK_FALSE(machine.result().response.has_value());
+    CHECK_FALSE(machine.result().correct.has_value());
+    CHECK_FALSE(machine.result().response_time_ns.has_value());
+  }
+  SECTION("not once all of it has been heard") {
+    auto machine = answered_after_two();
+    machine.handle({4312 * ms, EventKind::heard, 1});
+    CHECK(machine.decided());
+    machine.handle({4313 * ms, EventKind::xrun, 0});
+    CHECK(machine.result().outcome == Outcome::answered);
+  }
+}
+
+TEST_CASE("a trial ends no sooner than its last frame has been heard", "[trial]") {
+  auto machine = answered_after_two();
+  machine.handle({9000 * ms, EventKind::tick, 0});
+  CHECK_FALSE(machine.done());
+  CHECK_FALSE(machine.wake_ns());  // only the drive can go on
+  machine.handle({9010 * ms, EventKind::heard, 1});
+  CHECK(machine.done());
+  CHECK(machine.result().outcome == Outcome::answered);
+  CHECK(machine.result().ended_ns == (4310 + 800) * ms);
+}
+
+TEST_CASE("a fault before the last frame was heard leaves the answer without proof: the trial is void",
+          "[trial]") {
+  auto machine = answered_after_two();
+  machine.handle({4311 * ms, EventKind::fault, 0});
+  CHECK(machine.done());
+  CHECK(machine.result().outcome == Outcome::fault);
+}
+
+TEST_CASE("a stop before the intervals, or between them, cancels what has not begun", "[trial]") {
+  Machine machine(two_intervals());
+  machine.start(0);
+  machine.handle({100 * ms, EventKind::onset, 0});
+  machine.handle({2600 * ms, EventKind::onset, 1});
+  const auto at = GENERATE(50, 2000);
+  CHECK(has(machine.handle({at * ms, EventKind::abort, 0}), ActionKind::silence, 0));
+  CHECK(machine.done());
+}
+
 TEST_CASE("stopping after the answer keeps the answer", "[trial]") {
   auto machine = exploring();
   machine.handle({1500 * ms, EventKind::answer, 1});
   machine.handle({1600 * ms, EventKind::abort, 0});
+  CHECK_FALSE(machine.done());  // what was felt before it has to prove whole
+  machine.handle({1610 * ms, EventKind::heard, 0});
   CHECK(machine.done());
   CHECK(machine.result().outcome == Outcome::answered);
 }
@@ -225,9 +313,55 @@ TEST_CASE("a plan that cannot run is refused with what is wrong", "[trial]") {
   CHECK_THROWS_AS(Machine(plan), std::invalid_argument);
 }
 
+namespace {
+
+/// A drive that replies to present with onsets, and says now and then what was heard.
+struct Drive {
+  Machine& machine;
+  const Plan& plan;
+  std::vector<Action> follow(const std::vector<Action>& actions, std::int64_t now, std::int64_t later) {
+    std::vector<Action> more;
+    for (const auto& action : actions) {
+      silenced |= action.kind == ActionKind::silence;
+      if (action.kind != ActionKind::present) continue;
+      ++presented;
+      auto at = std::max(now, action.time_ns) + later;
+      for (std::size_t i = 0; i < plan.intervals.size(); ++i) {
+        const auto next = machine.handle({at, EventKind::onset, static_cast<int>(i)});
+        more.insert(more.end(), next.begin(), next.end());
+        at += plan.intervals[i].duration_ns + plan.gap_ns;
+      }
+    }
+    return more;
+  }
+  int presented = 0;
+  bool silenced = false;
+};
+
+/// What holds of every trial that is over, whatever happened in it.
+std::string broken_invariant(const Machine& machine, const Plan& plan, const Drive& drive, bool hurt) {
+  const auto& result = machine.result();
+  if (!machine.done()) return "a trial that does not end";
+  const bool answered = result.outcome == Outcome::answered;
+  if (answered != result.response.has_value()) return "response without answered";
+  if (answered != result.response_time_ns.has_value()) return "time without answer";
+  if (result.correct && !answered) return "a score without an answer";
+  if (answered &&
+      (*result.response_time_ns < plan.anticipation_ns || *result.response_time_ns > plan.deadline_ns))
+    return "response time outside anticipation and deadline";
+  if (drive.presented > 1) return "presented twice";
+  if (hurt && result.outcome != Outcome::fault && result.outcome != Outcome::aborted)
+    return "lost frames without a void trial";
+  return "";
+}
+
+}  // namespace
+
 TEST_CASE("whatever comes in whatever order, the invariants of a trial hold", "[trial]") {
   std::mt19937_64 random(20261121);
   const auto below = [&](std::uint64_t n) { return static_cast<std::int64_t>(random() % n); };
+  constexpr EventKind common[] = {EventKind::tick, EventKind::answer, EventKind::touch, EventKind::contact};
+  constexpr EventKind rare[] = {EventKind::xrun, EventKind::fault, EventKind::abort};
   for (int sequence = 0; sequence < 100'000; ++sequence) {
     auto plan = below(2) ? exploration() : two_intervals();
     if (plan.answer_ends_stimulus && below(3) == 0) {
@@ -237,50 +371,25 @@ TEST_CASE("whatever comes in whatever order, the invariants of a trial hold", "[
       plan.response_zero = below(2) ? ResponseZero::first_contact : ResponseZero::lift_off;
     }
     Machine machine(plan);
+    Drive drive{machine, plan};
     std::int64_t now = 0;
-    auto actions = machine.start(now);
-    int presented = 0, silenced = 0;
+    bool hurt = false;
+    drive.follow(machine.start(now), now, below(40) * ms);
     for (int event = 0; event < 60 && !machine.done(); ++event) {
-      for (const auto& action : actions) {
-        if (action.kind == ActionKind::present) {
-          ++presented;
-          machine.handle({now + below(40) * ms, EventKind::onset, action.value});
-        }
-        if (action.kind == ActionKind::silence) ++silenced;
-      }
       now += below(5) == 0 ? below(4000) * ms : below(50) * ms;
-      const auto kind = static_cast<EventKind>(below(60) == 0 ? 5 + below(3) : below(2) ? 0 : 2 + below(3));
-      actions = machine.handle({now, kind, static_cast<int>(below(4)) - 1});
+      const auto kind = below(60) == 0 ? rare[below(3)] : common[below(4)];
+      const int value = static_cast<int>(below(4)) - 1;
+      hurt |= kind == EventKind::xrun && value != 0 && !machine.decided();
+      drive.follow(machine.handle({now, kind, value}), now, 0);
     }
-    if (!machine.done()) {
-      for (int tick = 0; tick < 30 && !machine.done(); ++tick) {
-        for (const auto& action : actions)
-          if (action.kind == ActionKind::present) {
-            ++presented;
-            machine.handle({now, EventKind::onset, action.value});
-          }
-        const auto wake = machine.wake_ns();
-        if (!wake) {
-          actions.clear();
-          break;
-        }
-        now = std::max(now, *wake);
-        actions = machine.handle({now, EventKind::tick, 0});
-      }
+    for (int i = 0; i < static_cast<int>(plan.intervals.size()) && !machine.done(); ++i)
+      drive.follow(machine.handle({now, EventKind::heard, i}), now, 0);
+    for (int tick = 0; tick < 30 && !machine.done() && machine.wake_ns(); ++tick) {
+      now = std::max(now, *machine.wake_ns());
+      drive.follow(machine.handle({now, EventKind::tick, 0}), now, 0);
     }
-    const auto& result = machine.result();
-    const bool answered = machine.done() && result.outcome == Outcome::answered;
-    if (!machine.done()) FAIL("a trial that time alone does not end, sequence " << sequence);
-    if (answered != result.response.has_value())
-      FAIL("response without answered, sequence " << sequence << " " << name(result.outcome) << " "
-                                                  << result.response.has_value());
-    if (answered != result.response_time_ns.has_value()) FAIL("time without answer, sequence " << sequence);
-    if (result.correct && !answered) FAIL("a score without an answer");
-    if (answered &&
-        (*result.response_time_ns < plan.anticipation_ns || *result.response_time_ns > plan.deadline_ns))
-      FAIL("response time outside anticipation and deadline");
-    if (presented > static_cast<int>(plan.intervals.size())) FAIL("an interval presented twice");
-    if (result.outcome == Outcome::answered && !answered) FAIL("answered but not done");
+    if (const auto broken = broken_invariant(machine, plan, drive, hurt); !broken.empty())
+      FAIL(broken << ", sequence " << sequence << " " << name(machine.result().outcome));
   }
   SUCCEED();
 }

@@ -81,6 +81,7 @@ void ScriptedSession::take(const session::Input& input) {
       break;
     case InputKind::contact:
     case InputKind::xrun:
+    case InputKind::heard:
     case InputKind::fault:
     case InputKind::failure:
     case InputKind::notice:

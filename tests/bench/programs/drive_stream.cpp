@@ -19,6 +19,8 @@ const char* name(EventKind kind) {
       return "started";
     case EventKind::burst_ended:
       return "ended";
+    case EventKind::burst_heard:
+      return "heard";
     case EventKind::burst_missed:
       return "missed";
     case EventKind::underrun:
@@ -48,7 +50,7 @@ void run(const StreamConfig& config, double seconds) {
     stream->schedule(burst);
     std::printf("%lld scheduled %lld predicted %lld\n", static_cast<long long>(monotonic_ns()),
                 static_cast<long long>(burst.start_frame),
-                static_cast<long long>(stream->time_of(burst.start_frame)));
+                static_cast<long long>(stream->time_of(burst.start_frame).value_or(0)));
     while (monotonic_ns() < next_ns + 500'000'000) {
       sleep_until_ns(monotonic_ns() + 5'000'000);
       while (const auto event = stream->poll())

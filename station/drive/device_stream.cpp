@@ -1,0 +1,128 @@
+#include "station/drive/device_stream.hpp"
+
+#include <cmath>
+
+#include "station/drive/monotonic.hpp"
+
+namespace turnpoint::drive {
+
+DeviceStream::DeviceStream(const StreamConfig& config)
+    : config_(config),
+      core_(config),
+      output_(open_output(config.output)),
+      clock_(config.output.rate_Hz, 1024),
+      block_(static_cast<std::size_t>(config.output.channels) *
+             static_cast<std::size_t>(config.output.period_frames)),
+      origin_ns_(monotonic_ns()),
+      rate_check_(config.output.rate_Hz) {}
+
+std::int64_t DeviceStream::delay_ns() const noexcept { return std::llround(config_.converter_delay_s * 1e9); }
+
+std::optional<Event> DeviceStream::poll() {
+  gather_positions();
+  return core_.poll();
+}
+
+// Between a new relation and the device's first position in it, nothing is known.
+void DeviceStream::gather_positions() {
+  const std::uint32_t relation = relation_.load();
+  if (relation != clock_relation_) clock_.reset();
+  clock_relation_ = relation;
+  StampedPosition stamped;
+  while (positions_->pop(stamped))
+    if (stamped.relation == relation) clock_.add(stamped.position.frame, stamped.position.time_ns);
+  StampedRate rate;
+  while (rates_->pop(rate)) rate_ = rate;
+}
+
+ClockFit DeviceStream::clock() {
+  gather_positions();
+  return clock_.fit();
+}
+
+std::optional<std::int64_t> DeviceStream::time_of(std::int64_t frame) {
+  const ClockFit fit = clock();
+  return fit.pairs > 0 ? std::optional(fit.time_of(frame) + delay_ns()) : std::nullopt;
+}
+
+std::optional<std::int64_t> DeviceStream::frame_at(std::int64_t time_ns) {
+  const ClockFit fit = clock();
+  return fit.pairs > 0 ? std::optional(fit.frame_at(time_ns - delay_ns())) : std::nullopt;
+}
+
+std::optional<MeasuredRate> DeviceStream::measured_rate() {
+  gather_positions();
+  return rate_ && rate_->device == device_.load() ? std::optional(rate_->rate) : std::nullopt;
+}
+
+void DeviceStream::step() noexcept {
+  core_.process(frame_, block_);
+  const WriteResult result = output_->write(block_);
+  if (result.status == WriteStatus::ok)
+    frame_ += config_.output.period_frames;
+  else
+    note_loss(result);
+  lost_ = result.status == WriteStatus::lost;
+  if (config_.amplifier && !lost_) config_.amplifier->audio_alive();
+  output_->paced() ? follow_device() : follow_clock();
+}
+
+// The loss of a device is reported once, however long it lasts.
+void DeviceStream::note_loss(const WriteResult& result) noexcept {
+  const std::int64_t first = frame_ + result.taken - result.dropped;
+  const std::int64_t next = frame_ + result.taken + result.passed;
+  if (result.status != WriteStatus::skipped) {
+    relation_.fetch_add(1);
+    rate_check_.restart();
+  }
+  switch (result.status) {
+    case WriteStatus::ok:
+      break;
+    case WriteStatus::skipped:
+    case WriteStatus::restarted:
+      core_.lose({EventKind::underrun, 0, first, next - first, result.error,
+                  result.status == WriteStatus::restarted},
+                 next);
+      break;
+    case WriteStatus::lost:
+      if (lost_) break;
+      device_.fetch_add(1);
+      rate_told_ = false;
+      core_.lose({EventKind::device_lost, 0, first, 0, result.error}, next);
+      break;
+    case WriteStatus::reopened:
+      core_.lose({EventKind::device_back, 0, next}, next);
+      break;
+  }
+  frame_ = next;
+}
+
+void DeviceStream::follow_device() noexcept {
+  const auto position = output_->position();
+  if (!position) return;
+  core_.heard(position->frame);
+  // When nobody asks for the clock the ring is full of older pairs, which do as well.
+  static_cast<void>(positions_->push({relation_.load(), *position}));
+  if (!rate_told_) check_rate(*position);
+}
+
+void DeviceStream::check_rate(const Position& position) noexcept {
+  rate_check_.add(position.frame, position.time_ns + raw_minus_monotonic_ns());
+  const auto rate = rate_check_.result();
+  if (!rate) return;
+  rate_told_ = true;
+  static_cast<void>(rates_->push({device_.load(), *rate}));
+  if (std::abs(rate->deviation_ppm) > RateCheck::tolerance_ppm)
+    core_.report({EventKind::rate_wrong, 0, position.frame, std::llround(rate->rate_Hz * 1000)});
+}
+
+// Files and null take frames at once; the clock stands in for a converter one period behind.
+void DeviceStream::follow_clock() noexcept {
+  const std::int64_t rate = config_.output.rate_Hz, heard = frame_ - config_.output.period_frames;
+  const std::int64_t due_ns = origin_ns_ + heard / rate * 1'000'000'000 + heard % rate * 1'000'000'000 / rate;
+  sleep_until_ns(due_ns);
+  core_.heard(heard);
+  static_cast<void>(positions_->push({relation_.load(), {heard, due_ns}}));
+}
+
+}  // namespace turnpoint::drive

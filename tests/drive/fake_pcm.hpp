@@ -1,0 +1,40 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+namespace turnpoint::drive {
+
+/// A sound card in memory, below the station's own ALSA output: in the program that links fake_pcm.cpp its
+/// functions stand in for alsa-lib's, and its time for CLOCK_MONOTONIC. Time passes where the test says so
+/// and where the program waits, and only then; each frame of it plays one frame of the buffer, or silence
+/// where that is empty.
+struct FakePcm {
+  enum class State { prepared, running, xrun, suspended, gone };
+
+  std::int64_t rate_Hz = 192000;
+  std::int64_t period = 0, buffer = 0;
+  int channels = 2;
+  State state = State::prepared;
+  std::int64_t now = 0;                  ///< frames of time since the beginning, played or not
+  std::int64_t written = 0, played = 0;  ///< since the device was started
+  std::vector<std::int32_t> ring;
+  std::vector<std::int32_t> heard;  ///< channel 0, one sample a frame of time
+  bool stamps = true;               ///< tells its position
+  bool present = true;              ///< can be opened
+  /// Called before each call that the program makes while the device runs: the place to let time pass or to
+  /// make the device fail. The second is for writes alone, which come after the program has looked for room.
+  std::function<void()> before_call, before_write;
+
+  void pass(std::int64_t frames);
+  /// The device stops by itself: underrun (xrun), the machine's sleep (suspended), or unplugged (gone).
+  void fail(State how) { state = how; }
+  std::int64_t queued() const { return written - played; }
+  std::int64_t now_ns() const { return 1'000'000'000 + now * 1'000'000'000 / rate_Hz; }
+};
+
+/// The one card that is there; a fresh one after reset_fake_pcm().
+FakePcm& fake_pcm();
+void reset_fake_pcm();
+
+}  // namespace turnpoint::drive

@@ -1,0 +1,125 @@
+#include <cmath>
+
+#include "station/drive/device_stream.hpp"
+#include "tests/drive/bursts.hpp"
+#include "tests/drive/fake_pcm.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::drive;
+
+namespace {
+
+StreamConfig on_fake_card() {
+  reset_fake_pcm();
+  StreamConfig config;
+  config.output.uri = "alsa:fake";
+  return config;
+}
+
+void steps(DeviceStream& stream, int count) {
+  for (int k = 0; k < count; ++k) stream.step();
+}
+
+/// How wrong the stream's idea of now is; frames. The card plays, without a prefill of silence left over.
+double error_frames(DeviceStream& stream) {
+  const auto& card = fake_pcm();
+  const auto next = stream.counters().frames;
+  const auto heard_in = static_cast<double>(card.queued());
+  const double told_ns = static_cast<double>(stream.time_of(next).value() - card.now_ns());
+  return told_ns * 1e-9 * static_cast<double>(card.rate_Hz) - heard_in;
+}
+
+}  // namespace
+
+TEST_CASE("before the device has told its position nothing is known of its time", "[drive][clock]") {
+  DeviceStream stream(on_fake_card());
+  CHECK(stream.clock().pairs == 0);
+  CHECK_FALSE(stream.time_of(0));
+  CHECK_FALSE(stream.frame_at(1'000'000'000));
+  fake_pcm().stamps = false;  // a device that never tells
+  steps(stream, 50);
+  CHECK_FALSE(stream.time_of(0));
+  fake_pcm().stamps = true;
+  steps(stream, 2);
+  CHECK(std::abs(error_frames(stream)) <= 1);
+}
+
+TEST_CASE("a restart is never forgotten, however long nobody listened", "[drive][clock]") {
+  DeviceStream stream(on_fake_card());
+  steps(stream, 5000);  // ten seconds: the ring of positions is long full
+  fake_pcm().fail(FakePcm::State::xrun);
+  fake_pcm().pass(5000);
+  stream.step();
+  CHECK_FALSE(stream.time_of(0));  // all that the ring holds is from before
+  steps(stream, 3);
+  CHECK(std::abs(error_frames(stream)) <= 1);
+  steps(stream, 200);
+  CHECK(std::abs(error_frames(stream)) <= 1);
+}
+
+TEST_CASE("while the device is away nothing is known, and the next one's rate is measured for itself",
+          "[drive][clock]") {
+  DeviceStream stream(on_fake_card());
+  auto& card = fake_pcm();
+  steps(stream, 1500);
+  REQUIRE(stream.measured_rate());
+  CHECK(std::abs(stream.measured_rate()->deviation_ppm) < 10);
+  card.fail(FakePcm::State::gone);
+  card.present = false;
+  steps(stream, 10);
+  CHECK_FALSE(stream.time_of(0));
+  CHECK_FALSE(stream.measured_rate());
+  card.present = true;
+  while (card.state != FakePcm::State::running) stream.step();
+  steps(stream, 2);
+  CHECK(std::abs(error_frames(stream)) <= 1);
+  CHECK_FALSE(stream.measured_rate());
+  // The device that has come back runs 400 ppm fast: every 2500th frame takes no time.
+  std::int64_t due = card.now + 2500;
+  card.before_call = [&] {
+    if (card.now < due) return;
+    due += 2500;
+    --card.now;
+  };
+  bool wrong = false;
+  for (int k = 0; k < 12'000 && !wrong; ++k) {
+    stream.step();
+    while (const auto event = stream.poll()) wrong |= event->kind == EventKind::rate_wrong;
+  }
+  CHECK(wrong);
+  REQUIRE(stream.measured_rate());
+  CHECK(stream.measured_rate()->deviation_ppm > RateCheck::tolerance_ppm);
+}
+
+TEST_CASE("an underrun is told with its first lost frame and the burst that it cost frames",
+          "[drive][gaps]") {
+  DeviceStream stream(on_fake_card());
+  auto& card = fake_pcm();
+  steps(stream, 20);
+  Burst burst = one_tone(20000, 0.4);
+  burst.start_frame = stream.earliest_frame() + 5000;
+  const auto id = stream.schedule(burst);
+  const auto underrun = [&] {
+    std::optional<Event> found;
+    while (const auto event = stream.poll())
+      if (event->kind == EventKind::underrun) found = event;
+    return found;
+  };
+  const auto rendered = stream.counters().frames;
+  card.pass(card.queued() + 100);
+  stream.step();
+  auto told = underrun();
+  REQUIRE(told);
+  CHECK(told->frame == rendered);
+  CHECK(told->frames == 100 + 384);
+  CHECK(told->burst == 0);  // before the burst: it is untouched
+  steps(stream, 100);
+  const auto in_burst = stream.counters().frames;
+  card.pass(card.queued() + 50);
+  stream.step();
+  told = underrun();
+  REQUIRE(told);
+  CHECK(told->frame == in_burst);
+  CHECK(told->burst == id);
+  CHECK(stream.counters().lost_frames == 100 + 384 + 50 + 384);
+}

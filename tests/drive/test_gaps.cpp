@@ -1,0 +1,258 @@
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "station/drive/device_stream.hpp"
+#include "tests/drive/fake_pcm.hpp"
+#include "tests/support/catch.hpp"
+
+// The station's ALSA output and its stream on a sound card in memory, stepped by hand. What the card really
+// played decides what the stream must have said about it: the samples are compared with those of an unbroken
+// synthesis, whatever the program believes to be where.
+
+using namespace turnpoint::drive;
+
+namespace {
+
+constexpr std::int64_t kRamp = 300, kPause = 1000;
+constexpr double kAmplitude = 0.5;
+
+Burst burst_of(std::int64_t length_frames) {
+  Burst burst;
+  burst.length_frames = length_frames;
+  burst.ramp.frames = kRamp;
+  burst.tones.count = 1;
+  burst.tones.tones[0] = {24000, kAmplitude, 0.4, 0};
+  return burst;
+}
+
+/// Channel 0 of frames [first, end) as a synthesis without gaps renders them.
+std::vector<std::int32_t> unbroken(std::span<const PreparedBurst> bursts, const Format& format,
+                                   std::int64_t first, std::int64_t end) {
+  Synth synth(format, Precision::exact);
+  for (const auto& burst : bursts) REQUIRE(synth.start(burst));
+  std::vector<std::int32_t> block(static_cast<std::size_t>(format.channels * (end - first)));
+  synth.skip_to(first);
+  synth.render(first, std::span<std::int32_t>(block));
+  std::vector<std::int32_t> channel;
+  for (std::size_t n = 0; n < block.size(); n += static_cast<std::size_t>(format.channels))
+    channel.push_back(block[n]);
+  return channel;
+}
+
+/// Where sound sets in at more than a twentieth of its amplitude within 16 frames, after silence.
+int abrupt_onsets(const std::vector<std::int32_t>& heard) {
+  int abrupt = 0;
+  std::size_t silent = 0;
+  for (std::size_t n = 0; n < heard.size(); ++n) {
+    if (heard[n] == 0) {
+      ++silent;
+      continue;
+    }
+    if (silent >= 16)
+      abrupt += std::any_of(heard.begin() + static_cast<std::ptrdiff_t>(n),
+                            heard.begin() + static_cast<std::ptrdiff_t>(std::min(n + 16, heard.size())),
+                            [](std::int32_t s) { return std::abs(s * 0x1p-31) > 0.05 * kAmplitude; })
+                    ? 1
+                    : 0;
+    silent = 0;
+  }
+  return abrupt;
+}
+
+enum class Mishap { stall, stall_in_write, xrun, suspend, unplug };
+
+/// Two bursts with a pause on a card to which things happen, and what the stream said about them.
+struct Run {
+  std::vector<Scheduled> scheduled;
+  std::vector<PreparedBurst> bursts;
+  std::int64_t predicted_ns = 0;
+  std::set<std::uint32_t> heard;
+  std::vector<Event> losses;
+  bool restarted = false;
+
+  bool both_heard() const { return heard.size() == 2; }
+};
+
+class Bench {
+ public:
+  explicit Bench(std::uint64_t seed) : random_(seed) {
+    reset_fake_pcm();
+    config_.output.uri = "alsa:fake";
+    config_.output.period_frames = pick({64, 128, 384});
+    config_.output.periods = pick({2, 3, 4, 8});
+  }
+
+  /// `mishaps` of the kinds given, each at a moment drawn from before the first onset until after the last
+  /// end.
+  Run run(int mishaps, const std::vector<Mishap>& kinds) {
+    DeviceStream stream(config_);
+    for (int k = 0; k < 4 || stream.clock().pairs < 2; ++k) stream.step();
+    Run run = schedule(stream);
+    const auto frames = run.scheduled.back().start_frame + run.bursts.back().length_frames -
+                        stream.counters().frames + 4 * buffer();
+    plan(mishaps, kinds, frames);
+    const auto end = fake_pcm().now + frames + 3 * buffer() + lasting_;
+    while (fake_pcm().now < end) {
+      stream.step();
+      if (below(3) == 0) listen(stream, run);  // now and then, as a session does
+    }
+    fake_pcm().before_call = fake_pcm().before_write = nullptr;
+    for (int k = 0; k < 40; ++k) stream.step();
+    listen(stream, run);
+    return run;
+  }
+
+  const OutputConfig& output() const { return config_.output; }
+
+ private:
+  struct Planned {
+    std::int64_t at = 0, lasts = 0;
+    Mishap kind = Mishap::stall;
+  };
+
+  std::int64_t below(std::int64_t n) {
+    return static_cast<std::int64_t>(random_() % static_cast<std::uint64_t>(n));
+  }
+  int pick(std::initializer_list<int> from) {
+    return *(from.begin() + below(static_cast<std::int64_t>(from.size())));
+  }
+  std::int64_t buffer() const { return std::int64_t{config_.output.period_frames} * config_.output.periods; }
+
+  Run schedule(DeviceStream& stream) {
+    Run run;
+    const auto format = format_of(config_.output);
+    for (const std::int64_t length : {3000, 2500}) run.bursts.push_back(prepare(burst_of(length), format));
+    run.bursts[0].start_frame = stream.earliest_frame() + below(2000);
+    run.bursts[1].start_frame = run.bursts[0].start_frame + 3000 + kPause;
+    run.scheduled = stream.schedule_together(run.bursts);
+    run.predicted_ns = stream.time_of(run.scheduled.front().start_frame).value();
+    return run;
+  }
+
+  void plan(int mishaps, const std::vector<Mishap>& kinds, std::int64_t frames) {
+    for (int k = 0; k < mishaps; ++k) {
+      Planned one;
+      one.at = fake_pcm().now + below(frames);
+      one.kind = kinds[static_cast<std::size_t>(below(static_cast<std::int64_t>(kinds.size())))];
+      one.lasts = one.kind == Mishap::unplug ? 60'000 : 1 + below(3 * buffer());
+      lasting_ += one.lasts;
+      planned_.push_back(one);
+    }
+    std::sort(planned_.begin(), planned_.end(), [](const auto& a, const auto& b) { return a.at > b.at; });
+    fake_pcm().before_call = [this] { happen(false); };
+    fake_pcm().before_write = [this] { happen(true); };
+  }
+
+  void happen(bool in_write) {
+    if (planned_.empty() || planned_.back().at > fake_pcm().now) return;
+    if ((planned_.back().kind == Mishap::stall_in_write) != in_write) return;
+    const Planned one = planned_.back();
+    planned_.pop_back();
+    FakePcm& card = fake_pcm();
+    if (one.kind == Mishap::xrun) card.fail(FakePcm::State::xrun);
+    if (one.kind == Mishap::suspend) card.fail(FakePcm::State::suspended);
+    if (one.kind == Mishap::unplug) card.fail(FakePcm::State::gone);
+    card.pass(one.lasts);
+  }
+
+  void listen(DeviceStream& stream, Run& run) {
+    while (const auto event = stream.poll()) {
+      if (event->kind == EventKind::burst_heard) run.heard.insert(event->burst);
+      if (event->kind == EventKind::underrun || event->kind == EventKind::device_lost)
+        run.losses.push_back(*event);
+      run.restarted |= event->retimed || event->kind == EventKind::device_lost;
+    }
+  }
+
+  std::mt19937_64 random_;
+  StreamConfig config_;
+  std::vector<Planned> planned_;
+  std::int64_t lasting_ = 0;
+};
+
+struct Truth {
+  bool whole = false;    ///< both bursts and the pause between them were played, sample by sample
+  bool on_time = false;  ///< and began when it was predicted
+};
+
+Truth truth_of(const Run& run, const OutputConfig& output) {
+  auto bursts = run.bursts;
+  for (std::size_t k = 0; k < bursts.size(); ++k) bursts[k].start_frame = run.scheduled[k].start_frame;
+  const auto wanted = unbroken(bursts, format_of(output), bursts.front().start_frame,
+                               bursts.back().start_frame + bursts.back().length_frames);
+  const auto& heard = fake_pcm().heard;
+  const auto found = std::search(heard.begin(), heard.end(), wanted.begin(), wanted.end());
+  if (found == heard.end()) return {};
+  const auto at_ns = 1'000'000'000 + (found - heard.begin()) * 1'000'000'000 / output.rate_Hz;
+  return {true, std::abs(at_ns - run.predicted_ns) < 1'000'000'000 / output.rate_Hz};
+}
+
+struct Tally {
+  int whole = 0, broken = 0, late = 0, gaps = 0;
+};
+
+/// What the stream said must be what the card played.
+Tally judge(int runs, std::uint64_t seed, const std::vector<Mishap>& kinds) {
+  Tally tally;
+  for (int k = 0; k < runs; ++k) {
+    Bench bench(seed + static_cast<std::uint64_t>(k));
+    const Run run = bench.run(k % 4, kinds);
+    const Truth truth = truth_of(run, bench.output());
+    INFO("seed " << seed + static_cast<std::uint64_t>(k));
+    const bool good = truth.whole && truth.on_time;
+    if (run.both_heard() && !good) FAIL("said to be heard, and was not");
+    // A device that was started anew has no relation to what was predicted, even if it happens to agree.
+    if (!run.both_heard() && good && !run.restarted) FAIL("said to have lost frames, and had not");
+    if (kinds.front() != Mishap::stall_in_write && abrupt_onsets(fake_pcm().heard) != 0)
+      FAIL("a block set in abruptly");
+    ++(good ? tally.whole : truth.whole ? tally.late : tally.broken);
+    tally.gaps += static_cast<int>(run.losses.size());
+  }
+  return tally;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "whatever stalls where, a burst is said to be heard exactly if it was, and nothing sets in abruptly",
+    "[drive][gaps]") {
+  const auto tally = judge(3000, 1, {Mishap::stall});
+  CHECK(tally.whole > 800);
+  CHECK(tally.broken > 800);
+  CHECK(tally.gaps > 1500);
+}
+
+TEST_CASE("a stall in the middle of a write is found out after it", "[drive][gaps]") {
+  const auto tally = judge(1000, 100'000, {Mishap::stall_in_write, Mishap::stall});
+  CHECK(tally.broken > 300);
+}
+
+TEST_CASE("a device that was started anew, or was away, has heard nothing to its end", "[drive][gaps]") {
+  const auto tally = judge(1500, 200'000, {Mishap::xrun, Mishap::suspend, Mishap::stall});
+  CHECK(tally.broken > 400);
+  CHECK(tally.late > 20);
+  const auto away = judge(150, 300'000, {Mishap::unplug, Mishap::stall});
+  CHECK(away.broken + away.late > 50);
+}
+
+TEST_CASE("the comparison finds one sample amiss, and a block that is not ramped: the negative control",
+          "[drive][gaps]") {
+  Bench bench(7);
+  const Run run = bench.run(0, {});
+  REQUIRE(run.both_heard());
+  REQUIRE(truth_of(run, bench.output()).on_time);
+  auto& heard = fake_pcm().heard;
+  REQUIRE(abrupt_onsets(heard) == 0);
+  const auto last = std::find_if(heard.rbegin(), heard.rend(), [](auto s) { return s != 0; }).base() - 1;
+  const auto kept = *last;
+  *last = 0;
+  CHECK_FALSE(truth_of(run, bench.output()).whole);
+  *last = kept;
+  heard.insert(heard.begin(), 1, 0);
+  CHECK(truth_of(run, bench.output()).whole);
+  CHECK_FALSE(truth_of(run, bench.output()).on_time);
+  const auto middle = std::find_if(heard.begin(), heard.end(), [](auto s) { return s != 0; }) + 1500;
+  std::fill(middle, middle + 100, 0);
+  CHECK(abrupt_onsets(heard) == 1);
+}
