@@ -141,7 +141,7 @@ ParameterInterval mapped(const ParameterInterval& from, Map map) {
   return result;
 }
 
-void add_band(PsychometricBootstrap& result, const Replicator& base, const std::vector<Theta>& thetas,
+void add_band(PsychometricIntervals& result, const Replicator& base, const std::vector<Theta>& thetas,
               int points) {
   const double first = base.counts.u.front(), last = base.counts.u.back(), margin = 0.04 * (last - first);
   const Likelihood likelihood(base.options.function, base.options.guess, base.counts, base.bounds);
@@ -154,21 +154,6 @@ void add_band(PsychometricBootstrap& result, const Replicator& base, const std::
     result.band_low.push_back(range.low);
     result.band_high.push_back(range.high);
   }
-}
-
-void say_what_touches(PsychometricBootstrap& result) {
-  const auto say = [&result](const std::optional<ParameterInterval>& of, const char* what) {
-    if (!of || !(of->touches_low || of->touches_high)) return;
-    const char* end = of->touches_low && of->touches_high ? "both ends"
-                      : of->touches_low                   ? "its lower end"
-                                                          : "its upper end";
-    result.statements.push_back({std::string("interval-") + what, std::string("The interval of the ") + what +
-                                                                      " touches a bound at " + end +
-                                                                      ": there the data do not limit it."});
-  };
-  say(result.threshold, "threshold");
-  say(result.slope, "slope");
-  say(result.interval_75, "75 % point");
 }
 
 /// The replicates of one fit: their estimates, deviances beyond the fit's, and likelihood ratios of the
@@ -198,10 +183,10 @@ Replicates replicate(const Replicator& base, const BootstrapOptions& options, do
 
 }  // namespace
 
-PsychometricBootstrap bootstrap(const PsychometricFit& fit, const BootstrapOptions& options) {
+PsychometricIntervals bootstrap(const PsychometricFit& fit, const BootstrapOptions& options) {
   if (options.replicates < 40 || !(options.confidence > 0 && options.confidence < 1))
     throw std::invalid_argument("bootstrap: at least 40 replicates and a confidence inside (0, 1)");
-  PsychometricBootstrap result;
+  PsychometricIntervals result;
   result.confidence = options.confidence;
   if (!fit.parameters) {
     result.statements.push_back({"no-fit", "No fit, so no interval."});
@@ -219,6 +204,7 @@ PsychometricBootstrap bootstrap(const PsychometricFit& fit, const BootstrapOptio
     values[2][0] = axis_position(function, scale, *result.level_75);
   }
   const auto drawn = replicate(base, options, fit.deviance, quantities, values);
+  result.method = IntervalMethod::bootstrap;
   result.replicates = options.replicates;
   const auto of = [&](int q) {
     return profile(base, quantities[q], values[q], fit.negative_log_likelihood, drawn.ratios[q],

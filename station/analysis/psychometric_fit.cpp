@@ -41,7 +41,8 @@ std::vector<LevelCount> merged(const std::vector<LevelCount>& data) {
   return result;
 }
 
-/// The z statistic of a linear trend of positive answers over the axis (Cochran-Armitage).
+/// The z statistic of a linear trend of positive answers over the axis (Cochran-Armitage); 0 where all
+/// answers or all levels are the same.
 double trend(const AxisCounts& counts) {
   double n = 0, k = 0, sum_u = 0;
   for (std::size_t i = 0; i < counts.u.size(); ++i) {
@@ -55,10 +56,11 @@ double trend(const AxisCounts& counts) {
     covariance += counts.positive[i] * du;
     spread += counts.trials[i] * du * du;
   }
-  return covariance / std::sqrt(k / n * (1 - k / n) * spread);
+  const double variance = k / n * (1 - k / n) * spread;
+  return variance > 0 ? covariance / std::sqrt(variance) : 0;
 }
 
-/// Why no function can be fitted, or none.
+/// Why no maximum can be found, or none.
 std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitOptions& options) {
   int trials = 0, positive = 0;
   for (const auto& point : data) {
@@ -66,14 +68,11 @@ std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitO
     positive += point.positive;
   }
   const auto levels = static_cast<int>(data.size());
-  if (trials == 0) return Statement{"no-trials", "No answered trial: nothing to fit."};
-  if (levels < options.minimum_levels)
+  if (levels > 0 && levels < options.minimum_levels)
     return Statement{"too-few-levels", std::to_string(levels) + (levels == 1 ? " level" : " levels") +
                                            " with answers: a psychometric function needs at least " +
                                            std::to_string(options.minimum_levels) + "."};
-  if (trials < options.minimum_trials)
-    return Statement{"too-few-trials", std::to_string(trials) + " answered trials: a fit needs at least " +
-                                           std::to_string(options.minimum_trials) + "."};
+  if (auto reason = unusable(data, options)) return reason;
   if (positive == trials)
     return Statement{"all-positive",
                      "The answer was the same (or right) at every level: the threshold lies below the levels "
@@ -82,12 +81,7 @@ std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitO
     return Statement{"none-positive",
                      "The answer was never right (or never the tracked one): the threshold lies above the "
                      "levels shown, and cannot be estimated."};
-  const double z = trend(axis_counts(data, options.function, options.scale));
-  if (z < -1.645)
-    return Statement{
-        "reversed", "Data are reversed: the answer becomes rarer as the level rises (trend z = " +
-                        text::number(z, 3) + "). Check the sign of the level and the labels of the answers."};
-  if (z <= 0)
+  if (trend(axis_counts(data, options.function, options.scale)) <= 0)
     return Statement{"flat", "The answers do not change with the level: no threshold can be estimated."};
   return std::nullopt;
 }
@@ -130,6 +124,41 @@ void note_bounds(PsychometricFit& fit, const Theta& theta, const ThetaBounds& bo
 
 }  // namespace
 
+std::vector<LevelCount> checked(const std::vector<LevelCount>& data, const FitOptions& options) {
+  check(data, options);
+  return merged(data);
+}
+
+std::optional<Statement> unusable(const std::vector<LevelCount>& data, const FitOptions& options) {
+  int trials = 0;
+  for (const auto& point : data) trials += point.trials;
+  if (trials == 0) return Statement{"no-trials", "No answered trial: nothing to fit."};
+  if (trials < options.minimum_trials)
+    return Statement{"too-few-trials", std::to_string(trials) + " answered trials: a fit needs at least " +
+                                           std::to_string(options.minimum_trials) + "."};
+  const double z = trend(axis_counts(data, options.function, options.scale));
+  if (z < -1.645)
+    return Statement{
+        "reversed", "Data are reversed: the answer becomes rarer as the level rises (trend z = " +
+                        text::number(z, 3) + "). Check the sign of the level and the labels of the answers."};
+  return std::nullopt;
+}
+
+void say_what_touches(PsychometricIntervals& intervals) {
+  const auto say = [&intervals](const std::optional<ParameterInterval>& of, const char* what) {
+    if (!of || !(of->touches_low || of->touches_high)) return;
+    const char* end = of->touches_low && of->touches_high ? "both ends"
+                      : of->touches_low                   ? "its lower end"
+                                                          : "its upper end";
+    intervals.statements.push_back({std::string("interval-") + what,
+                                    std::string("The interval of the ") + what + " touches a bound at " +
+                                        end + ": there the data do not limit it."});
+  };
+  say(intervals.threshold, "threshold");
+  say(intervals.slope, "slope");
+  say(intervals.interval_75, "75 % point");
+}
+
 AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, Scale scale) {
   AxisCounts counts;
   for (const auto& point : data) {
@@ -167,10 +196,9 @@ Psychometric from_theta(const Theta& theta, const FitOptions& options) {
 }
 
 PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitOptions& options) {
-  check(data, options);
   PsychometricFit fit;
   fit.options = options;
-  fit.data = merged(data);
+  fit.data = checked(data, options);
   if (auto reason = refusal(fit.data, options)) {
     fit.statements.push_back(*reason);
     return fit;

@@ -60,18 +60,26 @@ struct ParameterInterval {
   bool touches_low = false, touches_high = false;  ///< an end stands on a bound: the data do not limit it
 };
 
-/// Parametric bootstrap (Wichmann & Hill 2001b) of a fit. Intervals of threshold, slope and 75 % point are
-/// those of the profile likelihood, with the critical value of the likelihood ratio that the replicates show
-/// instead of chi-square's: plain percentile intervals of a slope miss one time in seven with ten trials a
-/// level, since its estimate is biased, and BCa intervals of a Weibull's threshold likewise. Lapse and guess
-/// have percentile intervals. Conditional on the levels presented, also where a procedure chose them.
-struct PsychometricBootstrap {
-  int replicates = 0;
+/// What is thought possible before the first answer. Threshold: uniform on the function's axis from low to
+/// high, in the unit of the level. Slope: its logarithm uniform from low to high, as in Psychometric.
+struct Prior {
+  double threshold_low = 0, threshold_high = 1;
+  double slope_low = 0, slope_high = 1;
+};
+
+enum class IntervalMethod { none, bootstrap, posterior };
+
+/// The 95 % intervals of a fit, by a bootstrap (levels fixed before the session) or from a posterior (levels
+/// chosen by the answers). What the data do not determine is none, and a statement says so.
+struct PsychometricIntervals {
+  IntervalMethod method = IntervalMethod::none;
+  int replicates = 0;          ///< of a bootstrap
+  std::optional<Prior> prior;  ///< of a posterior
   double confidence = 0.95;
   std::optional<ParameterInterval> threshold, slope, lapse, guess;
   std::optional<double> level_75;                ///< where the fitted probability is 0.75, if it is anywhere
   std::optional<ParameterInterval> interval_75;  ///< of that level
-  std::optional<double> deviance_p;
+  std::optional<double> deviance_p;              ///< of a bootstrap
   std::vector<double> band_level, band_low, band_high;  ///< probability at `band_level`
   std::vector<Statement> statements;
 };
@@ -84,8 +92,14 @@ struct BootstrapOptions {
   int band_points = 61;  ///< 0: no band
 };
 
+/// Parametric bootstrap (Wichmann & Hill 2001b) of a fit. Intervals of threshold, slope and 75 % point are
+/// those of the profile likelihood, with the critical value of the likelihood ratio that the replicates show
+/// instead of chi-square's: plain percentile intervals of a slope miss one time in seven with ten trials a
+/// level, since its estimate is biased, and BCa intervals of a Weibull's threshold likewise. Lapse and guess
+/// have percentile intervals. Only for levels that were fixed before the session: where a procedure chose
+/// them by the answers these intervals are too short, and fit_posterior() is meant.
 /// Deterministic for a seed and stream. An empty result with a statement where the fit has no parameters.
-PsychometricBootstrap bootstrap(const PsychometricFit& fit, const BootstrapOptions& options);
+PsychometricIntervals bootstrap(const PsychometricFit& fit, const BootstrapOptions& options);
 
 /// Counts by level of answered trials that have a level and a score (`correct`), or of those with a response,
 /// counting `positive_choice`. Practice, catch and warm-up trials are left out.

@@ -1,6 +1,7 @@
 #include "station/app/doctor.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 #include <sys/statvfs.h>
 #include <sys/timex.h>
@@ -114,6 +115,24 @@ void display(std::vector<Check>& checks) {
        session || direct ? "" : "sessions need a screen, --buttons-only or a simulated observer"});
 }
 
+// On a desktop its server hands touches on; a bare screen takes them from the devices.
+void input(std::vector<Check>& checks) {
+  if (std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY")) return;
+  const auto devices = panel::try_input_devices();
+  if (!devices.refused.empty())
+    checks.push_back(
+        {"input devices", Status::failed,
+         fmt::format("cannot be opened for reading and writing: {}", fmt::join(devices.refused, ", ")),
+         "touches on them do not reach the screen: put the user into the group input; in a service "
+         "that limits devices, DeviceAllow=char-input rw"});
+  else if (devices.opened == 0)
+    checks.push_back({"input devices", Status::warning, "none", "answers by touch need a touch panel"});
+  else
+    checks.push_back(
+        {"input devices", Status::ok,
+         fmt::format("{} open for reading and writing, as the screen needs them", devices.opened), ""});
+}
+
 void disk(const std::string& path, std::vector<Check>& checks) {
   std::filesystem::path existing = std::filesystem::absolute(path);
   std::error_code ignored;
@@ -167,6 +186,7 @@ std::vector<Check> examine(const rig::Rig& rig, const std::string& data_path) {
     lines("contact", *rig.contact_uri);
   if (rig.touch_uri) checks.push_back(touch(rig));
   display(checks);
+  input(checks);
   rights(checks);
   disk(data_path, checks);
   clock(checks);

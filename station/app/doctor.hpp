@@ -8,9 +8,10 @@
 namespace turnpoint::app {
 
 using panel::Check;
+using panel::try_input_devices;
 
 /// Looks at everything a session on this rig depends on: converter (rate, type, depth, measured clock: two
-/// seconds of silence), GPIO lines, touch, display, real-time rights, disk, clock. Changes nothing; the
+/// seconds of silence), GPIO lines, touch, display, input devices, real-time rights, disk, clock. Changes nothing; the
 /// amplifier stays off. `data_path` is where databases go.
 std::vector<Check> examine(const rig::Rig& rig, const std::string& data_path);
 

@@ -51,10 +51,12 @@ void add_fits(const report::Summary& summary, ReportPages& pages) {
     const auto line = [&](const char* what, double value, const auto& interval) {
       pages.fit.emplace_back(prefix + what, interval ? with(value, interval->interval) : number(value, 3));
     };
-    line(two_sided ? "PSE" : "threshold", p.threshold, named.bootstrap.threshold);
-    line(named.fit.options.function == analysis::Function::normal ? "spread" : "slope", p.slope,
-         named.bootstrap.slope);
-    line("lapse rate", p.lapse, named.bootstrap.lapse);
+    line(two_sided ? "PSE" : "threshold", p.threshold, named.intervals.threshold);
+    if (report::slope_estimated(named))
+      line(named.fit.options.function == analysis::Function::normal ? "spread" : "slope", p.slope,
+           named.intervals.slope);
+    line("lapse rate", p.lapse, named.intervals.lapse);
+    pages.statements.push_back(prefix + report::describe_intervals(named, summary.data));
     for (const auto& statement : named.fit.statements) pages.statements.push_back(prefix + statement.text);
   }
 }

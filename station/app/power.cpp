@@ -37,11 +37,6 @@ struct Outcome {
   double duration_s = 0;
 };
 
-std::string unit_of(const std::string& level_label) {
-  const auto open = level_label.rfind('('), close = level_label.rfind(')');
-  return open == std::string::npos || close < open ? "" : level_label.substr(open + 1, close - open - 1);
-}
-
 std::string of(const std::string& what, const std::string& instruction) {
   return instruction.empty() ? what : what + " " + instruction;
 }
@@ -50,20 +45,11 @@ std::optional<Interval> interval_of(const std::optional<analysis::ParameterInter
   return found ? std::optional(found->interval) : std::nullopt;
 }
 
-void add_estimates(const Rehearsal& rehearsal, const protocol::Protocol& protocol, const std::string& unit,
-                   std::vector<Finding>& findings) {
-  for (const auto& estimate : rehearsal.estimates) {
-    Finding finding{"procedure " + estimate.procedure, estimate.parameter, unit, estimate.mean, {}};
-    if (estimate.parameter != "threshold") continue;
-    for (const auto& spec : protocol.procedures) {
-      // The SD of a staircase is that of its reversals, not of its mean: no interval.
-      const bool posterior = spec.kind == procedure::Kind::quest_plus || spec.kind == procedure::Kind::psi ||
-                             spec.kind == procedure::Kind::psi_marginal;
-      if (spec.name == estimate.procedure && posterior)
-        finding.interval = Interval{estimate.mean - 1.96 * estimate.sd, estimate.mean + 1.96 * estimate.sd};
-    }
-    findings.push_back(std::move(finding));
-  }
+/// What the procedures themselves estimate; a report prints no interval of it.
+void add_estimates(const Rehearsal& rehearsal, const std::string& unit, std::vector<Finding>& findings) {
+  for (const auto& estimate : rehearsal.estimates)
+    if (estimate.parameter == "threshold")
+      findings.push_back({"procedure " + estimate.procedure, estimate.parameter, unit, estimate.mean, {}});
 }
 
 const char* spread_name(const analysis::FitOptions& options) {
@@ -86,12 +72,16 @@ void add_fits(const report::SessionData& data, const std::string& unit, Outcome&
     const bool two_sided = data.design == report::Design::two_sided;
     auto& findings = outcome.findings;
     findings.push_back(
-        {source, two_sided ? "PSE" : "threshold", unit, p.threshold, interval_of(named.bootstrap.threshold)});
-    findings.push_back({source, spread_name(named.fit.options), two_sided ? unit : "", p.slope,
-                        interval_of(named.bootstrap.slope)});
-    const auto level_75 = analysis::level_at(named.fit.options.function, named.fit.options.scale, p, 0.75);
+        {source, two_sided ? "PSE" : "threshold", unit, p.threshold, interval_of(named.intervals.threshold)});
+    const bool posterior = named.intervals.method == analysis::IntervalMethod::posterior;
+    if (!posterior || report::slope_estimated(named))
+      findings.push_back({source, spread_name(named.fit.options), two_sided ? unit : "", p.slope,
+                          interval_of(named.intervals.slope)});
+    const auto level_75 =
+        posterior ? named.intervals.level_75
+                  : analysis::level_at(named.fit.options.function, named.fit.options.scale, p, 0.75);
     if (level_75)
-      findings.push_back({source, "75 % point", unit, *level_75, interval_of(named.bootstrap.interval_75)});
+      findings.push_back({source, "75 % point", unit, *level_75, interval_of(named.intervals.interval_75)});
   }
 }
 
@@ -132,8 +122,8 @@ Outcome simulate(const protocol::Protocol& protocol, const PowerOptions& options
   add_trials(rehearsal.blocks, protocol, protocol.languages.front(), data);
   data.seed = seed;
   data.replicates = session < options.interval_sessions ? options.replicates : 0;
-  const auto unit = unit_of(data.level_label);
-  add_estimates(rehearsal, protocol, unit, outcome.findings);
+  const auto unit = report::unit_of(data.level_label);
+  add_estimates(rehearsal, unit, outcome.findings);
   add_fits(data, unit, outcome);
   if (data.replicates > 0)
     add_differences(analysis::trade(data.trials, trade_options(data)), outcome.findings);

@@ -14,9 +14,11 @@ namespace turnpoint::app {
 struct PowerOptions {
   int observers = 1000;
   observer::Parameters observer;
-  std::uint64_t seed = 1;       ///< session i runs with seed + i and sequence index i
-  int interval_sessions = 200;  ///< so many sessions also get intervals, which cost most of the time
-  int replicates = 200;         ///< of each interval's bootstrap, at least 40
+  std::uint64_t seed = 1;  ///< session i runs with seed + i and sequence index i
+  /// So many sessions also get intervals by bootstraps, which cost most of the time. Intervals of posteriors,
+  /// where the answers chose the levels, cost little, and every session gets them.
+  int interval_sessions = 200;
+  int replicates = 200;  ///< of each interval's bootstrap, at least 40
   int threads = 2;
   std::function<void(int done, int of)> progress;  ///< from any of the threads, one at a time
 };

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 #include <map>
+
+#include "station/analysis/psychometric_posterior.hpp"
 
 namespace turnpoint::app {
 
@@ -133,6 +136,66 @@ void choose_function(const protocol::Protocol& protocol, report::SessionData& da
   }
 }
 
+bool adaptive(const procedure::Spec& spec) {
+  return spec.kind != procedure::Kind::constant_stimuli && spec.kind != procedure::Kind::adjustment;
+}
+
+using analysis::Range;
+
+/// The levels that an adaptive procedure can present, with the thresholds that its grid thinks possible.
+Range levels_of(const procedure::Spec& spec, const protocol::Protocol& protocol) {
+  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  const auto include = [&range](double level) {
+    range = {std::min(range.first, level), std::max(range.second, level)};
+  };
+  for (const double level : spec.stimuli.values) include(level);
+  for (const double level : spec.threshold.values) include(level);
+  if (spec.start) include(*spec.start);
+  if (spec.min) include(*spec.min);
+  if (spec.max) include(*spec.max);
+  if (spec.stimuli.values.empty() && !(spec.min && spec.max))
+    for (const auto& factor : protocol.factors)
+      if (factor.name == spec.level && factor.range)
+        include(factor.range->first), include(factor.range->second);
+  return range;
+}
+
+/// On a logarithmic axis a range that begins at 0 begins this far below its end: 60 dB.
+constexpr double kLowestRatio = 1e-3;
+
+/// Whether the slopes of a procedure's grid mean what those of the fit mean.
+bool same_function(const procedure::Spec& spec, const report::SessionData& data) {
+  const bool linear = spec.scale == procedure::Scale::linear;
+  if (linear != (data.scale == analysis::Scale::linear)) return false;
+  switch (spec.function) {
+    case procedure::Function::weibull:
+      return data.function == analysis::Function::weibull;
+    case procedure::Function::normal:
+      return data.function == analysis::Function::normal;
+    case procedure::Function::logistic:
+      break;
+  }
+  return data.function == analysis::Function::logistic;
+}
+
+/// From what the protocol can present, never from what was answered; none where no procedure is adaptive.
+std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, const report::SessionData& data) {
+  std::optional<Range> levels, slopes;
+  const auto widen = [](std::optional<Range>& range, const Range& by) {
+    range = range ? Range{std::min(range->first, by.first), std::max(range->second, by.second)} : by;
+  };
+  for (const auto& spec : protocol.procedures) {
+    if (!adaptive(spec)) continue;
+    widen(levels, levels_of(spec, protocol));
+    if (same_function(spec, data))
+      for (const double slope : spec.slope.values) widen(slopes, {slope, slope});
+  }
+  if (!levels) return std::nullopt;
+  if (data.scale == analysis::Scale::log10)
+    levels->first = std::max(levels->first, levels->second * kLowestRatio);
+  return analysis::prior_around(data.function, data.scale, *levels, slopes);
+}
+
 /// `contrast_dB` -> `contrast (dB)`.
 std::string level_label(const protocol::Protocol& protocol) {
   if (protocol.procedures.empty()) return "Level";
@@ -165,6 +228,7 @@ void add_trials(const std::vector<store::BlockRecord>& blocks, const protocol::P
   data.design = design_of(protocol, data.trials);
   data.alternatives = protocol.task.kind == protocol::TaskKind::oddity ? 3 : 2;
   choose_function(protocol, data);
+  data.prior = prior_of(protocol, data);
   for (const auto& choice : protocol.task.choices) data.choices.push_back(label_of(choice, language));
   data.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};
 }

@@ -91,8 +91,11 @@ void print(std::ostream& out, const app::Power& power) {
                shown(r.truth), number(r.mean, 3), shown(r.bias), number(r.sd, 3), shown(r.interval_width),
                coverage, r.estimates.size(), r.sessions);
   }
-  fmt::print(out, "Width and coverage: of the 95 % intervals of the first {} sessions\n",
-             power.interval_sessions);
+  fmt::print(
+      out,
+      "Width and coverage: of the 95 % intervals of the first {} sessions; of all sessions where intervals "
+      "are of a posterior\n",
+      power.interval_sessions);
 }
 
 void print(std::ostream& out, const std::vector<protocol::CueReport>& cues) {

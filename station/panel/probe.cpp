@@ -1,6 +1,13 @@
 #include "station/panel/probe.hpp"
 
+#include <fcntl.h>
 #include <linux/input.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
 
 #include "station/panel/evdev_contact.hpp"
 #include "station/panel/lines.hpp"
@@ -13,8 +20,8 @@ using Status = Check::Status;
 
 // Keys of a URI that do not name a line.
 bool names_line(const std::string& key) {
-  return key != "active" && key != "fault_active" && key != "stop_active" && key != "refractory_ms" &&
-         key != "axis" && key != "read_back";
+  return key != "active" && key != "fault_active" && key != "stop_active" && key != "read_back" &&
+         key != "hold_ms" && key != "refractory_ms" && key != "axis";
 }
 
 Check check_line(const std::string& device, const std::string& role, const std::string& line) {
@@ -65,6 +72,23 @@ Check check_touch(const std::string& device, const std::string& text) {
     return {device, Status::failed, error.what(),
             "plug it in; its name stands in /proc/bus/input/devices; the user needs the group input"};
   }
+}
+
+InputDevices try_input_devices(const std::string& folder) {
+  InputDevices found;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+    if (!entry.path().filename().string().starts_with("event")) continue;
+    const int device = ::open(entry.path().c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+    if (device < 0) {
+      found.refused.push_back(entry.path().string() + ": " + std::generic_category().message(errno));
+    } else {
+      ++found.opened;
+      ::close(device);
+    }
+  }
+  std::sort(found.refused.begin(), found.refused.end());
+  return found;
 }
 
 }  // namespace turnpoint::panel

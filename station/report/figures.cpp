@@ -68,10 +68,10 @@ std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
       for (const auto& point : named.fit.data)
         panel.y.low = std::min(panel.y.low, analysis::wilson(point.positive, point.trials).low - 0.03);
   for (std::size_t i = 0; i < summary.fits.size(); ++i)
-    if (summary.fits[i].bootstrap.replicates > 0)
-      panel.layers.push_back(plot::Band{summary.fits[i].bootstrap.band_level,
-                                        summary.fits[i].bootstrap.band_low,
-                                        summary.fits[i].bootstrap.band_high, static_cast<int>(i), ""});
+    if (!summary.fits[i].intervals.band_level.empty())
+      panel.layers.push_back(plot::Band{summary.fits[i].intervals.band_level,
+                                        summary.fits[i].intervals.band_low,
+                                        summary.fits[i].intervals.band_high, static_cast<int>(i), ""});
   if (forced)
     panel.layers.push_back(
         plot::Rule{plot::Rule::Direction::horizontal, 1.0 / summary.data.alternatives, "chance"});

@@ -76,23 +76,22 @@ std::string fit_table(const NamedFit& named, const SessionData& data) {
   if (!named.name.empty()) html += "<h3>" + escaped(named.name) + "</h3>\n";
   if (named.fit.parameters) {
     const auto& p = *named.fit.parameters;
-    const auto& drawn = named.bootstrap;
+    const auto& found = named.intervals;
+    const bool posterior = found.method == analysis::IntervalMethod::posterior;
     const bool two_sided = data.design == Design::two_sided;
     const bool spread = named.fit.options.function == analysis::Function::normal;
-    html += "<table>" + row(two_sided ? "PSE" : "Threshold", p.threshold, drawn.threshold);
-    html += row(spread ? "Spread (SD)" : "Slope", p.slope, drawn.slope,
-                named.fit.at_bound.slope_low || named.fit.at_bound.slope_high);
-    if (drawn.level_75 && !two_sided) html += row("75 % point", *drawn.level_75, drawn.interval_75);
-    html += row("Lapse rate", p.lapse, drawn.lapse);
-    if (drawn.guess) html += row("Guess rate", p.guess, drawn.guess);
-    html += row("Deviance", named.fit.deviance, std::nullopt);
-    if (drawn.deviance_p) html += row("Share of replicates that fit worse", *drawn.deviance_p, std::nullopt);
-    html +=
-        "</table>\n<p class=\"soft\">Maximum likelihood; 95 % intervals from the profile likelihood, "
-        "calibrated by " +
-        std::to_string(drawn.replicates) + " parametric bootstraps.</p>\n";
+    html += "<table>" + row(two_sided ? "PSE" : "Threshold", p.threshold, found.threshold);
+    html += row(spread ? "Spread (SD)" : "Slope", p.slope, found.slope, !slope_estimated(named));
+    if (found.level_75 && !two_sided) html += row("75 % point", *found.level_75, found.interval_75);
+    html += row("Lapse rate", p.lapse, found.lapse);
+    if (found.guess) html += row("Guess rate", p.guess, found.guess);
+    if (!posterior) html += row("Deviance", named.fit.deviance, std::nullopt);
+    if (found.deviance_p) html += row("Share of replicates that fit worse", *found.deviance_p, std::nullopt);
+    html += "</table>\n";
   }
-  return html + notes(named.fit.statements) + notes(named.bootstrap.statements);
+  if (const auto text = describe_intervals(named, data); !text.empty())
+    html += "<p class=\"soft\">" + escaped(text) + "</p>\n";
+  return html + notes(named.fit.statements) + notes(named.intervals.statements);
 }
 
 std::string settings_section(const Summary& summary) {

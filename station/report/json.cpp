@@ -33,28 +33,49 @@ Json value(const std::vector<analysis::Statement>& statements) {
   return list;
 }
 
-Json fit_json(const NamedFit& named) {
+/// What each parameter of a posterior was uniform over; null for a bootstrap.
+Json prior_json(const NamedFit& named) {
+  const auto& prior = named.intervals.prior;
+  if (!prior) return nullptr;
+  const auto uniform = [](double low, double high, bool logarithmic) -> Json {
+    return {{"low", value(low)}, {"high", value(high)}, {"uniform_in", logarithmic ? "logarithm" : "value"}};
+  };
+  const auto& options = named.fit.options;
+  Json json;
+  json["threshold"] =
+      uniform(prior->threshold_low, prior->threshold_high, options.scale == analysis::Scale::log10);
+  json["slope"] = uniform(prior->slope_low, prior->slope_high, true);
+  json["lapse"] = uniform(options.lapse_low, options.lapse_high, false);
+  if (options.guess == analysis::Guess::fitted)
+    json["guess"] = uniform(options.guess_low, options.guess_high, false);
+  return json;
+}
+
+Json fit_json(const NamedFit& named, const SessionData& data) {
   const auto& p = named.fit.parameters;
-  const bool limited = named.fit.at_bound.slope_low || named.fit.at_bound.slope_high;
+  const bool posterior = named.intervals.method == analysis::IntervalMethod::posterior;
   Json json{{"name", named.name}, {"positive", named.positive}};
   json["threshold"] = p ? value(p->threshold) : Json(nullptr);
-  json["threshold_interval"] = value(named.bootstrap.threshold);
-  json["slope"] = p && !limited ? value(p->slope) : Json(nullptr);
-  json["slope_interval"] = value(named.bootstrap.slope);
+  json["threshold_interval"] = value(named.intervals.threshold);
+  json["slope"] = p && slope_estimated(named) ? value(p->slope) : Json(nullptr);
+  json["slope_interval"] = value(named.intervals.slope);
   json["guess"] = p ? value(p->guess) : Json(nullptr);
   json["lapse"] = p ? value(p->lapse) : Json(nullptr);
-  json["level_75"] = value(named.bootstrap.level_75);
-  json["level_75_interval"] = value(named.bootstrap.interval_75);
-  json["negative_log_likelihood"] = p ? value(named.fit.negative_log_likelihood) : Json(nullptr);
-  json["deviance"] = p ? value(named.fit.deviance) : Json(nullptr);
-  json["deviance_p"] = value(named.bootstrap.deviance_p);
-  json["replicates"] = named.bootstrap.replicates;
+  json["level_75"] = value(named.intervals.level_75);
+  json["level_75_interval"] = value(named.intervals.interval_75);
+  json["negative_log_likelihood"] =
+      p && !posterior ? value(named.fit.negative_log_likelihood) : Json(nullptr);
+  json["deviance"] = p && !posterior ? value(named.fit.deviance) : Json(nullptr);
+  json["deviance_p"] = value(named.intervals.deviance_p);
+  json["replicates"] = named.intervals.replicates;
+  json["intervals"] = describe_intervals(named, data);
+  json["prior"] = prior_json(named);
   json["levels"] = Json::array();
   for (const auto& point : named.fit.data)
     json["levels"].push_back(
         {{"level", value(point.level)}, {"trials", point.trials}, {"positive", point.positive}});
   auto statements = named.fit.statements;
-  statements.insert(statements.end(), named.bootstrap.statements.begin(), named.bootstrap.statements.end());
+  statements.insert(statements.end(), named.intervals.statements.begin(), named.intervals.statements.end());
   json["statements"] = value(statements);
   return json;
 }
@@ -113,7 +134,7 @@ std::string to_json(const Summary& summary) {
   json["trials"] = {{"presented", n.presented},         {"answered", n.answered}, {"timeouts", n.timeouts},
                     {"anticipations", n.anticipations}, {"aborted", n.aborted},   {"faults", n.faults}};
   json["fits"] = Json::array();
-  for (const auto& named : summary.fits) json["fits"].push_back(fit_json(named));
+  for (const auto& named : summary.fits) json["fits"].push_back(fit_json(named, data));
   for (const auto& settings : summary.settings)
     json["settings"].push_back({{"procedure", settings.procedure},
                                 {"settings", settings.values.size()},

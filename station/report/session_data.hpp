@@ -35,9 +35,15 @@ struct SessionData {
   std::string level_label;           ///< with the unit
   std::vector<std::string> choices;  ///< labels, in the order of their indices
   std::vector<analysis::TrialRecord> trials;
+  /// Where the answers chose the levels: intervals are of the posterior under this prior. None: levels were
+  /// fixed before the session, and intervals come from bootstraps.
+  std::optional<analysis::Prior> prior;
   analysis::TimeExclusion exclusion;
   std::uint64_t seed = 1;  ///< of the bootstraps
   int replicates = 1000;
 };
+
+/// What stands in the last parentheses of a level's label; "" without any.
+std::string unit_of(const std::string& level_label);
 
 }  // namespace turnpoint::report

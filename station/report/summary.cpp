@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <map>
 
+#include "station/analysis/psychometric_posterior.hpp"
+#include "station/text/number.hpp"
+
 namespace turnpoint::report {
 
 namespace {
 
 using analysis::TrialRecord;
+
+constexpr int kBandPoints = 61;
 
 /// For a signed level, the choice that is right above zero; for same-different, the one right where the
 /// level is largest. Falls back on the second choice.
@@ -55,9 +60,18 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
     const auto index = static_cast<std::size_t>(choice);
     result.positive = "\u201c" + (index < data.choices.size() ? data.choices[index] : "second") + "\u201d";
   }
-  result.fit = analysis::fit_psychometric(counts, options_for(data));
+  const auto options = options_for(data);
+  const int band_points = data.replicates > 0 ? kBandPoints : 0;
+  if (data.prior) {
+    auto posterior = analysis::fit_posterior(counts, options, *data.prior, band_points);
+    result.fit = std::move(posterior.fit);
+    result.intervals = std::move(posterior.intervals);
+    return result;
+  }
+  result.fit = analysis::fit_psychometric(counts, options);
   if (result.fit.parameters && data.replicates > 0)
-    result.bootstrap = analysis::bootstrap(result.fit, {data.replicates, 0.95, data.seed, stream, 61});
+    result.intervals =
+        analysis::bootstrap(result.fit, {data.replicates, 0.95, data.seed, stream, band_points});
   return result;
 }
 
@@ -84,6 +98,43 @@ std::vector<NamedFit> fits_of(const SessionData& data) {
     fits.push_back(fit_of(data, instruction, part, static_cast<int>(fits.size())));
   }
   return fits;
+}
+
+bool slope_estimated(const NamedFit& named) {
+  if (named.intervals.method == analysis::IntervalMethod::posterior) return named.intervals.slope.has_value();
+  return !named.fit.at_bound.slope_low && !named.fit.at_bound.slope_high;
+}
+
+std::string describe_intervals(const NamedFit& named, const SessionData& data) {
+  const auto& intervals = named.intervals;
+  if (intervals.method == analysis::IntervalMethod::none) return "";
+  if (intervals.method == analysis::IntervalMethod::bootstrap)
+    return "Maximum likelihood. 95 % intervals: profile likelihood, calibrated by " +
+           std::to_string(intervals.replicates) + " parametric bootstraps at the levels presented.";
+  const auto range = [](double low, double high) {
+    return text::number(low, 3) + " to " + text::number(high, 3);
+  };
+  const auto& prior = *intervals.prior;
+  const auto& options = named.fit.options;
+  const bool two_sided = data.design == Design::two_sided;
+  std::string text =
+      "Posterior medians. 95 % credible intervals: central, posterior on a grid, since the answers chose the "
+      "levels. Prior: " +
+      std::string(two_sided ? "PSE" : "threshold") + " uniform" +
+      (options.scale == analysis::Scale::log10 ? " in its logarithm" : "") + " from " +
+      range(prior.threshold_low, prior.threshold_high);
+  if (const auto unit = unit_of(data.level_label); !unit.empty()) text += " " + unit;
+  text += std::string(options.function == analysis::Function::normal ? "; spread" : "; slope") +
+          " uniform in its logarithm from " + range(prior.slope_low, prior.slope_high);
+  text += "; lapse rate uniform from " + range(options.lapse_low, options.lapse_high);
+  if (options.guess == analysis::Guess::fitted)
+    text += "; guess rate uniform from " + range(options.guess_low, options.guess_high);
+  return text + ".";
+}
+
+std::string unit_of(const std::string& level_label) {
+  const auto open = level_label.rfind('('), close = level_label.rfind(')');
+  return open == std::string::npos || close < open ? "" : level_label.substr(open + 1, close - open - 1);
 }
 
 Summary summarise(const SessionData& data) {

@@ -15,7 +15,7 @@ struct NamedFit {
   std::string name;      ///< "" for all
   std::string positive;  ///< what the curve is the probability of
   analysis::PsychometricFit fit;
-  analysis::PsychometricBootstrap bootstrap;
+  analysis::PsychometricIntervals intervals;
 };
 
 /// What a report says; whatever could not be had is none, and a statement stands in its place.
@@ -32,8 +32,14 @@ struct Summary {
 };
 
 /// The psychometric fits alone: of all trials, or of each instruction where there are several. With
-/// data.replicates = 0 they come without bootstraps.
+/// data.replicates = 0 they come without bootstraps and without bands.
 std::vector<NamedFit> fits_of(const SessionData& data);
+
+/// Whether the slope is more than limited: no bound of a maximum-likelihood fit, determined in a posterior.
+bool slope_estimated(const NamedFit& named);
+
+/// Which intervals a fit has, and with which prior, in a sentence or two for people.
+std::string describe_intervals(const NamedFit& named, const SessionData& data);
 
 /// Analyses one session: deterministic for its seed, about 0.3 s with 1000 replicates.
 Summary summarise(const SessionData& data);

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <string>
 
+#include "station/app/doctor.hpp"
 #include "station/app/places.hpp"
 #include "station/ui/screen.hpp"
 
@@ -26,6 +28,13 @@ std::unique_ptr<QTemporaryFile> eglfs_config(const std::string& card) {
   file->close();
   qputenv("QT_QPA_EGLFS_KMS_CONFIG", file->fileName().toUtf8());
   return file;
+}
+
+/// Nobody wants a mouse pointer on a participant's page. 0 in the environment shows it, for work with a
+/// mouse.
+void hide_pointer() {
+  for (const char* variable : {"QT_QPA_EGLFS_HIDECURSOR", "QT_QPA_FB_HIDECURSOR"})
+    if (!qEnvironmentVariableIsSet(variable)) qputenv(variable, "1");
 }
 
 /// Returns what the platform reads while it starts.
@@ -47,12 +56,22 @@ std::unique_ptr<QTemporaryFile> choose_platform() {
   return nullptr;
 }
 
+/// Qt itself is silent about a device that it cannot open.
+void tell_refused_input() {
+  const QString platform = QGuiApplication::platformName();
+  if (platform != "eglfs" && platform != "linuxfb") return;
+  for (const auto& device : app::try_input_devices().refused)
+    std::cerr << "input: " << device << "; its touches and keys do not arrive (see turnpoint doctor)\n";
+}
+
 }  // namespace
 
 Application::Application() {
+  hide_pointer();
   const auto read_at_start = choose_platform();
   qputenv("QT_QPA_NO_SIGNAL_HANDLER", "1");  // the stop signals are ours, see there
   application_ = std::make_unique<QGuiApplication>(argc_, argv_);
+  tell_refused_input();
   set_fonts();
   watchdog_ = std::make_unique<ServiceWatchdog>();
   stop_signals_ = std::make_unique<StopSignals>();

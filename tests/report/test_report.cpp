@@ -52,6 +52,28 @@ SessionData speed_accuracy(int per_level) {
   return data;
 }
 
+SessionData staircase_session() {
+  auto data = head();
+  data.level_label = "Friction contrast (dB)";
+  data.choices = {"First", "Second"};
+  random::Draws draws({4, random::Stream::observer, 0, 0, 0});
+  double level = -10;
+  for (int i = 0; i < 120; ++i) {
+    analysis::TrialRecord trial;
+    trial.trial_index = i;
+    trial.procedure = "staircase";
+    trial.level = level;
+    trial.right_choice = static_cast<int>(draws.below(2));
+    const double p = analysis::probability(data.function, data.scale, {-19, 1.5, 0.5, 0.02}, level);
+    trial.correct = draws.uniform() < p;
+    trial.response = *trial.correct ? *trial.right_choice : 1 - *trial.right_choice;
+    trial.response_time_s = 0.4 + 0.3 * draws.uniform();
+    level += *trial.correct ? -1 : 3;
+    data.trials.push_back(trial);
+  }
+  return data;
+}
+
 void keep(const std::string& name, const std::string& text) {
   if (const char* folder = std::getenv("TURNPOINT_KEEP_PLOTS"))
     std::ofstream(std::string(folder) + "/" + name) << text;
@@ -119,29 +141,38 @@ TEST_CASE("Degenerate sessions give statements instead of numbers", "[report]") 
 }
 
 TEST_CASE("A forced-choice session in dB has its threshold and 75 % point in the page", "[report]") {
-  auto data = head();
-  data.level_label = "Friction contrast (dB)";
-  data.choices = {"First", "Second"};
-  random::Draws draws({4, random::Stream::observer, 0, 0, 0});
-  double level = -10;
-  for (int i = 0; i < 120; ++i) {
-    analysis::TrialRecord trial;
-    trial.trial_index = i;
-    trial.procedure = "staircase";
-    trial.level = level;
-    trial.right_choice = static_cast<int>(draws.below(2));
-    const double p = analysis::probability(data.function, data.scale, {-19, 1.5, 0.5, 0.02}, level);
-    trial.correct = draws.uniform() < p;
-    trial.response = *trial.correct ? *trial.right_choice : 1 - *trial.right_choice;
-    trial.response_time_s = 0.4 + 0.3 * draws.uniform();
-    level += *trial.correct ? -1 : 3;
-    data.trials.push_back(trial);
-  }
-  const auto summary = summarise(data);
+  const auto summary = summarise(staircase_session());
   REQUIRE(summary.fits[0].fit.parameters);
   CHECK(summary.fits[0].fit.parameters->threshold == Approx(-19).margin(3));
   const auto html = to_html(summary);
   CHECK(html.find("75 % point") != std::string::npos);
+  CHECK(html.find("parametric bootstraps") != std::string::npos);
+  CHECK(html.find("credible") == std::string::npos);
   keep("forced.svg", shown(psychometric_figure(summary)));
   keep("staircase.svg", shown(trace_figure(summary)));
+}
+
+TEST_CASE("Where the answers chose the levels the report states the posterior and its prior", "[report]") {
+  auto data = staircase_session();
+  data.prior = analysis::Prior{-40, 3, 0.25, 16};
+  const auto summary = summarise(data);
+  const auto& found = summary.fits[0].intervals;
+  REQUIRE((found.threshold && found.slope && found.interval_75));
+  const auto html = to_html(summary);
+  CHECK(html.find("95 % credible intervals: central, posterior on a grid") != std::string::npos);
+  CHECK(html.find("threshold uniform from -40 to 3 dB; slope uniform in its logarithm from 0.25 to 16; lapse "
+                  "rate uniform from 0 to 0.06.") != std::string::npos);
+  CHECK(html.find("bootstrap") == std::string::npos);
+  CHECK(html.find("Deviance") == std::string::npos);
+  const auto fit = nlohmann::json::parse(to_json(summary))["fits"][0];
+  CHECK(fit["prior"]["threshold"]["low"] == -40);
+  CHECK(fit["prior"]["slope"]["uniform_in"] == "logarithm");
+  CHECK(fit["threshold_interval"]["low"] == found.threshold->interval.low);
+  CHECK(fit["deviance"].is_null());
+  keep("posterior.svg", shown(psychometric_figure(summary)));
+  data.trials.resize(20);
+  const auto cut = summarise(data);
+  CHECK_FALSE(cut.fits[0].intervals.slope);
+  CHECK(to_html(cut).find("do not determine the slope") != std::string::npos);
+  CHECK(nlohmann::json::parse(to_json(cut))["fits"][0]["slope"].is_null());
 }

@@ -1,19 +1,17 @@
-"""screenshot.py FILE.png: what the frame buffer /dev/fb0 shows, 800 x 480 of 32 bits."""
+"""kms_screen | screenshot.py FILE.png: what the screen shows."""
 import struct
 import sys
 import zlib
-
-WIDTH, HEIGHT = 800, 480
 
 
 def chunk(kind, data):
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
 
-with open("/dev/fb0", "rb") as screen:
-    pixels = screen.read(WIDTH * HEIGHT * 4)
+WIDTH, HEIGHT = map(int, sys.stdin.buffer.readline().split())
+pixels = sys.stdin.buffer.read(WIDTH * HEIGHT * 4)
 rgb = bytearray(WIDTH * HEIGHT * 3)
-for target, source in ((0, 2), (1, 1), (2, 0)):  # the frame buffer holds blue, green, red, nothing
+for target, source in ((0, 2), (1, 1), (2, 0)):  # a pixel is blue, green, red, nothing
     rgb[target::3] = pixels[source::4]
 rows = b"".join(b"\0" + rgb[y * WIDTH * 3:(y + 1) * WIDTH * 3] for y in range(HEIGHT))
 with open(sys.argv[1], "wb") as file:

@@ -1,5 +1,6 @@
 // touch_panel WIDTH HEIGHT: a multitouch panel by uinput that does what standard input says, a line each:
-//   tap X Y | down SLOT X Y | move SLOT X Y | up SLOT | sleep MS | gone
+//   tap X Y | down SLOT X Y | move SLOT X Y | up SLOT | sleep MS | mouse DX DY | gone
+// "mouse" moves the pointer of a mouse that is plugged in when it is first moved.
 // Prints "device /dev/input/eventN" once, and "tapped BEFORE AFTER" (ns, CLOCK_MONOTONIC) for taps: the touch
 // was injected between these two.
 #include <fcntl.h>
@@ -18,15 +19,17 @@
 
 namespace {
 
-int panel = -1;
+int panel = -1, mouse = -1;
 
-void emit(int type, int code, int value) {
+void emit_to(int device, int type, int code, int value) {
   input_event event{};
   event.type = static_cast<unsigned short>(type);
   event.code = static_cast<unsigned short>(code);
   event.value = value;
-  if (::write(panel, &event, sizeof event) != sizeof event) std::perror("uinput write"), std::exit(1);
+  if (::write(device, &event, sizeof event) != sizeof event) std::perror("uinput write"), std::exit(1);
 }
+
+void emit(int type, int code, int value) { emit_to(panel, type, code, value); }
 
 void axis(int code, int maximum) {
   uinput_abs_setup setup{};
@@ -56,6 +59,36 @@ void up(int slot) {
 }
 
 void sleep_ms(int ms) { ::usleep(static_cast<useconds_t>(ms) * 1000); }
+
+int open_uinput() {
+  const int device = ::open("/dev/uinput", O_WRONLY | O_CLOEXEC);
+  if (device < 0) std::perror("/dev/uinput"), std::exit(1);
+  return device;
+}
+
+void create(int device, const char* name) {
+  uinput_setup setup{};
+  setup.id.bustype = BUS_USB;
+  std::strcpy(setup.name, name);
+  ::ioctl(device, UI_DEV_SETUP, &setup);
+  if (::ioctl(device, UI_DEV_CREATE) < 0) std::perror("uinput"), std::exit(1);
+}
+
+void plug_in_mouse() {
+  mouse = open_uinput();
+  for (const int type : {EV_SYN, EV_KEY, EV_REL}) ::ioctl(mouse, UI_SET_EVBIT, type);
+  for (const int button : {BTN_LEFT, BTN_RIGHT}) ::ioctl(mouse, UI_SET_KEYBIT, button);
+  for (const int axis : {REL_X, REL_Y}) ::ioctl(mouse, UI_SET_RELBIT, axis);
+  create(mouse, "bench mouse");
+  sleep_ms(1000);  // until those who look for devices have it
+}
+
+void move_mouse(int dx, int dy) {
+  if (mouse < 0) plug_in_mouse();
+  emit_to(mouse, EV_REL, REL_X, dx);
+  emit_to(mouse, EV_REL, REL_Y, dy);
+  emit_to(mouse, EV_SYN, SYN_REPORT, 0);
+}
 
 long long now_ns() {
   timespec now{};
@@ -95,6 +128,8 @@ void obey(std::istringstream words) {
     up(a);
   } else if (what == "sleep") {
     sleep_ms(a);
+  } else if (what == "mouse") {
+    move_mouse(a, b);
   }
 }
 
@@ -102,8 +137,7 @@ void obey(std::istringstream words) {
 
 int main(int argc, char** argv) {
   if (argc != 3) return std::fprintf(stderr, "touch_panel WIDTH HEIGHT\n"), 2;
-  panel = ::open("/dev/uinput", O_WRONLY | O_CLOEXEC);
-  if (panel < 0) return std::perror("/dev/uinput"), 1;
+  panel = open_uinput();
   for (const int type : {EV_SYN, EV_KEY, EV_ABS}) ::ioctl(panel, UI_SET_EVBIT, type);
   ::ioctl(panel, UI_SET_KEYBIT, BTN_TOUCH);
   ::ioctl(panel, UI_SET_PROPBIT, INPUT_PROP_DIRECT);
@@ -111,11 +145,7 @@ int main(int argc, char** argv) {
   axis(ABS_MT_TRACKING_ID, 65535);
   axis(ABS_MT_POSITION_X, std::atoi(argv[1]) - 1);
   axis(ABS_MT_POSITION_Y, std::atoi(argv[2]) - 1);
-  uinput_setup setup{};
-  setup.id.bustype = BUS_USB;
-  std::strcpy(setup.name, "bench touch panel");
-  ::ioctl(panel, UI_DEV_SETUP, &setup);
-  if (::ioctl(panel, UI_DEV_CREATE) < 0) return std::perror("uinput"), 1;
+  create(panel, "bench touch panel");
   sleep_ms(100);
   std::cout << "device " << device_path() << std::endl;
   for (std::string line; std::getline(std::cin, line) && line != "gone";) obey(std::istringstream(line));

@@ -19,9 +19,6 @@ printf 'QT_QPA_PLATFORM=linuxfb\nQT_QUICK_BACKEND=software\nQT_QPA_GENERIC_PLUGI
 echo 'TURNPOINT_OPTIONS=--operator-code 2580 --protocols /usr/share/turnpoint/protocols' >>/etc/turnpoint/environment
 systemctl daemon-reload
 
-tap() { touch_do tap "$1" "$2"; sleep 0.2; }
-hold() { touch_do down 0 "$1" "$2"; touch_do sleep 1200; touch_do up 0; sleep 1.6; }
-goes_on() { eventually 30 continues; sleep 0.7; tap 400 390; }
 on() { [ "$(level AMP_EN)" = 1 ]; }
 off() { [ "$(level AMP_EN)" = 0 ]; }
 stored() { [ "$(rows "SELECT count(*) FROM trial")" = "$1" ]; }
@@ -29,19 +26,9 @@ stimulus() { eventually 30 answers_open; eventually 5 on; sleep 0.8; echo "$1" >
 by_touch() { stimulus stored; touch_do tap 200 370; eventually 5 off; eventually 10 stored "$1"; }
 by_button() { stimulus stored; gpio_line press "$(pull_file BTN_R)" 50 >/dev/null; eventually 5 off; eventually 10 stored "$1"; }
 # By the operator: "for the experimenter", the code, and the long press that arms.
-keypad() { shows 280 75 && shows 397 75; }
-operator_code() { eventually 10 keypad; sleep 0.3; tap 397 107; tap 397 188; tap 397 269; tap 397 349; }
 asked() { keypad || { tap 536 400; sleep 0.5; return 1; }; }   # a tap before the page could be read does nothing
 arm() { eventually 15 asked; operator_code; hold 536 400; }
 carry_on() { sleep 0.7; tap 535 395; }
-# The start page stands behind the code.
-start_page() { shows 25 430; }
-unlock() {
-  eventually 30 keypad
-  ! start_page || fail "the start page stands open"
-  operator_code
-  eventually 10 start_page
-}
 
 systemctl start turnpoint
 eventually 30 keypad
@@ -59,7 +46,6 @@ hold 385 443                      # arm
 screenshot chosen
 off || fail "on before the session"
 tap 694 443                       # begin
-english() { shows 200 150; }
 eventually 20 english; sleep 0.5; tap 400 150
 goes_on
 by_touch 1

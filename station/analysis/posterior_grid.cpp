@@ -1,0 +1,191 @@
+#include "station/analysis/posterior_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace turnpoint::analysis {
+
+namespace {
+
+/// Keeps logarithms finite where a probability reaches 0 or 1 in rounding.
+constexpr double kFloor = 1e-12;
+/// Cells whose profile likelihood lies so far below the largest are left out: 4.2 standard deviations.
+constexpr double kNegligible_nats = 9;
+/// Half the 95 % point of chi squared with one degree of freedom.
+constexpr double kNotExcluded_nats = 1.92;
+constexpr int kMostRefinements = 16;
+/// Cells along threshold, ln rate, lapse, guess. A fitted guess multiplies the grid; the others get fewer.
+constexpr std::array<int, kParameters> kCoarse{24, 16, 3, 8}, kFine{96, 36, 4, 1},
+    kFineWithGuess{64, 24, 3, 10};
+constexpr int kProbabilityCells = 500, kMostCrossingCells = 4096;
+
+Box with_counts(Box box, const std::array<int, kParameters>& counts) {
+  for (std::size_t p = 0; p < kParameters; ++p) box[p].count = box[p].high > box[p].low ? counts[p] : 1;
+  return box;
+}
+
+double extent(const Cells& cells) { return cells.high - cells.low; }
+
+}  // namespace
+
+PosteriorGrid::PosteriorGrid(Function function, Guess guess, const AxisCounts& counts, const Box& prior)
+    : function_(function), guess_(guess), counts_(counts), prior_(prior) {
+  Box box = prior;
+  for (int i = 0; i < kMostRefinements; ++i) {
+    evaluate(with_counts(box, kCoarse));
+    const Box next = narrowed();
+    bool shrunk = false;
+    for (std::size_t p = 0; p < kParameters; ++p) shrunk = shrunk || extent(next[p]) < 0.6 * extent(box[p]);
+    box = next;
+    if (!shrunk) break;
+  }
+  evaluate(with_counts(box, extent(box[at_guess]) > 0 ? kFineWithGuess : kFine));
+  set_weights();
+}
+
+double PosteriorGrid::rate(int cell) const { return std::exp(box_[at_rate].centre(cell)); }
+
+std::size_t PosteriorGrid::stride(std::size_t parameter) const {
+  std::size_t stride = 1;
+  for (std::size_t p = kParameters - 1; p > parameter; --p) stride *= static_cast<std::size_t>(box_[p].count);
+  return stride;
+}
+
+std::vector<PosteriorGrid::Asymptotes> PosteriorGrid::asymptotes() const {
+  std::vector<Asymptotes> all;
+  for (int l = 0; l < box_[at_lapse].count; ++l)
+    for (int g = 0; g < box_[at_guess].count; ++g) {
+      const double lapse = box_[at_lapse].centre(l);
+      const double low = guess_ == Guess::tied_to_lapse ? lapse : box_[at_guess].centre(g);
+      all.push_back({low, 1 - low - lapse});
+    }
+  return all;
+}
+
+void PosteriorGrid::evaluate(const Box& box) {
+  box_ = box;
+  ends_ = asymptotes();
+  log_likelihood_.clear();
+  std::vector<double> between(counts_.u.size());
+  for (int t = 0; t < box[at_threshold].count; ++t)
+    for (int r = 0; r < box[at_rate].count; ++r) {
+      for (std::size_t i = 0; i < between.size(); ++i)
+        between[i] = core(function_, rate(r) * (counts_.u[i] - box[at_threshold].centre(t)));
+      add_log_likelihoods(between);
+    }
+}
+
+/// For each pair of asymptotes, from the function between them at each level.
+void PosteriorGrid::add_log_likelihoods(const std::vector<double>& between) {
+  for (const auto& ends : ends_) {
+    double sum = 0;
+    for (std::size_t i = 0; i < between.size(); ++i) {
+      const double p = std::clamp(ends.low + ends.range * between[i], kFloor, 1 - kFloor);
+      const double misses = counts_.trials[i] - counts_.positive[i];
+      if (counts_.positive[i] > 0) sum += counts_.positive[i] * std::log(p);
+      if (misses > 0) sum += misses * std::log(1 - p);
+    }
+    log_likelihood_.push_back(sum);
+  }
+}
+
+/// The box of the cells that matter, one cell wider at each side where there is one, but at least half as
+/// wide as this one: where cells are far wider than the posterior, the best centre may be the wrong one.
+Box PosteriorGrid::narrowed() const {
+  Box box = box_;
+  for (std::size_t p = 0; p < kParameters; ++p) {
+    const auto count = static_cast<std::size_t>(box_[p].count);
+    std::vector<double> profile(count, -1e300);
+    for (std::size_t i = 0; i < log_likelihood_.size(); ++i) {
+      auto& entry = profile[i / stride(p) % count];
+      entry = std::max(entry, log_likelihood_[i]);
+    }
+    const double least = *std::max_element(profile.begin(), profile.end()) - kNegligible_nats;
+    int first = 0, last = box_[p].count - 1;
+    while (profile[static_cast<std::size_t>(first)] < least) ++first;
+    while (profile[static_cast<std::size_t>(last)] < least) --last;
+    first = std::max(first - 1, 0), last = std::min(last + 1, box_[p].count - 1);
+    while (2 * (last - first + 1) < box_[p].count) {
+      if (first > 0) --first;
+      if (last < box_[p].count - 1) ++last;
+    }
+    box[p].low = box_[p].edge(first);
+    box[p].high = box_[p].edge(last + 1);
+  }
+  return box;
+}
+
+void PosteriorGrid::set_weights() {
+  const double best = *std::max_element(log_likelihood_.begin(), log_likelihood_.end());
+  double total = 0;
+  for (const double value : log_likelihood_) total += weight_.emplace_back(std::exp(value - best));
+  for (auto& weight : weight_) weight /= total;
+}
+
+Marginal PosteriorGrid::marginal(Parameter parameter) const {
+  const auto count = static_cast<std::size_t>(box_[parameter].count), step = stride(parameter);
+  std::vector<double> mass(count);
+  for (std::size_t i = 0; i < weight_.size(); ++i) mass[i / step % count] += weight_[i];
+  return {box_[parameter], std::move(mass)};
+}
+
+std::optional<Marginal> PosteriorGrid::marginal_of_crossing(double p) const {
+  // How far the crossing lies from the threshold, for each rate and pair of asymptotes.
+  std::vector<std::optional<double>> shifts;
+  double least = 1e300, most = -1e300, held = 0;
+  for (int r = 0; r < box_[at_rate].count; ++r)
+    for (const auto& ends : ends_) {
+      const double inside = (p - ends.low) / ends.range;
+      auto& shift = shifts.emplace_back();
+      if (!(inside > 0 && inside < 1)) continue;
+      shift = core_inverse(function_, inside) / rate(r);
+      least = std::min(least, *shift), most = std::max(most, *shift);
+    }
+  if (least > most) return std::nullopt;
+  const auto& thresholds = box_[at_threshold];
+  Cells cells{thresholds.low + least - thresholds.width(), thresholds.high + most + thresholds.width(), 1};
+  cells.count = std::clamp(static_cast<int>(extent(cells) / thresholds.width()) + 1, 2, kMostCrossingCells);
+  std::vector<double> mass(static_cast<std::size_t>(cells.count));
+  for (std::size_t i = 0; i < weight_.size(); ++i) {
+    const auto& shift = shifts[i % shifts.size()];
+    if (!shift) continue;
+    // The two nearest cells share the weight, which keeps its mean.
+    const double level = thresholds.centre(static_cast<int>(i / shifts.size())) + *shift;
+    const double at = std::max(0.0, (level - cells.low) / cells.width() - 0.5);
+    const auto cell = std::min(static_cast<std::size_t>(at), mass.size() - 2);
+    const double share = at - static_cast<double>(cell);
+    mass[cell] += (1 - share) * weight_[i];
+    mass[cell + 1] += share * weight_[i];
+    held += weight_[i];
+  }
+  if (held < 0.5) return std::nullopt;
+  return Marginal(cells, std::move(mass));
+}
+
+Marginal PosteriorGrid::marginal_of_probability(double u) const {
+  std::vector<double> mass(kProbabilityCells);
+  const double* weight = weight_.data();
+  for (int t = 0; t < box_[at_threshold].count; ++t)
+    for (int r = 0; r < box_[at_rate].count; ++r) {
+      const double between = core(function_, rate(r) * (u - box_[at_threshold].centre(t)));
+      for (const auto& ends : ends_) {
+        const auto cell = static_cast<int>((ends.low + ends.range * between) * kProbabilityCells);
+        mass[static_cast<std::size_t>(std::clamp(cell, 0, kProbabilityCells - 1))] += *weight++;
+      }
+    }
+  return {{0, 1, kProbabilityCells}, std::move(mass)};
+}
+
+bool PosteriorGrid::open_low(Parameter parameter) const {
+  const auto of = marginal(parameter);
+  const double least = *std::max_element(of.mass().begin(), of.mass().end()) * std::exp(-kNotExcluded_nats);
+  return of.cells().low <= prior_[parameter].low && of.mass().front() >= least;
+}
+
+bool PosteriorGrid::open_high(Parameter parameter) const {
+  const auto of = marginal(parameter);
+  const double least = *std::max_element(of.mass().begin(), of.mass().end()) * std::exp(-kNotExcluded_nats);
+  return of.cells().high >= prior_[parameter].high && of.mass().back() >= least;
+}
+
+}  // namespace turnpoint::analysis

@@ -1,0 +1,58 @@
+#pragma once
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "station/analysis/fit_bounds.hpp"
+#include "station/analysis/marginal.hpp"
+
+namespace turnpoint::analysis {
+
+/// Axes of the grid, in the order of Theta: threshold on the function's axis, ln rate, lapse, guess. The
+/// prior is uniform on each.
+enum Parameter { at_threshold, at_rate, at_lapse, at_guess };
+constexpr std::size_t kParameters = 4;
+using Box = std::array<Cells, kParameters>;
+
+/// The likelihood of counts on a grid whose prior is uniform.
+class PosteriorGrid {
+ public:
+  /// Evaluates coarse grids, each on the part that matters of the one before, until one fills its box, and
+  /// then a fine grid. A parameter whose cells have no width is fixed; the guess of Guess::tied_to_lapse
+  /// follows the lapse whatever its cells are. `counts` has at least one level.
+  PosteriorGrid(Function function, Guess guess, const AxisCounts& counts, const Box& prior);
+
+  Marginal marginal(Parameter parameter) const;
+  /// Of the axis position where the probability is `p`; none where most of the posterior reaches it nowhere.
+  std::optional<Marginal> marginal_of_crossing(double p) const;
+  /// Of the probability at a position on the axis.
+  Marginal marginal_of_probability(double u) const;
+
+  /// Whether the data exclude neither end of the prior: they fall by less than the likelihood ratio that 95 %
+  /// of ratios stay below. An interval would only repeat the prior.
+  bool undetermined(Parameter parameter) const { return open_low(parameter) && open_high(parameter); }
+  /// Whether they do not exclude one end: there the prior limits the parameter, not the data.
+  bool open_low(Parameter parameter) const;
+  bool open_high(Parameter parameter) const;
+
+ private:
+  struct Asymptotes {
+    double low = 0, range = 1;  ///< guess, 1 - guess - lapse
+  };
+  void evaluate(const Box& box);
+  void add_log_likelihoods(const std::vector<double>& between);
+  Box narrowed() const;
+  void set_weights();
+  std::vector<Asymptotes> asymptotes() const;
+  double rate(int cell) const;
+  std::size_t stride(std::size_t parameter) const;
+
+  Function function_;
+  Guess guess_;
+  AxisCounts counts_;
+  Box prior_, box_;
+  std::vector<Asymptotes> ends_;                 ///< [lapse][guess]
+  std::vector<double> log_likelihood_, weight_;  ///< [threshold][rate][lapse][guess]
+};
+
+}  // namespace turnpoint::analysis

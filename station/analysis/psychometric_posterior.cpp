@@ -1,0 +1,178 @@
+#include "station/analysis/psychometric_posterior.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "station/analysis/posterior_grid.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::analysis {
+
+namespace {
+
+constexpr double kBeyondLevels = 0.25;  ///< of the range of the levels
+/// Rates times the range of the levels, and how much wider than these, or than stated slopes, a prior is.
+constexpr double kShallow = 1.5, kSteep = 24, kWider = 2;
+
+void check(const Prior& prior) {
+  const auto rises = [](double low, double high) {
+    return std::isfinite(low) && std::isfinite(high) && low < high;
+  };
+  if (!rises(prior.threshold_low, prior.threshold_high) || !rises(prior.slope_low, prior.slope_high) ||
+      !(prior.slope_low > 0))
+    throw std::invalid_argument("prior: threshold " + text::number(prior.threshold_low) + " to " +
+                                text::number(prior.threshold_high) + ", slope " +
+                                text::number(prior.slope_low) + " to " + text::number(prior.slope_high) +
+                                "; low < high is allowed, and a slope above 0");
+}
+
+Cells between(double one, double other) { return {std::min(one, other), std::max(one, other), 1}; }
+
+Box box_of(const FitOptions& options, const Prior& prior) {
+  Box box;
+  box[at_threshold] = between(axis_position(options.function, options.scale, prior.threshold_low),
+                              axis_position(options.function, options.scale, prior.threshold_high));
+  box[at_rate] = between(std::log(rate_from_slope(options.function, prior.slope_low)),
+                         std::log(rate_from_slope(options.function, prior.slope_high)));
+  box[at_lapse] = between(options.lapse_low, options.lapse_high);
+  box[at_guess] = between(options.guess_value, options.guess_value);
+  if (options.guess == Guess::fitted) box[at_guess] = between(options.guess_low, options.guess_high);
+  return box;
+}
+
+/// What a fit and its intervals are made from.
+class Reading {
+ public:
+  Reading(PosteriorFit& into, const Prior& prior)
+      : result_(into),
+        options_(into.fit.options),
+        prior_(prior),
+        counts_(axis_counts(into.fit.data, options_.function, options_.scale)),
+        grid_(options_.function, options_.guess, counts_, box_of(options_, prior)) {
+    for (const auto& point : into.fit.data) trials_ += point.trials;
+  }
+
+  void read_parameters() {
+    const auto median = [&](Parameter parameter) { return grid_.marginal(parameter).quantile(0.5); };
+    Psychometric parameters{to_level(median(at_threshold)), to_slope(median(at_rate)), median(at_guess),
+                            median(at_lapse)};
+    if (options_.guess == Guess::tied_to_lapse) parameters.guess = parameters.lapse;
+    if (grid_.undetermined(at_threshold)) {
+      say_undetermined("threshold", prior_.threshold_low, prior_.threshold_high);
+      return;
+    }
+    result_.fit.parameters = parameters;
+    const double u = axis_position(options_.function, options_.scale, parameters.threshold);
+    if (u < counts_.u.front() || u > counts_.u.back())
+      result_.fit.statements.push_back(
+          {"extrapolated", "The threshold lies outside the levels shown: it is extrapolated."});
+  }
+
+  void read_intervals() {
+    auto& intervals = result_.intervals;
+    intervals.threshold = interval(at_threshold, [this](double u) { return to_level(u); });
+    if (grid_.undetermined(at_rate))
+      say_undetermined(options_.function == Function::normal ? "spread" : "slope", prior_.slope_low,
+                       prior_.slope_high);
+    else
+      intervals.slope = interval(at_rate, [this](double r) { return to_slope(r); });
+    const auto itself = [](double share) { return share; };
+    if (options_.lapse_low < options_.lapse_high) intervals.lapse = interval(at_lapse, itself);
+    if (options_.guess == Guess::fitted) intervals.guess = interval(at_guess, itself);
+    if (const auto crossing = grid_.marginal_of_crossing(0.75)) {
+      intervals.level_75 = to_level(crossing->quantile(0.5));
+      intervals.interval_75 = {central(*crossing, [this](double u) { return to_level(u); }),
+                               intervals.threshold->touches_low, intervals.threshold->touches_high};
+    }
+  }
+
+  void read_band(int points) {
+    const double first = counts_.u.front(), last = counts_.u.back(), margin = 0.04 * (last - first);
+    if (!(first < last)) return;
+    for (int i = 0; i < points; ++i) {
+      const double u = first - margin + i * (last - first + 2 * margin) / (points - 1);
+      const auto range = central(grid_.marginal_of_probability(u), [](double p) { return p; });
+      result_.intervals.band_level.push_back(to_level(u));
+      result_.intervals.band_low.push_back(range.low);
+      result_.intervals.band_high.push_back(range.high);
+    }
+  }
+
+ private:
+  double to_level(double u) const { return level_from_axis(options_.function, options_.scale, u); }
+  double to_slope(double log_rate) const { return slope_from_rate(options_.function, std::exp(log_rate)); }
+
+  void say_undetermined(const std::string& what, double low, double high) {
+    result_.fit.statements.push_back(
+        {what + "-undetermined", std::to_string(trials_) + " answered trials do not determine the " + what +
+                                     ": they exclude neither " + text::number(low, 3) + " nor " +
+                                     text::number(high, 3) + "."});
+  }
+
+  template <class Map>
+  Interval central(const Marginal& of, Map map) const {
+    const double c = result_.intervals.confidence;
+    const double one = map(of.quantile(0.5 - c / 2)), other = map(of.quantile(0.5 + c / 2));
+    return {std::min(one, other), std::max(one, other), c};
+  }
+
+  template <class Map>
+  ParameterInterval interval(Parameter parameter, Map map) const {
+    ParameterInterval result{central(grid_.marginal(parameter), map), grid_.open_low(parameter),
+                             grid_.open_high(parameter)};
+    if (map(1.0) < map(0.0)) std::swap(result.touches_low, result.touches_high);
+    return result;
+  }
+
+  PosteriorFit& result_;
+  const FitOptions& options_;
+  const Prior& prior_;
+  AxisCounts counts_;
+  PosteriorGrid grid_;
+  int trials_ = 0;
+};
+
+}  // namespace
+
+Prior prior_around(Function function, Scale scale, const Range& levels, const std::optional<Range>& slopes) {
+  if (!(levels.first < levels.second))
+    throw std::invalid_argument("prior: levels from " + text::number(levels.first) + " to " +
+                                text::number(levels.second) + "; low < high is allowed");
+  const double low = axis_position(function, scale, levels.first),
+               high = axis_position(function, scale, levels.second), range = high - low;
+  double rate_low = kShallow / range, rate_high = kSteep / range;
+  if (slopes)
+    for (const double slope : {slopes->first, slopes->second}) {
+      rate_low = std::min(rate_low, rate_from_slope(function, slope));
+      rate_high = std::max(rate_high, rate_from_slope(function, slope));
+    }
+  Prior prior{level_from_axis(function, scale, low - kBeyondLevels * range),
+              level_from_axis(function, scale, high + kBeyondLevels * range),
+              slope_from_rate(function, rate_low / kWider), slope_from_rate(function, rate_high * kWider)};
+  if (prior.slope_low > prior.slope_high) std::swap(prior.slope_low, prior.slope_high);
+  return prior;
+}
+
+PosteriorFit fit_posterior(const std::vector<LevelCount>& data, const FitOptions& options, const Prior& prior,
+                           int band_points) {
+  check(prior);
+  PosteriorFit result;
+  result.fit.options = options;
+  result.fit.data = checked(data, options);
+  if (auto reason = unusable(result.fit.data, options)) {
+    result.fit.statements.push_back(*reason);
+    return result;
+  }
+  Reading reading(result, prior);
+  result.intervals.method = IntervalMethod::posterior;
+  result.intervals.prior = prior;
+  reading.read_parameters();
+  if (result.fit.parameters) reading.read_intervals();
+  if (band_points > 1) reading.read_band(band_points);
+  say_what_touches(result.intervals);
+  return result;
+}
+
+}  // namespace turnpoint::analysis

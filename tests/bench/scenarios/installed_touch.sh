@@ -1,0 +1,75 @@
+# proves: on the installed unit, unchanged and on eglfs, a participant does a whole session by touch alone, through libinput; a panel that is plugged in again works, and a mouse brings no pointer onto the screen
+# needs: installed screen
+# timeout: 1200
+panel_begin
+screen_begin
+udevadm settle
+db=/var/lib/turnpoint/turnpoint.sqlite
+rows() { sqlite3 -separator ' ' "file:$db?mode=ro" "$1" 2>/dev/null || true; }
+stored() { [ "$(rows "SELECT count(*) FROM trial")" = "$1" ]; }
+
+# Nothing but what every station says: its rig, its operator's code, and the size of a panel that does not tell it. The
+# pointer, were there one, is to be part of the picture that is looked at here.
+rig_with "touch=evdev:bench touch panel" </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
+echo '{"device": "/dev/dri/card0", "hwcursor": false}' >/etc/turnpoint/kms.json
+printf 'TURNPOINT_DPI=132\nQT_QPA_EGLFS_KMS_CONFIG=/etc/turnpoint/kms.json\n' >/etc/turnpoint/environment
+echo 'TURNPOINT_OPTIONS=--operator-code 2580 --protocols /usr/share/turnpoint/protocols' >>/etc/turnpoint/environment
+station() { systemctl restart turnpoint || { journalctl -u turnpoint --no-pager | tail -30; fail "the unit did not get ready"; }; }
+mount -t debugfs debugfs /sys/kernel/debug
+drawn_by() { has /sys/kernel/debug/dri/0/state "allocated by = $1"; }
+shows_no_pointer() {
+  sleep 1
+  local before; before=$(kms_screen | sha256sum)
+  touch_do mouse 30 30
+  sleep 1.5
+  [ "$(kms_screen | sha256sum)" = "$before" ] || { screenshot pointer; fail "a mouse brings its pointer onto the screen"; }
+}
+
+station
+drawn_by QSGRenderThread || fail "eglfs does not draw this screen"
+eventually 30 keypad
+shows_no_pointer
+unlock
+sleep 0.5; screenshot start_page
+tap 150 215                       # demo
+tap 303 392                       # "enter it now"
+sleep 0.5
+tap 437 360; tap 736 240; tap 63 240; tap 700 425   # P01
+screenshot chosen
+hold 385 443                      # arm
+tap 694 443                       # begin
+eventually 30 english; sleep 0.5; tap 400 150
+goes_on
+by_touch() { eventually 30 answers_open; sleep 1; touch_do tap 200 370; eventually 20 stored "$1"; }
+for trial in 1 2 3; do by_touch $trial; done
+screenshot trial
+
+say "the panel is unplugged, and comes back"
+eventually 30 answers_open
+touch_do gone
+eventually 10 stored 4            # a fault: the trial comes again
+panel_begin
+sleep 1.5; tap 535 395
+for trial in 5 6 7 8 9 10 11; do by_touch $trial; done
+completed() { [ "$(rows "SELECT status FROM session")" = completed ]; }
+eventually 10 completed
+[ "$(rows "SELECT group_concat(coalesce(response, outcome), ' ') FROM trial")" = \
+  "left left left fault left left left left left left left" ] || fail "$(rows "SELECT * FROM trial")"
+near "answers with the kernel's time" "$(rows "SELECT count(*) FROM trial WHERE response_time_quality = 'kernel'")" 10 0
+
+say "the same unit on the frame buffer"
+printf 'QT_QPA_PLATFORM=linuxfb\nQT_QUICK_BACKEND=software\n' >>/etc/turnpoint/environment
+station
+eventually 30 keypad
+! drawn_by QSGRenderThread || fail "that is eglfs"
+shows_no_pointer
+unlock
+
+say "a service that may only read the devices is told so by the doctor"
+doctor() {
+  systemd-run -q --pipe --wait -p User=turnpoint -p SupplementaryGroups=input -p DevicePolicy=closed \
+    -p "DeviceAllow=char-input $1" turnpoint doctor --rig /etc/turnpoint/rig.toml --data /var/lib/turnpoint >doctor.txt || true
+  grep -A1 "^input devices" doctor.txt
+}
+doctor rw; has doctor.txt "^input devices *ok"
+doctor r; has doctor.txt "^input devices *failed.*/dev/input/event0: Operation not permitted"

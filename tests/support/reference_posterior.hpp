@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+namespace reference {
+
+/// The posterior of a psychometric function by Metropolis sampling, from the formulas of the papers: shares
+/// no code with the station's grid, only the random numbers.
+enum class Shape { weibull_dB, normal };
+
+struct Level {
+  double level = 0;
+  int trials = 0, positive = 0;
+};
+
+/// Uniform in threshold, logarithm of the slope, lapse rate and guess rate; equal ends fix a parameter.
+struct Prior {
+  double threshold_low = 0, threshold_high = 1, slope_low = 1, slope_high = 2, lapse_low = 0, lapse_high = 0,
+         guess_low = 0, guess_high = 0;
+  bool guess_is_lapse = false;
+};
+
+/// One draw each of the parameters and of the level with probability 0.75 (NaN where there is none).
+struct Samples {
+  std::vector<double> threshold, slope, lapse, guess, level_75;
+};
+
+/// `steps` draws after a tenth as many that are dropped. Steps have scales from a thousandth of the prior's
+/// range to all of it, so that narrow and wide posteriors are both walked without tuning.
+Samples sample(Shape shape, const std::vector<Level>& data, const Prior& prior, int steps,
+               std::uint64_t seed);
+
+double quantile(std::vector<double> values, double p);
+/// Share of values within [low, high].
+double share_inside(const std::vector<double>& values, double low, double high);
+
+}  // namespace reference
