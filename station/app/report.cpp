@@ -37,18 +37,21 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
   int attempts = 0;
   for (const auto& block : stored.blocks) attempts += block.start.attempt > 0;
   const auto& start = stored.session.start;
-  data.health = {{"Trials stored", std::to_string(trials)},
-                 {"Underruns and overruns", std::to_string(xruns)},
-                 {"Touches that no answer claimed", std::to_string(extra)},
-                 {"Frames that the screen was late by", late_frames(stored.events)},
-                 {"Times the session was resumed", std::to_string(stored.session.segments - 1)},
-                 {"Blocks begun again", std::to_string(attempts)},
-                 {"Response times by", qualities.empty() ? "none" : qualities},
-                 {"Response offset (not subtracted)", text::number(offset_s, 4) + " s"},
-                 {"Calibration", start.calibration_id.value_or("none")},
-                 {"Real-time rights", start.realtime_rights},
-                 {"Kernel", start.kernel},
-                 {"Software", start.software_version}};
+  data.health = {
+      {"Trials stored", std::to_string(trials)},
+      {"Underruns and overruns", std::to_string(xruns)},
+      {"Touches that no answer claimed", std::to_string(extra)},
+      {"Frames that the screen was late by", late_frames(stored.events)},
+      {"Times the session was resumed", std::to_string(stored.session.segments - 1)},
+      {"Blocks begun again", std::to_string(attempts)},
+      {"Response times by", qualities.empty() ? "none" : qualities},
+      {"Response offset (not subtracted)", text::number(offset_s, 4) + " s"},
+      {"Calibration", start.calibration_id.value_or("none")},
+      {"Real-time rights", start.realtime_rights},
+      {"Kernel", start.kernel},
+      {"Checksum of the data",
+       stored.session.checksum.empty() ? "none: recorded by an earlier release" : stored.session.checksum},
+      {"Software", start.software_version}};
 }
 
 }  // namespace

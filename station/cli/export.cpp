@@ -7,6 +7,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/sign.hpp"
 
 namespace turnpoint::cli {
 
@@ -15,6 +16,7 @@ namespace {
 struct Options {
   std::string database, out, format = "csv", separator = ",", decimal = ".";
   store::ExportOptions selection;
+  std::string sign;  ///< key file; "" signs nothing
 };
 
 char single(const std::string& option, const std::string& text) {
@@ -36,7 +38,12 @@ void export_data(Options options, Context& context) {
   selection.format = options.format == "bids" ? store::ExportFormat::bids : store::ExportFormat::csv;
   selection.separator = single("--separator", options.separator);
   selection.decimal = single("--decimal", options.decimal);
-  const auto files = store::export_data(options.database, options.out, selection);
+  auto files = store::export_data(options.database, options.out, selection);
+  if (!options.sign.empty()) {
+    std::vector<std::string> paths;
+    for (const auto& file : files) paths.push_back(file.path);
+    for (const auto& path : sign_files(options.out, paths, options.sign)) files.push_back({path, 0});
+  }
   if (context.json) {
     Json list = Json::array();
     for (const auto& file : files) list.push_back({{"path", file.path}, {"rows", file.rows}});
@@ -64,6 +71,8 @@ void add_export(CommandLine& app, Context& context) {
   command->add_option("--separator", options->separator, "Between columns: , ; | or tab")
       ->capture_default_str();
   command->add_option("--decimal", options->decimal, "Decimal mark: . or ,")->capture_default_str();
+  command->add_option("--sign", options->sign,
+                      "SSH key file: signs the checksums of all exported files (SHA256SUMS, SHA256SUMS.sig)");
   add_json(*command, context);
   command->footer("Example: turnpoint export --db lab.sqlite --out export --separator ';' --decimal ,");
   command->callback([options, &context] { export_data(*options, context); });

@@ -54,6 +54,7 @@ Json to_json(const session::Summary& summary) {
           {"xruns", summary.xruns},
           {"stretched_s", json_number(summary.stretched_s)},
           {"realtime_rights", summary.realtime_rights},
+          {"checksum", summary.checksum},
           {"estimates", estimates}};
 }
 
@@ -74,6 +75,7 @@ void print_summary(std::ostream& out, const session::Summary& s) {
                number(s.stretched_s, 3));
   fmt::print(out, "  real-time rights: {}\n", s.realtime_rights);
   fmt::print(out, "  database {}\n", s.database);
+  fmt::print(out, "  checksum {}\n", s.checksum);
 }
 
 /// A session without a trial is none to go on with.

@@ -54,6 +54,7 @@ struct Summary {
   int xruns = 0;
   double stretched_s = 0;       ///< by how much intervals between trials were lengthened to keep the duty
   std::string realtime_rights;  ///< what the operating system granted to the audio thread
+  std::string checksum;         ///< last link of the chain over the session's rows (`turnpoint verify`)
   std::vector<ProcedureEstimate> estimates;
 };
 

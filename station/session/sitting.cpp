@@ -131,6 +131,7 @@ void Sitting::finish(store::SessionStatus status, const std::string& reason) {
   summary_.duration_s = static_cast<double>(stage_->now_ns() - started_ns_) * 1e-9;
   if (scored_ > 0) summary_.accuracy = static_cast<double>(right_) / scored_;
   keep([&] { log_.finish(status, reason); });
+  summary_.checksum = log_.session().checksum;
 }
 
 }  // namespace turnpoint::session

@@ -78,4 +78,28 @@ void TextTable::end_row() {
   ++rows_;
 }
 
+std::vector<std::vector<std::string>> read_table(const std::string& text) {
+  const auto mark = text.find_first_of(",;|\t\n");
+  const char separator = mark == std::string::npos ? ',' : text[mark];
+  std::vector<std::vector<std::string>> lines;
+  bool quoted = false, new_line = true;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (new_line) lines.emplace_back(1);
+    new_line = false;
+    auto& field = lines.back().back();
+    const char c = text[i];
+    if (quoted && c == '"' && i + 1 < text.size() && text[i + 1] == '"')
+      field += text[++i];
+    else if (c == '"')
+      quoted = !quoted;
+    else if (!quoted && c == separator)
+      lines.back().emplace_back();
+    else if (!quoted && c == '\n')
+      new_line = true;
+    else if (quoted || c != '\r')
+      field += c;
+  }
+  return lines;
+}
+
 }  // namespace turnpoint::store

@@ -47,4 +47,8 @@ class TextTable {
   std::string text_;
 };
 
+/// The fields of a table in the RFC 4180 form, line by line. The separator is the first one of , ; | and tab
+/// that stands in its first line.
+std::vector<std::vector<std::string>> read_table(const std::string& text);
+
 }  // namespace turnpoint::store

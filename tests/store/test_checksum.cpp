@@ -9,6 +9,8 @@
 #include "station/store/merge.hpp"
 #include "station/store/open.hpp"
 #include "station/store/read.hpp"
+#include "station/store/text_table.hpp"
+#include "station/store/verify.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
@@ -208,6 +210,44 @@ TEST_CASE("rows that were edited and sealed again differ from a checksum exporte
     CHECK_FALSE(holds_link(database, id, exported));
   }
   CHECK(problems_of(db).empty());
+}
+
+TEST_CASE("verify compares a database with a sessions.csv that was exported before", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  make(db);
+  ExportOptions style;
+  style.separator = GENERATE(',', ';');
+  annotate(db, list_sessions(db).front().session_id, "two\nlines, and \"more\"");
+  export_data(db, folder / "out", style);
+  const auto csv = folder / "out/two-boundaries/sessions.csv";
+  CHECK(verify(db, {"", csv}).good());
+  sample::session(db, 1, sample::start("P04"));
+  CHECK(verify(db, {"", csv}).good());  // what came later is not in the export
+  SECTION("rows edited and sealed again") {
+    auto database = unguarded(db);
+    database.execute("UPDATE trial SET level = 3; DELETE FROM link");
+    for (const auto& session : list_sessions(database)) Chain(database, session.session_id).add();
+    const auto result = verify(db, {"", csv});
+    REQUIRE_FALSE(result.good());
+    CHECK(sample::contains(result.sessions[0].problems.at(0), "does not hold the exported checksum"));
+  }
+  SECTION("another database") {
+    sample::session(folder / "b.sqlite", 2);
+    const auto result = verify(folder / "b.sqlite", {"", csv});
+    REQUIRE(result.problems.size() == 1);
+    CHECK(sample::contains(result.problems[0], "is not in the database"));
+  }
+  SECTION("not a sessions.csv") {
+    const auto [fault, message] = sample::failure([&] {
+      verify(db, {"", folder / "out/two-boundaries/trials.csv"});
+    });
+    CHECK(sample::contains(message, "no column checksum"));
+    CHECK(sample::contains(sample::failure([&] {
+                             verify(db, {"", folder / "absent.csv"});
+                           }).second,
+                           "absent.csv"));
+  }
 }
 
 TEST_CASE("a session that grew still holds the checksum of an earlier export", "[store]") {

@@ -1,0 +1,83 @@
+#include "station/store/verify.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "station/store/open.hpp"
+#include "station/store/text_table.hpp"
+
+namespace turnpoint::store {
+
+namespace {
+
+struct Exported {
+  std::string session_id, checksum;
+};
+
+/// Sessions and their checksums as a sessions.csv lists them.
+std::vector<Exported> read_export(const std::string& path) {
+  const auto refuse = [&](const std::string& why) -> std::size_t {
+    throw StoreError(Fault::missing,
+                     fmt::format("verify: {}: {}; name a sessions.csv that `turnpoint export` "
+                                 "wrote",
+                                 path, why));
+  };
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  if (!file || !bytes) refuse("it cannot be read, or is empty");
+  const auto lines = read_table(bytes.str());
+  const auto column = [&](const char* name) {
+    const auto& head = lines.front();
+    const auto at = std::find(head.begin(), head.end(), name);
+    return at == head.end() ? refuse(fmt::format("it has no column {}", name))
+                            : static_cast<std::size_t>(at - head.begin());
+  };
+  const auto id = column("session_id"), checksum = column("checksum");
+  std::vector<Exported> sessions;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    if (lines[i].size() != lines.front().size()) refuse(fmt::format("line {} is not whole", i + 1));
+    sessions.push_back({lines[i][id], lines[i][checksum]});
+  }
+  return sessions;
+}
+
+/// What the export says of a session and the database does not hold.
+void compare(Database& database, const Exported& exported, Verification& result) {
+  if (exported.checksum == "n/a") return;  // recorded by a release without checksums
+  if (holds_link(database, exported.session_id, exported.checksum)) return;
+  const auto problem = fmt::format("it does not hold the exported checksum {}", exported.checksum);
+  for (auto& session : result.sessions)
+    if (session.session_id == exported.session_id) {
+      session.problems.push_back(problem);
+      return;
+    }
+  result.problems.push_back(
+      fmt::format("session {} was exported, and is not in the database", exported.session_id));
+}
+
+}  // namespace
+
+bool Verification::good() const {
+  return problems.empty() && std::all_of(sessions.begin(), sessions.end(),
+                                         [](const auto& session) { return session.problems.empty(); });
+}
+
+Verification verify(const std::string& path, const VerifyOptions& options) {
+  std::vector<Exported> exported;
+  if (!options.against.empty()) exported = read_export(options.against);
+  auto database = open_reader(path);  // which checks pages and references
+  Verification result;
+  if (options.session_id.empty())
+    result.sessions = verify_database(database);
+  else
+    result.sessions.push_back(verify_session(database, options.session_id));
+  for (const auto& one : exported)
+    if (options.session_id.empty() || options.session_id == one.session_id) compare(database, one, result);
+  return result;
+}
+
+}  // namespace turnpoint::store
