@@ -28,6 +28,7 @@ int failure() {
 
 void called() {
   if (card.state == FakePcm::State::running && card.before_call) card.before_call();
+  card.just_wrote = false;
 }
 
 }  // namespace
@@ -119,6 +120,7 @@ snd_pcm_sframes_t snd_pcm_writei(snd_pcm_t*, const void* frames, snd_pcm_uframes
   if (const int failed = turnpoint::drive::failure()) return failed;
   const auto taken =
       std::clamp<std::int64_t>(card.buffer - card.queued(), 0, static_cast<std::int64_t>(size));
+  card.just_wrote = true;
   const auto* samples = static_cast<const std::int32_t*>(frames);
   for (std::int64_t n = 0; n < taken; ++n, ++card.written)
     std::copy_n(samples + n * card.channels, card.channels,

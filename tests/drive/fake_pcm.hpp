@@ -22,6 +22,7 @@ struct FakePcm {
   std::vector<std::int32_t> heard;  ///< channel 0, one sample a frame of time
   bool stamps = true;               ///< tells its position
   bool present = true;              ///< can be opened
+  bool just_wrote = false;          ///< the program's last call was a write
   /// Called before each call that the program makes while the device runs: the place to let time pass or to
   /// make the device fail. The second is for writes alone, which come after the program has looked for room.
   std::function<void()> before_call, before_write;
