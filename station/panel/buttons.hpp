@@ -8,7 +8,7 @@
 
 namespace turnpoint::panel {
 
-/// A press of a response button, at the first edge of its bouncing.
+/// A press of a response button that lasted, at the first edge of its bouncing.
 struct Press {
   std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC, kernel's stamp of the first edge
   int button = 0;            ///< index in the order of the URI
@@ -20,6 +20,15 @@ struct Touch {
   bool on = false;
   std::optional<double>
       position;  ///< along the surface, 0 at one end of the sensor and 1 at the other, where it can tell
+};
+
+/// Interference on a line: it left its level and came back before that could count as a press or a touch.
+struct Glitch {
+  std::int64_t time_ns = 0;    ///< CLOCK_MONOTONIC, kernel's stamp of the first edge
+  std::string line;            ///< "left", "right", "contact"
+  int edges = 0;               ///< that the kernel reported
+  std::int64_t length_ns = 0;  ///< from the first to the last of them
+  int untold = 0;              ///< glitches of this line before, which were only counted
 };
 
 /// Something that went wrong with the panel.
@@ -37,18 +46,20 @@ struct PanelFault {
 struct PanelHandlers {
   std::function<void(const Press&)> press;
   std::function<void(const Touch&)> touch;
+  std::function<void(const Glitch&)> glitch;  ///< at most one a second for each line
   std::function<void(const PanelFault&)> fault;
   std::function<void(std::int64_t time_ns)> back;  ///< what had gone; a button held at that time is no press
 };
 
-/// `sim:` or `gpio:left=BTN_L,right=BTN_R` (add `active=low` for buttons to ground, `refractory_ms=50` by
-/// default).
+/// `sim:` or `gpio:left=BTN_L,right=BTN_R`, with `active=low` for buttons to ground. `hold_ms` (default 1.5)
+/// is how long a level must last to count, `refractory_ms` (default 50) how long after a press or release
+/// nothing else is told; see EdgeFilter.
 struct ButtonsConfig {
   std::string uri = "sim:";
 };
 
-/// `sim:`, `gpio:line=FINGER` or `evdev:NAME[,axis=x|y]` (a touch sensor on the surface; NAME is the
-/// device's).
+/// `sim:`, `gpio:line=FINGER` (with the same keys) or `evdev:NAME[,axis=x|y]` (a touch sensor on the
+/// surface; NAME is the device's).
 struct ContactConfig {
   std::string uri = "sim:";
 };

@@ -80,13 +80,13 @@ class GpioLines final : public Lines {
     const int line = inputs_[*ready];
     Last& last = last_[static_cast<std::size_t>(line)];
     const bool rising = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
-    // This interface does not number its events. Two edges in one direction prove that one between them was
-    // lost; a buffer that was found full has lost what came after it, but for a coincidence.
-    const bool lost = (last.sequence != 0 && last.rising == rising) || last.was_full;
+    // This interface does not number its events. A buffer that was found full has lost what came after it,
+    // but for a coincidence. Two edges in one direction prove nothing: the direction is the level when the
+    // interrupt was served, so a short spike looks like that.
+    const bool lost = last.was_full;
     last.was_full = ++last.waiting >= kernel_buffer_edges;
     if (last.was_full) last.waiting = 0;
     last.sequence += lost ? 2 : 1;
-    last.rising = rising;
     return Edge{std::int64_t{1'000'000'000} * event.ts.tv_sec + event.ts.tv_nsec, line, rising,
                 last.sequence};
   }
@@ -112,7 +112,6 @@ class GpioLines final : public Lines {
  private:
   struct Last {
     std::uint32_t sequence = 0;
-    bool rising = false;
     int waiting = 0;  ///< edges read since the buffers were last seen empty
     bool was_full = false;
   };

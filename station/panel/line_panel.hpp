@@ -12,15 +12,14 @@ namespace turnpoint::panel {
 /// Which lines are watched: buttons first, in order, then perhaps the contact.
 struct LinePanel {
   std::vector<LineRequest> requests;
+  std::vector<std::string> names;  ///< of each line: "left", "right", "contact"
   int lines = 0;
   int contact = -1;                               ///< index of the contact line
   bool buttons_low = false, contact_low = false;  ///< active level
-  std::int64_t refractory_ns = 50'000'000;
-  std::int64_t contact_refractory_ns = 50'000'000;
+  EdgeFilter::Rules button_rules, contact_rules;
 };
 
 /// A panel on lines, kernel or simulated. Throws what `open` throws at the start.
-std::unique_ptr<Panel> watch_lines(OpenLines open, const LinePanel& plan, std::vector<std::string> names,
-                                   PanelHandlers handlers);
+std::unique_ptr<Panel> watch_lines(OpenLines open, const LinePanel& plan, PanelHandlers handlers);
 
 }  // namespace turnpoint::panel

@@ -1,5 +1,11 @@
+#include <linux/input.h>
+
+#include <algorithm>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "station/drive/monotonic.hpp"
 #include "station/panel/buttons.hpp"
@@ -13,6 +19,7 @@ namespace {
 
 constexpr int panel_priority = 75, evdev_priority = 60;
 constexpr std::int64_t settle_check_ns = 5'000'000;
+constexpr std::int64_t glitch_pause_ns = 1'000'000'000;
 constexpr std::int64_t evdev_wait_ns = 100'000'000;
 
 // Buttons first, then perhaps the contact line, as they are read.
@@ -20,61 +27,92 @@ class LineReader {
  public:
   LineReader(std::unique_ptr<Lines> lines, const LinePanel& plan, const PanelHandlers& handlers)
       : lines_(std::move(lines)), plan_(plan), handlers_(handlers) {
-    for (int k = 0; k < plan_.lines; ++k) {
-      const std::int64_t refractory_ns =
-          k == plan_.contact ? plan_.contact_refractory_ns : plan_.refractory_ns;
-      filters_.emplace_back(refractory_ns, active(k, lines_->level(k)));
-    }
-    checks_.resize(filters_.size());
+    for (int k = 0; k < plan_.lines; ++k)
+      watched_.emplace_back(k == plan_.contact ? plan_.contact_rules : plan_.button_rules,
+                            active(k, lines_->level(k)));
   }
 
   void look() {
-    if (const auto edge = lines_->wait(settle_check_ns))
-      take(*edge);
-    else
-      settle();
+    const std::int64_t now = drive::monotonic_ns();
+    std::int64_t due = now + settle_check_ns;
+    for (const Watched& line : watched_) due = std::min(due, line.filter.due_ns());
+    if (const auto edge = lines_->wait(std::max<std::int64_t>(due - now, 0))) return take(*edge);
+    // What is on its way when the time is read is there when the lines are asked once more.
+    const std::int64_t quiet_until = drive::monotonic_ns();
+    if (const auto edge = lines_->wait(0)) return take(*edge);
+    settle(quiet_until);
   }
 
  private:
+  struct Watched {
+    Watched(const EdgeFilter::Rules& rules, bool active) : filter(rules, active) {}
+    EdgeFilter filter;
+    SequenceCheck sequence;
+    std::optional<std::int64_t> glitch_told_ns;
+    int untold_glitches = 0;
+  };
+
   bool active(int line, bool level) const {
     return level != (line == plan_.contact ? plan_.contact_low : plan_.buttons_low);
   }
-
-  void tell(int line, EdgeFilter::Result result, std::int64_t time_ns) {
-    if (result == EdgeFilter::Result::ignored) return;
-    const bool pressed = result == EdgeFilter::Result::pressed;
-    if (line == plan_.contact) {
-      if (handlers_.touch) handlers_.touch({time_ns, pressed, std::nullopt});
-    } else if (pressed && handlers_.press) {
-      handlers_.press({time_ns, line});
-    }
-  }
+  const std::string& name(int line) const { return plan_.names.at(static_cast<std::size_t>(line)); }
 
   void take(const Edge& edge) {
-    const auto k = static_cast<std::size_t>(edge.line);
-    const std::uint32_t missed = checks_[k].missed_before(edge.sequence);
-    if (missed > 0 && handlers_.fault)
-      handlers_.fault(
-          {drive::monotonic_ns(), PanelFault::Kind::edges_lost,
-           std::to_string(missed) + " edges of line " + std::to_string(edge.line) + " were lost"});
-    tell(edge.line, filters_[k].edge(edge.time_ns, active(edge.line, edge.rising)), edge.time_ns);
+    Watched& watched = watched_.at(static_cast<std::size_t>(edge.line));
+    if (const auto missed = watched.sequence.missed_before(edge.sequence); missed > 0)
+      fault_of_line(edge.line, std::to_string(missed) + " edges were lost");
+    decide(edge.line, edge.time_ns);
+    tell(edge.line, watched.filter.edge(edge.time_ns, active(edge.line, edge.rising)));
   }
 
-  // A level that changed back within the refractory time has no edge of its own left.
-  void settle() {
-    const std::int64_t now = drive::monotonic_ns();
+  void settle(std::int64_t now) {
     for (int line = 0; line < plan_.lines; ++line) {
-      EdgeFilter& filter = filters_[static_cast<std::size_t>(line)];
-      if (now < filter.settles_ns()) continue;
-      tell(line, filter.settle(now, active(line, lines_->level(line))), now);
+      decide(line, now);
+      tell(line,
+           watched_[static_cast<std::size_t>(line)].filter.level(now, active(line, lines_->level(line))));
     }
+  }
+
+  void decide(int line, std::int64_t now) {
+    auto& filter = watched_[static_cast<std::size_t>(line)].filter;
+    while (const auto change = filter.decide(now)) tell(line, change);
+  }
+
+  void tell(int line, const std::optional<LineChange>& change) {
+    if (!change) return;
+    if (change->kind == LineChange::Kind::glitch) return tell_glitch(line, *change);
+    if (change->kind == LineChange::Kind::lost)
+      fault_of_line(line, "its level changed and the kernel reported no edge");
+    if (line == plan_.contact) {
+      if (handlers_.touch) handlers_.touch({change->time_ns, change->active, std::nullopt});
+    } else if (change->kind == LineChange::Kind::pressed && handlers_.press) {
+      handlers_.press({change->time_ns, line});
+    }
+  }
+
+  // Interference can come thousands of times a second; the log is for people.
+  void tell_glitch(int line, const LineChange& change) {
+    Watched& watched = watched_[static_cast<std::size_t>(line)];
+    if (watched.glitch_told_ns && change.time_ns < *watched.glitch_told_ns + glitch_pause_ns) {
+      ++watched.untold_glitches;
+      return;
+    }
+    watched.glitch_told_ns = change.time_ns;
+    const int untold = std::exchange(watched.untold_glitches, 0);
+    if (handlers_.glitch)
+      handlers_.glitch({change.time_ns, name(line), change.edges, change.length_ns, untold});
+  }
+
+  void fault_of_line(int line, const std::string& what) {
+    if (handlers_.fault)
+      handlers_.fault(
+          {drive::monotonic_ns(), PanelFault::Kind::edges_lost, "line " + name(line) + ": " + what});
   }
 
   std::unique_ptr<Lines> lines_;
   const LinePanel& plan_;
   const PanelHandlers& handlers_;
-  std::vector<EdgeFilter> filters_;
-  std::vector<SequenceCheck> checks_;
+  std::vector<Watched> watched_;
 };
 
 DeviceWatch::Open line_opener(OpenLines open, LinePanel plan, const PanelHandlers& handlers) {
@@ -133,13 +171,22 @@ bool take_low(Uri& uri) {
   return active == "low";
 }
 
-std::int64_t take_refractory(Uri& uri) {
-  const std::string refractory = uri.take("refractory_ms", "50");
+std::int64_t take_ms(Uri& uri, const std::string& key, std::int64_t otherwise_ns, double highest_ms) {
+  const std::string text = uri.take(key, "");
+  if (text.empty()) return otherwise_ns;
   char* end = nullptr;
-  const double refractory_ms = std::strtod(refractory.c_str(), &end);
-  if (*end != '\0' || !(refractory_ms >= 0 && refractory_ms <= 1000))
-    throw std::invalid_argument("'" + uri.text + "': refractory_ms=" + refractory + "; allowed 0 to 1000");
-  return static_cast<std::int64_t>(refractory_ms * 1e6);
+  const double ms = std::strtod(text.c_str(), &end);
+  if (*end != '\0' || !(ms >= 0 && ms <= highest_ms))
+    throw std::invalid_argument("'" + uri.text + "': " + key + "=" + text + "; allowed 0 to " +
+                                std::to_string(static_cast<int>(highest_ms)));
+  return static_cast<std::int64_t>(ms * 1e6);
+}
+
+EdgeFilter::Rules take_rules(Uri& uri) {
+  EdgeFilter::Rules rules;
+  rules.hold_ns = take_ms(uri, "hold_ms", rules.hold_ns, 10);
+  rules.refractory_ns = take_ms(uri, "refractory_ms", rules.refractory_ns, 1000);
+  return rules;
 }
 
 void plan_buttons(const std::string& text, RigPanel& panel, LinePanel& plan) {
@@ -151,9 +198,10 @@ void plan_buttons(const std::string& text, RigPanel& panel, LinePanel& plan) {
   if (uri.scheme != "gpio")
     throw std::invalid_argument("buttons '" + text + "'; allowed sim: or gpio:left=LINE,right=LINE");
   plan.buttons_low = take_low(uri);
-  plan.refractory_ns = take_refractory(uri);
+  plan.button_rules = take_rules(uri);
   for (const auto& [name, line] : uri.values) {
     panel.names_.push_back(name);
+    plan.names.push_back(name);
     plan.requests.push_back({line, "turnpoint-button-" + name, LineUse::input});
   }
   if (panel.names_.empty()) throw std::invalid_argument("buttons '" + text + "' name no line");
@@ -167,11 +215,12 @@ void plan_contact(const std::string& text, RigPanel& panel, LinePanel& plan) {
   } else if (uri.scheme == "gpio") {
     plan.contact_low = take_low(uri);
     const std::string line = uri.take("line", "");
-    plan.contact_refractory_ns = take_refractory(uri);
-    uri.check_empty("line, active, refractory_ms");
+    plan.contact_rules = take_rules(uri);
+    uri.check_empty("line, active, hold_ms, refractory_ms");
     if (line.empty()) throw std::invalid_argument("contact '" + text + "' names no line");
     plan.contact = static_cast<int>(plan.requests.size());
     plan.requests.push_back({line, "turnpoint-contact", LineUse::input});
+    plan.names.push_back("contact");
   } else if (uri.scheme == "evdev" && !uri.name.empty()) {
     const std::string axis = uri.take("axis", "x");
     uri.check_empty("axis");
@@ -188,10 +237,10 @@ void plan_contact(const std::string& text, RigPanel& panel, LinePanel& plan) {
 
 }  // namespace
 
-std::unique_ptr<Panel> watch_lines(OpenLines open, const LinePanel& plan, std::vector<std::string> names,
-                                   PanelHandlers handlers) {
+std::unique_ptr<Panel> watch_lines(OpenLines open, const LinePanel& plan, PanelHandlers handlers) {
   auto panel = std::make_unique<RigPanel>(std::move(handlers));
-  panel->names_ = std::move(names);
+  for (int k = 0; k < plan.lines; ++k)
+    if (k != plan.contact) panel->names_.push_back(plan.names.at(static_cast<std::size_t>(k)));
   panel->has_contact_ = plan.contact >= 0;
   panel->lines_ = std::make_unique<DeviceWatch>(line_opener(std::move(open), plan, panel->handlers_),
                                                 panel_priority, panel->handlers_);

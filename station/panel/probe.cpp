@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "station/panel/evdev_contact.hpp"
+#include "station/panel/evdev_device.hpp"
 #include "station/panel/lines.hpp"
 #include "station/panel/uri.hpp"
 
@@ -65,12 +65,17 @@ std::vector<Check> check_lines(const std::string& device, const std::string& tex
 Check check_touch(const std::string& device, const std::string& text) {
   const Uri uri = parse_uri(text);
   if (uri.scheme != "evdev") return {device, Status::ok, uri.scheme == "sim" ? "simulated" : uri.scheme, ""};
+  const std::string mend =
+      "plug it in; its name stands in /proc/bus/input/devices; the user needs the group input";
   try {
-    const EvdevContact contact(uri.name, ABS_X);
+    const auto panel = EvdevDevice::find(uri.name);
+    if (!panel)
+      return {device, Status::failed,
+              "input device '" + uri.name + "': " + std::generic_category().message(errno), mend};
+    static_cast<void>(panel->range(panel->slots() > 0 ? ABS_MT_POSITION_X : ABS_X));
     return {device, Status::ok, "'" + uri.name + "' is there, with monotonic time stamps", ""};
   } catch (const std::exception& error) {
-    return {device, Status::failed, error.what(),
-            "plug it in; its name stands in /proc/bus/input/devices; the user needs the group input"};
+    return {device, Status::failed, error.what(), mend};
   }
 }
 

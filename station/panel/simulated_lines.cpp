@@ -52,10 +52,22 @@ std::vector<SimulatedLines::Driven> SimulatedLines::driven() const {
   return driven_;
 }
 
-void SimulatedLines::set(int index, bool level, std::int64_t time_ns) {
-  const std::lock_guard lock(mutex_);
+void SimulatedLines::change(int index, bool level, std::int64_t time_ns) {
   levels_.at(static_cast<std::size_t>(index)) = level ? 1 : 0;
   edges_.push_back({time_ns, index, level, ++sequences_.at(static_cast<std::size_t>(index))});
+}
+
+void SimulatedLines::set(int index, bool level, std::int64_t time_ns) {
+  const std::lock_guard lock(mutex_);
+  change(index, level, time_ns);
+  changed_.ring();
+}
+
+void SimulatedLines::pulse(int index, std::int64_t time_ns, std::int64_t length_ns) {
+  const std::lock_guard lock(mutex_);
+  const bool level = levels_.at(static_cast<std::size_t>(index)) != 0;
+  change(index, !level, time_ns);
+  change(index, level, time_ns + length_ns);
   changed_.ring();
 }
 

@@ -22,6 +22,8 @@ class SimulatedLines : public Lines {
 
   /// An input changes, at that time.
   void set(int index, bool level, std::int64_t time_ns);
+  /// An input leaves its level and comes back: both edges are there at once.
+  void pulse(int index, std::int64_t time_ns, std::int64_t length_ns);
   /// Edges that the kernel's buffer had no room for.
   void lose_edges(int index, std::uint32_t count);
   /// What was driven, change by change: which output, its new level, when.
@@ -38,6 +40,7 @@ class SimulatedLines : public Lines {
  private:
   void check() const;
   std::optional<Edge> next_edge();
+  void change(int index, bool level, std::int64_t time_ns);
 
   mutable std::mutex mutex_;
   WakeUp changed_;

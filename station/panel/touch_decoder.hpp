@@ -1,10 +1,10 @@
 #pragma once
-#include <linux/input.h>
-
 #include <cstdint>
-#include <map>
 #include <optional>
+#include <span>
 #include <vector>
+
+#include "station/panel/evdev_device.hpp"
 
 namespace turnpoint::panel {
 
@@ -14,36 +14,28 @@ struct PanelTouch {
   double x = 0, y = 0;       ///< 0 ... 1 from the panel's left and top
 };
 
-/// What values an axis reports. Throws std::invalid_argument in TouchDecoder where highest <= lowest.
-struct AxisRange {
-  int lowest = 0, highest = 0;
+/// Where a finger is, in the panel's own units.
+struct Finger {
+  std::optional<int> id;  ///< another number for each touch; none while no finger is there
+  int x = 0, y = 0;
 };
 
-/// Which protocol the device speaks (Documentation/input/multi-touch-protocol.rst of the kernel).
-enum class TouchProtocol { single, slots };
-
-/// Turns a panel's evdev events into touches, one for each finger that comes down. Pure: events in, touches
-/// out. After SYN_DROPPED everything up to the next report is thrown away, as the kernel demands.
+/// Tells from a panel's reports which fingers have come down. Pure: states in, touches out.
 class TouchDecoder {
  public:
-  TouchDecoder(TouchProtocol protocol, AxisRange x, AxisRange y);
+  TouchDecoder(AxisRange x, AxisRange y) noexcept : x_(x), y_(y) {}
 
-  /// The touches that this event completes: none but at a SYN_REPORT.
-  std::vector<PanelTouch> handle(const input_event& event);
+  /// The panel's fingers at the end of a report, always in the same order. Returns those that came down
+  /// since the last call.
+  std::vector<PanelTouch> report(std::int64_t time_ns, std::span<const Finger> fingers);
+
+  /// The fingers after reports were lost, or at the start. Nobody knows when they came down, so they are no
+  /// touches.
+  void resynchronise(std::span<const Finger> fingers);
 
  private:
-  struct Finger {
-    std::optional<int> x, y;
-    bool began = false;
-  };
-  void handle_axis(const input_event& event);
-  std::vector<PanelTouch> report(std::int64_t time_ns);
-
-  TouchProtocol protocol_;
   AxisRange x_, y_;
-  std::map<int, Finger> fingers_;
-  int slot_ = 0;
-  bool dropped_ = false;
+  std::vector<Finger> before_;
 };
 
 }  // namespace turnpoint::panel

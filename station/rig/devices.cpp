@@ -71,10 +71,10 @@ void read_devices(TableReader& file, Rig& rig) {
           .value_or("");
   rig.buttons_uri =
       read_device(file, "buttons", {"sim:", "gpio:*"}, "\"sim:\" or \"gpio:left=LINE,right=LINE\"",
-                  {"left", "right"}, {"third", "active", "refractory_ms"});
+                  {"left", "right"}, {"third", "active", "hold_ms", "refractory_ms"});
   rig.contact_uri =
       read_device(file, "contact", {"sim:", "gpio:*", "evdev:*"},
-                  "\"sim:\", \"gpio:line=LINE\" or \"evdev:DEVICE\"", {"line"}, {"active", "refractory_ms"});
+                  "\"sim:\", \"gpio:line=LINE\" or \"evdev:DEVICE\"", {"line"}, {"active", "hold_ms", "refractory_ms"});
   rig.touch_uri =
       read_device(file, "touch", {"sim:", "qt:", "evdev:*"}, "\"sim:\", \"qt:\" or \"evdev:DEVICE\"", {});
 }

@@ -1,5 +1,7 @@
 #include "station/session/devices.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "station/panel/amplifier.hpp"
@@ -24,6 +26,13 @@ panel::PanelHandlers handlers_for(Inputs& inputs) {
     Input input = stamped(touch.time_ns, InputKind::contact);
     input.value = touch.on ? 1 : 0;
     input.number = touch.position.value_or(-1);
+    inputs.push(std::move(input));
+  };
+  handlers.glitch = [&inputs, stamped](const panel::Glitch& glitch) {
+    Input input = stamped(glitch.time_ns, InputKind::glitch);
+    input.text = fmt::format("{}: edges {}, over {:.3f} ms", glitch.line, glitch.edges,
+                             1e-6 * static_cast<double>(glitch.length_ns));
+    if (glitch.untold > 0) input.text += fmt::format("; {} more before it", glitch.untold);
     inputs.push(std::move(input));
   };
   handlers.fault = [&inputs, stamped](const panel::PanelFault& fault) {

@@ -24,6 +24,7 @@ enum class InputKind {
   heard,        ///< value = index of the interval of which every frame has been played; never logged
   fault,        ///< `fault` says what, text the detail; from drive, amplifier or panel: the trial is void
   failure,      ///< text says what: the session cannot go on
+  glitch,       ///< interference on a button or contact line; text says which; for the log only
   notice,       ///< text says what; for the log only
   arm,          ///< operator: clear a latched fault of the amplifier and arm it
   disarm,       ///< operator: amplifier off, and not on again before it is armed

@@ -93,6 +93,8 @@ const char* kind_of(InputKind kind) {
       return "fault";
     case InputKind::failure:
       return "failure";
+    case InputKind::glitch:
+      return "glitch";
     case InputKind::notice:
       return "notice";
     case InputKind::arm:
@@ -265,6 +267,7 @@ std::optional<trial::Event> event_of(const Input& input) {
     case InputKind::next:
     case InputKind::slider:
     case InputKind::button:
+    case InputKind::glitch:
     case InputKind::notice:
     case InputKind::arm:
     case InputKind::note:

@@ -1,6 +1,8 @@
 #include <atomic>
 #include <mutex>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "station/drive/monotonic.hpp"
 #include "station/panel/line_panel.hpp"
@@ -11,28 +13,136 @@
 
 using namespace turnpoint;
 using namespace turnpoint::panel;
-using Result = EdgeFilter::Result;
+using Kind = LineChange::Kind;
 
 namespace {
-constexpr std::int64_t ms = 1'000'000;
+constexpr std::int64_t us = 1'000, ms = 1'000'000;
 }
 
-TEST_CASE("the first edge of a bouncing contact counts, with its own time", "[panel][buttons]") {
-  EdgeFilter filter(50 * ms, false);
-  CHECK(filter.edge(1000 * ms, true) == Result::pressed);
-  for (int k = 1; k < 20; ++k) CHECK(filter.edge((1000 + k) * ms, k % 2 == 0) == Result::ignored);
-  CHECK(filter.settle(1049 * ms, true) == Result::ignored);
-  CHECK(filter.settle(1060 * ms, true) == Result::ignored);
-  CHECK(filter.edge(1200 * ms, false) == Result::released);
-  CHECK(filter.edge(1300 * ms, true) == Result::pressed);
+// What a filter says of edges given as (us, level), and of the silence up to `until_us`.
+std::vector<LineChange> changes(EdgeFilter& filter, const std::vector<std::pair<std::int64_t, bool>>& edges,
+                                std::int64_t until_us) {
+  std::vector<LineChange> all;
+  const auto decide = [&](std::int64_t time_ns) {
+    while (const auto change = filter.decide(time_ns)) all.push_back(*change);
+  };
+  for (const auto& [time_us, level] : edges) {
+    decide(time_us * us);
+    if (const auto change = filter.edge(time_us * us, level)) all.push_back(*change);
+  }
+  decide(until_us * us);
+  return all;
 }
 
-TEST_CASE("a release hidden in the refractory time is found once the contact is quiet", "[panel][buttons]") {
-  EdgeFilter filter(50 * ms, false);
-  CHECK(filter.edge(1000 * ms, true) == Result::pressed);
-  CHECK(filter.edge(1030 * ms, false) == Result::ignored);
-  CHECK(filter.settle(1051 * ms, false) == Result::released);
-  CHECK(filter.edge(1500 * ms, true) == Result::pressed);
+TEST_CASE("a level that lasts is a press, with the stamp of the first edge", "[panel][buttons]") {
+  EdgeFilter filter({}, false);
+  CHECK(changes(filter, {{1000, true}}, 2499).empty());
+  const auto told = changes(filter, {}, 2500);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].kind == Kind::pressed);
+  CHECK(told[0].time_ns == 1000 * us);
+}
+
+TEST_CASE("a spike of 3 us is a glitch and no press, however often it comes", "[panel][buttons]") {
+  EdgeFilter filter({}, false);
+  std::vector<std::pair<std::int64_t, bool>> spikes;
+  for (int k = 0; k < 100; ++k) {
+    spikes.push_back({1000 + 5000 * k, true});
+    spikes.push_back({1003 + 5000 * k, false});
+  }
+  const auto told = changes(filter, spikes, 1'000'000);
+  REQUIRE(told.size() == 100);
+  for (std::size_t k = 0; k < told.size(); ++k) {
+    CHECK(told[k].kind == Kind::glitch);
+    CHECK(told[k].time_ns == static_cast<std::int64_t>(1000 + 5000 * k) * us);
+    CHECK(told[k].length_ns == 3 * us);
+    CHECK(told[k].edges == 2);
+  }
+}
+
+TEST_CASE("how long a level must last is the rig's to say", "[panel][buttons]") {
+  EdgeFilter::Rules rules;
+  rules.hold_ns = 4000 * us;
+  EdgeFilter slow(rules, false), quick({}, false);
+  const std::vector<std::pair<std::int64_t, bool>> two_ms{{1000, true}, {3000, false}};
+  CHECK(changes(slow, two_ms, 90'000).at(0).kind == Kind::glitch);
+  CHECK(changes(quick, two_ms, 90'000).at(0).kind == Kind::pressed);
+}
+
+TEST_CASE("a spike too short to be seen, two edges at the old level, is a glitch", "[panel][buttons]") {
+  EdgeFilter filter({}, false);
+  const auto told = changes(filter, {{1000, false}, {1001, false}}, 9000);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].kind == Kind::glitch);
+}
+
+TEST_CASE("a bouncing contact is one press at its first edge", "[panel][buttons]") {
+  EdgeFilter filter({}, false);
+  std::vector<std::pair<std::int64_t, bool>> bouncing;
+  for (int k = 0; k < 15; ++k) bouncing.push_back({1'000'000 + 400 * k, k % 2 == 0});
+  const auto told = changes(filter, bouncing, 1'030'000);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].kind == Kind::pressed);
+  CHECK(told[0].time_ns == 1'000'000 * us);
+}
+
+TEST_CASE("interference without end is glitches, and a press after it has its own stamp",
+          "[panel][buttons]") {
+  EdgeFilter filter({}, false);
+  std::vector<std::pair<std::int64_t, bool>> edges;
+  for (int k = 0; k < 900; ++k) edges.push_back({1000 + 100 * k, k % 2 == 0});
+  edges.push_back({200'000, true});
+  const auto told = changes(filter, edges, 300'000);
+  REQUIRE(told.size() >= 2);
+  for (std::size_t k = 0; k + 1 < told.size(); ++k) CHECK(told[k].kind == Kind::glitch);
+  CHECK(told.back().kind == Kind::pressed);
+  CHECK(told.back().time_ns == 200'000 * us);
+}
+
+TEST_CASE("a press within the refractory time is told after it, with the kernel's stamp",
+          "[panel][buttons]") {
+  EdgeFilter filter({}, true);
+  const auto told = changes(filter, {{1'000'000, false}, {1'030'000, true}}, 1'049'999);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].kind == Kind::released);
+  const auto later = changes(filter, {}, 1'050'000);
+  REQUIRE(later.size() == 1);
+  CHECK(later[0].kind == Kind::pressed);
+  CHECK(later[0].time_ns == 1'030'000 * us);
+}
+
+TEST_CASE("a contact that opens again within the refractory time was bouncing", "[panel][buttons]") {
+  EdgeFilter filter({}, false);
+  const auto told = changes(filter, {{1'000'000, true}, {1'020'000, false}, {1'040'000, true}}, 1'200'000);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].time_ns == 1'000'000 * us);
+}
+
+TEST_CASE("a level that no edge explains is lost edges and no press", "[panel][buttons]") {
+  EdgeFilter filter({}, false);
+  CHECK_FALSE(filter.level(1000 * us, true));  // the edge may be on its way
+  CHECK_FALSE(filter.level(1001 * us, false));
+  CHECK_FALSE(filter.level(2000 * us, true));
+  CHECK_FALSE(filter.level(3499 * us, true));
+  const auto lost = filter.level(3500 * us, true);
+  REQUIRE(lost);
+  CHECK(lost->kind == Kind::lost);
+  CHECK(lost->active);
+  CHECK(changes(filter, {}, 1'000'000).empty());
+  const auto told = changes(filter, {{1'000'000, false}, {2'000'000, true}}, 3'000'000);
+  REQUIRE(told.size() == 2);
+  CHECK(told[1].kind == Kind::pressed);
+}
+
+TEST_CASE("an edge that was on its way when the level was read is a press with its own stamp",
+          "[panel][buttons]") {
+  EdgeFilter filter({}, false);
+  CHECK_FALSE(filter.level(1000 * us, true));
+  const auto told = changes(filter, {{999, true}}, 3000);
+  REQUIRE(told.size() == 1);
+  CHECK(told[0].kind == Kind::pressed);
+  CHECK(told[0].time_ns == 999 * us);
+  CHECK_FALSE(filter.level(9000 * us, true));
 }
 
 TEST_CASE("a gap in the kernel's numbers tells how many edges were lost", "[panel][buttons]") {
@@ -49,6 +159,7 @@ TEST_CASE("presses, contact, lost edges, and a chip lost and back reach the hand
   std::vector<Press> presses;
   std::vector<Touch> touches;
   std::vector<std::string> faults;
+  std::vector<Glitch> glitches;
   std::vector<std::int64_t> returns;
   PanelHandlers handlers;
   handlers.press = [&](const Press& press) {
@@ -58,6 +169,10 @@ TEST_CASE("presses, contact, lost edges, and a chip lost and back reach the hand
   handlers.touch = [&](const Touch& touch) {
     const std::lock_guard lock(mutex);
     touches.push_back(touch);
+  };
+  handlers.glitch = [&](const Glitch& glitch) {
+    const std::lock_guard lock(mutex);
+    glitches.push_back(glitch);
   };
   handlers.fault = [&](const PanelFault& fault) {
     const std::lock_guard lock(mutex);
@@ -71,7 +186,9 @@ TEST_CASE("presses, contact, lost edges, and a chip lost and back reach the hand
   LinePanel plan;
   plan.lines = 3;
   plan.contact = 2;
-  const auto panel = watch_lines(opener(lines), plan, {"left", "right"}, handlers);
+  plan.names = {"left", "right", "contact"};
+  const auto panel = watch_lines(opener(lines), plan, handlers);
+  CHECK(panel->buttons() == std::vector<std::string>{"left", "right"});
   const auto reached = [&](auto& list, std::size_t count) {
     const std::int64_t end = drive::monotonic_ns() + 5'000'000'000;
     while (drive::monotonic_ns() < end) {
@@ -81,6 +198,15 @@ TEST_CASE("presses, contact, lost edges, and a chip lost and back reach the hand
     return false;
   };
   const std::int64_t now = drive::monotonic_ns();
+  // The second and third come within a second of the first, and are only counted.
+  for (const std::int64_t ago : {2000, 1980, 1960, 10}) lines->pulse(0, now - ago * ms, 3 * us);
+  REQUIRE(reached(glitches, 2));
+  CHECK(glitches[0].line == "left");
+  CHECK(glitches[0].length_ns == 3 * us);
+  CHECK(glitches[0].untold == 0);
+  CHECK(glitches[1].time_ns == now - 10 * ms);
+  CHECK(glitches[1].untold == 2);
+  CHECK(presses.empty());
   lines->set(1, true, now);
   lines->set(1, false, now + 1 * ms);
   lines->set(1, true, now + 2 * ms);
@@ -94,7 +220,7 @@ TEST_CASE("presses, contact, lost edges, and a chip lost and back reach the hand
   lines->lose_edges(0, 5);
   lines->set(0, false, now + 100 * ms);
   REQUIRE(reached(faults, 1));
-  CHECK(faults[0] == "5 edges of line 0 were lost");
+  CHECK(faults[0] == "line left: 5 edges were lost");
   lines->remove();
   REQUIRE(reached(faults, 2));
   CHECK(faults[1].find("simulated gpio chip") == 0);
@@ -128,6 +254,8 @@ TEST_CASE("a simulated panel hands on what is simulated, and mistakes in the tex
   CHECK_FALSE(none->has_contact());
   CHECK_THROWS_AS(open_panel(ButtonsConfig{"gpio:left=NO_SUCH_LINE"}, std::nullopt, handlers), LineError);
   CHECK_THROWS_AS(open_panel(ButtonsConfig{"gpio:left=A,refractory_ms=-1"}, std::nullopt, handlers),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(open_panel(ButtonsConfig{"gpio:left=A,hold_ms=11"}, std::nullopt, handlers),
                   std::invalid_argument);
   CHECK_THROWS_AS(open_panel(std::nullopt, ContactConfig{"evdev:none,axis=z"}, handlers),
                   std::invalid_argument);

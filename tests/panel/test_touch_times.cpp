@@ -1,4 +1,8 @@
 #include "station/panel/touch_reader.hpp"
+
+#include <optional>
+#include <vector>
+
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::panel;
@@ -7,85 +11,35 @@ namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 
-input_event event(int time_ms, int type, int code, int value) {
-  input_event e{};
-  e.input_event_sec = time_ms / 1000;
-  e.input_event_usec = (time_ms % 1000) * 1000;
-  e.type = static_cast<unsigned short>(type);
-  e.code = static_cast<unsigned short>(code);
-  e.value = value;
-  return e;
-}
-
-std::vector<PanelTouch> feed(TouchDecoder& decoder, const std::vector<input_event>& events) {
-  std::vector<PanelTouch> touches;
-  for (const auto& e : events)
-    for (const auto& touch : decoder.handle(e)) touches.push_back(touch);
-  return touches;
-}
-
-TouchDecoder slots() { return {TouchProtocol::slots, {0, 799}, {0, 479}}; }
+TouchDecoder decoder() { return {{0, 799}, {0, 479}}; }
 
 }  // namespace
 
 TEST_CASE("a finger that comes down is one touch, at the time of its report", "[touch]") {
-  auto decoder = slots();
-  const auto touches =
-      feed(decoder, {event(1500, EV_ABS, ABS_MT_TRACKING_ID, 7), event(1500, EV_ABS, ABS_MT_POSITION_X, 799),
-                     event(1500, EV_ABS, ABS_MT_POSITION_Y, 0), event(1500, EV_KEY, BTN_TOUCH, 1),
-                     event(1500, EV_SYN, SYN_REPORT, 0), event(1510, EV_ABS, ABS_MT_POSITION_X, 700),
-                     event(1510, EV_SYN, SYN_REPORT, 0), event(1520, EV_ABS, ABS_MT_TRACKING_ID, -1),
-                     event(1520, EV_SYN, SYN_REPORT, 0)});
+  auto panel = decoder();
+  const auto touches = panel.report(1500 * ms, std::vector<Finger>{{7, 799, 0}});
   REQUIRE(touches.size() == 1);
   CHECK(touches[0].time_ns == 1500 * ms);
   CHECK(touches[0].x == 1);
   CHECK(touches[0].y == 0);
+  CHECK(panel.report(1510 * ms, std::vector<Finger>{{7, 700, 0}}).empty());
+  CHECK(panel.report(1520 * ms, std::vector<Finger>{{std::nullopt, 700, 0}}).empty());
 }
 
 TEST_CASE("two fingers in one report are two touches, each at its place", "[touch]") {
-  auto decoder = slots();
-  const auto touches =
-      feed(decoder, {event(10, EV_ABS, ABS_MT_SLOT, 0), event(10, EV_ABS, ABS_MT_TRACKING_ID, 1),
-                     event(10, EV_ABS, ABS_MT_POSITION_X, 100), event(10, EV_ABS, ABS_MT_POSITION_Y, 100),
-                     event(10, EV_ABS, ABS_MT_SLOT, 1), event(10, EV_ABS, ABS_MT_TRACKING_ID, 2),
-                     event(10, EV_ABS, ABS_MT_POSITION_X, 600), event(10, EV_ABS, ABS_MT_POSITION_Y, 400),
-                     event(10, EV_SYN, SYN_REPORT, 0)});
+  auto panel = decoder();
+  const auto touches = panel.report(10 * ms, std::vector<Finger>{{1, 100, 100}, {2, 600, 400}});
   REQUIRE(touches.size() == 2);
   CHECK(touches[0].x == Approx(100.0 / 799));
   CHECK(touches[1].x == Approx(600.0 / 799));
 }
 
-TEST_CASE("a second tap at the very same place is seen although the kernel repeats no position", "[touch]") {
-  auto decoder = slots();
-  feed(decoder, {event(10, EV_ABS, ABS_MT_TRACKING_ID, 1), event(10, EV_ABS, ABS_MT_POSITION_X, 100),
-                 event(10, EV_ABS, ABS_MT_POSITION_Y, 100), event(10, EV_SYN, SYN_REPORT, 0),
-                 event(20, EV_ABS, ABS_MT_TRACKING_ID, -1), event(20, EV_SYN, SYN_REPORT, 0)});
-  const auto again =
-      feed(decoder, {event(90, EV_ABS, ABS_MT_TRACKING_ID, 2), event(90, EV_SYN, SYN_REPORT, 0)});
+TEST_CASE("a finger that is lifted and put down within one report is a new touch", "[touch]") {
+  auto panel = decoder();
+  panel.report(10 * ms, std::vector<Finger>{{1, 100, 100}});
+  const auto again = panel.report(90 * ms, std::vector<Finger>{{2, 100, 100}});
   REQUIRE(again.size() == 1);
   CHECK(again[0].time_ns == 90 * ms);
-}
-
-TEST_CASE("what the kernel marks as incomplete is no touch", "[touch]") {
-  auto decoder = slots();
-  const auto touches =
-      feed(decoder, {event(10, EV_ABS, ABS_MT_TRACKING_ID, 1), event(10, EV_SYN, SYN_DROPPED, 0),
-                     event(10, EV_ABS, ABS_MT_POSITION_X, 100), event(11, EV_SYN, SYN_REPORT, 0),
-                     event(12, EV_ABS, ABS_MT_POSITION_Y, 100), event(12, EV_SYN, SYN_REPORT, 0)});
-  CHECK(touches.empty());
-}
-
-TEST_CASE("a panel without slots is read by its button", "[touch]") {
-  TouchDecoder decoder(TouchProtocol::single, {0, 4095}, {0, 4095});
-  const auto touches = feed(decoder, {event(5, EV_ABS, ABS_X, 4095), event(5, EV_ABS, ABS_Y, 2048),
-                                      event(5, EV_KEY, BTN_TOUCH, 1), event(5, EV_SYN, SYN_REPORT, 0),
-                                      event(9, EV_ABS, ABS_X, 1), event(9, EV_SYN, SYN_REPORT, 0)});
-  REQUIRE(touches.size() == 1);
-  CHECK(touches[0].x == 1);
-}
-
-TEST_CASE("an axis without extent is refused by name", "[touch]") {
-  CHECK_THROWS_AS(TouchDecoder(TouchProtocol::single, {0, 0}, {0, 1}), std::invalid_argument);
 }
 
 TEST_CASE("the toolkit's touch gets the kernel's time of the touch at its place", "[touch]") {

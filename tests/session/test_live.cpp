@@ -173,7 +173,10 @@ TEST_CASE("who goes on before the buttons are back is told what is missing", "[s
       CHECK(page.amplifier.empty());  // nothing to arm: the amplifier has lines of its own
       buttons->put_back();
     }
-    if (page.kind == PageKind::stimulus) return buttons->set(0, true, drive::monotonic_ns());
+    if (page.kind == PageKind::stimulus) {
+      buttons->pulse(1, drive::monotonic_ns(), 3000);  // interference on the other button
+      return buttons->set(0, true, drive::monotonic_ns());
+    }
     if (page.kind == PageKind::interval || page.kind == PageKind::feedback)
       buttons->set(0, false, drive::monotonic_ns());
     room.cooperate(page);
@@ -181,9 +184,9 @@ TEST_CASE("who goes on before the buttons are back is told what is missing", "[s
   auto devices = room.devices();
   panel::LinePanel plan;
   plan.lines = 2;
-  plan.refractory_ns = 0;
-  devices.panel =
-      panel::watch_lines(opener(buttons), plan, {"left", "right"}, session::handlers_for(room.inputs));
+  plan.button_rules.refractory_ns = 0;
+  plan.names = {"left", "right"};
+  devices.panel = panel::watch_lines(opener(buttons), plan, session::handlers_for(room.inputs));
   const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
   CHECK(summary.status == store::SessionStatus::completed);
   CHECK(told >= 3);
@@ -191,7 +194,11 @@ TEST_CASE("who goes on before the buttons are back is told what is missing", "[s
   REQUIRE(trials.size() == 3);
   CHECK(trials[0].outcome == store::TrialOutcome::fault);
   CHECK(trials[1].outcome == store::TrialOutcome::answered);
+  CHECK(trials[1].response == trials[2].response);
   CHECK(events_of(setup.database, summary, "notice").back().value == "panel: what had gone is back");
+  const auto glitches = events_of(setup.database, summary, "glitch");
+  REQUIRE_FALSE(glitches.empty());
+  CHECK(glitches[0].value == "right: edges 2, over 0.003 ms");
 }
 
 TEST_CASE("the operator's disarming voids the trial; arming again goes on", "[session][live]") {

@@ -84,6 +84,7 @@ void ScriptedSession::take(const session::Input& input) {
     case InputKind::heard:
     case InputKind::fault:
     case InputKind::failure:
+    case InputKind::glitch:
     case InputKind::notice:
     case InputKind::button:
     case InputKind::disarm:

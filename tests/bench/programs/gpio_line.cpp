@@ -1,12 +1,10 @@
-// gpio_line hold NAME VALUE   holds a line as an output until killed
-//           watch NAME COUNT  prints the kernel's stamp (ns, CLOCK_MONOTONIC) and the direction of so many
-//           edges press FILE MS     pulls a simulated input (its sysfs file) up for so long; prints, for
-//           either edge,
-//                             "BEFORE AFTER" (ns): the edge happened between these two
-//           bounce FILE MS    the same, with a contact that bounces at either end
-//           until-low FILE VALUE  pulls a simulated input up and prints how long (ns) until the line of the
-//           other
-//                             sysfs file was low
+// gpio_line hold NAME VALUE       holds a line as an output until killed
+//           watch NAME COUNT      prints the kernel's stamp (ns, CLOCK_MONOTONIC) and direction of so many edges
+//           press FILE MS         pulls a simulated input (its sysfs file) up for so long, with 0 for 0.1 ms; prints
+//                                 "BEFORE AFTER" (ns) for either edge: it happened between these two
+//           bounce FILE MS        the same, with a contact that bounces at either end
+//           until-low FILE VALUE  pulls a simulated input up and prints how long (ns) until the line of the other
+//                                 sysfs file was low
 // By the kernel's own interface, so that the bench does not depend on a version of libgpiod.
 #include <fcntl.h>
 #include <linux/gpio.h>
@@ -59,7 +57,13 @@ long long now_ns() {
   return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
 }
 
-/// One press; at either end the contact bounces so many times, 1 ms each.
+/// Without sleeping, for the guest sleeps longer than it wants to where its host is busy.
+void busy_wait_ns(long long length_ns) {
+  for (const auto end = now_ns() + length_ns; now_ns() < end;) {
+  }
+}
+
+/// One press; at either end the contact bounces so many times, 0.5 ms each.
 int press(const char* file, int ms, int bounces) {
   const int fd = ::open(file, O_WRONLY | O_CLOEXEC);
   const auto drive = [fd](const std::string& pull) { return ::write(fd, pull.data(), pull.size()) > 0; };
@@ -69,12 +73,15 @@ int press(const char* file, int ms, int bounces) {
     if (!drive(now)) return std::perror(file), 1;
     std::printf("%lld %lld\n", before, now_ns());
     for (int i = 0; i < bounces; ++i) {
-      ::usleep(1000);
+      busy_wait_ns(500'000);
       drive(other);
-      ::usleep(1000);
+      busy_wait_ns(500'000);
       drive(now);
     }
-    ::usleep(static_cast<useconds_t>(ms) * 1000);
+    if (ms > 0)
+      ::usleep(static_cast<useconds_t>(ms) * 1000);
+    else
+      busy_wait_ns(100'000);
   }
   return 0;
 }

@@ -1,6 +1,5 @@
-// panel_events BUTTONS CONTACT SECONDS: prints presses, contacts, faults and returns with the kernel's time
-// stamps;
-// "" for none.
+// panel_events BUTTONS CONTACT SECONDS: prints presses, contacts, glitches (line, time, edges, length),
+// faults and returns with the kernel's time stamps; "" for none.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -21,6 +20,11 @@ void run(const std::string& buttons, const std::string& contact, double seconds)
   handlers.touch = [](const panel::Touch& touch) {
     std::printf("contact %d %lld %.3f\n", touch.on ? 1 : 0, static_cast<long long>(touch.time_ns),
                 touch.position.value_or(-1));
+    std::fflush(stdout);
+  };
+  handlers.glitch = [](const panel::Glitch& glitch) {
+    std::printf("glitch %s %lld %d %lld\n", glitch.line.c_str(), static_cast<long long>(glitch.time_ns),
+                glitch.edges, static_cast<long long>(glitch.length_ns));
     std::fflush(stdout);
   };
   handlers.fault = [](const panel::PanelFault& fault) {

@@ -38,6 +38,13 @@ void axis(int code, int maximum) {
   ::ioctl(panel, UI_ABS_SETUP, &setup);
 }
 
+// As the kernel's drivers do for programs that know of one finger only.
+void one_finger(int slot, int x, int y) {
+  if (slot != 0) return;
+  emit(EV_ABS, ABS_X, x);
+  emit(EV_ABS, ABS_Y, y);
+}
+
 int fingers = 0;
 
 void down(int slot, int x, int y) {
@@ -47,6 +54,7 @@ void down(int slot, int x, int y) {
   emit(EV_ABS, ABS_MT_TRACKING_ID, id++);
   emit(EV_ABS, ABS_MT_POSITION_X, x);
   emit(EV_ABS, ABS_MT_POSITION_Y, y);
+  one_finger(slot, x, y);
   emit(EV_KEY, BTN_TOUCH, 1);
   emit(EV_SYN, SYN_REPORT, 0);
 }
@@ -123,6 +131,7 @@ void obey(std::istringstream words) {
     emit(EV_ABS, ABS_MT_SLOT, a);
     emit(EV_ABS, ABS_MT_POSITION_X, b);
     emit(EV_ABS, ABS_MT_POSITION_Y, c);
+    one_finger(a, b, c);
     emit(EV_SYN, SYN_REPORT, 0);
   } else if (what == "up") {
     up(a);
@@ -141,6 +150,8 @@ int main(int argc, char** argv) {
   for (const int type : {EV_SYN, EV_KEY, EV_ABS}) ::ioctl(panel, UI_SET_EVBIT, type);
   ::ioctl(panel, UI_SET_KEYBIT, BTN_TOUCH);
   ::ioctl(panel, UI_SET_PROPBIT, INPUT_PROP_DIRECT);
+  axis(ABS_X, std::atoi(argv[1]) - 1);
+  axis(ABS_Y, std::atoi(argv[2]) - 1);
   axis(ABS_MT_SLOT, 9);
   axis(ABS_MT_TRACKING_ID, 65535);
   axis(ABS_MT_POSITION_X, std::atoi(argv[1]) - 1);

@@ -1,4 +1,4 @@
-# proves: a press counts once, with the kernel's time of its first edge, however it bounces; lost edges and a lost chip are told
+# proves: a press counts once, with the kernel's time of its first edge, however it bounces; a spike is a glitch and no press; lost edges and a lost chip are told
 # timeout: 90
 # suite: core
 gpio_sim BTN_L BTN_R FINGER
@@ -16,13 +16,20 @@ done
 pull FINGER up; eventually 5 grep -q "^contact 1" events.txt
 pull FINGER down; eventually 5 grep -q "^contact 0" events.txt
 [ "$(grep -c ^press events.txt)" = 3 ] || fail "$(grep -c ^press events.txt) presses, not 3"
+# A level that does not last.
+gpio_line press "$(pull_file BTN_L)" 0 >spike.txt
+eventually 5 grep -q "^glitch left" events.txt
+read -r before after _ <spike.txt
+awk -v b="$before" -v a="$after" '/^glitch left/ { exit !($3 >= b && $3 <= a + 1e6 && $5 < 1.5e6) }' events.txt ||
+  fail "$(grep ^glitch events.txt), spike from $before to $after"
+! grep -q "^press 0" events.txt || fail "a spike was taken for a press"
 # More edges than the kernel keeps while the station is frozen.
 kill -STOP $panel
 for k in $(seq 40); do pull BTN_L up; pull BTN_L down; done
 kill -CONT $panel
 eventually 5 grep -q "^press 0" events.txt
 pull BTN_L up; pull BTN_L down
-eventually 5 grep -q "^fault.*lost" events.txt
+eventually 5 grep -q "^fault line left: .*lost" events.txt
 grep ^fault events.txt
 echo 0 >/sys/kernel/config/gpio-sim/bench/live
 eventually 5 grep -q "fault.*chip is gone" events.txt

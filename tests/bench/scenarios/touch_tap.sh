@@ -1,4 +1,4 @@
-# proves: a touch is read from evdev with the kernel's monotonic time, two fingers apart, and a vanished panel is noticed
+# proves: a touch is read from evdev with the kernel's monotonic time, two fingers apart, a lift among dropped events is noticed, and a vanished panel too
 # suite: core
 # timeout: 240
 panel_begin
@@ -14,6 +14,25 @@ awk '$3 < $1 - 1000 || $3 > $2 + 1000 { bad++ } END { exit bad || NR != 4 }' pai
 
 touch_do down 0 100 100; touch_do down 1 700 400; touch_do up 0; touch_do up 1
 eventually 10 equals "grep -c" "^[0-9] times.txt" 5   # two fingers that overlap begin one touch
+
+# More events than the kernel keeps while the station is frozen: the lift is among those that it drops.
+panel_events "" "evdev:bench touch panel" 60 >contact.txt & contact=$!
+eventually 5 has contact.txt ready
+touch_do down 0 100 100
+eventually 5 has contact.txt "^contact 1"
+kill -STOP $contact
+for x in $(seq 101 600); do touch_do move 0 $x 100; done
+touch_do up 0
+touch_do tap 700 300              # says when all that is through
+eventually 20 equals "grep -c" "^tapped panel.out" 5
+eventually 10 equals "grep -c" "^[0-9] times.txt" 7
+kill -CONT $contact
+eventually 5 sh -c "tail -1 contact.txt | grep -q '^contact 0'"
+[ "$(grep -c "^contact 1" contact.txt)" -lt 100 ] || fail "the kernel dropped nothing"
+touch_do down 0 400 100
+eventually 5 sh -c "tail -1 contact.txt | grep -q '^contact 1 .* 0.50'"
+touch_do up 0
+kill $contact
 touch_do gone
 status=0; wait $reader || status=$?
 [ $status -eq 3 ] && has times.txt "^lost No such device" || fail "the reader did not notice (status $status)"
