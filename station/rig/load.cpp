@@ -99,6 +99,7 @@ void read_output(TableReader& file, Rig& rig) {
   output.bits = reader.integer("bits", 16, 32, 24);
   output.period_frames = reader.integer("period_frames", 16, 65536, 384);
   output.periods = reader.integer("periods", 2, 64, 4);
+  output.converter_delay_s = 1e-3 * reader.number("converter_delay_ms", {0, 100, Ends::closed, "ms"}, 0);
   if (!reader.has("allow_plugin")) reader.defaulted("allow_plugin", "[]");
   output.allow_plugin = reader.maybe_strings("allow_plugin");
   reader.finish();

@@ -60,6 +60,7 @@ struct Output {
   int bits = 24;
   int period_frames = 384;
   int periods = 4;
+  double converter_delay_s = 0;  ///< from the last sample's way out of the buffer to the analog output
   std::vector<std::string> allow_plugin;
 };
 

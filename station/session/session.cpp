@@ -118,6 +118,7 @@ drive::StreamConfig stream_of(const rig::Rig& rig) {
   config.output.period_frames = rig.output.period_frames;
   config.output.periods = rig.output.periods;
   config.output.allow_plugin = rig.output.allow_plugin;
+  config.converter_delay_s = rig.output.converter_delay_s;
   return config;
 }
 

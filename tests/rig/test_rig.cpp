@@ -63,7 +63,18 @@ TEST_CASE("every default that stood in for a key is named with its value", "[rig
   CHECK(has("surface.bending = \"auto\""));
   CHECK(has("output.bits = 24"));
   CHECK(has("output.period_frames = 384"));
+  CHECK(has("output.converter_delay_ms = 0"));
   CHECK_FALSE(has("limits.duty = 0.8"));  // the file states it
+}
+
+TEST_CASE("the converter's delay is read in ms, and a negative one is refused", "[rig]") {
+  const auto with = [](const char* line) {
+    return rig::parse(replaced(source(), "rate_Hz = 192000", std::string("rate_Hz = 192000\n") + line),
+                      "r.toml");
+  };
+  CHECK(with("converter_delay_ms = 0.104").output.converter_delay_s == Approx(0.104e-3));
+  CHECK_THROWS_AS(with("converter_delay_ms = -0.1"), text::BadInput);
+  CHECK_THROWS_AS(with("converter_delay_ms = \"0.1\""), text::BadInput);
 }
 
 TEST_CASE("all mistakes of a rig file come at once, each with its line", "[rig]") {

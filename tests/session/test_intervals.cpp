@@ -1,0 +1,101 @@
+#include <cmath>
+#include <map>
+
+#include "station/app/prepare.hpp"
+#include "station/session/session.hpp"
+#include "station/store/read.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+// When intervals reach the surface, as simulated sessions store it, for buffers of any length.
+
+using namespace turnpoint;
+
+namespace {
+
+struct Buffer {
+  int period_frames, periods;
+};
+constexpr Buffer kBuffers[] = {{64, 2}, {384, 4}, {1920, 4}, {4096, 16}};
+
+std::vector<store::TrialRow> session_of(const std::string& protocol, const Buffer& buffer, double delay_s) {
+  const TemporaryFolder folder;
+  app::RunRequest request;
+  request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol + ".toml";
+  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
+  request.participant = "P01";
+  request.database = folder / "a.sqlite";
+  request.observer = "sim";
+  request.seed = 5;
+  request.headless = true;
+  auto setup = app::prepare(request);
+  setup.rig.output.period_frames = buffer.period_frames;
+  setup.rig.output.periods = buffer.periods;
+  setup.rig.output.converter_delay_s = delay_s;
+  session::Inputs nobody;
+  const auto summary = session::run(setup, nullptr, nobody);
+  REQUIRE(summary.status == store::SessionStatus::completed);
+  std::vector<store::TrialRow> trials;
+  for (const auto& block : store::read_session(request.database, summary.session_id).blocks)
+    trials.insert(trials.end(), block.trials.begin(), block.trials.end());
+  return trials;
+}
+
+/// First frame of each interval.
+std::map<int, std::int64_t> onsets(const store::TrialRow& trial) {
+  std::map<int, std::int64_t> first;
+  for (const auto& tone : trial.tones) first.try_emplace(tone.interval_index, tone.onset_frame);
+  return first;
+}
+
+}  // namespace
+
+TEST_CASE("the pause between intervals is the protocol's to the frame, whatever the buffer and the scene",
+          "[session][intervals]") {
+  for (const auto& buffer : kBuffers)
+    for (const auto& [name, apart_s] :
+         {std::pair{"friction-2ifc", 2.5}, std::pair{"two-spots-oddity", 2.5}}) {
+      INFO(name << ", " << buffer.periods << " periods of " << buffer.period_frames);
+      int pauses = 0;
+      for (const auto& trial : session_of(name, buffer, 0)) {
+        const auto first = onsets(trial);
+        for (std::size_t i = 1; i < first.size(); ++i, ++pauses)
+          CHECK(first.at(static_cast<int>(i)) - first.at(static_cast<int>(i) - 1) ==
+                std::llround(apart_s * 192000));
+      }
+      CHECK(pauses > 40);
+    }
+}
+
+TEST_CASE("the converter's delay is part of every stored onset", "[session][intervals]") {
+  const double delay_s = 7e-3;
+  for (const auto& [delay, wanted_ns] : {std::pair{0.0, 0.0}, std::pair{delay_s, delay_s * 1e9}}) {
+    int seen = 0;
+    for (const auto& trial : session_of("demo", kBuffers[1], delay)) {
+      REQUIRE(trial.response_zero == "go_cue");
+      const auto frame_ns = static_cast<double>(onsets(trial).at(0)) * 1e9 / 192000;
+      CHECK(static_cast<double>(trial.onset_ns) - frame_ns == Approx(wanted_ns).margin(2));
+      ++seen;
+    }
+    CHECK(seen > 5);
+  }
+}
+
+TEST_CASE("simulated sessions have the latency of the rig's buffer", "[session][intervals]") {
+  // A slider's move reaches the surface a buffer after it was made, so the last setting's onset is that much
+  // later.
+  const auto short_ = session_of("boundary-adjustment", kBuffers[0], 0),
+             long_ = session_of("boundary-adjustment", kBuffers[2], 0);
+  REQUIRE(short_.size() == long_.size());
+  int later = 0;
+  for (std::size_t i = 0; i < short_.size(); ++i) {
+    REQUIRE(short_[i].tones.size() == long_[i].tones.size());
+    const auto since = [](const store::TrialRow& trial) {
+      return trial.tones.back().onset_frame - trial.tones.front().onset_frame;
+    };
+    if (short_[i].tones.back().scene_index == 0) continue;
+    CHECK(since(long_[i]) - since(short_[i]) == 1920 * 4 - 64 * 2);
+    ++later;
+  }
+  CHECK(later > 3);
+}
