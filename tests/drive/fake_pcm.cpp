@@ -42,7 +42,7 @@ void FakePcm::pass(std::int64_t frames) {
     std::int32_t sample = 0;
     if (state == State::running) {
       const auto at = static_cast<std::size_t>(played % buffer * channels);
-      sample = ring[at];
+      sample = ring[at + static_cast<std::size_t>(recorded_channel)];
       std::fill_n(ring.begin() + static_cast<std::ptrdiff_t>(at), channels, 0);
       ++played;
     }

@@ -18,8 +18,9 @@ struct FakePcm {
   State state = State::prepared;
   std::int64_t now = 0;                  ///< frames of time since the beginning, played or not
   std::int64_t written = 0, played = 0;  ///< since the device was started
+  int recorded_channel = 0;
   std::vector<std::int32_t> ring;
-  std::vector<std::int32_t> heard;  ///< channel 0, one sample a frame of time
+  std::vector<std::int32_t> heard;  ///< one channel, one sample a frame of time
   bool stamps = true;               ///< tells its position
   bool present = true;              ///< can be opened
   bool just_wrote = false;          ///< the program's last call was a write

@@ -40,11 +40,14 @@ TEST_CASE("a live session goes from the operator's arming to answers by buttons,
   REQUIRE(enables.size() == 4);
   const auto stimuli = events_of(setup.database, summary, "stimulus");
   REQUIRE(stimuli.size() == 2);
+  const auto presented = events_of(setup.database, summary, "presented");
+  REQUIRE(presented.size() == 2);
   for (std::size_t k = 0; k < 2; ++k) {
     const auto on_ns = stimuli[k].time_ns,
                off_ns =
                    on_ns + static_cast<std::int64_t>(1e9 * std::strtod(stimuli[k].value.c_str(), nullptr));
     CHECK(enables[2 * k].level == 1);
+    CHECK(enables[2 * k].time_ns > presented[k].time_ns);  // durable before: a disk may be slow
     CHECK(enables[2 * k].time_ns < on_ns - 20'000'000);
     CHECK(enables[2 * k + 1].level == 0);
     CHECK(enables[2 * k + 1].time_ns > off_ns);
