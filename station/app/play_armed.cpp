@@ -19,6 +19,7 @@ namespace turnpoint::app {
 namespace {
 
 constexpr double kLead_s = 0.5, kMargin_s = 0.5;
+constexpr std::int64_t kHeard_ns = 2'000'000'000;  // by which it is known that all was played
 constexpr std::int64_t kPoll_ns = 5'000'000;
 constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // by which the audio thread proves its life
 
@@ -82,7 +83,13 @@ std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier,
     stream.schedule(burst);
     end = burst.start_frame + burst.length_frames;
   }
-  attend(stream, amplifier, [&] { return stream.counters().heard >= end; });
+  const auto left = end - stream.counters().heard;
+  const auto due_ns = drive::monotonic_ns() + left * 1'000'000'000 / rate_Hz + kHeard_ns;
+  attend(stream, amplifier, [&] {
+    if (drive::monotonic_ns() > due_ns)
+      throw std::runtime_error(stream.config().output.uri + ": the device does not say what it has played");
+    return stream.counters().heard >= end;
+  });
   return onset;
 }
 

@@ -19,6 +19,7 @@ constexpr std::int64_t kClocks_ns = 1'000'000'000;  // how often the clocks are 
 constexpr std::int64_t kSettle_ns = 50'000'000;     // an amplifier comes up in silence
 constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
 constexpr std::int64_t kFirstPosition_ns = 500'000'000;  // of a device that was started anew
+constexpr std::int64_t kHeard_ns = 1'000'000'000;        // by when it is known what was played
 constexpr std::int64_t kTail_ns = 20'000'000;            // and goes down after it
 
 class RealStage : public Stage {
@@ -42,6 +43,10 @@ class RealStage : public Stage {
   }
 
   std::vector<Input> drain() override {
+    attend();
+    // What is still to be heard belongs to the trial that is over: nothing of it is told to the next one.
+    presented_.clear();
+    unheard_ = 0;
     const auto gathered = inputs_.drain();
     return {gathered.begin(), gathered.end()};
   }
@@ -62,6 +67,7 @@ class RealStage : public Stage {
       push_fault(now_ns(), FaultKind::stimulus_missed, "the converter does not say what it is playing");
     else
       quiet_ns_ = std::max(quiet_ns_, end_ns(onsets.back(), intervals.back().length_frames));
+    unheard_ = onsets.size();
     return onsets;
   }
 
@@ -69,7 +75,12 @@ class RealStage : public Stage {
     return glide_to(*stream_, presented_, to, seconds);
   }
 
-  std::int64_t silence() override { return quiet_ns_ = ramp_down(*stream_, presented_, now_ns()); }
+  std::int64_t silence() override {
+    // What has not begun is cancelled, and nobody waits for it.
+    const auto from = stream_->earliest_frame();
+    if (!presented_.empty() && presented_.back().start_frame >= from) unheard_ = 0;
+    return quiet_ns_ = ramp_down(*stream_, presented_, now_ns());
+  }
 
   Refusal arm() override {
     // The audio thread proves its life by its first blocks, which at a session's start are yet to come.
@@ -131,6 +142,10 @@ class RealStage : public Stage {
     }
     while (const auto event = stream_->poll()) hear(*event, now);
     look_at_samples();
+    if (unheard_ > 0 && now > quiet_ns_ + kHeard_ns) {
+      unheard_ = 0;
+      push_fault(now, FaultKind::stimulus_missed, "the converter does not say whether a stimulus was played");
+    }
     if (amplifier() == drive::AmplifierState::faulted && !std::exchange(fault_told_, true))
       tell_amplifier_fault();
     if (now >= clocks_due_ns_) look_at_clocks(now);
@@ -163,6 +178,7 @@ class RealStage : public Stage {
       case drive::EventKind::underrun:
         push(InputKind::xrun, now, fmt::format("{} frames lost from frame {}", event.frames, event.frame),
              interval ? 1 : 0);
+        if (interval) unheard_ = 0;  // the trial is void
         if (underruns_.exceeded_by(now))
           push(InputKind::failure, now,
                "more than three underruns within a minute; see `turnpoint doctor`, then resume");
@@ -185,7 +201,9 @@ class RealStage : public Stage {
       case drive::EventKind::burst_ended:
         return;
       case drive::EventKind::burst_heard:
-        if (interval) push(InputKind::heard, now, "", *interval);
+        if (!interval) return;
+        push(InputKind::heard, now, "", *interval);
+        if (unheard_ > 0) --unheard_;
         return;
     }
   }
@@ -224,6 +242,7 @@ class RealStage : public Stage {
   Inputs& inputs_;
   std::unique_ptr<drive::Stream> stream_;
   std::vector<Presented> presented_;
+  std::size_t unheard_ = 0;  ///< intervals that are still to be heard
   drive::UnderrunLimit underruns_;
   ClockWatch clocks_;
   std::int64_t clocks_due_ns_ = 0;

@@ -47,6 +47,7 @@ class VirtualStage : public Stage {
   /// that a simulated session that was stopped and goes on equals an unbroken one.
   std::vector<Input> drain() override {
     script_.clear();
+    unheard_.clear();
     std::vector<Input> stops;
     for (auto& input : inputs_.drain()) {
       if (input.kind != InputKind::stop) continue;
