@@ -11,7 +11,7 @@
 #include "station/benchmark/synth.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
-#include "station/cli/write_file.hpp"
+#include "station/text/write_file.hpp"
 
 namespace turnpoint::cli {
 
@@ -55,10 +55,10 @@ std::vector<std::string> write(const Report& report, const std::string& folder) 
     return (std::filesystem::path(folder) / ("bench-" + file)).string();
   };
   std::vector<std::string> files{path(report.name + ".csv")};
-  write_file(files.back(), benchmark::to_csv(report.table));
+  text::write_file(files.back(), benchmark::to_csv(report.table));
   for (const auto& picture : report.pictures) {
     files.push_back(path(picture.name + ".svg"));
-    write_file(files.back(), plot::render(picture.figure));
+    text::write_file(files.back(), plot::render(picture.figure));
   }
   return files;
 }

@@ -9,8 +9,8 @@
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/run.hpp"
-#include "station/cli/write_file.hpp"
 #include "station/text/number.hpp"
+#include "station/text/write_file.hpp"
 
 namespace turnpoint::cli {
 
@@ -122,7 +122,7 @@ void calibrate_panel(const Options& options, const rig::Rig& rig, Context& conte
   const auto made = app::with_panel(rig, *measured);
   const auto out =
       options.out.empty() ? calibration::file_for(options.rig, calibration::today()) : options.out;
-  write_file(out, calibration::to_toml(made));
+  text::write_file(out, calibration::to_toml(made));
   if (context.json) {
     const Json json{{"file", out},
                     {"quality", measured->quality},
@@ -151,8 +151,8 @@ void calibrate(const Options& options, Context& context) {
   made.panel = app::known_panel(rig);
   const auto out = options.out.empty() ? calibration::file_for(options.rig, made.made_on) : options.out;
   const auto plots = options.plots.empty() ? out + ".svg" : options.plots;
-  write_file(plots, plot::render(app::calibration_figure(made, measurements)));
-  write_file(out, calibration::to_toml(made));
+  text::write_file(plots, plot::render(app::calibration_figure(made, measurements)));
+  text::write_file(out, calibration::to_toml(made));
   if (context.json) {
     context.out << to_json(made, out, plots).dump(2) << "\n";
     return;

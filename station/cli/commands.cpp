@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "station/cli/command.hpp"
+#include "station/cli/escaped_output.hpp"
 #include "station/scene/planner.hpp"
 #include "station/text/problem.hpp"
 
@@ -29,7 +30,8 @@ void add_json(Command& command, Context& context) {
   command.add_flag("--json", context.json, "Print one JSON document on standard output");
 }
 
-int run(int argc, char** argv, std::ostream& out, std::ostream& err, const Screens* screens) {
+int run(int argc, char** argv, std::ostream& raw_out, std::ostream& raw_err, const Screens* screens) {
+  EscapedOutput out(raw_out), err(raw_err);
   Context context{out, err, false, 0, {argv, argv + argc + 1}, screens};
   CommandLine app("Turnpoint: a psychophysics station for ultrasonic tapered friction displays", "turnpoint",
                   TURNPOINT_VERSION);

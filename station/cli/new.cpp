@@ -2,7 +2,6 @@
 #include <fmt/ostream.h>
 
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <system_error>
@@ -11,6 +10,7 @@
 #include "station/cli/command.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/text/toml.hpp"
+#include "station/text/write_file.hpp"
 
 namespace turnpoint::cli {
 
@@ -93,10 +93,7 @@ void make(const Options& options, Context& context) {
   const auto id = options.id.empty() ? fs::path(options.file).stem().string() : options.id;
   const auto source = own(text::read_file(from.string()), goal->file, id);
   protocol::parse(source, options.file);  // an id that is no name is refused before anything is written
-  std::ofstream out(options.file, std::ios::binary);
-  out << source;
-  out.close();
-  if (!out) throw std::system_error(errno, std::generic_category(), options.file);
+  text::write_file(options.file, source);
   fmt::print(context.out, "{}\n", options.file);
   fmt::print(context.err, "It begins as a copy of {}. Change levels and texts, then: turnpoint check {}\n",
              goal->file, options.file);

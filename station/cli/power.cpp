@@ -12,9 +12,9 @@
 #include "station/app/power_figure.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
-#include "station/cli/write_file.hpp"
 #include "station/protocol/cue_guard.hpp"
 #include "station/text/number.hpp"
+#include "station/text/write_file.hpp"
 
 namespace turnpoint::cli {
 
@@ -108,12 +108,11 @@ void print(std::ostream& out, const std::vector<protocol::CueReport>& cues) {
 }
 
 /// One line that rewrites itself, only where somebody watches.
-std::function<void(int, int)> progress_on(std::ostream& err) {
+std::function<void(int, int)> progress() {
   if (::isatty(STDERR_FILENO) == 0) return {};
-  return [&err](int done, int of) {
+  return [](int done, int of) {
     if (done % std::max(1, of / 200) != 0 && done != of) return;
-    fmt::print(err, "\r{} of {} sessions{}", done, of, done == of ? "\n" : "");
-    err.flush();
+    fmt::print(stderr, "\r{} of {} sessions{}", done, of, done == of ? "\n" : "");
   };
 }
 
@@ -128,18 +127,18 @@ void power(const Options& options, Context& context) {
   wanted.interval_sessions = options.intervals;
   wanted.observer = observer::parse(options.observer);
   wanted.seed = options.seed;
-  wanted.progress = progress_on(context.err);
+  wanted.progress = progress();
   const auto result = app::power(protocol, wanted);
   std::vector<std::string> files;
   if (!options.out.empty()) {
     std::filesystem::create_directories(options.out);
     files.push_back((std::filesystem::path(options.out) / (protocol.id + "-power.svg")).string());
-    write_file(files.back(), plot::render(app::figure_of(result, protocol.title)));
+    text::write_file(files.back(), plot::render(app::figure_of(result, protocol.title)));
   }
   const auto document = to_json(result, cues, protocol.id, files);
   if (!options.out.empty()) {
     const auto path = (std::filesystem::path(options.out) / (protocol.id + "-power.json")).string();
-    write_file(path, document.dump(2) + "\n");
+    text::write_file(path, document.dump(2) + "\n");
     files.push_back(path);
   }
   if (context.json)

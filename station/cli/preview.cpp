@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <system_error>
 
@@ -13,6 +12,7 @@
 #include "station/app/scene_figures.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/run.hpp"
+#include "station/text/write_file.hpp"
 
 namespace turnpoint::cli {
 
@@ -24,10 +24,7 @@ struct Options {
 };
 
 void write(const std::filesystem::path& path, const std::string& text, std::ostream& messages) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw std::system_error(errno, std::generic_category(), "cannot write " + path.string());
+  text::write_file(path.string(), text);
   fmt::print(messages, "{}\n", path.string());
 }
 

@@ -4,12 +4,12 @@
 #include <fmt/ostream.h>
 
 #include <cerrno>
-#include <fstream>
 #include <memory>
 #include <system_error>
 
 #include "station/cli/command.hpp"
 #include "station/report/html.hpp"
+#include "station/text/write_file.hpp"
 
 namespace turnpoint::cli {
 
@@ -20,21 +20,13 @@ struct Options {
   store::SessionFilter filter;
 };
 
-void write(const std::string& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file)
-    throw std::system_error(errno, std::generic_category(), fmt::format("cannot write the report {}", path));
-}
-
 void report_session(Options options, Context& context) {
   const auto id = app::session_to_report(options.database, options.filter);
   const auto summary = report::summarise(app::report_data(options.database, id));
   if (context.json) context.out << report::to_json(summary) << "\n";
   if (options.out.empty() && !context.json) options.out = "report-" + id + ".html";
   if (options.out.empty()) return;
-  write(options.out, report::to_html(summary));
+  text::write_file(options.out, report::to_html(summary));
   if (!context.json) fmt::print(context.out, "{}\n", options.out);
 }
 

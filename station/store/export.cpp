@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <map>
 
 #include "station/store/export_files.hpp"
@@ -13,6 +12,7 @@
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
 #include "station/store/sqlite.hpp"
+#include "station/text/write_file.hpp"
 
 namespace turnpoint::store {
 
@@ -77,27 +77,16 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
 }  // namespace
 
 void write_file(const std::string& path, const std::string& bytes) {
-  const auto temporary = path + ".new";
-  std::error_code error;
-  fs::create_directories(fs::path(path).parent_path(), error);
-  if (!error) {
-    std::ofstream file(temporary, std::ios::binary | std::ios::trunc);
-    file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    file.close();
-    if (!file) error = std::error_code(errno, std::generic_category());
+  try {
+    fs::create_directories(fs::path(path).parent_path());
+    text::write_file(path, bytes);
+  } catch (const std::system_error& error) {
+    const bool full = error.code() == std::errc::no_space_on_device;
+    throw StoreError(
+        full ? Fault::disk_full : Fault::read_only,
+        fmt::format("export to {}: {}; {}", path, error.what(),
+                    full ? "free some space and export again" : "name a folder that can be written"));
   }
-  if (!error) {
-    sync_path(temporary);
-    fs::rename(temporary, path, error);
-  }
-  if (!error) return;
-  std::error_code ignored;
-  fs::remove(temporary, ignored);
-  const bool full = error == std::errc::no_space_on_device;
-  throw StoreError(
-      full ? Fault::disk_full : Fault::read_only,
-      fmt::format("export to {}: {}; {}", path, error.message(),
-                  full ? "free some space and export again" : "name a folder that can be written"));
 }
 
 void write_table(const std::string& path, const TextTable& table, std::vector<ExportedFile>& files) {

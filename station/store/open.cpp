@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -97,9 +98,22 @@ Database open_plain_reader(const std::string& path) {
   return Database(path, Database::Access::immutable);
 }
 
+/// The lock goes by name: under a second one, another station could write the same file at the same time.
+void refuse_second_name(const std::string& path) {
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink < 2) return;
+  throw StoreError(
+      Fault::busy,
+      fmt::format("database {}: the file has a second name (a hard link), by which another station "
+                  "could write it at the same time; it was left untouched; remove the other "
+                  "name, or copy the file and use the copy",
+                  path));
+}
+
 }  // namespace
 
 StationLock::StationLock(const std::string& database) {
+  refuse_second_name(database);
   descriptor_ = open_lock(database + ".lock");
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
     char owner[64] = {};

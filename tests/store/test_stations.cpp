@@ -250,6 +250,23 @@ TEST_CASE("a link in the place of the lock is not followed", "[store]") {
   CHECK(sample::bytes_of(target) == "precious");
 }
 
+TEST_CASE("a database with a second name is refused, under both", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", other = folder / "b.sqlite";
+  sample::session(db, 1);
+  std::filesystem::create_hard_link(db, other);
+  const auto before = sample::bytes_of(db);
+  for (const auto& name : {db, other}) {
+    const auto [fault, message] = sample::failure([&] { sample::session(name, 1); });
+    CHECK(fault == Fault::busy);
+    CHECK(sample::contains(message, "has a second name"));
+  }
+  CHECK(sample::bytes_of(db) == before);
+  std::filesystem::remove(other);
+  sample::session(db, 1);
+  CHECK(sample::bytes_of(db) != before);
+}
+
 TEST_CASE("without a good backup nothing is moved", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
