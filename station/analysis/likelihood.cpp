@@ -72,8 +72,9 @@ std::array<double, 4> Likelihood::gradient_of_probability(const Theta& theta, co
                                                           double u) const {
   const double rate = std::exp(theta[1]), height = 1 - theta[3] - theta[2], from = rate * (u - theta[0]);
   const double f = core(function_, from + at.z), df = core_derivative(function_, from + at.z);
-  std::array<double, 4> dp{-height * df * rate, height * df * from, -f + height * df * at.dz_dlapse,
-                           1 - f + height * df * at.dz_dguess};
+  // Without a signal the function is flat, infinitely far down.
+  std::array<double, 4> dp{-height * df * rate, df > 0 ? height * df * from : 0,
+                           -f + height * df * at.dz_dlapse, 1 - f + height * df * at.dz_dguess};
   if (guess_ == Guess::tied_to_lapse) dp[2] += dp[3], dp[3] = 0;
   return dp;
 }
@@ -142,7 +143,7 @@ Likelihood::Maximum Likelihood::steepest(const Maximum& found) const {
   // ends anywhere on that plateau: the bound says so.
   std::vector<double> thresholds{found.theta[0]};
   for (std::size_t i = 1; i < counts_.u.size(); ++i)
-    if (counts_.u[i - 1] <= found.theta[0] && found.theta[0] <= counts_.u[i])
+    if (counts_.u[i - 1] != kNoise && counts_.u[i - 1] <= found.theta[0] && found.theta[0] <= counts_.u[i])
       thresholds.push_back((counts_.u[i - 1] + counts_.u[i]) / 2);
   for (const double threshold : thresholds) {
     Theta theta = found.theta;

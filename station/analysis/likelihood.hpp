@@ -16,7 +16,9 @@ struct ThetaBounds {
 
 /// The levels on their axis with their counts: what every replicate of a bootstrap shares but for `positive`.
 struct AxisCounts {
-  std::vector<double> u, trials, positive;
+  std::vector<double> u, trials, positive;  ///< u ascending; the first may be kNoise
+  /// The lowest position of a signal.
+  double lowest() const { return u.front() == kNoise && u.size() > 1 ? u[1] : u.front(); }
 };
 
 /// The likelihood of one set of counts and its maximum.

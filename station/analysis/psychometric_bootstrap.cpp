@@ -82,7 +82,9 @@ Replicator replicator(const PsychometricFit& fit) {
   result.best = {axis_position(fit.options.function, fit.options.scale, p.threshold),
                  std::log(rate_from_slope(fit.options.function, p.slope)), p.lapse, p.guess};
   for (const auto& point : fit.data)
-    result.model.push_back(probability(fit.options.function, fit.options.scale, p, point.level));
+    result.model.push_back(point.level == kNoise
+                               ? p.guess
+                               : probability(fit.options.function, fit.options.scale, p, point.level));
   return result;
 }
 
@@ -143,7 +145,7 @@ ParameterInterval mapped(const ParameterInterval& from, Map map) {
 
 void add_band(PsychometricIntervals& result, const Replicator& base, const std::vector<Theta>& thetas,
               int points) {
-  const double first = base.counts.u.front(), last = base.counts.u.back(), margin = 0.04 * (last - first);
+  const double first = base.counts.lowest(), last = base.counts.u.back(), margin = 0.04 * (last - first);
   const Likelihood likelihood(base.options.function, base.options.guess, base.counts, base.bounds);
   for (int i = 0; i < points; ++i) {
     const double u = first - margin + i * (last - first + 2 * margin) / (points - 1);

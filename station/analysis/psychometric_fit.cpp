@@ -14,14 +14,20 @@ namespace {
 
 void check(const std::vector<LevelCount>& data, const FitOptions& options) {
   for (const auto& point : data)
-    if (!std::isfinite(point.level) || point.trials < 0 || point.positive < 0 ||
+    if (!(std::isfinite(point.level) || point.level == kNoise) || point.trials < 0 || point.positive < 0 ||
         point.positive > point.trials)
       throw std::invalid_argument("level " + text::number(point.level) + ": " +
                                   std::to_string(point.positive) + " of " + std::to_string(point.trials) +
                                   " trials; needs a finite level and 0 to all positive");
-  const auto inside = [](double low, double high) { return low >= 0 && low <= high && high < 0.5 + 1e-12; };
-  if (!inside(options.lapse_low, options.lapse_high) || !inside(options.guess_low, options.guess_high))
-    throw std::invalid_argument("bounds of lapse and guess: 0 <= low <= high <= 0.5");
+  const auto inside = [](double low, double high, double most) {
+    return low >= 0 && low <= high && high < most + 1e-12;
+  };
+  if (!inside(options.lapse_low, options.lapse_high, 0.5) ||
+      !inside(options.guess_low, options.guess_high, 0.9) ||
+      (options.guess == Guess::fitted && options.guess_high + options.lapse_high >= 1))
+    throw std::invalid_argument(
+        "bounds of lapse and guess: 0 <= low <= high, a lapse up to 0.5, a guess up to 0.9, below 1 "
+        "together");
   if (options.guess == Guess::fixed && !(options.guess_value >= 0 && options.guess_value < 1))
     throw std::invalid_argument("guess " + text::number(options.guess_value) + ": from 0 to below 1");
 }
@@ -43,7 +49,10 @@ std::vector<LevelCount> merged(const std::vector<LevelCount>& data) {
 
 /// The z statistic of a linear trend of positive answers over the axis (Cochran-Armitage); 0 where all
 /// answers or all levels are the same.
-double trend(const AxisCounts& counts) {
+double trend(AxisCounts counts) {
+  // Noise stands as far below the signals as they reach.
+  if (counts.u.front() == kNoise)
+    counts.u.front() = counts.lowest() - std::max(counts.u.back() - counts.lowest(), 1.0);
   double n = 0, k = 0, sum_u = 0;
   for (std::size_t i = 0; i < counts.u.size(); ++i) {
     n += counts.trials[i];
@@ -162,7 +171,7 @@ void say_what_touches(PsychometricIntervals& intervals) {
 AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, Scale scale) {
   AxisCounts counts;
   for (const auto& point : data) {
-    counts.u.push_back(axis_position(function, scale, point.level));
+    counts.u.push_back(point.level == kNoise ? kNoise : axis_position(function, scale, point.level));
     counts.trials.push_back(point.trials);
     counts.positive.push_back(point.positive);
   }
@@ -170,7 +179,7 @@ AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, S
 }
 
 ThetaBounds theta_bounds(const AxisCounts& counts, const FitOptions& options) {
-  const double range = counts.u.back() - counts.u.front();
+  const double range = counts.u.back() - counts.lowest();
   double rate_low = 0.1 / range, rate_high = 80 / range;
   const bool falling = options.function == Function::normal;
   const auto& for_low = falling ? options.slope_high : options.slope_low;
@@ -180,7 +189,7 @@ ThetaBounds theta_bounds(const AxisCounts& counts, const FitOptions& options) {
   if (!(rate_low > 0 && rate_low <= rate_high))
     throw std::invalid_argument("bounds of the slope: 0 < low <= high");
   ThetaBounds bounds;
-  bounds.low = {counts.u.front() - range, std::log(rate_low), options.lapse_low, options.guess_low};
+  bounds.low = {counts.lowest() - range, std::log(rate_low), options.lapse_low, options.guess_low};
   bounds.high = {counts.u.back() + range, std::log(rate_high), options.lapse_high, options.guess_high};
   if (options.guess == Guess::fixed) bounds.low[3] = bounds.high[3] = options.guess_value;
   if (options.guess == Guess::tied_to_lapse) {
@@ -221,7 +230,7 @@ PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitO
     if (bounds.low[i] < bounds.high[i] && !(i == 3 && options.guess == Guess::tied_to_lapse))
       ++fit.free_parameters;
   note_bounds(fit, best.theta, bounds);
-  if (best.theta[0] < counts.u.front() || best.theta[0] > counts.u.back())
+  if (best.theta[0] < counts.lowest() || best.theta[0] > counts.u.back())
     fit.statements.push_back(
         {"extrapolated", "The threshold lies outside the levels shown: it is extrapolated."});
   return fit;

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -8,16 +9,20 @@
 
 namespace turnpoint::analysis {
 
+/// Below every level, on every scale.
+constexpr double kNoise = -std::numeric_limits<double>::infinity();
+
 /// Answers at one level: how many, and how many of them were the one that the function predicts (correct, or
 /// the tracked answer).
 struct LevelCount {
-  double level = 0;
+  double level = 0;  ///< kNoise: trials without a signal, whose probability is the lower asymptote
   int trials = 0;
   int positive = 0;
 };
 
 /// What the lower asymptote is: given (1/alternatives), estimated within bounds, or equal to the lapse rate
-/// (two answers on a signed level, where a slip may go either way).
+/// (two answers on a signed level, where a slip may go either way). Estimated means the rate of false alarms
+/// where there are trials without a signal.
 enum class Guess { fixed, fitted, tied_to_lapse };
 
 struct FitOptions {

@@ -65,7 +65,7 @@ class Reading {
     }
     result_.fit.parameters = parameters;
     const double u = axis_position(options_.function, options_.scale, parameters.threshold);
-    if (u < counts_.u.front() || u > counts_.u.back())
+    if (u < counts_.lowest() || u > counts_.u.back())
       result_.fit.statements.push_back(
           {"extrapolated", "The threshold lies outside the levels shown: it is extrapolated."});
   }
@@ -89,7 +89,7 @@ class Reading {
   }
 
   void read_band(int points) {
-    const double first = counts_.u.front(), last = counts_.u.back(), margin = 0.04 * (last - first);
+    const double first = counts_.lowest(), last = counts_.u.back(), margin = 0.04 * (last - first);
     if (!(first < last)) return;
     for (int i = 0; i < points; ++i) {
       const double u = first - margin + i * (last - first + 2 * margin) / (points - 1);

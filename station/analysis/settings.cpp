@@ -68,17 +68,25 @@ void estimate(Settings& s) {
 
 }  // namespace
 
-std::vector<Settings> settings(const std::vector<TrialRecord>& trials) {
+std::vector<Settings> settings(const std::vector<TrialRecord>& trials,
+                               const std::vector<std::string>& order) {
   std::vector<Settings> all;
   for (const auto& trial : trials) {
     if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.setting)
       continue;
-    auto found = std::find_if(all.begin(), all.end(),
-                              [&](const Settings& s) { return s.procedure == trial.procedure; });
-    if (found == all.end()) found = all.insert(all.end(), Settings{trial.procedure, {}, {}, {}, {}, {}, {}});
+    auto found = std::find_if(all.begin(), all.end(), [&](const Settings& s) {
+      return s.procedure == trial.procedure && s.condition == trial.instruction;
+    });
+    if (found == all.end())
+      found = all.insert(all.end(), Settings{trial.procedure, trial.instruction, {}, {}, {}, {}, {}, {}});
     found->starts.push_back(trial.level.value_or(0));
     found->values.push_back(*trial.setting);
   }
+  const auto place = [&order](const Settings& s) {
+    return std::find(order.begin(), order.end(), s.condition) - order.begin();
+  };
+  std::stable_sort(all.begin(), all.end(),
+                   [&](const Settings& a, const Settings& b) { return place(a) < place(b); });
   for (auto& s : all) estimate(s);
   return all;
 }

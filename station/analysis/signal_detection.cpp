@@ -1,6 +1,10 @@
 #include "station/analysis/signal_detection.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 
@@ -42,6 +46,101 @@ std::optional<YesNo> yes_no(const YesNoCounts& counts) {
   if (!hit || !false_alarm) return std::nullopt;
   const double z_hit = normal_quantile(*hit), z_false = normal_quantile(*false_alarm);
   return YesNo{z_hit - z_false, -(z_hit + z_false) / 2, *hit, *false_alarm};
+}
+
+namespace {
+
+constexpr double kZ95 = 1.959963984540054;
+
+YesNoCounts operator+(const YesNoCounts& a, const YesNoCounts& b) {
+  return {a.hits + b.hits, a.misses + b.misses, a.false_alarms + b.false_alarms,
+          a.correct_rejections + b.correct_rejections};
+}
+
+/// Variance of z of a log-linear proportion of so many trials.
+double variance_of_z(double p, int trials) {
+  const double density = normal_density(normal_quantile(p));
+  return p * (1 - p) / (trials + 1) / (density * density);
+}
+
+void estimate(Detection& detection, double scale) {
+  const auto& counts = detection.counts;
+  const auto found = yes_no(counts);
+  if (!found) return;
+  const double variance =
+      variance_of_z(found->hit_rate, counts.hits + counts.misses) +
+      variance_of_z(found->false_alarm_rate, counts.false_alarms + counts.correct_rejections);
+  const auto around = [](double value, double half) {
+    return Estimate{value, {value - half, value + half, 0.95}};
+  };
+  detection.d_prime = around(scale * found->d_prime, kZ95 * scale * std::sqrt(variance));
+  detection.criterion = around(found->criterion, kZ95 * std::sqrt(variance) / 2);
+}
+
+struct Collected {
+  YesNoCounts noise;  ///< of every level
+  std::map<double, YesNoCounts> levels;
+};
+
+void collect(const TrialRecord& trial, Detecting detecting, int positive, Collected& into) {
+  const bool signal = *trial.right_choice == positive, yes = *trial.response == positive;
+  const bool shared = detecting == Detecting::presence && !signal;
+  const double level =
+      detecting == Detecting::forced_choice ? trial.level.value_or(0) : std::fabs(trial.level.value_or(0));
+  auto& counts = shared ? into.noise : into.levels[level];
+  ++(signal ? (yes ? counts.hits : counts.misses) : (yes ? counts.false_alarms : counts.correct_rejections));
+}
+
+}  // namespace
+
+std::vector<Detection> detect(const std::vector<TrialRecord>& trials, const std::vector<std::string>& order,
+                              Detecting detecting, int positive, std::size_t most_levels) {
+  std::map<std::string, Collected> conditions;
+  for (const auto& trial : trials)
+    if (trial.type == TrialType::experimental && trial.outcome == Outcome::answered && trial.response &&
+        trial.right_choice)
+      collect(trial, detecting, positive, conditions[trial.instruction]);
+  const double scale = detecting == Detecting::forced_choice ? 1 / std::numbers::sqrt2 : 1;
+  std::vector<Detection> result;
+  for (const auto& condition : conditions_of(trials, order)) {
+    const auto& collected = conditions[condition];
+    Detection all{condition, std::nullopt, collected.noise, {}, {}};
+    for (const auto& [level, counts] : collected.levels) {
+      all.counts = all.counts + counts;
+      if (collected.levels.size() > most_levels) continue;
+      result.push_back({condition, level, counts + collected.noise, {}, {}});
+    }
+    result.push_back(all);
+  }
+  for (auto& detection : result) estimate(detection, scale);
+  return result;
+}
+
+std::optional<Roc> roc(const std::vector<int>& noise, const std::vector<int>& signal) {
+  const auto negative = [](int count) { return count < 0; };
+  if (noise.size() < 2 || noise.size() != signal.size() ||
+      std::any_of(noise.begin(), noise.end(), negative) ||
+      std::any_of(signal.begin(), signal.end(), negative))
+    throw std::invalid_argument(
+        "ROC: two ratings or more, as many of noise as of signal, no negative counts");
+  const double n = std::accumulate(noise.begin(), noise.end(), 0),
+               s = std::accumulate(signal.begin(), signal.end(), 0);
+  if (n == 0 || s == 0) return std::nullopt;
+  Roc result;
+  result.points.push_back({0, 0});
+  double area = 0;
+  for (std::size_t i = noise.size(); i-- > 0;) {
+    const auto last = result.points.back();
+    result.points.push_back({last.false_alarms + noise[i] / n, last.hits + signal[i] / s});
+    area +=
+        (result.points.back().false_alarms - last.false_alarms) * (result.points.back().hits + last.hits) / 2;
+  }
+  const double q1 = area / (2 - area), q2 = 2 * area * area / (1 + area);
+  const double variance =
+      (area * (1 - area) + (s - 1) * (q1 - area * area) + (n - 1) * (q2 - area * area)) / (n * s);
+  const double half = kZ95 * std::sqrt(std::max(0.0, variance));
+  result.area = {area, {std::max(0.0, area - half), std::min(1.0, area + half), 0.95}};
+  return result;
 }
 
 }  // namespace turnpoint::analysis

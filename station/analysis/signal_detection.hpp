@@ -1,5 +1,10 @@
 #pragma once
 #include <optional>
+#include <string>
+#include <vector>
+
+#include "station/analysis/estimate.hpp"
+#include "station/analysis/trial_record.hpp"
 
 namespace turnpoint::analysis {
 
@@ -24,6 +29,44 @@ struct YesNo {
 /// With the log-linear correction (Hautus 1995): 0.5 added to each count and 1 to each total, always, so that
 /// the estimate is finite for perfect rates too. None where one of the two stimuli never came.
 std::optional<YesNo> yes_no(const YesNoCounts& counts);
+
+/// How a task measures sensitivity with answers of which one is taken as "yes".
+enum class Detecting {
+  presence,       ///< trials without a signal are the noise of every level (yes/no)
+  sides,          ///< at each |level| one side is the signal, the other the noise (left/right)
+  forced_choice,  ///< the same by place or interval; d' is divided by sqrt(2) (Macmillan & Creelman 2005)
+};
+
+/// Yes/no of one condition at one level, or at all of them.
+struct Detection {
+  std::string condition;
+  std::optional<double> level;  ///< |level|; none: all levels together
+  YesNoCounts counts;
+  /// None where there was no signal, or no noise. 95 % intervals by the variance of Gourevitch & Galanter
+  /// (1967) at the corrected rates.
+  std::optional<Estimate> d_prime, criterion;
+};
+
+/// Of answered experimental trials with a right answer: for each condition, in this order, its levels
+/// ascending, then all together. With more than `most_levels`, as an adaptive procedure leaves them, only all
+/// together. `positive`: the choice that is "yes".
+std::vector<Detection> detect(const std::vector<TrialRecord>& trials, const std::vector<std::string>& order,
+                              Detecting detecting, int positive, std::size_t most_levels = 8);
+
+struct RocPoint {
+  double false_alarms = 0, hits = 0;
+};
+
+/// A receiver operating characteristic from ratings.
+struct Roc {
+  std::vector<RocPoint> points;  ///< from (0, 0) to (1, 1), the strictest criterion first
+  Estimate area;                 ///< under straight lines; 95 % interval by Hanley & McNeil (1982)
+};
+
+/// `noise` and `signal`: trials by rating, from the surest no to the surest yes, as many of each. None where
+/// one of them has no trials. Throws std::invalid_argument for fewer than 2 ratings, different numbers of
+/// them, or negative counts.
+std::optional<Roc> roc(const std::vector<int>& noise, const std::vector<int>& signal);
 
 /// Proportion correct with the log-linear correction, (k + 0.5) / (n + 1); none for n = 0.
 std::optional<double> log_linear_proportion(int successes, int trials);

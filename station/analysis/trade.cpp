@@ -63,6 +63,7 @@ Cell pooled(const Group& group) {
 
 /// BIS of each group: the mean over its cells of the scores over all cells.
 void add_balanced(const std::vector<Group>& groups, std::vector<Measures>& result) {
+  if (groups.size() < 2) return;
   std::vector<double> proportion, time;
   for (const auto& group : groups)
     for (const auto& cell : group.cells) {
@@ -229,55 +230,73 @@ Interval difference_interval(const Estimate& a, const Estimate& b) {
           gap + std::hypot(b.interval.high - b.value, a.value - a.interval.low), a.interval.confidence};
 }
 
+struct MeasureName {
+  const char *name, *unit;
+};
+constexpr MeasureName kNames[measures] = {{"proportion correct", "proportion"},
+                                          {"median response time", "s"},
+                                          {"boundary", "s = 0.1"},
+                                          {"time outside the decision", "s"},
+                                          {"LISAS", "s"},
+                                          {"inverse efficiency", "s"},
+                                          {"BIS", "SD"}};
+
+/// What the conditions measure, and again in each replicate of the session.
+struct Sessions {
+  std::vector<Measures> values;
+  std::vector<std::vector<Measures>> replicates;
+
+  std::vector<std::vector<double>> of(std::size_t group) const {
+    std::vector<std::vector<double>> all(measures);
+    for (const auto& again : replicates)
+      for (int which = 0; which < measures; ++which)
+        if (again[group][which]) all[which].push_back(*again[group][which]);
+    return all;
+  }
+
+  std::optional<Estimate> difference(std::size_t a, std::size_t b, int which,
+                                     const TradeOptions& options) const {
+    std::vector<double> gaps;
+    for (const auto& again : replicates)
+      if (again[a][which] && again[b][which]) gaps.push_back(*again[b][which] - *again[a][which]);
+    std::optional<double> gap;
+    if (values[a][which] && values[b][which]) gap = *values[b][which] - *values[a][which];
+    return estimate(gap, std::move(gaps), options);
+  }
+};
+
+void add_differences(const Sessions& sessions, const TradeOptions& options, Trade& trade) {
+  for (std::size_t a = 0; a < trade.instructions.size(); ++a)
+    for (std::size_t b = a + 1; b < trade.instructions.size(); ++b) {
+      const auto &first = trade.instructions[a], &second = trade.instructions[b];
+      for (int which = 0; which < measures; ++which) {
+        auto difference = sessions.difference(a, b, which, options);
+        if (which == boundary && difference && first.boundary && second.boundary)
+          difference->interval = difference_interval(*first.boundary, *second.boundary);
+        trade.differences.push_back(
+            {first.instruction, second.instruction, kNames[which].name, kNames[which].unit, difference});
+      }
+    }
+}
+
 }  // namespace
 
 Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options) {
   Trade result;
   std::vector<Group> groups;
-  for (const auto& trial : trials) {
-    if (trial.type != TrialType::experimental) continue;
-    const auto known = std::any_of(result.instructions.begin(), result.instructions.end(),
-                                   [&](const auto& entry) { return entry.instruction == trial.instruction; });
-    if (known) continue;
-    result.instructions.emplace_back().instruction = trial.instruction;
-  }
-  for (auto& entry : result.instructions) {
+  for (const auto& name : conditions_of(trials, options.order)) {
+    auto& entry = result.instructions.emplace_back();
+    entry.instruction = name;
     groups.push_back(collect(trials, options, entry));
     fill_cells(groups.back(), entry, options.confidence);
   }
-  const auto values = measure(groups);
-  std::vector<std::vector<std::vector<double>>> replicates(groups.size(),
-                                                           std::vector<std::vector<double>>(measures));
-  std::vector<std::vector<double>> gaps(measures);
-  for (int i = 0; i < options.replicates; ++i) {
-    const auto again = measure(drawn(groups, {options.seed, random::Stream::bootstrap, 1000, 0, i}));
-    for (int which = 0; which < measures; ++which) {
-      for (std::size_t g = 0; g < groups.size(); ++g)
-        if (again[g][which]) replicates[g][which].push_back(*again[g][which]);
-      if (groups.size() > 1 && again[0][which] && again[1][which])
-        gaps[which].push_back(*again[1][which] - *again[0][which]);
-    }
-  }
+  Sessions sessions{measure(groups), {}};
+  for (int i = 0; i < options.replicates; ++i)
+    sessions.replicates.push_back(
+        measure(drawn(groups, {options.seed, random::Stream::bootstrap, 1000, 0, i})));
   for (std::size_t g = 0; g < groups.size(); ++g)
-    set_estimates(result.instructions[g], groups[g], values[g], replicates[g], options);
-  if (groups.size() < 2) return result;
-  const char* names[] = {"proportion correct",
-                         "median response time",
-                         "boundary",
-                         "time outside the decision",
-                         "LISAS",
-                         "inverse efficiency",
-                         "BIS"};
-  const char* units[] = {"", "s", "", "s", "s", "s", ""};
-  for (int which = 0; which < measures; ++which) {
-    std::optional<double> gap;
-    if (values[0][which] && values[1][which]) gap = *values[1][which] - *values[0][which];
-    auto difference = estimate(gap, gaps[which], options);
-    const auto &first = result.instructions[0].boundary, &second = result.instructions[1].boundary;
-    if (which == boundary && difference && first && second)
-      difference->interval = difference_interval(*first, *second);
-    result.differences.push_back({names[which], units[which], difference});
-  }
+    set_estimates(result.instructions[g], groups[g], sessions.values[g], sessions.of(g), options);
+  add_differences(sessions, options, result);
   return result;
 }
 

@@ -5,15 +5,10 @@
 #include <vector>
 
 #include "station/analysis/diffusion.hpp"
+#include "station/analysis/estimate.hpp"
 #include "station/analysis/speed_accuracy.hpp"
 
 namespace turnpoint::analysis {
-
-/// A number with its bootstrap interval.
-struct Estimate {
-  double value = 0;
-  Interval interval;
-};
 
 /// Trials of equal difficulty under one instruction.
 struct DifficultyCell {
@@ -25,8 +20,8 @@ struct DifficultyCell {
   std::optional<double> drift;           ///< of the shared fit
 };
 
-/// What one instruction did. Accuracy and times are of answered experimental trials that the time rule keeps;
-/// scores whose value cannot be had are none.
+/// What one condition did: an instruction, or what else TrialRecord::instruction says. Accuracy and times are
+/// of answered experimental trials that the time rule keeps; scores whose value cannot be had are none.
 struct InstructionResult {
   std::string instruction;
   int presented = 0, answered = 0, timeouts = 0, anticipations = 0, excluded = 0, correct = 0;
@@ -39,20 +34,22 @@ struct InstructionResult {
   std::vector<Statement> statements;
 };
 
-/// Second instruction minus first.
+/// Of two conditions, second minus first.
 struct Difference {
+  std::string first, second;
   std::string measure;  ///< "proportion correct", "median response time", ...
-  std::string unit;     ///< "" or "s"
+  std::string unit;     ///< "s", "proportion", "s = 0.1" (EZ's scale), "SD" (of BIS over cells)
   std::optional<Estimate> estimate;
 };
 
 struct Trade {
-  std::vector<InstructionResult> instructions;  ///< in the order first met
-  std::vector<Difference> differences;          ///< of the first two; empty with one
+  std::vector<InstructionResult> instructions;  ///< in the order of the options
+  std::vector<Difference> differences;          ///< of all pairs, the first before the second in that order
   std::vector<Statement> statements;
 };
 
 struct TradeOptions {
+  std::vector<std::string> order;  ///< of conditions; others follow in the order first met
   TimeExclusion exclusion;
   int caf_bins = 5;
   int replicates = 1000;
@@ -64,7 +61,8 @@ struct TradeOptions {
 /// Ter. Intervals are percentiles of a bootstrap that draws trials anew within instruction and difficulty,
 /// but the boundary's, which is normal in its logarithm with the standard deviation of shared_ez_diffusion();
 /// where more than 5 % of the replicates cannot be fitted there is no interval, and then no number. The score
-/// LISAS uses the standard deviations of all trials of the session, BIS those over its cells.
+/// LISAS uses the standard deviations of all trials of the session, BIS those over its cells; a single
+/// condition has no BIS, since the scores of its cells average 0 whatever was answered.
 Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options);
 
 }  // namespace turnpoint::analysis

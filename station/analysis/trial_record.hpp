@@ -23,9 +23,13 @@ struct TrialRecord {
   std::optional<double> setting;  ///< of a slider, in the unit of the level, which is where it began
   Outcome outcome = Outcome::answered;
   std::optional<double> response_time_s;
-  std::string instruction;           ///< "" where the design has none
+  std::string instruction;           ///< the condition: by what trials are told apart; "" for all alike
   std::optional<double> difficulty;  ///< equal for trials of equal difficulty, |level| as a rule
 };
+
+/// The conditions of experimental trials: those of the order first, then others in the order first met.
+std::vector<std::string> conditions_of(const std::vector<TrialRecord>& trials,
+                                       const std::vector<std::string>& order);
 
 /// Something that must be said beside, or instead of, a number: a stable code and a sentence for people.
 struct Statement {

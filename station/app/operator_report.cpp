@@ -16,7 +16,10 @@ using analysis::Estimate;
 using text::number;
 
 std::string with(double value, const analysis::Interval& interval) {
-  return fmt::format("{} [{}, {}]", number(value, 3), number(interval.low, 3), number(interval.high, 3));
+  const auto shown = [&](double end) {
+    return text::estimated(end, text::uncertainty(value, interval.low, interval.high));
+  };
+  return fmt::format("{} [{}, {}]", shown(value), shown(interval.low), shown(interval.high));
 }
 
 std::string with(const std::optional<Estimate>& estimate, const std::string& unit) {
@@ -48,12 +51,16 @@ void add_fits(const report::Summary& summary, ReportPages& pages) {
     if (!named.fit.parameters) continue;
     const auto prefix = named.name.empty() ? "" : named.name + ": ";
     const auto& p = *named.fit.parameters;
-    const auto line = [&](const char* what, double value, const auto& interval) {
+    const auto& unit = summary.data.level_unit;
+    const auto in_unit = [&unit](const std::string& what) {
+      return unit.empty() ? what : what + " (" + unit + ")";
+    };
+    const auto line = [&](const std::string& what, double value, const auto& interval) {
       pages.fit.emplace_back(prefix + what, interval ? with(value, interval->interval) : number(value, 3));
     };
-    line(two_sided ? "PSE" : "threshold", p.threshold, named.intervals.threshold);
+    line(in_unit(two_sided ? "PSE" : "threshold"), p.threshold, named.intervals.threshold);
     if (report::slope_estimated(named))
-      line(named.fit.options.function == analysis::Function::normal ? "spread" : "slope", p.slope,
+      line(named.fit.options.function == analysis::Function::normal ? in_unit("spread") : "slope", p.slope,
            named.intervals.slope);
     line("lapse rate", p.lapse, named.intervals.lapse);
     pages.statements.push_back(prefix + report::describe_intervals(named, summary.data));
@@ -65,15 +72,16 @@ void add_trade(const report::Summary& summary, ReportPages& pages) {
   const auto& trade = summary.trade;
   for (const auto& result : trade.instructions) {
     const auto prefix = result.instruction.empty() ? "" : result.instruction + ": ";
+    if (!summary.data.scored) continue;
     pages.speed_accuracy.emplace_back(prefix + "proportion right", with(result.proportion_correct, ""));
     pages.speed_accuracy.emplace_back(prefix + "median response time", with(result.median_s, "s"));
     for (const auto& statement : result.statements) pages.statements.push_back(prefix + statement.text);
   }
   for (const auto& difference : trade.differences)
     if (difference.estimate)
-      pages.speed_accuracy.emplace_back(trade.instructions[1].instruction + " \u2212 " +
-                                            trade.instructions[0].instruction + ": " + difference.measure,
-                                        with(difference.estimate, difference.unit));
+      pages.speed_accuracy.emplace_back(
+          difference.second + " \u2212 " + difference.first + ": " + difference.measure,
+          with(difference.estimate, difference.unit));
   for (const auto& statement : trade.statements) pages.statements.push_back(statement.text);
 }
 

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "station/analysis/proportion.hpp"
+#include "station/analysis/quantile.hpp"
 #include "station/analysis/trade.hpp"
+#include "station/app/conditions.hpp"
 #include "station/app/parallel.hpp"
 #include "station/app/power_truth.hpp"
 #include "station/app/records.hpp"
@@ -29,9 +31,8 @@ struct Finding {
 
 struct Outcome {
   std::vector<Finding> findings;
-  std::vector<analysis::TrialRecord> trials;  ///< only of sessions with intervals
-  ExpectedAnswers expected;
-  std::vector<std::pair<std::string, analysis::FitOptions>> fits;  ///< instruction, options
+  GeneratingValues generating;
+  std::vector<std::pair<std::string, analysis::FitOptions>> fits;  ///< condition, options
   report::Design design = report::Design::forced_choice;
   int presented = 0, scored = 0, right = 0;
   double duration_s = 0;
@@ -52,16 +53,31 @@ void add_estimates(const Rehearsal& rehearsal, const std::string& unit, std::vec
       findings.push_back({"procedure " + estimate.procedure, estimate.parameter, unit, estimate.mean, {}});
 }
 
+/// What has a long tail: a function that comes out as a step has a slope without limit.
+bool heavy_tailed(const std::string& parameter) { return parameter == "slope" || parameter == "spread"; }
+
 const char* spread_name(const analysis::FitOptions& options) {
   return options.function == analysis::Function::normal ? "spread" : "slope";
 }
 
+std::string slope_unit(const analysis::FitOptions& options, const std::string& level_unit) {
+  switch (options.function) {
+    case analysis::Function::normal:
+      return level_unit;
+    case analysis::Function::logistic:
+      return level_unit.empty() ? "" : "1/" + level_unit;
+    case analysis::Function::weibull:
+      break;
+  }
+  return "exponent";
+}
+
 void add_fits(const report::SessionData& data, const std::string& unit, Outcome& outcome) {
   if (data.design == report::Design::adjustment) {
-    for (const auto& settings : analysis::settings(data.trials))
+    for (const auto& settings : analysis::settings(data.trials, data.conditions))
       if (settings.mean)
-        outcome.findings.push_back(
-            {of("settings", settings.procedure), "PSE", unit, settings.mean->value, settings.mean->interval});
+        outcome.findings.push_back({of(of("settings", settings.procedure), settings.condition), "PSE", unit,
+                                    settings.mean->value, settings.mean->interval});
     return;
   }
   for (const auto& named : report::fits_of(data)) {
@@ -75,8 +91,8 @@ void add_fits(const report::SessionData& data, const std::string& unit, Outcome&
         {source, two_sided ? "PSE" : "threshold", unit, p.threshold, interval_of(named.intervals.threshold)});
     const bool posterior = named.intervals.method == analysis::IntervalMethod::posterior;
     if (!posterior || report::slope_estimated(named))
-      findings.push_back({source, spread_name(named.fit.options), two_sided ? unit : "", p.slope,
-                          interval_of(named.intervals.slope)});
+      findings.push_back({source, spread_name(named.fit.options), slope_unit(named.fit.options, unit),
+                          p.slope, interval_of(named.intervals.slope)});
     const auto level_75 =
         posterior ? named.intervals.level_75
                   : analysis::level_at(named.fit.options.function, named.fit.options.scale, p, 0.75);
@@ -85,27 +101,11 @@ void add_fits(const report::SessionData& data, const std::string& unit, Outcome&
   }
 }
 
-/// The second instruction minus the first, whichever a session began with.
 void add_differences(const analysis::Trade& trade, std::vector<Finding>& findings) {
-  if (trade.instructions.size() < 2) return;
-  auto first = trade.instructions[0].instruction, second = trade.instructions[1].instruction;
-  const bool turned = second < first;
-  if (turned) std::swap(first, second);
-  for (const auto& difference : trade.differences) {
-    if (!difference.estimate) continue;
-    auto value = difference.estimate->value;
-    auto interval = difference.estimate->interval;
-    if (turned) value = -value, interval = {-interval.high, -interval.low, interval.confidence};
-    findings.push_back({second + " - " + first, difference.measure, difference.unit, value, interval});
-  }
-}
-
-analysis::TradeOptions trade_options(const report::SessionData& data) {
-  analysis::TradeOptions options;
-  options.exclusion = data.exclusion;
-  options.replicates = data.replicates;
-  options.seed = data.seed;
-  return options;
+  for (const auto& difference : trade.differences)
+    if (difference.estimate)
+      findings.push_back({difference.second + " - " + difference.first, difference.measure, difference.unit,
+                          difference.estimate->value, difference.estimate->interval});
 }
 
 Outcome simulate(const protocol::Protocol& protocol, const PowerOptions& options, int session) {
@@ -114,26 +114,25 @@ Outcome simulate(const protocol::Protocol& protocol, const PowerOptions& options
   const auto seed = options.seed + static_cast<std::uint64_t>(session);
   auto sits = rehearser(observer);
   sits.answer = [&](const session::TrialSpec& trial, const observer::Question& q) {
-    outcome.expected.add(protocol, trial, q, observer);
+    outcome.generating.add(protocol, trial, q, observer);
     return observer.answer(q);
   };
   const auto rehearsal = rehearse(protocol, session, seed, sits);
   report::SessionData data;
-  add_trials(rehearsal.blocks, protocol, protocol.languages.front(), data);
+  add_trials(rehearsal.blocks, protocol, data);
   data.seed = seed;
   data.replicates = session < options.interval_sessions ? options.replicates : 0;
-  const auto unit = report::unit_of(data.level_label);
+  const auto& unit = data.level_unit;
   add_estimates(rehearsal, unit, outcome.findings);
   add_fits(data, unit, outcome);
   if (data.replicates > 0)
-    add_differences(analysis::trade(data.trials, trade_options(data)), outcome.findings);
+    add_differences(analysis::trade(data.trials, report::trade_options(data)), outcome.findings);
   outcome.design = data.design;
   outcome.presented = rehearsal.trials;
   outcome.duration_s = rehearsal.duration_s;
   for (const auto& trial : data.trials)
     if (trial.type == analysis::TrialType::experimental && trial.correct)
       ++outcome.scored, outcome.right += *trial.correct ? 1 : 0;
-  if (data.replicates > 0) outcome.trials = std::move(data.trials);
   return outcome;
 }
 
@@ -156,9 +155,12 @@ class Truths {
         add("procedure " + spec.name, "threshold", *level);
     for (const auto& spec : protocol.procedures)
       if (spec.kind == procedure::Kind::adjustment)
-        add(of("settings", spec.name), "PSE", options.observer.bias);
-    add_fits(outcomes);
-    add_differences_of_all(protocol, outcomes);
+        for (const auto& condition : with_none(conditions(protocol)))
+          add(of(of("settings", spec.name), condition), "PSE", options.observer.bias);
+    GeneratingValues generating;
+    for (const auto& outcome : outcomes) generating.add(outcome.generating);
+    add_fits(generating, observer, outcomes);
+    add_differences(generating, observer, conditions(protocol));
   }
 
   std::optional<double> find(const Recovery& recovery) const {
@@ -168,35 +170,40 @@ class Truths {
   }
 
  private:
-  void add(const std::string& source, const std::string& parameter, double value) {
-    truths_.push_back({source, parameter, "", value, {}});
+  void add(const std::string& source, const std::string& parameter, const std::optional<double>& value) {
+    if (value) truths_.push_back({source, parameter, "", *value, {}});
   }
 
-  void add_fits(const std::vector<Outcome>& outcomes) {
-    ExpectedAnswers expected;
-    for (const auto& outcome : outcomes) expected.add(outcome.expected);
+  static std::vector<std::string> with_none(std::vector<std::string> names) {
+    names.emplace_back();
+    return names;
+  }
+
+  void add_fits(const GeneratingValues& generating, const observer::Observer& observer,
+                const std::vector<Outcome>& outcomes) {
     const bool two_sided = outcomes.front().design == report::Design::two_sided;
-    const auto count = outcomes.front().design == report::Design::forced_choice
-                           ? ExpectedAnswers::Count::correct
-                           : ExpectedAnswers::Count::choice;
-    for (const auto& [instruction, fit_options] : outcomes.front().fits) {
-      const auto p = expected.fit(instruction, fit_options, count);
-      if (!p) continue;
-      const auto source = of("fit", instruction);
-      add(source, two_sided ? "PSE" : "threshold", p->threshold);
-      add(source, spread_name(fit_options), p->slope);
-      if (const auto level = analysis::level_at(fit_options.function, fit_options.scale, *p, 0.75))
-        add(source, "75 % point", *level);
+    for (const auto& [condition, options] : outcomes.front().fits) {
+      const auto truth = generating.fit(condition, options, observer);
+      const auto source = of("fit", condition);
+      add(source, two_sided ? "PSE" : "threshold", truth.threshold);
+      add(source, spread_name(options), truth.slope);
+      add(source, "75 % point", truth.level_75);
     }
   }
 
-  void add_differences_of_all(const protocol::Protocol& protocol, const std::vector<Outcome>& outcomes) {
-    std::vector<analysis::TrialRecord> all;
-    for (const auto& outcome : outcomes) all.insert(all.end(), outcome.trials.begin(), outcome.trials.end());
-    analysis::TradeOptions options;
-    options.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};
-    options.replicates = 1;  // only the numbers count here
-    if (!all.empty()) add_differences(analysis::trade(all, options), truths_);
+  void add_differences(const GeneratingValues& generating, const observer::Observer& observer,
+                       const std::vector<std::string>& names) {
+    for (std::size_t a = 0; a < names.size(); ++a)
+      for (std::size_t b = a + 1; b < names.size(); ++b) {
+        const auto source = names[b] + " - " + names[a];
+        const auto add_gap = [&](const char* parameter, std::optional<double> first,
+                                 std::optional<double> second) {
+          if (first && second) add(source, parameter, *second - *first);
+        };
+        add_gap("proportion correct", generating.share_correct(names[a]), generating.share_correct(names[b]));
+        add_gap("boundary", generating.boundary(names[a], observer), generating.boundary(names[b], observer));
+        add(source, "time outside the decision", 0);  // an observer has one for all conditions
+      }
   }
 
   std::vector<Finding> truths_;
@@ -204,20 +211,24 @@ class Truths {
 
 void finish(Recovery& entry, const std::vector<Interval>& intervals) {
   const auto n = static_cast<double>(entry.estimates.size());
+  entry.heavy_tailed = heavy_tailed(entry.parameter);
   entry.mean = std::accumulate(entry.estimates.begin(), entry.estimates.end(), 0.0) / n;
   double squares = 0;
   for (const double value : entry.estimates) squares += (value - entry.mean) * (value - entry.mean);
   entry.sd = n > 1 ? std::sqrt(squares / (n - 1)) : 0;
-  if (entry.truth) entry.bias = entry.mean - *entry.truth;
+  entry.median = analysis::quantile(entry.estimates, 0.5);
+  entry.lower_quartile = analysis::quantile(entry.estimates, 0.25);
+  entry.upper_quartile = analysis::quantile(entry.estimates, 0.75);
+  if (entry.truth) entry.bias = (entry.heavy_tailed ? entry.median : entry.mean) - *entry.truth;
   if (intervals.empty()) return;
-  double width = 0;
+  std::vector<double> widths;
   int hold = 0;
   for (const auto& interval : intervals) {
-    width += interval.high - interval.low;
+    widths.push_back(interval.high - interval.low);
     if (entry.truth && interval.low <= *entry.truth && *entry.truth <= interval.high) ++hold;
   }
   const auto count = static_cast<int>(intervals.size());
-  entry.interval_width = width / count;
+  entry.interval_width = analysis::quantile(std::move(widths), 0.5);
   if (entry.truth)
     entry.coverage =
         analysis::Proportion{hold, count, static_cast<double>(hold) / count, analysis::wilson(hold, count)};

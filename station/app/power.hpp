@@ -23,22 +23,26 @@ struct PowerOptions {
   std::function<void(int done, int of)> progress;  ///< from any of the threads, one at a time
 };
 
-/// How well sessions recover one number. `truth`: of a procedure, the level at which the observer answers as
-/// the procedure converges (a posterior's threshold: its function's fixed share of the way between the
-/// asymptotes; a staircase: the target of its rule and steps); of a fit, the same fit to the observer's own
-/// probabilities at the levels that were presented; of a difference between instructions, what the trials of
-/// all sessions together give. None where there is no such level.
+/// How well sessions recover one number. `truth` is a value that the observer was made with, or follows from
+/// such values alone, never an estimate: of a procedure, the level at which the observer answers as the
+/// procedure converges (a posterior's threshold: its function's fixed share of the way between the
+/// asymptotes; a staircase: the target of its rule and steps); of a fit, the level at which the observer's
+/// own function stands where the fitted one has its threshold, and its slope where both are of one family; of
+/// a difference between conditions, that of the probabilities, boundaries and times that made the answers.
+/// None where there is no such value: response times and the scores made from them.
 struct Recovery {
   std::string source;     ///< "procedure upper", "fit", "fit speed", "accuracy - speed"
   std::string parameter;  ///< "threshold", "PSE", "spread", "75 % point", "proportion correct", ...
-  std::string unit;
+  std::string unit;       ///< "" where the protocol's level has none
   std::optional<double> truth;
   std::vector<double> estimates;  ///< of the sessions that had one, in order
   int sessions = 0;               ///< that could have had one
+  bool heavy_tailed = false;      ///< slopes and spreads: read median and quartiles, not mean and SD
   double mean = 0, sd = 0;
-  std::optional<double> bias;                    ///< mean - truth
+  double median = 0, lower_quartile = 0, upper_quartile = 0;
+  std::optional<double> bias;                    ///< mean - truth; heavy-tailed: median - truth
   std::optional<analysis::Proportion> coverage;  ///< 95 % intervals that hold the truth
-  std::optional<double> interval_width;          ///< on the mean
+  std::optional<double> interval_width;          ///< their median
 };
 
 /// What a protocol's sessions would find with this observer.

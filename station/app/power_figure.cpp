@@ -21,20 +21,20 @@ plot::Panel panel_of(const Recovery& recovery) {
   };
   std::vector<double> ends{at(0.01), at(0.99)};
   if (recovery.truth) ends.push_back(*recovery.truth);
-  panel.x =
-      plot::fitted(recovery.parameter + (recovery.unit.empty() ? "" : " (" + recovery.unit + ")"), ends, 0.1);
+  panel.x = plot::fitted(
+      recovery.parameter + " (" + (recovery.unit.empty() ? "no unit" : recovery.unit) + ")", ends, 0.1);
   std::vector<double> shown;
   std::copy_if(sorted.begin(), sorted.end(), std::back_inserter(shown),
                [&](double value) { return value >= panel.x.low && value <= panel.x.high; });
   auto bars = plot::histogram(shown, panel.x.low, panel.x.high, bins);
   auto heights = bars.heights;
   heights.push_back(0);
-  panel.y = plot::fitted("Sessions", heights, 0.05);
+  panel.y = plot::fitted("Sessions (number)", heights, 0.05);
   panel.y.low = 0;
   panel.layers.emplace_back(std::move(bars));
   if (recovery.truth)
     panel.layers.emplace_back(plot::Rule{plot::Rule::Direction::vertical, *recovery.truth,
-                                         "truth " + text::number(*recovery.truth, 3)});
+                                         "truth " + text::estimated(*recovery.truth, ends[1] - ends[0])});
   return panel;
 }
 

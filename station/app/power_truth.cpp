@@ -4,6 +4,9 @@
 #include <cmath>
 #include <functional>
 
+#include "station/analysis/diffusion.hpp"
+#include "station/analysis/proportion.hpp"
+#include "station/app/conditions.hpp"
 #include "station/session/rows.hpp"
 
 namespace turnpoint::app {
@@ -11,13 +14,6 @@ namespace turnpoint::app {
 namespace {
 
 using procedure::Kind;
-
-std::string instruction_of(const protocol::Protocol& protocol, const protocol::Factors& factors) {
-  for (const auto& name : {std::string("instruction"), protocol.analysis.by})
-    if (const auto found = factors.find(name); found != factors.end())
-      if (const auto* text = std::get_if<std::string>(&found->second)) return *text;
-  return "";
-}
 
 /// Probability of a 1 by level; empty where the level alone does not decide it.
 std::function<double(double)> share_of_ones(const protocol::Protocol& protocol, const procedure::Spec& spec,
@@ -66,16 +62,34 @@ std::optional<double> crossing(const std::function<double(double)>& share, doubl
   return 0.5 * (low + high);
 }
 
+/// All levels between both asymptotes, whatever the unit.
+struct Reach {
+  double low = 0, high = 0;
+};
+Reach reach_of(const observer::Question& question) {
+  if (question.decibel) return {-400, 400};
+  return {question.decides == observer::Decides::side ? -1e6 : 0, 1e6};
+}
+
+/// A bisection's last digits are rounding: what is a millionth of a millionth of the threshold is 0.
+std::optional<double> without_rounding(const std::optional<double>& level, double threshold) {
+  return level && std::fabs(*level) < 1e-9 * std::fabs(threshold) ? 0 : level;
+}
+
 }  // namespace
 
 std::optional<double> settled_level(const protocol::Protocol& protocol, const procedure::Spec& spec,
                                     const observer::Observer& observer) {
   const auto share = share_of_ones(protocol, spec, observer);
   if (!share) return std::nullopt;
-  const bool decibel = spec.level.ends_with("_dB");
-  const bool two_sided = protocol.task.kind == protocol::TaskKind::single_interval;
-  // Wide enough for both asymptotes whatever the unit.
-  const double high = decibel ? 400 : 1e6, low = decibel ? -400 : two_sided ? -1e6 : 0;
+  session::TrialSpec trial;
+  trial.procedure = spec.name;
+  const auto question = session::question_of(trial, protocol, 0);
+  const auto [low, high] = reach_of(question);
+  const double threshold = observer.parameters().threshold.value_or(question.default_threshold);
+  const auto crosses = [&, low = low, high = high](double value) {
+    return without_rounding(crossing(share, low, high, value), threshold);
+  };
   switch (spec.kind) {
     case Kind::constant_stimuli:
     case Kind::adjustment:
@@ -83,7 +97,7 @@ std::optional<double> settled_level(const protocol::Protocol& protocol, const pr
     case Kind::up_down:
     case Kind::weighted_up_down: {
       const auto target = staircase_target(spec);
-      return target ? crossing(share, low, high, *target) : std::nullopt;
+      return target ? crosses(*target) : std::nullopt;
     }
     case Kind::quest_plus:
     case Kind::psi:
@@ -91,47 +105,87 @@ std::optional<double> settled_level(const protocol::Protocol& protocol, const pr
       break;
   }
   const double way = spec.function == procedure::Function::weibull ? 1 - std::exp(-1.0) : 0.5;
-  return crossing(share, low, high, share(low) + way * (share(high) - share(low)));
+  return crosses(share(low) + way * (share(high) - share(low)));
 }
 
-void ExpectedAnswers::add(const protocol::Protocol& protocol, const session::TrialSpec& trial,
-                          const observer::Question& question, const observer::Observer& observer) {
+void GeneratingValues::add(const protocol::Protocol& protocol, const session::TrialSpec& trial,
+                           const observer::Question& question, const observer::Observer& observer) {
   if (trial.type != store::TrialType::experimental || !trial.level) return;
-  auto& sum = sums_[{instruction_of(protocol, trial.factors), *trial.level}];
-  sum.trials += 1;
-  if (trial.correct) sum.correct += observer.share(question, *trial.correct);
-  sum.second += observer.share(question, 1);
+  std::string instruction;
+  if (const auto found = trial.factors.find("instruction"); found != trial.factors.end())
+    if (const auto* text = std::get_if<std::string>(&found->second)) instruction = *text;
+  const auto condition = condition_of(protocol, trial.factors, instruction);
+  auto [entry, is_new] = conditions_.try_emplace(condition);
+  auto& made = entry->second;
+  if (is_new) made.question = question;
+  made.one_deadline = made.one_deadline && made.question.deadline_s == question.deadline_s;
+  if (!trial.correct) return;
+  ++made.trials;
+  made.correct += observer.share(question, *trial.correct);
 }
 
-void ExpectedAnswers::add(const ExpectedAnswers& other) {
-  for (const auto& [key, more] : other.sums_) {
-    auto& sum = sums_[key];
-    sum.trials += more.trials, sum.correct += more.correct, sum.second += more.second;
+void GeneratingValues::add(const GeneratingValues& other) {
+  for (const auto& [condition, more] : other.conditions_) {
+    auto [entry, is_new] = conditions_.try_emplace(condition, more);
+    if (is_new) continue;
+    auto& made = entry->second;
+    made.one_deadline =
+        made.one_deadline && more.one_deadline && made.question.deadline_s == more.question.deadline_s;
+    made.trials += more.trials, made.correct += more.correct;
   }
 }
 
-std::optional<analysis::Psychometric> ExpectedAnswers::fit(const std::string& instruction,
-                                                           const analysis::FitOptions& options,
-                                                           Count count) const {
-  std::vector<std::pair<double, Sum>> levels;
-  double total = 0;
-  for (const auto& [key, sum] : sums_)
-    if (instruction.empty() || key.first == instruction)
-      levels.emplace_back(key.second, sum), total += sum.trials;
-  if (levels.empty()) return std::nullopt;
-  const auto share = [](const Sum& sum) { return sum.second / sum.trials; };
-  const bool second_rises = share(levels.back().second) >= share(levels.front().second);
-  std::vector<analysis::LevelCount> counts;
-  // So many answers that rounding their number does not show.
-  const double scale = 1e8 / total;
-  for (const auto& [level, sum] : levels) {
-    const double ones = count == Count::correct ? sum.correct
-                        : second_rises          ? sum.second
-                                                : sum.trials - sum.second;
-    counts.push_back({level, static_cast<int>(std::lround(sum.trials * scale)),
-                      static_cast<int>(std::lround(ones * scale))});
-  }
-  return analysis::fit_psychometric(counts, options).parameters;
+const GeneratingValues::Condition* GeneratingValues::find(const std::string& condition) const {
+  const auto found = conditions_.find(condition);
+  if (found != conditions_.end()) return &found->second;
+  return condition.empty() && conditions_.size() == 1 ? &conditions_.begin()->second : nullptr;
+}
+
+std::optional<double> GeneratingValues::share_correct(const std::string& condition) const {
+  const auto* made = find(condition);
+  if (!made || made->trials == 0) return std::nullopt;
+  return made->correct / made->trials;
+}
+
+std::optional<double> GeneratingValues::boundary(const std::string& condition,
+                                                 const observer::Observer& observer) const {
+  const auto* made = find(condition);
+  if (!made || !made->one_deadline) return std::nullopt;
+  return 2 * analysis::kDiffusionScale * observer.bound(made->question.deadline_s);
+}
+
+FitTruth GeneratingValues::fit(const std::string& condition, const analysis::FitOptions& options,
+                               const observer::Observer& observer) const {
+  const auto* made = find(condition);
+  if (!made || !made->one_deadline) return {};
+  const auto& p = observer.parameters();
+  auto question = made->question;
+  question.absent = false, question.correct = 0;
+  const auto decides = question.decides;
+  const int choice = decides == observer::Decides::right_answer ? 0 : question.positive;
+  const auto share = [&](double level) {
+    question.level = level;
+    return observer.share(question, choice);
+  };
+  const auto [low, high] = reach_of(question);
+  const double threshold = p.threshold.value_or(question.default_threshold);
+  const auto crosses = [&, low = low, high = high](double value) {
+    return without_rounding(crossing(share, low, high, value), threshold);
+  };
+  FitTruth truth;
+  const double way = analysis::core(options.function, 0);
+  truth.threshold =
+      decides == observer::Decides::side ? p.bias : crosses(share(low) + way * (share(high) - share(low)));
+  truth.level_75 = crosses(0.75);
+  const bool own_function =
+      observer.bound(question.deadline_s) == p.bound && p.drift_sd == 0 && p.start_range == 0;
+  if (own_function && decides == observer::Decides::right_answer &&
+      options.function == analysis::Function::weibull)
+    truth.slope = p.slope;
+  if (own_function && decides == observer::Decides::side && p.slope == 1 &&
+      options.function == analysis::Function::normal && options.scale == analysis::Scale::linear)
+    truth.slope = std::fabs(threshold) / analysis::normal_quantile(0.75);
+  return truth;
 }
 
 }  // namespace turnpoint::app

@@ -17,24 +17,36 @@ namespace turnpoint::app {
 std::optional<double> settled_level(const protocol::Protocol& protocol, const procedure::Spec& spec,
                                     const observer::Observer& observer);
 
-/// What the observer does on the mean at each level that was presented, by instruction.
-class ExpectedAnswers {
+/// What a fit should find; none where the observer has no such value.
+struct FitTruth {
+  std::optional<double> threshold, slope, level_75;
+};
+
+/// The values that made the answers, by condition: the observer's own functions and, for the proportion
+/// correct, its probabilities on the trials that were presented.
+class GeneratingValues {
  public:
   void add(const protocol::Protocol& protocol, const session::TrialSpec& trial,
            const observer::Question& question, const observer::Observer& observer);
-  void add(const ExpectedAnswers& other);
+  void add(const GeneratingValues& other);
 
-  enum class Count { correct, choice };
-  /// The fit, with these options, of endless data with the same shares at the same levels. With
-  /// Count::choice the answer is counted whose share rises with the level.
-  std::optional<analysis::Psychometric> fit(const std::string& instruction,
-                                            const analysis::FitOptions& options, Count count) const;
+  /// Of a fit with these options to the answers of a condition ("" for all trials). The slope only where the
+  /// observer's function is of the same family, which a deadline takes it out of.
+  FitTruth fit(const std::string& condition, const analysis::FitOptions& options,
+               const observer::Observer& observer) const;
+  std::optional<double> share_correct(const std::string& condition) const;
+  /// EZ's boundary separation for s = 0.1.
+  std::optional<double> boundary(const std::string& condition, const observer::Observer& observer) const;
 
  private:
-  struct Sum {
-    double trials = 0, correct = 0, second = 0;
+  struct Condition {
+    observer::Question question;  ///< of the first trial
+    bool one_deadline = true;
+    int trials = 0;
+    double correct = 0;
   };
-  std::map<std::pair<std::string, double>, Sum> sums_;
+  const Condition* find(const std::string& condition) const;
+  std::map<std::string, Condition> conditions_;
 };
 
 }  // namespace turnpoint::app

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <map>
 
 #include "station/analysis/psychometric_posterior.hpp"
+#include "station/app/conditions.hpp"
+#include "station/procedure/procedure.hpp"
+#include "station/protocol/answers.hpp"
 
 namespace turnpoint::app {
 
@@ -80,11 +84,8 @@ analysis::TrialRecord record_of(const store::TrialRow& row, const store::BlockSt
     record.setting = setting_of(*row.response);
   record.outcome = outcome_of(row.outcome);
   record.response_time_s = row.response_time_s;
-  record.instruction = block.instruction;
   const auto factors = factors_of(row);
-  if (const auto& by = protocol.analysis.by; !by.empty() && record.instruction.empty())
-    if (const auto found = factors.find(by); found != factors.end())
-      if (const auto* text = std::get_if<std::string>(&found->second)) record.instruction = *text;
+  record.instruction = condition_of(protocol, factors, block.instruction);
   if (protocol.analysis.difficulty)
     record.difficulty = protocol::evaluate(*protocol.analysis.difficulty, factors);
   return record;
@@ -102,10 +103,11 @@ std::vector<const store::BlockRecord*> last_attempts(const std::vector<store::Bl
   return result;
 }
 
-report::Design design_of(const protocol::Protocol& protocol,
+report::Design design_of(const protocol::Protocol& protocol, const protocol::AnswerRule& rule,
                          const std::vector<analysis::TrialRecord>& trials) {
   if (protocol.task.kind == protocol::TaskKind::adjustment) return report::Design::adjustment;
   if (protocol.task.kind == protocol::TaskKind::same_different) return report::Design::same_different;
+  if (rule.kind == protocol::AnswerKind::presence) return report::Design::yes_no;
   bool below = false, above = false;
   for (const auto& trial : trials) {
     below = below || trial.level.value_or(0) < 0;
@@ -115,16 +117,17 @@ report::Design design_of(const protocol::Protocol& protocol,
   return single && below && above ? report::Design::two_sided : report::Design::forced_choice;
 }
 
-/// The function that the protocol's own procedure assumes, else what suits the levels.
+/// The function that the protocol's own procedure assumes, else what suits the levels of the signals.
 void choose_function(const protocol::Protocol& protocol, report::SessionData& data) {
-  const bool decibel = data.level_label.find("(dB)") != std::string::npos;
-  const bool positive = std::all_of(data.trials.begin(), data.trials.end(),
-                                    [](const auto& trial) { return !trial.level || *trial.level > 0; });
+  const bool decibel = data.level_unit == "dB";
+  const bool detection = report::has_noise(data.design);
+  const bool positive = std::all_of(data.trials.begin(), data.trials.end(), [&](const auto& trial) {
+    return !trial.level || *trial.level > 0 || (detection && trial.right_choice != data.positive);
+  });
+  const bool rises = data.design == report::Design::forced_choice || detection;
   data.function = analysis::Function::normal;
-  if (data.design == report::Design::forced_choice && (decibel || positive))
-    data.function = analysis::Function::weibull;
-  data.scale = data.design == report::Design::forced_choice && positive && !decibel ? analysis::Scale::log10
-                                                                                    : analysis::Scale::linear;
+  if (rises && (decibel || positive)) data.function = analysis::Function::weibull;
+  data.scale = rises && positive && !decibel ? analysis::Scale::log10 : analysis::Scale::linear;
   for (const auto& spec : protocol.procedures) {
     using procedure::Kind;
     if (spec.kind != Kind::quest_plus && spec.kind != Kind::psi && spec.kind != Kind::psi_marginal) continue;
@@ -191,46 +194,73 @@ std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, cons
       for (const double slope : spec.slope.values) widen(slopes, {slope, slope});
   }
   if (!levels) return std::nullopt;
+  // Yes/no counts the size of the level alone.
+  if (data.design == report::Design::yes_no)
+    levels = Range{0, std::max(std::fabs(levels->first), std::fabs(levels->second))};
   if (data.scale == analysis::Scale::log10)
     levels->first = std::max(levels->first, levels->second * kLowestRatio);
   return analysis::prior_around(data.function, data.scale, *levels, slopes);
 }
 
-/// `contrast_dB` -> `contrast (dB)`.
-std::string level_label(const protocol::Protocol& protocol) {
-  if (protocol.procedures.empty()) return "Level";
-  auto name = protocol.procedures.front().level;
-  std::string unit;
-  for (const auto* suffix : {"_dB", "_mm", "_um", "_Hz", "_kHz", "_s", "_ms"})
-    if (name.ends_with(suffix)) {
-      unit = std::string(" (") + (std::string(suffix) == "_um" ? "\u00b5m" : suffix + 1) + ")";
-      name.resize(name.size() - std::string(suffix).size());
-      break;
-    }
-  std::replace(name.begin(), name.end(), '_', ' ');
-  if (!name.empty() && name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
-  return name + unit;
+/// `contrast_dB` -> `Contrast` and `dB`; the size of a yes/no task's signals counts without their sign.
+void set_level_words(const std::string& level, report::SessionData& data) {
+  const auto words = words_of(level);
+  auto name = level.empty() ? std::string("level") : words.name;
+  if (data.design == report::Design::yes_no &&
+      std::any_of(data.trials.begin(), data.trials.end(),
+                  [](const auto& trial) { return trial.level.value_or(0) < 0; })) {
+    name = "size of " + name;
+    for (auto& trial : data.trials)
+      if (trial.level) trial.level = std::fabs(*trial.level);
+  }
+  if (name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
+  data.level_unit = words.unit;
+  data.level_label = name + " (" + (words.unit.empty() ? "no unit" : words.unit) + ")";
 }
 
-std::string label_of(const protocol::Choice& choice, const std::string& language) {
-  const auto found = choice.label.find(language);
-  if (found != choice.label.end()) return found->second;
-  return choice.label.empty() ? choice.id : choice.label.begin()->second;
+/// What staircases estimate in the end, from their answers again.
+void add_staircases(const std::vector<const store::BlockRecord*>& blocks, const protocol::Protocol& protocol,
+                    report::SessionData& data) {
+  for (const auto& spec : protocol.procedures) {
+    if (spec.kind != procedure::Kind::up_down && spec.kind != procedure::Kind::weighted_up_down) continue;
+    for (const auto* block : blocks) {
+      if (block->start.practice) continue;
+      const auto stairs = procedure::make_procedure(spec, {}, {});
+      for (const auto& row : block->trials) {
+        if (row.procedure != spec.name || row.type != store::TrialType::experimental ||
+            row.outcome != store::TrialOutcome::answered)
+          continue;
+        const bool one = spec.tracks.empty() ? row.correct.value_or(false) : row.response == spec.tracks;
+        stairs->record(one ? procedure::Answer::one : procedure::Answer::zero);
+      }
+      for (const auto& [parameter, estimate] : stairs->estimates())
+        data.staircases.push_back({block->start.name, spec.name, estimate.mean, estimate.sd, estimate.basis});
+    }
+  }
 }
 
 }  // namespace
 
 void add_trials(const std::vector<store::BlockRecord>& blocks, const protocol::Protocol& protocol,
-                const std::string& language, report::SessionData& data) {
-  for (const auto* block : last_attempts(blocks))
+                report::SessionData& data) {
+  const auto counted = last_attempts(blocks);
+  for (const auto* block : counted)
     for (const auto& row : block->trials) data.trials.push_back(record_of(row, block->start, protocol));
-  data.level_label = level_label(protocol);
-  data.design = design_of(protocol, data.trials);
+  const auto level = protocol.procedures.empty() ? std::string() : protocol.procedures.front().level;
+  const auto rule = protocol::answer_rule(protocol, level);
+  data.positive = rule.positive;
+  data.design = design_of(protocol, rule, data.trials);
+  data.scored =
+      protocol.task.kind != protocol::TaskKind::single_interval || !protocol.task.correct_answer.empty();
+  set_level_words(level, data);
   data.alternatives = protocol.task.kind == protocol::TaskKind::oddity ? 3 : 2;
   choose_function(protocol, data);
   data.prior = prior_of(protocol, data);
-  for (const auto& choice : protocol.task.choices) data.choices.push_back(label_of(choice, language));
+  for (const auto& choice : protocol.task.choices) data.choices.push_back(choice.id);
+  data.conditions = conditions(protocol);
+  data.show = protocol.analysis.show;
   data.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};
+  add_staircases(counted, protocol, data);
 }
 
 }  // namespace turnpoint::app

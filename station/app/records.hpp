@@ -9,9 +9,9 @@
 namespace turnpoint::app {
 
 /// Fills in a session's trials, of each block the last attempt, and what decides how they are analysed:
-/// design, function, scale, labels in `language`, exclusion of response times. Stored and rehearsed sessions
-/// go the same way.
+/// design, conditions, function, scale, ids of the answers, what is shown, exclusion of response times.
+/// Stored and rehearsed sessions go the same way.
 void add_trials(const std::vector<store::BlockRecord>& blocks, const protocol::Protocol& protocol,
-                const std::string& language, report::SessionData& data);
+                report::SessionData& data);
 
 }  // namespace turnpoint::app

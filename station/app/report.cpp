@@ -73,7 +73,7 @@ report::SessionData report_data(const std::string& database, const std::string& 
                 {"Station", start.station_id},
                 {"Seed", std::to_string(start.seed)}};
   for (const auto& note : stored.session.annotations) data.facts.emplace_back("Note", note);
-  add_trials(stored.blocks, protocol, start.language, data);
+  add_trials(stored.blocks, protocol, data);
   data.seed = start.seed;
   add_health(stored, data);
   return data;

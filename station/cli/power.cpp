@@ -41,9 +41,13 @@ Json to_json(const app::Recovery& recovery) {
           {"truth", json_number(recovery.truth)},
           {"sessions", recovery.sessions},
           {"estimated", recovery.estimates.size()},
-          {"mean", json_number(recovery.mean)},
+          {"heavy_tailed", recovery.heavy_tailed},
+          {"mean", recovery.heavy_tailed ? Json(nullptr) : json_number(recovery.mean)},
+          {"sd", recovery.heavy_tailed ? Json(nullptr) : json_number(recovery.sd)},
+          {"median", json_number(recovery.median)},
+          {"lower_quartile", json_number(recovery.lower_quartile)},
+          {"upper_quartile", json_number(recovery.upper_quartile)},
           {"bias", json_number(recovery.bias)},
-          {"sd", json_number(recovery.sd)},
           {"coverage", coverage},
           {"interval_width", json_number(recovery.interval_width)}};
 }
@@ -76,26 +80,34 @@ Json to_json(const app::Power& power, const std::vector<protocol::CueReport>& cu
           {"files", files}};
 }
 
-std::string shown(const std::optional<double>& value) { return value ? number(*value, 3) : "n/a"; }
-
 void print(std::ostream& out, const app::Power& power) {
   fmt::print(out, "{} simulated sessions, each {} trials and {} minutes on the mean{}\n", power.observers,
              number(power.trials, 4), number(power.minutes, 3),
              power.accuracy ? fmt::format(", {} % right", number(100 * *power.accuracy, 3)) : "");
-  fmt::print(out, "{:<22} {:<26} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  {}\n", "source", "number", "truth",
-             "mean", "bias", "SD", "width", "coverage", "sessions");
+  constexpr auto line = "{:<22} {:<34} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20} {:>9} {:>9}  {}\n";
+  fmt::print(out, line, "source", "number", "truth", "mean", "bias", "SD", "median", "quartiles", "width",
+             "coverage", "sessions");
   for (const auto& r : power.recoveries) {
-    const auto name = r.unit.empty() ? r.parameter : r.parameter + " (" + r.unit + ")";
-    const auto coverage = r.coverage ? fmt::format("{:.3f}", r.coverage->value) : "n/a";
-    fmt::print(out, "{:<22} {:<26} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}  {} of {}\n", r.source, name,
-               shown(r.truth), number(r.mean, 3), shown(r.bias), number(r.sd, 3), shown(r.interval_width),
-               coverage, r.estimates.size(), r.sessions);
+    // Digits are those that the spread between sessions leaves.
+    const double spread = r.upper_quartile - r.lower_quartile;
+    const auto shown = [spread](const std::optional<double>& value) {
+      return value ? text::estimated(*value, spread) : std::string("n/a");
+    };
+    const auto moment = [&](double value) { return r.heavy_tailed ? std::string("-") : shown(value); };
+    const auto quartiles = shown(r.lower_quartile) + " to " + shown(r.upper_quartile);
+    fmt::print(out, line, r.source, fmt::format("{} ({})", r.parameter, r.unit.empty() ? "no unit" : r.unit),
+               shown(r.truth), moment(r.mean), shown(r.bias), moment(r.sd), shown(r.median), quartiles,
+               shown(r.interval_width), r.coverage ? fmt::format("{:.3f}", r.coverage->value) : "n/a",
+               fmt::format("{} of {}", r.estimates.size(), r.sessions));
   }
-  fmt::print(
-      out,
-      "Width and coverage: of the 95 % intervals of the first {} sessions; of all sessions where intervals "
-      "are of a posterior\n",
-      power.interval_sessions);
+  fmt::print(out,
+             "Truth: what the observer was made with. Bias: mean - truth; of slopes and spreads, whose "
+             "distribution has a long tail, median - truth\n");
+  fmt::print(out,
+             "Width (median) and coverage: of the 95 % intervals of the first {} sessions; of all sessions "
+             "where intervals "
+             "are of a posterior\n",
+             power.interval_sessions);
 }
 
 void print(std::ostream& out, const std::vector<protocol::CueReport>& cues) {

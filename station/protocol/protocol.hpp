@@ -190,9 +190,9 @@ struct Instruction {
 };
 
 struct Analysis {
-  std::string by;
+  std::vector<std::string> by;  ///< factors with levels: each combination of them is analysed by itself
   std::optional<Linear> difficulty;
-  std::vector<std::string> show;
+  std::optional<std::vector<std::string>> show;  ///< none: all that suits the task
   double exclude_below_s = 0;
   std::optional<double> exclude_mad;
 };

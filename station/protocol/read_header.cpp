@@ -120,32 +120,6 @@ void read_factors(TableReader& file, Reading& reading) {
   }
 }
 
-void read_analysis(TableReader& file, Reading& reading) {
-  const auto* table = file.maybe_table("analysis");
-  if (!table) return;
-  TableReader reader(*table, "analysis", reading.findings);
-  auto& analysis = reading.protocol.analysis;
-  analysis.by = reader.maybe_string("by").value_or("");
-  const auto& factors = reading.protocol.factors;
-  if (!analysis.by.empty() && !find_factor(factors, analysis.by))
-    reader.problem("by", "unknown factor \"" + analysis.by + "\"", suggestion(analysis.by, names(factors)));
-  if (const auto* difficulty = reader.take("difficulty"))
-    analysis.difficulty = linear_from(*difficulty, "difficulty", {-1e9, 1e9}, factors, reading.findings);
-  analysis.show = reader.maybe_strings("show");
-  const std::vector<std::string> known{"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime", "trace"};
-  for (const auto& word : analysis.show)
-    if (std::find(known.begin(), known.end(), word) == known.end())
-      reader.problem("show", "\"show\" has \"" + word + "\"", suggestion(word, known));
-  if (const auto* exclude = reader.maybe_table("response_time_exclude")) {
-    TableReader inner(*exclude, "analysis.response_time_exclude", reading.findings);
-    analysis.exclude_below_s = inner.number("below_s", {0, 10, Range::Ends::closed, "s"}, 0);
-    analysis.exclude_mad =
-        inner.maybe_number("mad", {0, 100, Range::Ends::open_low, "median absolute deviations"});
-    inner.finish();
-  }
-  reader.finish();
-}
-
 void read_resume(TableReader& file, Reading& reading) {
   static const text::Value empty;
   const auto* table = file.maybe_table("resume");

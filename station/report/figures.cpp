@@ -20,6 +20,7 @@ plot::Points observed(const NamedFit& named, int series, const std::string& name
   points.series = series;
   points.name = name;
   for (const auto& point : named.fit.data) {
+    if (point.level == analysis::kNoise) continue;
     const auto interval = analysis::wilson(point.positive, point.trials);
     points.x.push_back(point.level);
     points.y.push_back(static_cast<double>(point.positive) / point.trials);
@@ -46,6 +47,13 @@ plot::Line curve(const NamedFit& named, int series, const plot::Axis& axis, cons
   return line;
 }
 
+/// The share of "yes" where there was no signal.
+std::optional<double> false_alarms(const NamedFit& named) {
+  for (const auto& point : named.fit.data)
+    if (point.level == analysis::kNoise) return static_cast<double>(point.positive) / point.trials;
+  return std::nullopt;
+}
+
 std::string or_default(const std::string& name, const char* fallback) {
   return name.empty() ? fallback : name;
 }
@@ -55,14 +63,15 @@ std::string or_default(const std::string& name, const char* fallback) {
 std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
   std::vector<double> levels;
   for (const auto& named : summary.fits)
-    for (const auto& point : named.fit.data) levels.push_back(point.level);
+    for (const auto& point : named.fit.data)
+      if (point.level != analysis::kNoise) levels.push_back(point.level);
   if (levels.empty()) return std::nullopt;
   const bool logarithmic = summary.data.scale == analysis::Scale::log10;
   plot::Panel panel;
   panel.x = plot::fitted(summary.data.level_label, levels, 0.05,
                          logarithmic ? plot::AxisScale::log10 : plot::AxisScale::linear);
   const bool forced = summary.data.design == Design::forced_choice;
-  panel.y = {"Proportion " + summary.fits.front().positive, forced ? 0.3 : -0.03, 1.03};
+  panel.y = {"Proportion " + summary.fits.front().positive + " (0 to 1)", forced ? 0.3 : -0.03, 1.03};
   if (forced)
     for (const auto& named : summary.fits)
       for (const auto& point : named.fit.data)
@@ -75,6 +84,10 @@ std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
   if (forced)
     panel.layers.push_back(
         plot::Rule{plot::Rule::Direction::horizontal, 1.0 / summary.data.alternatives, "chance"});
+  for (const auto& named : summary.fits)
+    if (const auto noise = false_alarms(named))
+      panel.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, *noise,
+                                        named.name.empty() ? "false alarms" : "false alarms, " + named.name});
   for (std::size_t i = 0; i < summary.fits.size(); ++i) {
     const auto& named = summary.fits[i];
     const int series = static_cast<int>(i);
@@ -112,7 +125,7 @@ std::optional<plot::Figure> trace_figure(const Summary& summary) {
     if (!wrong.x.empty()) right.name = "right", wrong.name = "wrong";
     plot::Panel panel;
     panel.title = or_default(trace.procedure, "all trials");
-    panel.x = plot::fitted("Trial", line.x, 0.03);
+    panel.x = plot::fitted("Trial (number in the session)", line.x, 0.03);
     panel.y = plot::fitted(summary.data.level_label, line.y, 0.1);
     // Shuffled levels joined by a line would only cross: lines are for procedures that move step by step.
     double steps = 0;
@@ -147,8 +160,8 @@ std::optional<plot::Figure> settings_figure(const Summary& summary) {
     auto both = starts.y;
     both.insert(both.end(), ends.y.begin(), ends.y.end());
     plot::Panel panel;
-    panel.title = settings.procedure;
-    panel.x = plot::fitted("Setting", starts.x, 0.03);
+    panel.title = settings.procedure + (settings.condition.empty() ? "" : ", " + settings.condition);
+    panel.x = plot::fitted("Setting (number)", starts.x, 0.03);
     panel.y = plot::fitted(summary.data.level_label, both, 0.1);
     if (settings.mean)
       panel.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, settings.mean->value, "mean"});
@@ -184,7 +197,7 @@ std::optional<plot::Figure> response_time_figure(const Summary& summary) {
     plot::Panel panel;
     panel.title = or_default(entry.instruction, "all trials");
     panel.x = {"Response time (s)", 0, high};
-    panel.y = {"Trials", 0, tallest * 1.12};
+    panel.y = {"Trials (number)", 0, tallest * 1.12};
     panel.layers.push_back(bars[i]);
     if (entry.times)
       panel.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, entry.times->median_s,
@@ -233,7 +246,7 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
   const double lowest = std::min(0.45, *std::min_element(accuracies.begin(), accuracies.end()) - 0.03);
   caf.x = plot::fitted("Response time, mean of bin (s)", caf_times, 0.12);
   cells.x = plot::fitted("Mean correct response time (s)", cell_times, 0.12);
-  caf.y = cells.y = {"Proportion correct", lowest, 1.03};
+  caf.y = cells.y = {"Proportion correct (0 to 1)", lowest, 1.03};
   plot::Figure figure;
   figure.title = "Speed and accuracy";
   figure.columns = 2;

@@ -1,5 +1,7 @@
 #include "station/report/html.hpp"
 
+#include <algorithm>
+
 #include "station/plot/svg.hpp"
 #include "station/report/figures.hpp"
 #include "station/text/number.hpp"
@@ -32,14 +34,17 @@ std::string minus(std::string text) {
 
 std::string number(double value, int digits = 3) { return minus(text::number(value, digits)); }
 
-std::string with(const Interval& interval, int digits = 3) {
-  return " <span class=\"soft\">[" + number(interval.low, digits) + ", " + number(interval.high, digits) +
+/// The value and its interval, both to the digits that the interval leaves them.
+std::string estimated(double value, const Interval& interval) {
+  const double error = text::uncertainty(value, interval.low, interval.high);
+  const auto shown = [error](double number) { return minus(text::estimated(number, error)); };
+  return shown(value) + " <span class=\"soft\">[" + shown(interval.low) + ", " + shown(interval.high) +
          "]</span>";
 }
 
-std::string cell(const std::optional<Estimate>& estimate, int digits = 3) {
+std::string cell(const std::optional<Estimate>& estimate) {
   if (!estimate) return "<td class=\"n soft\">not estimated</td>";
-  return "<td class=\"n\">" + number(estimate->value, digits) + with(estimate->interval, digits) + "</td>";
+  return "<td class=\"n\">" + estimated(estimate->value, estimate->interval) + "</td>";
 }
 
 std::string notes(const std::vector<analysis::Statement>& statements) {
@@ -61,14 +66,33 @@ std::string facts(const std::vector<Fact>& list) {
 
 std::string row(const std::string& name, double value,
                 const std::optional<analysis::ParameterInterval>& interval, bool limited = false) {
+  const double error =
+      interval ? text::uncertainty(value, interval->interval.low, interval->interval.high) : 0;
+  const auto shown = [error](double number) { return minus(text::estimated(number, error)); };
   std::string html = "<tr><td>" + escaped(name) + "</td><td class=\"n\">";
-  html += limited ? "<span class=\"soft\">only limited</span>" : number(value, 4);
+  html += limited ? "<span class=\"soft\">only limited</span>" : shown(value);
   if (interval) {
     html += " <span class=\"soft\">[" + std::string(interval->touches_low ? "\u2264 " : "") +
-            number(interval->interval.low) + ", " + (interval->touches_high ? "\u2265 " : "") +
-            number(interval->interval.high) + "]</span>";
+            shown(interval->interval.low) + ", " + (interval->touches_high ? "\u2265 " : "") +
+            shown(interval->interval.high) + "]</span>";
   }
   return html + "</td></tr>";
+}
+
+std::string in_unit(const std::string& name, const SessionData& data) {
+  return name + " (" + (data.level_unit.empty() ? "no unit" : data.level_unit) + ")";
+}
+
+std::string slope_name(const NamedFit& named, const SessionData& data) {
+  switch (named.fit.options.function) {
+    case analysis::Function::normal:
+      return in_unit("Spread, standard deviation", data);
+    case analysis::Function::logistic:
+      return data.level_unit.empty() ? "Slope (no unit)" : "Slope (1/" + data.level_unit + ")";
+    case analysis::Function::weibull:
+      break;
+  }
+  return "Slope (exponent, no unit)";
 }
 
 std::string fit_table(const NamedFit& named, const SessionData& data) {
@@ -79,14 +103,17 @@ std::string fit_table(const NamedFit& named, const SessionData& data) {
     const auto& found = named.intervals;
     const bool posterior = found.method == analysis::IntervalMethod::posterior;
     const bool two_sided = data.design == Design::two_sided;
-    const bool spread = named.fit.options.function == analysis::Function::normal;
-    html += "<table>" + row(two_sided ? "PSE" : "Threshold", p.threshold, found.threshold);
-    html += row(spread ? "Spread (SD)" : "Slope", p.slope, found.slope, !slope_estimated(named));
-    if (found.level_75 && !two_sided) html += row("75 % point", *found.level_75, found.interval_75);
-    html += row("Lapse rate", p.lapse, found.lapse);
-    if (found.guess) html += row("Guess rate", p.guess, found.guess);
-    if (!posterior) html += row("Deviance", named.fit.deviance, std::nullopt);
-    if (found.deviance_p) html += row("Share of replicates that fit worse", *found.deviance_p, std::nullopt);
+    html += "<table>" + row(in_unit(two_sided ? "PSE" : "Threshold", data), p.threshold, found.threshold);
+    html += row(slope_name(named, data), p.slope, found.slope, !slope_estimated(named));
+    if (found.level_75 && !two_sided)
+      html += row(in_unit("75 % point", data), *found.level_75, found.interval_75);
+    html += row("Lapse rate (proportion)", p.lapse, found.lapse);
+    if (found.guess)
+      html += row(has_noise(data.design) ? "False alarms (proportion)" : "Guess rate (proportion)", p.guess,
+                  found.guess);
+    if (!posterior) html += row("Deviance (no unit)", named.fit.deviance, std::nullopt);
+    if (found.deviance_p)
+      html += row("Replicates that fit worse (proportion)", *found.deviance_p, std::nullopt);
     html += "</table>\n";
   }
   if (const auto text = describe_intervals(named, data); !text.empty())
@@ -98,63 +125,111 @@ std::string settings_section(const Summary& summary) {
   std::string html = "<h2>Settings</h2>\n" + picture(settings_figure(summary));
   if (summary.settings.empty()) return html + "<p class=\"note\">Nothing was set in this session.</p>\n";
   for (const auto& settings : summary.settings) {
-    html += "<table><tr><th>" + escaped(settings.procedure) + "</th><td class=\"n\">" +
+    const auto name = settings.procedure + (settings.condition.empty() ? "" : ", " + settings.condition);
+    html += "<table><tr><th>" + escaped(name) + "</th><td class=\"n\">" +
             std::to_string(settings.values.size()) + " settings</td></tr>";
-    html += "<tr><td>Mean (point of subjective equality)</td>" + cell(settings.mean) + "</tr>";
-    html += "<tr><td>Scatter (SD)</td>" + cell(settings.sd) + "</tr>";
-    html += "<tr><td>Share of the start that remains</td>" + cell(settings.start_slope, 2) +
+    html += "<tr><td>" + escaped(in_unit("Mean, point of subjective equality", summary.data)) + "</td>" +
+            cell(settings.mean) + "</tr>";
+    html += "<tr><td>" + escaped(in_unit("Scatter, standard deviation", summary.data)) + "</td>" +
+            cell(settings.sd) + "</tr>";
+    html += "<tr><td>Share of the start that remains (proportion)</td>" + cell(settings.start_slope) +
             "</tr></table>\n" + notes(settings.statements);
   }
   return html + "<p class=\"soft\">95 % intervals: Student's t, chi squared.</p>\n";
 }
 
-std::string instruction_table(const analysis::Trade& trade) {
-  std::string head = "<tr><th></th>";
-  for (const auto& entry : trade.instructions)
-    head += "<th>" + escaped(entry.instruction.empty() ? "all trials" : entry.instruction) + "</th>";
-  const bool pair = trade.differences.size() > 0;
-  if (pair)
-    head += "<th>" + escaped(trade.instructions[1].instruction) + " \u2212 " +
-            escaped(trade.instructions[0].instruction) + "</th>";
-  std::string html = "<table>" + head + "</tr>";
-  const auto line = [&](const char* name, auto member, int difference) {
-    html += std::string("<tr><th>") + name + "</th>";
-    for (const auto& entry : trade.instructions) html += cell(entry.*member);
-    if (pair) html += cell(trade.differences[static_cast<std::size_t>(difference)].estimate);
+std::string name_of(const std::string& condition) { return condition.empty() ? "all trials" : condition; }
+
+/// A measure of the trade: its row of the table, and which part of the report has it.
+struct MeasureRow {
+  const char *title, *measure, *part;
+  std::optional<Estimate> analysis::InstructionResult::*value;
+};
+using Result = analysis::InstructionResult;
+constexpr MeasureRow kRows[] = {
+    {"Proportion correct (0 to 1)", "proportion correct", "", &Result::proportion_correct},
+    {"Median response time (s)", "median response time", "", &Result::median_s},
+    {"EZ boundary a (for s = 0.1)", "boundary", "ez", &Result::boundary},
+    {"EZ time outside the decision Ter (s)", "time outside the decision", "ez", &Result::nondecision_s},
+    {"LISAS (s)", "LISAS", "lisas", &Result::lisas_s},
+    {"Inverse efficiency (s)", "inverse efficiency", "ies", &Result::inverse_efficiency_s},
+    {"BIS (standard deviations over cells)", "BIS", "bis", &Result::balanced}};
+
+bool has(const MeasureRow& row, const Summary& summary) {
+  if (*row.part == '\0') return true;
+  const bool several = summary.trade.instructions.size() > 1;
+  return shows(summary.data, row.part) && (several || std::string(row.part) != "bis");
+}
+
+std::string instruction_table(const Summary& summary) {
+  const auto& trade = summary.trade;
+  std::string html = "<table><tr><th></th>";
+  for (const auto& entry : trade.instructions) html += "<th>" + escaped(name_of(entry.instruction)) + "</th>";
+  html += "</tr>";
+  for (const auto& row : kRows) {
+    if (!has(row, summary)) continue;
+    html += std::string("<tr><th>") + row.title + "</th>";
+    for (const auto& entry : trade.instructions) html += cell(entry.*row.value);
     html += "</tr>";
-  };
-  using Result = analysis::InstructionResult;
-  line("Proportion correct", &Result::proportion_correct, 0);
-  line("Median response time (s)", &Result::median_s, 1);
-  line("EZ boundary a (s = 0.1)", &Result::boundary, 2);
-  line("EZ time outside the decision Ter (s)", &Result::nondecision_s, 3);
-  line("LISAS (s)", &Result::lisas_s, 4);
-  line("Inverse efficiency (s)", &Result::inverse_efficiency_s, 5);
-  line("BIS (SD over cells)", &Result::balanced, 6);
+  }
   html += "<tr><th>Trials presented / timed out / excluded</th>";
   for (const auto& entry : trade.instructions)
     html += "<td class=\"n\">" + std::to_string(entry.presented) + " / " + std::to_string(entry.timeouts) +
             " / " + std::to_string(entry.excluded) + "</td>";
-  return html + (pair ? "<td></td>" : "") + "</tr></table>\n";
+  return html + "</tr></table>\n";
+}
+
+/// A column for each pair of conditions.
+std::string difference_table(const Summary& summary) {
+  const auto& differences = summary.trade.differences;
+  if (differences.empty()) return "";
+  std::vector<std::string> pairs;
+  const auto pair_of = [](const analysis::Difference& difference) {
+    return name_of(difference.second) + " \u2212 " + name_of(difference.first);
+  };
+  for (const auto& difference : differences)
+    if (std::find(pairs.begin(), pairs.end(), pair_of(difference)) == pairs.end())
+      pairs.push_back(pair_of(difference));
+  std::string html = "<table><tr><th>Difference</th>";
+  for (const auto& pair : pairs) html += "<th>" + escaped(pair) + "</th>";
+  html += "</tr>";
+  for (const auto& row : kRows) {
+    if (!has(row, summary)) continue;
+    html += std::string("<tr><th>") + row.title + "</th>";
+    for (const auto& pair : pairs)
+      for (const auto& difference : differences)
+        if (difference.measure == row.measure && pair_of(difference) == pair)
+          html += cell(difference.estimate);
+    html += "</tr>";
+  }
+  return html + "</table>\n";
+}
+
+std::string difficulty_table(const Summary& summary) {
+  const bool drift = shows(summary.data, "ez");
+  std::string html =
+      "<table><tr><th>Condition</th><th>Difficulty (as <code>difficulty</code> or the size of the "
+      "level)</th><th>Correct (trials, proportion)</th><th>Mean correct (s)</th>";
+  html += std::string(drift ? "<th>Drift v (1/s, for s = 0.1)</th>" : "") + "</tr>";
+  for (const auto& entry : summary.trade.instructions)
+    for (const auto& part : entry.cells) {
+      html += "<tr><td>" + escaped(name_of(entry.instruction)) + "</td><td class=\"n\">" +
+              number(part.difficulty, 4) + "</td><td class=\"n\">" + std::to_string(part.correct) + " / " +
+              std::to_string(part.answered) + ", " + estimated(part.proportion_correct, part.accuracy) +
+              "</td><td class=\"n\">" + (part.mean_correct_s ? number(*part.mean_correct_s) : "none") +
+              "</td>";
+      if (drift) html += "<td class=\"n\">" + (part.drift ? number(*part.drift) : "not estimated") + "</td>";
+      html += "</tr>";
+    }
+  return html + "</table>\n";
 }
 
 std::string trade_section(const Summary& summary) {
-  if (summary.trade.instructions.empty()) return "";
-  const bool two = summary.trade.instructions.size() > 1;
-  std::string html = two ? "<h2>Speed and accuracy: the trade</h2>\n" : "<h2>Speed and accuracy</h2>\n";
-  html += instruction_table(summary.trade) + picture(trade_figure(summary)) +
-          picture(response_time_figure(summary));
-  html +=
-      "<table><tr><th>Instruction</th><th>Difficulty</th><th>Correct</th><th>Mean correct (s)</th>"
-      "<th>Drift v</th></tr>";
-  for (const auto& entry : summary.trade.instructions)
-    for (const auto& part : entry.cells)
-      html += "<tr><td>" + escaped(entry.instruction) + "</td><td class=\"n\">" + number(part.difficulty, 4) +
-              "</td><td class=\"n\">" + std::to_string(part.correct) + " / " + std::to_string(part.answered) +
-              with(part.accuracy) + "</td><td class=\"n\">" +
-              (part.mean_correct_s ? number(*part.mean_correct_s) : "none") + "</td><td class=\"n\">" +
-              (part.drift ? number(*part.drift) : "not estimated") + "</td></tr>";
-  html += "</table>\n";
+  if (summary.trade.instructions.empty() || !summary.data.scored) return "";
+  const bool several = summary.trade.instructions.size() > 1;
+  std::string html = several ? "<h2>Speed and accuracy: the trade</h2>\n" : "<h2>Speed and accuracy</h2>\n";
+  html += instruction_table(summary) + difference_table(summary) + picture(trade_figure(summary)) +
+          picture(response_time_figure(summary)) + difficulty_table(summary);
   for (const auto& entry : summary.trade.instructions) {
     for (auto statement : entry.statements) {
       if (!entry.instruction.empty()) statement.text = entry.instruction + ": " + statement.text;
@@ -164,9 +239,45 @@ std::string trade_section(const Summary& summary) {
   return html + notes(summary.trade.statements);
 }
 
+std::string detection_section(const Summary& summary) {
+  if (summary.detections.empty()) return "";
+  const auto& data = summary.data;
+  std::string html = "<h2>Sensitivity and criterion</h2>\n<table><tr><th>Condition</th><th>" +
+                     escaped(data.level_label) +
+                     "</th><th>Hits</th><th>False alarms</th><th>d\u2032 (standard deviations)</th>"
+                     "<th>Criterion c (standard deviations)</th></tr>";
+  for (const auto& entry : summary.detections) {
+    const auto& n = entry.counts;
+    html += "<tr><td>" + escaped(name_of(entry.condition)) + "</td><td class=\"n\">" +
+            (entry.level ? number(*entry.level, 4) : "all") + "</td><td class=\"n\">" +
+            std::to_string(n.hits) + " / " + std::to_string(n.hits + n.misses) + "</td><td class=\"n\">" +
+            std::to_string(n.false_alarms) + " / " + std::to_string(n.false_alarms + n.correct_rejections) +
+            "</td>" + cell(entry.d_prime) + cell(entry.criterion) + "</tr>";
+  }
+  const auto yes = static_cast<std::size_t>(data.design == Design::yes_no ? data.positive : 1);
+  const auto answer = yes < data.choices.size() ? data.choices[yes] : "second";
+  return html + "</table>\n<p class=\"soft\">A hit is \u201c" + escaped(answer) +
+         "\u201d where it is right, a false alarm where it is wrong. Log-linear correction; 95 % intervals "
+         "by "
+         "Gourevitch and Galanter. A positive criterion avoids the answer.</p>\n";
+}
+
+std::string staircase_table(const SessionData& data) {
+  if (data.staircases.empty()) return "";
+  std::string html = "<table><tr><th>Staircase</th><th>Block</th><th>" +
+                     escaped(in_unit("Mean of its reversals", data)) + "</th><th>" +
+                     escaped(in_unit("Their standard deviation", data)) + "</th><th>Averaged</th></tr>";
+  for (const auto& stairs : data.staircases)
+    html += "<tr><td>" + escaped(stairs.procedure) + "</td><td>" + escaped(stairs.block) +
+            "</td><td class=\"n\">" + minus(text::estimated(stairs.mean, stairs.sd)) +
+            "</td><td class=\"n\">" + number(stairs.sd, 2) + "</td><td>" + escaped(stairs.basis) +
+            "</td></tr>";
+  return html + "</table>\n";
+}
+
 std::string trend(const std::optional<analysis::Trend>& trend, const char* unit) {
   if (!trend) return "too few trials";
-  return number(trend->per_100_trials, 3) + unit + with(trend->interval) + " per 100 trials";
+  return estimated(trend->per_100_trials, trend->interval) + unit + " per 100 trials";
 }
 
 std::string course_section(const Summary& summary) {
@@ -182,16 +293,17 @@ std::string course_section(const Summary& summary) {
                      " faults (practice left out)");
   if (summary.catch_trials)
     line("Catch trials right", std::to_string(summary.catch_trials->right) + " of " +
-                                   std::to_string(summary.catch_trials->trials) +
-                                   with(summary.catch_trials->interval));
+                                   std::to_string(summary.catch_trials->trials) + ", proportion " +
+                                   estimated(summary.catch_trials->value, summary.catch_trials->interval));
   if (summary.bias && summary.data.choices.size() > 1)
     line("Answered " + escaped("\u201c" + summary.data.choices[1] + "\u201d"),
-         number(100 * summary.bias->share_second) + " %" +
-             with({100 * summary.bias->interval.low, 100 * summary.bias->interval.high, 0.95}) +
+         estimated(100 * summary.bias->share_second,
+                   {100 * summary.bias->interval.low, 100 * summary.bias->interval.high, 0.95}) +
+             " %" +
              (summary.bias->criterion ? ", criterion c = " + number(*summary.bias->criterion, 2) : ""));
   line("Trend of response time", trend(summary.fatigue.response_time_s, " s"));
-  line("Trend of accuracy", trend(summary.fatigue.proportion_correct, ""));
-  html += "</table>\n" + picture(trace_figure(summary));
+  line("Trend of accuracy", trend(summary.fatigue.proportion_correct, " (proportion correct)"));
+  html += "</table>\n" + picture(trace_figure(summary)) + staircase_table(summary.data);
   if (summary.bias) html += notes(summary.bias->statements);
   return html + notes(summary.fatigue.statements);
 }
@@ -209,9 +321,10 @@ std::string to_html(const Summary& summary) {
   if (data.run_mode != "live") html += " <span class=\"mode\">" + escaped(data.run_mode) + "</span>";
   html += "</p>\n" + facts(data.facts);
   if (data.design != Design::adjustment) {
-    html += "<h2>Psychometric function</h2>\n" + picture(psychometric_figure(summary));
+    if (!summary.fits.empty())
+      html += "<h2>Psychometric function</h2>\n" + picture(psychometric_figure(summary));
     for (const auto& named : summary.fits) html += fit_table(named, data);
-    html += trade_section(summary);
+    html += detection_section(summary) + trade_section(summary);
   } else {
     html += settings_section(summary);
   }

@@ -70,7 +70,7 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
   json["replicates"] = named.intervals.replicates;
   json["intervals"] = describe_intervals(named, data);
   json["prior"] = prior_json(named);
-  json["levels"] = Json::array();
+  json["levels"] = Json::array();  // without a number: noise
   for (const auto& point : named.fit.data)
     json["levels"].push_back(
         {{"level", value(point.level)}, {"trials", point.trials}, {"positive", point.positive}});
@@ -123,11 +123,9 @@ Json facts_json(const std::vector<Fact>& facts) {
 
 std::string to_json(const Summary& summary) {
   const auto& data = summary.data;
-  Json json{{"session_id", data.session_id},
-            {"participant", data.participant},
-            {"title", data.title},
-            {"run_mode", data.run_mode},
-            {"status", data.status}};
+  Json json{{"session_id", data.session_id}, {"participant", data.participant}, {"title", data.title},
+            {"run_mode", data.run_mode},     {"status", data.status},           {"level", data.level_label},
+            {"level_unit", data.level_unit}, {"choices", data.choices}};
   json["facts"] = facts_json(data.facts);
   json["station"] = facts_json(data.health);
   const auto& n = summary.outcomes;
@@ -137,6 +135,7 @@ std::string to_json(const Summary& summary) {
   for (const auto& named : summary.fits) json["fits"].push_back(fit_json(named, data));
   for (const auto& settings : summary.settings)
     json["settings"].push_back({{"procedure", settings.procedure},
+                                {"condition", settings.condition},
                                 {"settings", settings.values.size()},
                                 {"mean", value(settings.mean)},
                                 {"sd", value(settings.sd)},
@@ -147,9 +146,28 @@ std::string to_json(const Summary& summary) {
     json["instructions"].push_back(instruction_json(entry));
   json["differences"] = Json::array();
   for (const auto& difference : summary.trade.differences)
-    json["differences"].push_back({{"measure", difference.measure},
+    json["differences"].push_back({{"first", difference.first},
+                                   {"second", difference.second},
+                                   {"measure", difference.measure},
                                    {"unit", difference.unit},
                                    {"estimate", value(difference.estimate)}});
+  json["detection"] = Json::array();
+  for (const auto& entry : summary.detections)
+    json["detection"].push_back({{"condition", entry.condition},
+                                 {"level", value(entry.level)},
+                                 {"hits", entry.counts.hits},
+                                 {"misses", entry.counts.misses},
+                                 {"false_alarms", entry.counts.false_alarms},
+                                 {"correct_rejections", entry.counts.correct_rejections},
+                                 {"d_prime", value(entry.d_prime)},
+                                 {"criterion", value(entry.criterion)}});
+  json["staircases"] = Json::array();
+  for (const auto& stairs : data.staircases)
+    json["staircases"].push_back({{"procedure", stairs.procedure},
+                                  {"block", stairs.block},
+                                  {"mean", value(stairs.mean)},
+                                  {"sd", value(stairs.sd)},
+                                  {"averaged", stairs.basis}});
   json["bias"] = nullptr;
   if (summary.bias)
     json["bias"] = {{"share_second", value(summary.bias->share_second)},

@@ -15,8 +15,19 @@ namespace turnpoint::report {
 enum class Design {
   forced_choice,   ///< correctness rises with the level; guess = 1 / alternatives
   two_sided,       ///< two answers on a signed level: PSE and spread, never scored as forced choice
-  same_different,  ///< "different" rises with the level; its lower asymptote is fitted
+  yes_no,          ///< "yes" rises with the size of the level; trials at 0 are noise
+  same_different,  ///< the same with "different" and pairs that are the same
   adjustment,      ///< no psychometric function
+};
+
+/// Whether some trials have no signal, so that "yes" there is a false alarm.
+inline bool has_noise(Design design) { return design == Design::yes_no || design == Design::same_different; }
+
+/// What a staircase came to; `basis` says which reversals were averaged.
+struct StaircaseResult {
+  std::string block, procedure;
+  double mean = 0, sd = 0;  ///< of the reversals, in the unit of the level
+  std::string basis;
 };
 
 /// A named fact for the head or the health table of a report, already in words.
@@ -32,8 +43,14 @@ struct SessionData {
   int alternatives = 2;
   analysis::Function function = analysis::Function::weibull;
   analysis::Scale scale = analysis::Scale::linear;
-  std::string level_label;           ///< with the unit
-  std::vector<std::string> choices;  ///< labels, in the order of their indices
+  std::string level_label;              ///< with the unit, for an axis: "Contrast (dB)"
+  std::string level_unit;               ///< "" for a level without one
+  std::vector<std::string> choices;     ///< ids, in the order of their indices
+  int positive = 1;                     ///< has_noise(): the choice that means "yes"
+  bool scored = true;                   ///< whether answers are right or wrong
+  std::vector<std::string> conditions;  ///< in the order of a report; TrialRecord::instruction is one of them
+  std::optional<std::vector<std::string>> show;  ///< of the protocol; none: all that suits the design
+  std::vector<StaircaseResult> staircases;
   std::vector<analysis::TrialRecord> trials;
   /// Where the answers chose the levels: intervals are of the posterior under this prior. None: levels were
   /// fixed before the session, and intervals come from bootstraps.
@@ -43,7 +60,8 @@ struct SessionData {
   int replicates = 1000;
 };
 
-/// What stands in the last parentheses of a level's label; "" without any.
-std::string unit_of(const std::string& level_label);
+/// Whether the report has this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime", "trace".
+/// Without a choice of the protocol all but d', which is then for yes/no alone.
+bool shows(const SessionData& data, const std::string& part);
 
 }  // namespace turnpoint::report

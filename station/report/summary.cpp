@@ -14,8 +14,7 @@ using analysis::TrialRecord;
 
 constexpr int kBandPoints = 61;
 
-/// For a signed level, the choice that is right above zero; for same-different, the one right where the
-/// level is largest. Falls back on the second choice.
+/// For a signed level the choice that is right above zero; falls back on the second choice.
 int rising_choice(const std::vector<TrialRecord>& trials) {
   std::map<int, std::pair<double, int>> sums;
   for (const auto& trial : trials) {
@@ -36,13 +35,24 @@ int rising_choice(const std::vector<TrialRecord>& trials) {
   return best;
 }
 
+/// Trials that are noise go below every level.
+std::vector<analysis::LevelCount> count_yes(const std::vector<TrialRecord>& trials, int positive) {
+  auto marked = trials;
+  for (auto& trial : marked)
+    if (trial.right_choice && *trial.right_choice != positive) trial.level = analysis::kNoise;
+  return analysis::count_choice(marked, positive);
+}
+
 analysis::FitOptions options_for(const SessionData& data) {
   analysis::FitOptions options;
   options.function = data.function;
   options.scale = data.scale;
   options.guess_value = 1.0 / std::max(data.alternatives, 2);
   if (data.design == Design::two_sided) options.guess = analysis::Guess::tied_to_lapse;
-  if (data.design == Design::same_different) options.guess = analysis::Guess::fitted;
+  if (has_noise(data.design)) {
+    options.guess = analysis::Guess::fitted;
+    options.guess_high = 0.9;
+  }
   return options;
 }
 
@@ -55,8 +65,9 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
     counts = analysis::count_correct(trials);
     result.positive = "correct";
   } else {
-    const int choice = rising_choice(data.trials);
-    counts = analysis::count_choice(trials, choice);
+    const bool noise = has_noise(data.design);
+    const int choice = noise ? data.positive : rising_choice(data.trials);
+    counts = noise ? count_yes(trials, choice) : analysis::count_choice(trials, choice);
     const auto index = static_cast<std::size_t>(choice);
     result.positive = "\u201c" + (index < data.choices.size() ? data.choices[index] : "second") + "\u201d";
   }
@@ -75,20 +86,44 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
   return result;
 }
 
-/// In the order first met.
-std::vector<std::string> instructions_of(const std::vector<TrialRecord>& trials) {
-  std::vector<std::string> names;
-  for (const auto& trial : trials)
-    if (trial.type == analysis::TrialType::experimental &&
-        std::find(names.begin(), names.end(), trial.instruction) == names.end())
-      names.push_back(trial.instruction);
-  return names;
+/// Takes out what the protocol does not want to see.
+void hide(const SessionData& data, analysis::Trade& trade) {
+  for (auto& entry : trade.instructions) {
+    if (!shows(data, "ez")) {
+      entry.boundary.reset(), entry.nondecision_s.reset();
+      for (auto& cell : entry.cells) cell.drift.reset();
+      std::erase_if(entry.statements, [](const auto& said) { return said.code.starts_with("ez-"); });
+    }
+    if (!shows(data, "lisas")) entry.lisas_s.reset();
+    if (!shows(data, "ies")) entry.inverse_efficiency_s.reset();
+    if (!shows(data, "bis")) entry.balanced.reset();
+    if (!shows(data, "caf")) {
+      entry.caf.clear();
+      std::erase_if(entry.statements, [](const auto& said) { return said.code.starts_with("caf-"); });
+    }
+  }
+  std::erase_if(trade.differences, [&data](const auto& difference) {
+    const auto& name = difference.measure;
+    return ((name == "boundary" || name == "time outside the decision") && !shows(data, "ez")) ||
+           (name == "LISAS" && !shows(data, "lisas")) ||
+           (name == "inverse efficiency" && !shows(data, "ies")) || (name == "BIS" && !shows(data, "bis"));
+  });
+}
+
+std::vector<analysis::Detection> detections_of(const SessionData& data) {
+  if (!data.scored || !shows(data, "dprime")) return {};
+  if (data.design == Design::yes_no)
+    return analysis::detect(data.trials, data.conditions, analysis::Detecting::presence, data.positive);
+  if (data.design == Design::two_sided)
+    return analysis::detect(data.trials, data.conditions, analysis::Detecting::sides,
+                            rising_choice(data.trials));
+  return analysis::detect(data.trials, data.conditions, analysis::Detecting::forced_choice, 1);
 }
 
 }  // namespace
 
 std::vector<NamedFit> fits_of(const SessionData& data) {
-  const auto instructions = instructions_of(data.trials);
+  const auto instructions = analysis::conditions_of(data.trials, data.conditions);
   if (instructions.size() < 2) return {fit_of(data, "", data.trials, 0)};
   std::vector<NamedFit> fits;
   for (const auto& instruction : instructions) {
@@ -123,7 +158,7 @@ std::string describe_intervals(const NamedFit& named, const SessionData& data) {
       std::string(two_sided ? "PSE" : "threshold") + " uniform" +
       (options.scale == analysis::Scale::log10 ? " in its logarithm" : "") + " from " +
       range(prior.threshold_low, prior.threshold_high);
-  if (const auto unit = unit_of(data.level_label); !unit.empty()) text += " " + unit;
+  if (!data.level_unit.empty()) text += " " + data.level_unit;
   text += std::string(options.function == analysis::Function::normal ? "; spread" : "; slope") +
           " uniform in its logarithm from " + range(prior.slope_low, prior.slope_high);
   text += "; lapse rate uniform from " + range(options.lapse_low, options.lapse_high);
@@ -132,29 +167,36 @@ std::string describe_intervals(const NamedFit& named, const SessionData& data) {
   return text + ".";
 }
 
-std::string unit_of(const std::string& level_label) {
-  const auto open = level_label.rfind('('), close = level_label.rfind(')');
-  return open == std::string::npos || close < open ? "" : level_label.substr(open + 1, close - open - 1);
+bool shows(const SessionData& data, const std::string& part) {
+  if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
+  return part != "dprime" || data.design == Design::yes_no;
+}
+
+analysis::TradeOptions trade_options(const SessionData& data) {
+  analysis::TradeOptions options;
+  options.order = data.conditions;
+  options.exclusion = data.exclusion;
+  options.replicates = data.replicates;
+  options.seed = data.seed;
+  return options;
 }
 
 Summary summarise(const SessionData& data) {
   Summary summary;
   summary.data = data;
   summary.outcomes = analysis::count_outcomes(data.trials);
-  summary.traces = analysis::traces(data.trials);
+  if (shows(data, "trace")) summary.traces = analysis::traces(data.trials);
   summary.catch_trials = analysis::catch_accuracy(data.trials);
   summary.fatigue = analysis::fatigue(data.trials);
   if (data.design == Design::adjustment) {
-    summary.settings = analysis::settings(data.trials);
+    summary.settings = analysis::settings(data.trials, data.conditions);
     return summary;
   }
   summary.bias = analysis::choice_bias(data.trials);
-  analysis::TradeOptions options;
-  options.exclusion = data.exclusion;
-  options.replicates = data.replicates;
-  options.seed = data.seed;
-  summary.trade = analysis::trade(data.trials, options);
-  summary.fits = fits_of(data);
+  summary.trade = analysis::trade(data.trials, trade_options(data));
+  hide(data, summary.trade);
+  summary.detections = detections_of(data);
+  if (shows(data, "psychometric")) summary.fits = fits_of(data);
   return summary;
 }
 

@@ -5,12 +5,13 @@
 
 #include "station/analysis/course.hpp"
 #include "station/analysis/settings.hpp"
+#include "station/analysis/signal_detection.hpp"
 #include "station/analysis/trade.hpp"
 #include "station/report/session_data.hpp"
 
 namespace turnpoint::report {
 
-/// One psychometric fit: of all trials, or of an instruction's.
+/// One psychometric fit: of all trials, or of a condition's.
 struct NamedFit {
   std::string name;      ///< "" for all
   std::string positive;  ///< what the curve is the probability of
@@ -28,7 +29,8 @@ struct Summary {
   std::optional<analysis::Proportion> catch_trials;
   analysis::Fatigue fatigue;
   analysis::Trade trade;
-  std::vector<analysis::Settings> settings;  ///< of an adjustment, one a procedure
+  std::vector<analysis::Detection> detections;  ///< d' and criterion, where they are shown
+  std::vector<analysis::Settings> settings;     ///< of an adjustment, one for each procedure and condition
 };
 
 /// The psychometric fits alone: of all trials, or of each instruction where there are several. With
@@ -41,7 +43,11 @@ bool slope_estimated(const NamedFit& named);
 /// Which intervals a fit has, and with which prior, in a sentence or two for people.
 std::string describe_intervals(const NamedFit& named, const SessionData& data);
 
-/// Analyses one session: deterministic for its seed, about 0.3 s with 1000 replicates.
+/// How the trade of these data is analysed.
+analysis::TradeOptions trade_options(const SessionData& data);
+
+/// Analyses one session as far as the protocol wants to see it: deterministic for its seed, about 0.3 s with
+/// 1000 replicates.
 Summary summarise(const SessionData& data);
 
 }  // namespace turnpoint::report

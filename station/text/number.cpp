@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -21,6 +22,21 @@ std::string number(double value, int digits) {
     if (text.back() == '.') text.pop_back();
   }
   return text == "-0" ? "0" : text;
+}
+
+std::string estimated(double value, double uncertainty) {
+  constexpr int most_decimals = 9;
+  if (!std::isfinite(value) || !std::isfinite(uncertainty) || !(uncertainty > 0)) return number(value, 3);
+  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(uncertainty))));
+  if (decimals > most_decimals || std::fabs(value) >= 1e9) return number(value, 3);
+  auto text = fmt::format("{:.{}f}", value, decimals);
+  if (text.find_first_of("123456789") == std::string::npos && text[0] == '-') text.erase(0, 1);
+  return text;
+}
+
+double uncertainty(double value, double low, double high) {
+  const double nearer = std::min(value - low, high - value);
+  return nearer > 0 ? nearer / 2 : (high - low) / 4;
 }
 
 std::string exact(double value) {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "station/analysis/psychometric_fit.hpp"
+#include "station/analysis/psychometric_posterior.hpp"
 #include "station/random/draws.hpp"
 #include "tests/support/catch.hpp"
 
@@ -258,4 +259,35 @@ TEST_CASE("Bootstrap intervals cover the truth about as often as they say", "[an
     CHECK(slope >= 0.90 * sessions);
     CHECK(narrow < 0.85 * sessions);  // an interval of half the width would be seen
   }
+}
+
+TEST_CASE("trials without a signal fix the rate of false alarms", "[analysis]") {
+  // Expected counts of P = .2 + .78 (1 - exp(-(x/4)^2)): the fit gives the parameters back.
+  FitOptions options;
+  options.scale = Scale::log10;
+  options.guess = Guess::fitted;
+  options.guess_high = 0.9;
+  const int n = 100'000;
+  std::vector<LevelCount> data{{kNoise, n, 20'000}};
+  for (const double level : {1.0, 2.0, 4.0, 8.0, 16.0})
+    data.push_back(
+        {level, n, static_cast<int>(std::lround(n * (0.2 + 0.78 * (1 - std::exp(-level * level / 16)))))});
+  const auto fit = fit_psychometric(data, options);
+  REQUIRE(fit.parameters);
+  CHECK(fit.parameters->threshold == Approx(4).epsilon(1e-3));
+  CHECK(fit.parameters->slope == Approx(2).epsilon(3e-3));
+  CHECK(fit.parameters->guess == Approx(0.2).margin(1e-3));
+  CHECK(fit.parameters->lapse == Approx(0.02).margin(1e-3));
+  // Noise tells: few signals near it, and the asymptote still stands.
+  for (auto& point : data) point.trials /= 1000, point.positive /= 1000;
+  data[0] = {kNoise, 400, 160};
+  const auto found = bootstrap(fit_psychometric(data, options), {100, 0.95, 1, 0, 5});
+  REQUIRE(found.guess);
+  CHECK(found.guess->interval.low > 0.3);
+  CHECK(found.guess->interval.high < 0.5);
+  CHECK(found.band_level.front() > 0.5);  // a band has no place for noise
+  const auto posterior = fit_posterior(data, options, {0.5, 30, 0.3, 10}, 5);
+  REQUIRE(posterior.intervals.guess);
+  CHECK(posterior.intervals.guess->interval.low > 0.3);
+  CHECK(posterior.intervals.guess->interval.high < 0.5);
 }

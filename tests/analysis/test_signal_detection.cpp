@@ -2,6 +2,7 @@
 
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/signal_detection.hpp"
+#include "station/observer/observer.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::analysis;
@@ -75,4 +76,116 @@ TEST_CASE("The normal quantile inverts the distribution function", "[analysis]")
   for (const double z : {-6.0, -2.0, -0.1, 0.0, 1.0, 5.0})
     CHECK(normal_quantile(normal_cdf(z)) == Approx(z).margin(1e-9));
   CHECK_THROWS_AS(normal_quantile(0), std::invalid_argument);
+}
+
+namespace {
+
+/// Yes/no by an observer with a criterion, half of the trials noise; ratings where there are more answers.
+std::vector<TrialRecord> yes_no_session(const turnpoint::observer::Observer& observer, int answers,
+                                        int trials, int run) {
+  using namespace turnpoint;
+  std::vector<TrialRecord> session;
+  for (int i = 0; i < trials; ++i) {
+    observer::Question question;
+    question.decides = observer::Decides::presence;
+    question.answers = answers;
+    question.level = i % 2 == 0 ? 0 : i % 4 == 1 ? 3 : 6;
+    question.key = {9, random::Stream::observer, run, 0, i};
+    TrialRecord trial;
+    trial.level = question.level;
+    trial.right_choice = question.level > 0;
+    trial.response = observer.answer(question).choice;
+    session.push_back(trial);
+  }
+  return session;
+}
+
+bool holds(const std::optional<Estimate>& estimate, double value) {
+  return estimate && estimate->interval.low <= value && value <= estimate->interval.high;
+}
+
+}  // namespace
+
+TEST_CASE("d' and criterion of a yes/no observer are recovered inside their intervals", "[analysis]") {
+  // d' is 1.349 at 3 and twice that at 6; c is the criterion less half of d'.
+  const turnpoint::observer::Observer observer(
+      turnpoint::observer::parse("sim:threshold=3,lapse=0,criterion=0.9"));
+  const int sessions = 400;
+  int weak = 0, strong = 0, criterion = 0;
+  double sum = 0;
+  for (int run = 0; run < sessions; ++run) {
+    const auto found = detect(yes_no_session(observer, 2, 400, run), {}, Detecting::presence, 1);
+    REQUIRE(found.size() == 3);
+    CHECK(*found[0].level == 3);
+    CHECK(found[0].counts.false_alarms + found[0].counts.correct_rejections == 200);
+    CHECK_FALSE(found[2].level);
+    weak += holds(found[0].d_prime, 1.34898);
+    strong += holds(found[1].d_prime, 2.69796);
+    criterion += holds(found[0].criterion, 0.9 - 1.34898 / 2);
+    sum += found[0].d_prime->value;
+  }
+  INFO("of " << sessions << ": " << weak << ", " << strong << ", " << criterion);
+  for (const int count : {weak, strong, criterion}) {
+    CHECK(count >= 0.92 * sessions);
+    CHECK(count < sessions);
+  }
+  CHECK(sum / sessions == Approx(1.349).margin(0.03));
+}
+
+TEST_CASE("d' of sides and of forced choice follow their definitions", "[analysis]") {
+  std::vector<TrialRecord> trials;
+  const auto add = [&trials](double level, int right, int response, int times) {
+    for (int i = 0; i < times; ++i) {
+      TrialRecord trial;
+      trial.level = level, trial.right_choice = right, trial.response = response;
+      trials.push_back(trial);
+    }
+  };
+  add(5, 1, 1, 80), add(5, 1, 0, 20), add(-5, 0, 1, 40), add(-5, 0, 0, 60);
+  const auto sides = detect(trials, {}, Detecting::sides, 1);
+  REQUIRE(sides.size() == 2);
+  CHECK(*sides[0].level == 5);
+  const auto direct = *yes_no({80, 20, 40, 60});
+  CHECK(sides[0].d_prime->value == direct.d_prime);
+  CHECK(sides[0].criterion->value == direct.criterion);
+  for (auto& trial : trials) trial.level = -12;
+  const auto forced = detect(trials, {}, Detecting::forced_choice, 1);
+  CHECK(*forced[0].level == -12);
+  CHECK(forced[0].d_prime->value == Approx(direct.d_prime / std::sqrt(2.0)));
+  trials.resize(100);  // nothing but signals
+  CHECK_FALSE(detect(trials, {}, Detecting::forced_choice, 1)[0].d_prime);
+}
+
+TEST_CASE("the ROC of ratings has the area that d' gives, and its interval holds it", "[analysis]") {
+  const auto example = roc({30, 15, 5}, {5, 15, 30});
+  REQUIRE(example);
+  REQUIRE(example->points.size() == 4);
+  CHECK(example->points[1].hits == Approx(0.6));
+  CHECK(example->points[1].false_alarms == Approx(0.1));
+  // Mann and Whitney's count of pairs by hand: (30 (15 + 30 + 5/2) + 15 (30 + 15/2) + 5 (30/2)) / 2500.
+  CHECK(example->area.value == Approx((30 * 47.5 + 15 * 37.5 + 5 * 15) / 2500.0));
+  const turnpoint::observer::Observer observer(turnpoint::observer::parse("sim:threshold=3,lapse=0"));
+  int held = 0;
+  const int sessions = 200;
+  double expected = 0, below = 0;  // under six ratings
+  turnpoint::observer::Question question;
+  question.decides = turnpoint::observer::Decides::presence, question.answers = 6;
+  for (int rating = 0; rating < 6; ++rating) {
+    question.level = 0;
+    const double noise = observer.share(question, rating);
+    question.level = 3;
+    expected += observer.share(question, rating) * (below + noise / 2), below += noise;
+  }
+  for (int run = 0; run < sessions; ++run) {
+    std::vector<int> noise(6), signal(6);
+    for (const auto& trial : yes_no_session(observer, 6, 400, run))
+      if (*trial.level != 6)
+        ++(*trial.level == 0 ? noise : signal)[static_cast<std::size_t>(*trial.response)];
+    held += holds(roc(noise, signal)->area, expected);
+  }
+  CHECK(held >= 0.91 * sessions);
+  CHECK(held < sessions);
+  CHECK_FALSE(roc({0, 0}, {1, 2}));
+  CHECK_THROWS_AS(roc({1}, {1}), std::invalid_argument);
+  CHECK_THROWS_AS(roc({1, 2}, {1, -2}), std::invalid_argument);
 }

@@ -238,3 +238,44 @@ TEST_CASE("A session of timeouts or of five trials yields statements only", "[an
   CHECK(says(few.instructions[0].statements, "ez-too-few"));
   CHECK(trade({}, options).instructions.empty());
 }
+
+TEST_CASE("Differences are of all pairs, in an order that does not depend on what came first", "[analysis]") {
+  const auto measured = [](bool turned) {
+    auto trials = session(0.08, 0.14, 30, 3);
+    auto other = session(0.11, 0.11, 30, 4);
+    for (auto& trial : other) trial.instruction = "middle";
+    trials.insert(turned ? trials.begin() : trials.end(), other.begin(), other.end());
+    TradeOptions options;
+    options.replicates = 40;
+    options.order = {"accuracy", "middle", "speed"};
+    return trade(trials, options);
+  };
+  const auto one = measured(false), two = measured(true);
+  REQUIRE(one.instructions.size() == 3);
+  CHECK(one.instructions[0].instruction == "accuracy");
+  REQUIRE(one.differences.size() == 3 * 7);
+  REQUIRE(two.differences.size() == one.differences.size());
+  for (std::size_t i = 0; i < one.differences.size(); ++i) {
+    const auto &a = one.differences[i], &b = two.differences[i];
+    CHECK((a.first == b.first && a.second == b.second && a.measure == b.measure));
+    CHECK(!a.unit.empty());
+    REQUIRE(a.estimate.has_value() == b.estimate.has_value());
+    if (a.estimate) CHECK(a.estimate->value == b.estimate->value);
+  }
+  CHECK(one.differences[14].first == "middle");
+  CHECK(one.differences[14].second == "speed");
+  CHECK(one.differences[0].estimate->value == Approx(one.instructions[1].proportion_correct->value -
+                                                     one.instructions[0].proportion_correct->value));
+}
+
+TEST_CASE("A single condition has no BIS", "[analysis]") {
+  auto trials = session(0.1, 0.1, 40, 6);
+  TradeOptions options;
+  options.replicates = 40;
+  CHECK(trade(trials, options).instructions[0].balanced);
+  for (auto& trial : trials) trial.instruction = "";
+  const auto alone = trade(trials, options);
+  REQUIRE(alone.instructions.size() == 1);
+  CHECK(alone.instructions[0].boundary);
+  CHECK_FALSE(alone.instructions[0].balanced);
+}

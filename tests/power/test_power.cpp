@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <filesystem>
@@ -99,14 +100,54 @@ TEST_CASE("a staircase's truth is where its rule balances, a posterior's where i
   CHECK(observer.share(question, 0) == Approx(1 - 0.5 * std::exp(-1.0)).margin(1e-6));
 }
 
-TEST_CASE("speed and accuracy instructions differ by what all sessions together say", "[power]") {
+TEST_CASE("truths are the values that the observer was made with, never estimates", "[power]") {
   const auto power = app::power(shipped("speed-accuracy"), options("sim:threshold=0.15", 6, 6));
-  const auto& right = find(power, "speed - accuracy", "proportion correct");
-  CHECK(right.mean < 0);  // hurry costs accuracy
-  CHECK(find(power, "speed - accuracy", "median response time").mean < 0);
+  const auto& right = find(power, "accuracy - speed", "proportion correct");
+  CHECK(right.mean > 0);  // hurry costs accuracy
+  CHECK(find(power, "accuracy - speed", "median response time").mean > 0);
   REQUIRE((right.truth && right.coverage && right.interval_width));
   CHECK(right.coverage->trials == static_cast<int>(right.estimates.size()));
   CHECK(std::fabs(*right.bias) < 2 * *right.interval_width);
+  // With 0.8 s the bound is the root of 0.35 of the 0.3 s that residual and travel leave; EZ's a is 0.2 of
+  // it.
+  const double hurried = std::sqrt(0.35 * 0.3), careful = std::sqrt(0.35 * 1.5);
+  CHECK(*find(power, "accuracy - speed", "boundary").truth == Approx(0.2 * (careful - hurried)));
+  CHECK(*find(power, "accuracy - speed", "time outside the decision").truth == 0);
+  CHECK_FALSE(find(power, "accuracy - speed", "LISAS").truth);
+  auto again = options("sim:threshold=0.15", 6, 6);
+  again.seed = 1000;
+  const auto other = app::power(shipped("speed-accuracy"), again);
+  CHECK(other.recoveries.size() == power.recoveries.size());
+  for (const auto& recovery : other.recoveries)
+    if (recovery.parameter != "proportion correct")  // of the trials presented, after timeouts others
+      CHECK(recovery.truth == find(power, recovery.source, recovery.parameter).truth);
+}
+
+TEST_CASE("a fit should find the observer's own threshold and slope", "[power]") {
+  const auto power = app::power(shipped("friction-2ifc"), options("sim:threshold=-18,slope=1.3,lapse=0", 3));
+  CHECK(*find(power, "fit", "slope").truth == 1.3);
+  CHECK(*find(power, "fit", "75 % point").truth == Approx(-18));
+  CHECK(*find(power, "fit", "threshold").truth == Approx(-18 + 20 / 1.3 * std::log10(1 / std::log(2.0))));
+  const auto sides = app::power(shipped("boundary-constant"), options("sim:threshold=6,lapse=0.02", 3));
+  CHECK(*find(sides, "fit", "PSE").truth == 0);
+  CHECK(*find(sides, "fit", "spread").truth == Approx(6 / 0.6744897501960817));
+}
+
+TEST_CASE("slopes and spreads have median and quartiles, and their bias is the median's", "[power]") {
+  const auto power = app::power(shipped("boundary-constant"), options("sim:threshold=8", 9));
+  const auto& spread = find(power, "fit", "spread");
+  CHECK(spread.heavy_tailed);
+  auto sorted = spread.estimates;
+  std::sort(sorted.begin(), sorted.end());
+  REQUIRE(sorted.size() == 9);
+  CHECK(spread.median == sorted[4]);
+  CHECK(spread.lower_quartile == sorted[2]);
+  CHECK(spread.upper_quartile == sorted[6]);
+  CHECK(*spread.bias == spread.median - *spread.truth);
+  const auto& pse = find(power, "fit", "PSE");
+  CHECK_FALSE(pse.heavy_tailed);
+  CHECK(*pse.bias == pse.mean - *pse.truth);
+  for (const auto& recovery : power.recoveries) CHECK(!recovery.unit.empty());
 }
 
 TEST_CASE("the number of threads changes nothing", "[power]") {

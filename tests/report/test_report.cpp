@@ -55,6 +55,7 @@ SessionData speed_accuracy(int per_level) {
 SessionData staircase_session() {
   auto data = head();
   data.level_label = "Friction contrast (dB)";
+  data.level_unit = "dB";
   data.choices = {"First", "Second"};
   random::Draws draws({4, random::Stream::observer, 0, 0, 0});
   double level = -10;

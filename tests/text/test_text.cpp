@@ -68,3 +68,15 @@ d = '''é''''
     }
   }
 }
+
+TEST_CASE("an estimate is printed to the digits that its uncertainty leaves", "[text]") {
+  CHECK(estimated(3e-16, 0.9) == "0.00");
+  CHECK(estimated(-1.63e-15, 0.05) == "0.000");
+  CHECK(estimated(-19.64712, 6.3) == "-19.6");
+  CHECK(estimated(0.10283, 0.029) == "0.103");
+  CHECK(estimated(1234.5, 700) == "1234");
+  CHECK(estimated(2.5, 0) == "2.5");
+  CHECK(uncertainty(2, 1, 45) == 0.5);
+  CHECK(uncertainty(0, 0, 0.06) == 0.015);
+  CHECK(estimated(std::numeric_limits<double>::quiet_NaN(), 1) == "none");
+}

@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <set>
+
+#include "station/protocol/expression.hpp"
+#include "station/protocol/reading.hpp"
+
+namespace turnpoint::protocol {
+
+using text::Range;
+using text::TableReader;
+
+namespace {
+
+const std::vector<std::string> kShown{"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime", "trace"};
+
+void read_by(TableReader& reader, Reading& reading) {
+  auto& by = reading.protocol.analysis.by;
+  const auto* value = reader.take("by");
+  if (!value) return;
+  if (value->kind == text::Value::Kind::string)
+    by = {reader.maybe_string("by").value_or("")};
+  else
+    by = reader.maybe_strings("by");
+  const auto& factors = reading.protocol.factors;
+  std::set<std::string> seen;
+  for (const auto& name : by) {
+    const auto* factor = find_factor(factors, name);
+    if (!factor)
+      reader.problem("by", "unknown factor \"" + name + "\"", suggestion(name, names(factors)));
+    else if (factor->levels.empty())
+      reader.problem("by", "the factor \"" + name + "\" has a range, not levels",
+                     "factors with \"levels\": there is one curve for each of them");
+    else if (!seen.insert(name).second)
+      reader.problem("by", "\"" + name + "\" stands twice in \"by\"", "each factor once");
+    for (const auto& spec : reading.protocol.procedures)
+      if (spec.level == name)
+        reader.problem("by", "the procedure \"" + spec.name + "\" sets \"" + name + "\"",
+                       "factors that no procedure sets: a curve needs several levels of what it is over");
+  }
+}
+
+/// Why a value of `show` would have no effect on the report of this protocol; "" where it has one.
+std::string without_effect(const std::string& word, const Protocol& protocol) {
+  const auto& task = protocol.task;
+  if (word == "trace" || task.choices.empty()) return "";  // a task without choices is a problem of its own
+  if (task.kind == TaskKind::adjustment) return "an adjustment has settings, no answers";
+  if (word == "psychometric") return "";
+  if (task.kind == TaskKind::single_interval && task.correct_answer.empty())
+    return "no answer is right or wrong without \"correct\"";
+  if (word == "dprime" && task.kind != TaskKind::single_interval && task.kind != TaskKind::two_interval)
+    return "d' is estimated for \"single-interval\" and \"2ifc\" alone";
+  if (word == "bis" && protocol.analysis.by.empty() && protocol.instructions.size() < 2)
+    return "a single condition has no BIS";
+  return "";
+}
+
+void read_show(TableReader& reader, Reading& reading) {
+  auto& analysis = reading.protocol.analysis;
+  if (!reader.has("show")) {
+    reader.take("show");
+    return;
+  }
+  analysis.show = reader.maybe_strings("show");
+  std::vector<std::string> useful;
+  for (const auto& word : kShown)
+    if (without_effect(word, reading.protocol).empty()) useful.push_back(word);
+  for (const auto& word : *analysis.show) {
+    if (std::find(kShown.begin(), kShown.end(), word) == kShown.end()) {
+      reader.problem("show", "\"show\" has \"" + word + "\"", suggestion(word, kShown));
+      continue;
+    }
+    const auto reason = without_effect(word, reading.protocol);
+    if (!reason.empty())
+      reader.problem("show", "\"" + word + "\" would show nothing: " + reason,
+                     "allowed here: " + text::quoted_list(useful));
+  }
+}
+
+}  // namespace
+
+void read_analysis(TableReader& file, Reading& reading) {
+  const auto* table = file.maybe_table("analysis");
+  if (!table) return;
+  TableReader reader(*table, "analysis", reading.findings);
+  auto& analysis = reading.protocol.analysis;
+  const auto& factors = reading.protocol.factors;
+  read_by(reader, reading);
+  if (const auto* difficulty = reader.take("difficulty"))
+    analysis.difficulty = linear_from(*difficulty, "difficulty", {-1e9, 1e9}, factors, reading.findings);
+  read_show(reader, reading);
+  if (const auto* exclude = reader.maybe_table("response_time_exclude")) {
+    TableReader inner(*exclude, "analysis.response_time_exclude", reading.findings);
+    analysis.exclude_below_s = inner.number("below_s", {0, 10, Range::Ends::closed, "s"}, 0);
+    analysis.exclude_mad =
+        inner.maybe_number("mad", {0, 100, Range::Ends::open_low, "median absolute deviations"});
+    inner.finish();
+  }
+  reader.finish();
+}
+
+}  // namespace turnpoint::protocol
