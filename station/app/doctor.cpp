@@ -16,22 +16,15 @@
 #include <fstream>
 
 #include "station/app/places.hpp"
+#include "station/drive/alsa_mixer.hpp"
 #include "station/drive/engine.hpp"
 #include "station/drive/monotonic.hpp"
+#include "station/session/stage.hpp"
 
 namespace turnpoint::app {
 namespace {
 
 using Status = Check::Status;
-
-drive::StreamConfig stream_config(const rig::Rig& rig) {
-  drive::StreamConfig config;
-  config.output = {rig.output.uri,           rig.output.rate_Hz, rig::channels(rig),     rig.output.bits,
-                   rig.output.period_frames, rig.output.periods, rig.output.allow_plugin};
-  for (const auto& transducer : rig.transducers)
-    config.output.channels = std::max(config.output.channels, transducer.channel + 1);
-  return config;
-}
 
 // Two and a half seconds of silence, to see the device's own clock; longer where its time stamps are coarse.
 Check measured_clock(drive::Stream& stream) {
@@ -53,13 +46,25 @@ Check measured_clock(drive::Stream& stream) {
           "another device or kernel driver"};
 }
 
+// A PCM512x mutes its analogue side after 1024 frames of zeros, 5 ms (TI, PCM512x data sheet, zero data
+// detection), and unmutes it at each onset. The stream of a session is zeros between stimuli.
+void converter_mute(const rig::Rig& rig, std::vector<Check>& checks) {
+  const auto on = drive::card_switch(rig.output.uri, "Auto Mute Switch");
+  if (!on) return;
+  checks.push_back(
+      {"converter mute", *on ? Status::failed : Status::ok,
+       *on ? "Auto Mute is on: the converter mutes itself between stimuli, and each onset unmutes it"
+           : "Auto Mute is off",
+       *on ? "amixer -c CARD sset 'Auto Mute' off, then sudo alsactl store" : ""});
+}
+
 void converter(const rig::Rig& rig, std::vector<Check>& checks) {
   if (!rig.output.uri.starts_with("alsa:")) {
     checks.push_back({"converter", Status::ok, rig.output.uri + " (no converter)", ""});
     return;
   }
   try {
-    const auto stream = drive::open_realtime(stream_config(rig));
+    const auto stream = drive::open_realtime(session::stream_of(rig));
     checks.push_back({"converter", Status::ok,
                       fmt::format("{} at {} Hz, {} bits, hardware, no conversion", rig.output.uri,
                                   rig.output.rate_Hz, rig.output.bits),
@@ -175,6 +180,7 @@ void clock(std::vector<Check>& checks) {
 std::vector<Check> examine(const rig::Rig& rig, const std::string& data_path) {
   std::vector<Check> checks;
   converter(rig, checks);
+  converter_mute(rig, checks);
   const auto lines = [&checks](const char* device, const std::string& uri) {
     for (auto& check : panel::check_lines(device, uri)) checks.push_back(std::move(check));
   };

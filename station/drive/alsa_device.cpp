@@ -66,6 +66,37 @@ HwParams any_params(snd_pcm_t* pcm, const std::string& name) {
   return params;
 }
 
+// The numbers of channels that the device takes, in words.
+std::string offered_channels(snd_pcm_t* pcm, snd_pcm_hw_params_t* params) {
+  unsigned lowest = 0, highest = 0;
+  if (snd_pcm_hw_params_get_channels_min(params, &lowest) < 0 ||
+      snd_pcm_hw_params_get_channels_max(params, &highest) < 0)
+    return "nothing";
+  std::string text;
+  for (unsigned count = lowest; count <= std::min(highest, 64u); ++count)
+    if (snd_pcm_hw_params_test_channels(pcm, params, count) == 0)
+      text += fmt::format("{}{}", text.empty() ? "" : ", ", count);
+  return text;
+}
+
+// 32-bit samples where the device takes them, else 24-bit ones, and its own number of channels.
+void set_layout(AlsaDevice& device, snd_pcm_hw_params_t* p, const OutputConfig& config,
+                const std::string& name) {
+  snd_pcm_t* pcm = device.pcm.get();
+  device.layout = {SampleFormat::s32_le, std::max(config.channels, config.device_channels)};
+  if (snd_pcm_hw_params_set_format(pcm, p, SND_PCM_FORMAT_S32_LE) < 0) {
+    device.layout.format = SampleFormat::s24_3le;
+    if (snd_pcm_hw_params_set_format(pcm, p, SND_PCM_FORMAT_S24_3LE) < 0)
+      refuse(name, "takes neither 32-bit samples (S32_LE) nor 24-bit ones (S24_3LE)");
+  }
+  if (device.layout.bits() < config.bits)
+    refuse(name, "takes samples of {} bits, the rig says {}", device.layout.bits(), config.bits);
+  const int channels = device.layout.channels;
+  if (snd_pcm_hw_params_set_channels(pcm, p, static_cast<unsigned>(channels)) < 0)
+    refuse(name, "does not take {} channels; it takes {} (the rig's device_channels)", channels,
+           offered_channels(pcm, p));
+}
+
 // Each refusal is an error here: after one, alsa-lib would install some other value all the same.
 void set_hardware(AlsaDevice& device, const OutputConfig& config, const std::string& name) {
   snd_pcm_t* pcm = device.pcm.get();
@@ -74,10 +105,7 @@ void set_hardware(AlsaDevice& device, const OutputConfig& config, const std::str
   check(snd_pcm_hw_params_set_rate_resample(pcm, p, 0), name, "switching resampling off");
   if (snd_pcm_hw_params_set_access(pcm, p, SND_PCM_ACCESS_RW_INTERLEAVED) < 0)
     refuse(name, "takes no interleaved frames");
-  if (snd_pcm_hw_params_set_format(pcm, p, SND_PCM_FORMAT_S32_LE) < 0)
-    refuse(name, "takes no 32-bit samples (S32_LE)");
-  if (snd_pcm_hw_params_set_channels(pcm, p, static_cast<unsigned>(config.channels)) < 0)
-    refuse(name, "does not take {} channels", config.channels);
+  set_layout(device, p, config, name);
   const auto rate = static_cast<unsigned>(config.rate_Hz);
   if (snd_pcm_hw_params_set_rate(pcm, p, rate, 0) < 0)
     refuse(name, "rate {} Hz not supported; it offers {}", rate, offered_rates(pcm, p));

@@ -17,7 +17,7 @@ class AlsaOutput final : public Output {
       : config_(std::move(config)),
         name_(name),
         device_(open_alsa_device(config_, name)),
-        silence_(static_cast<std::size_t>(config_.channels) * device_.buffer_frames) {}
+        packed_(device_.layout.bytes() * device_.buffer_frames) {}
 
   const OutputConfig& config() const noexcept override { return config_; }
   bool paced() const noexcept override { return true; }
@@ -72,7 +72,8 @@ class AlsaOutput final : public Output {
     snd_pcm_drop(pcm());  // a device that has been resumed still runs with what it had
     if (const int error = snd_pcm_prepare(pcm()); error < 0) return error;
     const snd_pcm_uframes_t ahead = device_.buffer_frames - device_.period_frames;
-    const snd_pcm_sframes_t written = snd_pcm_writei(pcm(), silence_.data(), ahead);
+    std::fill(packed_.begin(), packed_.end(), '\0');
+    const snd_pcm_sframes_t written = snd_pcm_writei(pcm(), packed_.data(), ahead);
     if (written < 0) return static_cast<int>(written);
     return snd_pcm_start(pcm());
   }
@@ -98,7 +99,9 @@ class AlsaOutput final : public Output {
     if (queued < (hardware ? period / 8 + 1 : 0))
       return skip(std::max(period - queued, static_cast<snd_pcm_sframes_t>(frames)), result);
     note_played(static_cast<snd_pcm_uframes_t>(room));
-    const snd_pcm_sframes_t done = snd_pcm_writei(pcm(), at, frames);
+    const auto size = std::min(frames, static_cast<std::size_t>(device_.buffer_frames));
+    pack({at, size * static_cast<std::size_t>(config_.channels)}, config_.channels, device_.layout, packed_);
+    const snd_pcm_sframes_t done = snd_pcm_writei(pcm(), packed_.data(), size);
     if (hardware && done > 0 && snd_pcm_avail(pcm()) + done > buffer) return overtaken(done, frames, result);
     return done;
   }
@@ -195,6 +198,7 @@ class AlsaOutput final : public Output {
     try {
       snd_config_update_free_global();  // the list of cards has changed
       device_ = open_alsa_device(config_, name_);
+      packed_.resize(device_.layout.bytes() * device_.buffer_frames);
       const int error = start();
       if (error < 0) device_.pcm.reset();
       return error;
@@ -212,7 +216,7 @@ class AlsaOutput final : public Output {
   OutputConfig config_;
   std::string name_;
   AlsaDevice device_;
-  std::vector<std::int32_t> silence_;
+  std::vector<unsigned char> packed_;  ///< a buffer of the device's own frames
   Recovery recovery_;
   std::int64_t frames_ = 0;  ///< given to the device, or passed
   std::int64_t played_ = 0;  ///< of them, as far as is known

@@ -19,6 +19,7 @@ struct OutputConfig {
   int bits = 24;
   int period_frames = 384;
   int periods = 4;
+  int device_channels = 0;  ///< of an ALSA device that has more than the stream; they carry zeros
   std::vector<std::string> allow_plugin;  ///< alsa-lib plug-in types accepted beside hw (tests)
 };
 

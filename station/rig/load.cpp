@@ -100,9 +100,18 @@ void read_output(TableReader& file, Rig& rig) {
   output.period_frames = reader.integer("period_frames", 16, 65536, 384);
   output.periods = reader.integer("periods", 2, 64, 4);
   output.converter_delay_s = 1e-3 * reader.number("converter_delay_ms", {0, 100, Ends::closed, "ms"}, 0);
+  if (reader.has("device_channels")) output.device_channels = reader.integer("device_channels", 1, 64);
   if (!reader.has("allow_plugin")) reader.defaulted("allow_plugin", "[]");
   output.allow_plugin = reader.maybe_strings("allow_plugin");
   reader.finish();
+}
+
+void check_device_channels(TableReader& file, const Rig& rig) {
+  const auto* table = file.maybe_table("output");
+  const auto* given = table == nullptr ? nullptr : table->find("device_channels");
+  if (given == nullptr || rig.output.device_channels >= channels(rig)) return;
+  file.findings().add(given->value.place, "device_channels is " + std::to_string(rig.output.device_channels),
+                      "at least " + std::to_string(channels(rig)) + ", the channels that the rig uses");
 }
 
 void check_bands(TableReader& file, const Rig& rig) {
@@ -188,6 +197,7 @@ Rig parse(const std::string& source, const std::string& path) {
   check_bands(file, rig);
   read_devices(file, rig);
   read_spare_channels(file, rig);
+  check_device_channels(file, rig);
   read_friction(file, rig);
   read_limits(file, rig);
   file.finish();

@@ -61,6 +61,7 @@ struct Output {
   int period_frames = 384;
   int periods = 4;
   double converter_delay_s = 0;  ///< from the last sample's way out of the buffer to the analog output
+  int device_channels = 0;  ///< of an ALSA device with more channels than are used; 0: as many as are used
   std::vector<std::string> allow_plugin;
 };
 

@@ -114,6 +114,7 @@ drive::StreamConfig stream_of(const rig::Rig& rig) {
   config.output.uri = rig.output.uri;
   config.output.rate_Hz = rig.output.rate_Hz;
   config.output.channels = rig::channels(rig);
+  config.output.device_channels = rig.output.device_channels;
   config.output.bits = rig.output.bits;
   config.output.period_frames = rig.output.period_frames;
   config.output.periods = rig.output.periods;

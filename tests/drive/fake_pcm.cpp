@@ -65,6 +65,7 @@ AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name)
   card.state = FakePcm::State::prepared;
   AlsaDevice device;
   device.pcm.reset(reinterpret_cast<snd_pcm_t*>(&card));
+  device.layout.channels = config.channels;
   device.period_frames = static_cast<snd_pcm_uframes_t>(card.period);
   device.buffer_frames = static_cast<snd_pcm_uframes_t>(card.buffer);
   return device;

@@ -118,3 +118,20 @@ TEST_CASE("a refusal names the device and what it is; a device that is not there
     CHECK(error.code().value() == ENOENT);
   }
 }
+
+TEST_CASE("a device that takes neither 32 nor 24 bits is refused", "[drive][alsa]") {
+  auto config = config_for("compressed");
+  config.allow_plugin = {"adpcm"};
+  CHECK_THROWS_WITH(open_output(config),
+                    "alsa:compressed: takes neither 32-bit samples (S32_LE) nor 24-bit ones (S24_3LE)");
+}
+
+TEST_CASE("a device with more channels than the stream is opened with its own", "[drive][alsa]") {
+  auto config = config_for("straight");
+  config.allow_plugin = {"null"};
+  config.device_channels = 10;
+  const auto output = open_output(config);
+  CHECK(output->config().channels == 2);
+  const std::vector<std::int32_t> block(2 * 384);
+  CHECK(output->write(block).taken == 384);
+}

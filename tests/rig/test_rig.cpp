@@ -127,6 +127,15 @@ TEST_CASE("spare channels carry a marker and masking noise", "[rig]") {
   CHECK(rig::channels(rig::load(simulated)) == 2);
 }
 
+TEST_CASE("a device may have more channels than the rig uses, not fewer", "[rig]") {
+  CHECK(rig::parse(source(), "r.toml").output.device_channels == 0);
+  CHECK(rig::parse(replaced(source(), "rate_Hz = 192000", "rate_Hz = 192000\ndevice_channels = 10"), "r.toml")
+            .output.device_channels == 10);
+  CHECK(contains(problems("rate_Hz = 192000", "rate_Hz = 192000\ndevice_channels = 1"),
+                 "device_channels is 1; at least 2, the channels that the rig uses"));
+  CHECK(contains(problems("rate_Hz = 192000", "rate_Hz = 192000\ndevice_channels = 65"), "1 to 64"));
+}
+
 TEST_CASE("a spare channel is one that nothing else drives", "[rig]") {
   const auto taken = problems(
       "[limits]", "[marker]\nchannel = 0\nkind = \"pulse\"\n[noise]\nchannel = 0\nrms = 0.5\n[limits]");
