@@ -6,7 +6,7 @@ endif()
 install(DIRECTORY protocols deploy/rigs DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint COMPONENT station)
 # The manuals lie as they do here, so that their links lead somewhere.
 file(GLOB drawings RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS deploy/drawings/*.svg)
-foreach(manual README.md LICENSE deploy/README.md deploy/rigs/README.md ${drawings} physics/README.md protocols/README.md
+foreach(manual README.md LICENSE deploy/README.md deploy/boards.md deploy/to-measure.md deploy/rigs/README.md ${drawings} physics/README.md protocols/README.md
         station/store/README.md tests/README.md)
   cmake_path(GET manual PARENT_PATH folder)
   install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT station)
