@@ -58,7 +58,7 @@ Rectangle {
             height: root.size * 1.1
             anchors.verticalCenter: parent.verticalCenter
         }
-        Text {
+        PlainText {
             visible: root.text !== ""
             text: root.text
             color: root.foreground

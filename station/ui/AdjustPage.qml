@@ -45,7 +45,7 @@ Item {
         paper: root.theme.paper
         accent: root.theme.action
     }
-    Text {
+    PlainText {
         anchors { left: parent.left; right: parent.right; top: surface.bottom; bottom: slider.top; bottomMargin: root.theme.unit }
         text: root.silent ? root.texts.pressDone : root.texts.phrased(root.page.text)
         color: root.theme.ink

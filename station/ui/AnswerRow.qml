@@ -21,7 +21,7 @@ Item {
     Repeater {
         id: fits
         model: 6
-        Text {
+        PlainText {
             required property int index
             visible: false
             width: root.buttonWidth - 4 * root.theme.unit
@@ -49,7 +49,7 @@ Item {
             radius: root.theme.radius
             color: down ? root.theme.raised : root.theme.action
             border { color: root.theme.action; width: 3 * root.theme.stroke }
-            Text {
+            PlainText {
                 anchors { fill: parent; margins: 2 * root.theme.unit }
                 text: root.answers[button.index] ?? ""
                 color: button.down ? root.theme.action : root.theme.actionText

@@ -36,7 +36,7 @@ Item {
         onChanged: root.edited(text)
     }
 
-    Text {
+    PlainText {
         id: title
         anchors { left: parent.left; right: parent.right; top: parent.top }
         text: root.texts.codeTitle
@@ -44,7 +44,7 @@ Item {
         font { pixelSize: 0.85 * root.theme.textTitle; weight: Font.Bold }
         horizontalAlignment: Text.AlignHCenter
     }
-    Text {
+    PlainText {
         id: help
         anchors { left: parent.left; right: parent.right; top: title.bottom; topMargin: 0.4 * root.theme.unit }
         text: root.texts.codeHelp
@@ -70,7 +70,7 @@ Item {
                     color: index === code.text.length ? root.theme.action : root.theme.line
                     width: index === code.text.length ? root.theme.stroke : Math.max(1, 0.5 * root.theme.stroke)
                 }
-                Text {
+                PlainText {
                     anchors.centerIn: parent
                     text: code.text.charAt(cell.index)
                     color: root.theme.ink
@@ -107,7 +107,7 @@ Item {
         color: filled ? root.theme.action : root.theme.raised
         border { color: strong ? root.theme.action : root.theme.line; width: Math.max(1, 0.5 * root.theme.stroke) }
         opacity: enabled ? 1 : 0.35
-        Text {
+        PlainText {
             anchors.centerIn: parent
             text: key.label
             color: key.filled ? root.theme.actionText : root.theme.ink
@@ -172,7 +172,7 @@ Item {
         id: question
         visible: false
         anchors { left: parent.left; right: parent.right; top: cells.bottom; bottom: parent.bottom }
-        Text {
+        PlainText {
             anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; verticalCenterOffset: -5 * root.theme.unit }
             text: root.texts.codeKnown
             color: root.theme.ink

@@ -14,7 +14,7 @@ Item {
         anchors { left: parent.left; right: parent.right; top: parent.top; bottom: buttons.top }
         topPadding: Math.max(0, (height - 22 * root.theme.unit) / 2)
         spacing: 2 * root.theme.unit
-        Text {
+        PlainText {
             width: parent.width
             text: root.texts.consentTitle
             color: root.theme.ink
@@ -22,7 +22,7 @@ Item {
             horizontalAlignment: Text.AlignHCenter
             wrapMode: Text.Wrap
         }
-        Text {
+        PlainText {
             objectName: "consentVersion"
             width: parent.width
             text: root.texts.consentText.arg(root.version)

@@ -28,7 +28,7 @@ Item {
             name: "tick"
             color: root.theme.right
         }
-        Text {
+        PlainText {
             width: parent.width
             text: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.thanks
             color: root.theme.ink
@@ -36,7 +36,7 @@ Item {
             horizontalAlignment: Text.AlignHCenter
             wrapMode: Text.Wrap
         }
-        Text {
+        PlainText {
             width: parent.width
             text: root.page.text !== "" ? root.texts.phrased(root.page.text) : root.texts.thanksText
             color: root.theme.quiet
@@ -73,7 +73,7 @@ Item {
         anchors.fill: parent
         color: root.theme.paper
         MouseArea { anchors.fill: parent }
-        Text {
+        PlainText {
             id: heading
             anchors { left: parent.left; right: parent.right; top: parent.top }
             text: "The session in numbers"
@@ -95,7 +95,7 @@ Item {
                     required property string modelData
                     width: (numbers.width - numbers.columnSpacing) / 2
                     height: label.implicitHeight
-                    Text {
+                    PlainText {
                         id: label
                         width: parent.width - value.width - root.theme.unit
                         text: entry.modelData
@@ -103,7 +103,7 @@ Item {
                         font.pixelSize: root.theme.textSmall
                         elide: Text.ElideRight
                     }
-                    Text {
+                    PlainText {
                         id: value
                         anchors.right: parent.right
                         text: root.page.summaryValues[entry.index] ?? ""

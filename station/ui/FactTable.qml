@@ -10,7 +10,7 @@ Column {
     property real labelWidth: 0.4 * width
     spacing: 0.35 * theme.unit
 
-    Text {
+    PlainText {
         visible: root.heading !== "" && root.facts.length > 0
         text: root.heading
         color: root.theme.action
@@ -23,7 +23,7 @@ Column {
             required property var modelData
             width: root.width
             height: Math.max(label.implicitHeight, value.implicitHeight)
-            Text {
+            PlainText {
                 id: label
                 width: root.labelWidth - root.theme.unit
                 text: line.modelData.label
@@ -31,7 +31,7 @@ Column {
                 font.pixelSize: root.theme.textSmall
                 wrapMode: Text.Wrap
             }
-            Text {
+            PlainText {
                 id: value
                 x: root.labelWidth
                 width: parent.width - x

@@ -31,7 +31,7 @@ Column {
             color: root.good || root.bad ? root.theme.actionText : root.tint
         }
     }
-    Text {
+    PlainText {
         width: parent.width
         text: root.message !== "" ? root.message : root.good ? root.texts.right : root.bad ? root.texts.wrong
             : root.texts.noted

@@ -32,7 +32,7 @@ Rectangle {
             height: root.size
             anchors.verticalCenter: parent.verticalCenter
         }
-        Text {
+        PlainText {
             text: !root.known ? root.instruction : root.fast ? root.texts.speed : root.texts.accuracy
             color: root.foreground
             font { pixelSize: root.size; weight: Font.Bold }

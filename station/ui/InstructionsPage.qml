@@ -18,7 +18,7 @@ Item {
         instruction: root.page.instruction
         size: root.theme.textTitle
     }
-    Text {
+    PlainText {
         id: title
         visible: text !== "" && !badge.visible
         anchors { left: parent.left; right: parent.right; top: parent.top }
@@ -28,7 +28,7 @@ Item {
         wrapMode: Text.Wrap
         horizontalAlignment: Text.AlignHCenter
     }
-    Text {
+    PlainText {
         anchors {
             left: parent.left; right: parent.right
             top: badge.visible ? badge.bottom : title.bottom; topMargin: root.theme.unit

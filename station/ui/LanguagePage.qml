@@ -19,7 +19,7 @@ Item {
         spacing: 1.5 * root.theme.unit
         Repeater {
             model: ["A", "あ", "Ä"]
-            Text {
+            PlainText {
                 required property string modelData
                 text: modelData
                 color: root.theme.quiet

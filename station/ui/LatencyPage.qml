@@ -23,12 +23,12 @@ Rectangle {
         id: words
         anchors { left: parent.left; right: parent.right; top: parent.top; margins: look.margin }
         spacing: 0.6 * look.unit
-        Text {
+        PlainText {
             text: "Latency of the touch panel"
             color: look.ink
             font { pixelSize: look.textTitle; weight: Font.Bold }
         }
-        Text {
+        PlainText {
             width: parent.width
             text: root.controller.byButton
                 ? "Hold the button against the fingertip, so that each tap on the dark field also presses it. What is measured is the way in: from the finger to the time stamp of its answer."
@@ -37,7 +37,7 @@ Rectangle {
             font.pixelSize: look.textBody
             wrapMode: Text.Wrap
         }
-        Text {
+        PlainText {
             objectName: "result"
             width: parent.width
             text: root.controller.taps + " taps, " + root.controller.edges + " edges, " + root.controller.pairs + " pairs of the "

@@ -47,7 +47,7 @@ Rectangle {
         id: header
         anchors { left: parent.left; right: parent.right; top: parent.top; margins: look.margin; topMargin: frame.band + look.unit }
         height: look.controlHeight
-        Text {
+        PlainText {
             anchors { left: parent.left; right: buttons.left; verticalCenter: parent.verticalCenter; rightMargin: look.unit }
             // Only this page says so: a live session's other pages carry nothing that a participant need not see.
             text: (root.bridge.page.runMode === "live" ? "LIVE   " : "") + (root.live.heading !== "" ? root.live.heading : "No trial yet")
@@ -223,7 +223,7 @@ Rectangle {
         Column {
             anchors { fill: parent; margins: 2 * look.unit }
             spacing: look.unit
-            Text {
+            PlainText {
                 text: "A note, kept with the session"
                 color: look.ink
                 font { pixelSize: look.textTitle; weight: Font.Bold }

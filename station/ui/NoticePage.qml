@@ -32,7 +32,7 @@ Item {
             name: "alert"
             color: root.theme.wrong
         }
-        Text {
+        PlainText {
             objectName: "headline"
             anchors.verticalCenter: parent.verticalCenter
             text: root.asking ? root.texts.reallyEnd : root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.faultTitle
@@ -52,7 +52,7 @@ Item {
             color: root.fault ? root.theme.wrong : root.theme.ink
             weight: 0.08
         }
-        Text {
+        PlainText {
             width: parent.width
             text: root.asking ? root.texts.reallyEnd : root.page.title !== "" ? root.texts.phrased(root.page.title)
                 : root.failed ? root.texts.failedTitle : root.fault ? root.texts.faultTitle : root.texts.paused
@@ -61,7 +61,7 @@ Item {
             horizontalAlignment: Text.AlignHCenter
             wrapMode: Text.Wrap
         }
-        Text {
+        PlainText {
             width: parent.width
             text: root.page.text !== "" ? root.texts.phrased(root.page.text) : root.texts.pausedText
             color: root.theme.quiet
@@ -72,7 +72,7 @@ Item {
             maximumLineCount: 6
             elide: Text.ElideRight
         }
-        Text {
+        PlainText {
             width: parent.width
             visible: root.failed
             text: root.texts.failedText
@@ -100,7 +100,7 @@ Item {
             name: line.glyph
             color: line.tint
         }
-        Text {
+        PlainText {
             id: label
             objectName: "heading"
             width: lines.headingWidth
@@ -108,7 +108,7 @@ Item {
             color: line.tint
             font { pixelSize: Math.max(root.theme.textSmall, 0.9 * line.textSize); weight: Font.Bold }
         }
-        Text {
+        PlainText {
             width: line.width - sign.width - label.width - 2 * line.spacing
             text: line.says
             color: root.theme.ink
@@ -152,7 +152,7 @@ Item {
                 says: root.texts.phrased(root.page.toDo)
                 tint: root.theme.action
             }
-            Text {
+            PlainText {
                 visible: root.page.detail !== ""
                 width: parent.width
                 text: root.page.detail

@@ -27,7 +27,7 @@ Rectangle {
     Column {
         anchors.centerIn: parent
         spacing: 1.2 * root.theme.unit
-        Text {
+        PlainText {
             anchors.horizontalCenter: parent.horizontalCenter
             text: root.typed === "" ? "Operator's code" : "•".repeat(root.typed.length)
             color: root.theme.ink

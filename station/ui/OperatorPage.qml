@@ -31,14 +31,14 @@ Rectangle {
         id: header
         anchors { left: parent.left; right: parent.right; top: parent.top; margins: look.margin }
         height: 3 * look.unit
-        Text {
+        PlainText {
             id: brand
             anchors.verticalCenter: parent.verticalCenter
             text: "Turnpoint"
             color: look.ink
             font { pixelSize: look.textTitle; weight: Font.Bold }
         }
-        Text {
+        PlainText {
             anchors { left: brand.right; leftMargin: 2 * look.unit; right: parent.right; baseline: brand.baseline }
             text: root.operating.rig + "   ·   " + root.operating.database
             color: look.quiet
@@ -56,7 +56,7 @@ Rectangle {
         radius: look.radius
         color: look.raised
         border { color: look.action; width: look.stroke }
-        Text {
+        PlainText {
             anchors { left: parent.left; right: resume.left; verticalCenter: parent.verticalCenter; margins: 1.2 * look.unit }
             text: root.operating.interrupted
             color: look.ink
@@ -102,14 +102,14 @@ Rectangle {
                 Column {
                     id: words
                     anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 0.9 * look.unit }
-                    Text {
+                    PlainText {
                         width: parent.width
                         text: card.modelData.id
                         color: card.chosen ? look.actionText : look.ink
                         font { pixelSize: look.textBody; weight: Font.DemiBold }
                         elide: Text.ElideRight
                     }
-                    Text {
+                    PlainText {
                         width: parent.width
                         text: card.modelData.problem !== "" ? "cannot be used" : card.modelData.title
                         color: card.chosen ? look.actionText : card.modelData.problem !== "" ? look.wrong : look.quiet
@@ -134,7 +134,7 @@ Rectangle {
         radius: look.radius
         color: look.raised
         border { color: look.line; width: 1 }
-        Text {
+        PlainText {
             visible: root.operating.checking
             anchors.centerIn: parent
             text: "Checking …"
@@ -165,7 +165,7 @@ Rectangle {
                             name: "alert"
                             color: look.wrong
                         }
-                        Text {
+                        PlainText {
                             width: parent.width - sign.width - parent.spacing
                             text: problem.modelData
                             color: look.wrong
@@ -185,7 +185,7 @@ Rectangle {
                     visible: root.operating.cues.length > 0
                     width: parent.width
                     spacing: 0.35 * look.unit
-                    Text {
+                    PlainText {
                         text: "What else could be used to answer"
                         color: look.action
                         font { pixelSize: look.textBody; weight: Font.Bold }
@@ -204,7 +204,7 @@ Rectangle {
                                 name: "alert"
                                 color: look.wrong
                             }
-                            Text {
+                            PlainText {
                                 id: named
                                 x: 1.8 * look.textSmall
                                 width: parent.width - x
@@ -218,7 +218,7 @@ Rectangle {
                 }
                 Repeater {
                     model: root.operating.warnings
-                    Text {
+                    PlainText {
                         required property string modelData
                         width: sheet.width
                         text: modelData
@@ -255,7 +255,7 @@ Rectangle {
             id: first
             anchors { left: parent.left; top: parent.top }
             spacing: root.gap
-            Text {
+            PlainText {
                 height: look.controlHeight
                 text: "Participant"
                 color: look.quiet
@@ -279,7 +279,7 @@ Rectangle {
             anchors { right: parent.right; top: parent.top }
             spacing: root.gap
             visible: root.operating.languages.length > 1
-            Text {
+            PlainText {
                 height: look.controlHeight
                 text: "Language"
                 color: look.quiet

@@ -35,7 +35,7 @@ Rectangle {
             }
         }
     }
-    Text {
+    PlainText {
         anchors { left: tabs.right; right: parent.right; verticalCenter: tabs.verticalCenter; leftMargin: 2 * look.unit; rightMargin: look.margin }
         text: root.controller.title + "   ·   " + root.controller.rig
         color: look.quiet
@@ -64,7 +64,7 @@ Rectangle {
             value = next
             root.controller.set(modelData.name, next)
         }
-        Text {
+        PlainText {
             id: name
             anchors { left: parent.left; verticalCenter: parent.verticalCenter }
             width: 0.36 * parent.width
@@ -122,7 +122,7 @@ Rectangle {
             Knob { width: (knobs.width - (knobs.columns - 1) * knobs.columnSpacing) / knobs.columns }
         }
     }
-    Text {
+    PlainText {
         visible: root.controller.knobs.length === 0
         anchors { left: parent.left; top: tabs.bottom; margins: look.margin; topMargin: 0.8 * look.unit }
         text: "This scene depends on no factor."
@@ -164,7 +164,7 @@ Rectangle {
                 name: "alert"
                 color: look.wrong
             }
-            Text {
+            PlainText {
                 width: parent.width - sign.width - parent.spacing
                 text: root.controller.problem
                 color: look.wrong

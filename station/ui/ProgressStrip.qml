@@ -11,7 +11,7 @@ Item {
     visible: total > 0
     implicitHeight: label.implicitHeight
 
-    Text {
+    PlainText {
         id: label
         anchors { right: parent.right; verticalCenter: parent.verticalCenter }
         text: root.done + " / " + root.total

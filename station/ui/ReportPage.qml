@@ -31,7 +31,7 @@ Rectangle {
         id: header
         anchors { left: parent.left; right: parent.right; top: parent.top; margins: look.margin; topMargin: frame.band + look.unit }
         height: look.controlHeight
-        Text {
+        PlainText {
             anchors { left: parent.left; right: close.left; verticalCenter: parent.verticalCenter; rightMargin: look.unit }
             text: root.report.ready ? root.report.title : "The report is being made …"
             color: look.ink
@@ -95,7 +95,7 @@ Rectangle {
                 FactTable { width: parent.width; theme: look; heading: "Fit"; facts: root.report.fit; labelWidth: 0.5 * width }
                 Repeater {
                     model: root.report.statements
-                    Text {
+                    PlainText {
                         required property string modelData
                         width: sheet.width
                         text: "• " + modelData

@@ -29,7 +29,7 @@ Item {
         anchors { left: parent.left; right: parent.right; bottom: go.top; top: parent.top }
         spacing: 1.5 * root.theme.unit
         topPadding: Math.max(0, (height - 24 * root.theme.unit) / 2)
-        Text {
+        PlainText {
             width: parent.width
             text: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.breakTitle
             color: root.theme.ink
@@ -37,7 +37,7 @@ Item {
             horizontalAlignment: Text.AlignHCenter
             wrapMode: Text.Wrap
         }
-        Text {
+        PlainText {
             width: parent.width
             text: root.secondsLeft > 0 ? root.texts.breakRunning : root.texts.breakOver
             color: root.theme.quiet
@@ -45,7 +45,7 @@ Item {
             horizontalAlignment: Text.AlignHCenter
             wrapMode: Text.Wrap
         }
-        Text {
+        PlainText {
             objectName: "remaining"
             width: parent.width
             visible: root.secondsLeft > 0

@@ -31,13 +31,13 @@ Item {
         Row {
             anchors.centerIn: parent
             spacing: 1.2 * root.theme.unit
-            Text {
+            PlainText {
                 text: root.pilot ? root.texts.pilot : root.texts.simulated
                 color: root.foreground
                 font { pixelSize: 2.2 * root.theme.unit; weight: Font.ExtraBold; letterSpacing: 0.15 * root.theme.unit }
                 anchors.verticalCenter: parent.verticalCenter
             }
-            Text {
+            PlainText {
                 text: root.pilot ? root.texts.pilotText : root.texts.simulatedText
                 color: root.foreground
                 font { pixelSize: 2 * root.theme.unit; weight: Font.Medium }

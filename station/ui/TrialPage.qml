@@ -50,7 +50,7 @@ Item {
                 radius: width / 2
                 color: running ? root.theme.ink : "transparent"
                 border { color: running ? root.theme.ink : root.theme.line; width: root.theme.stroke }
-                Text {
+                PlainText {
                     anchors.centerIn: parent
                     text: place.index + 1
                     color: place.running ? root.theme.actionText : root.theme.quiet
@@ -60,7 +60,7 @@ Item {
         }
     }
 
-    Text {
+    PlainText {
         id: question
         visible: !root.feedback && root.page.kind !== PageModel.Interval
         anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: 1.5 * root.theme.unit; top: surface.bottom }

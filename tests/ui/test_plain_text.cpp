@@ -1,0 +1,32 @@
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+#include "tests/support/catch.hpp"
+
+namespace {
+
+/// Texts of a page that Qt may take for rich text.
+int rich_texts(const std::string& qml) {
+  static const std::regex rich(R"((^|[^A-Za-z])(Text|TextEdit|TextArea|Label)\s*\{)");
+  return static_cast<int>(
+      std::distance(std::sregex_iterator(qml.begin(), qml.end(), rich), std::sregex_iterator()));
+}
+
+}  // namespace
+
+TEST_CASE("every text of every page is plain", "[text]") {
+  CHECK(rich_texts("Item {\n    Text { text: title }\n    Label {\n    }\n}") == 2);
+  CHECK(rich_texts("PlainText { wrapMode: Text.Wrap }\nTextInput {}\nTexts { id: texts }") == 0);
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(TURNPOINT_SOURCE_DIR "/station/ui")) {
+    const auto name = entry.path().filename().string();
+    if (entry.path().extension() != ".qml" || name == "PlainText.qml") continue;
+    ++files;
+    CAPTURE(name);
+    std::ifstream in(entry.path());
+    CHECK(rich_texts({std::istreambuf_iterator<char>(in), {}}) == 0);
+  }
+  CHECK(files > 30);
+}
