@@ -15,7 +15,6 @@ struct RunRequest {
   std::string observer;        ///< "" for a person
   std::optional<std::uint64_t> seed;
   std::string consent_version;         ///< of the consent form, "" where none is asked for
-  std::string operator_code = "2468";  ///< opens the operator's view where it shares the participant's screen
   bool headless = false, buttons_only = false;
   std::string calibration;  ///< file; "" takes the newest one beside the rig file, if there is one
 };

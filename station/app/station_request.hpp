@@ -7,8 +7,7 @@ namespace turnpoint::app {
 struct StationRequest {
   std::string protocols;  ///< folder
   std::string rig, database;
-  std::string operator_code = "2468";  ///< opens the operator's view on the participant's screen
-  bool locked = false;                 ///< the start page stands behind the code from the beginning on
+  bool locked = false;  ///< the start page stands behind the code from the beginning on
 };
 
 /// The station's own database: in the user's data folder ($XDG_DATA_HOME, else ~/.local/share).

@@ -70,6 +70,7 @@ void add_power(CommandLine& app, Context& context);
 void add_bench(CommandLine& app, Context& context);
 void add_preview(CommandLine& app, Context& context);
 void add_station(CommandLine& app, Context& context);
+void add_operator_code(CommandLine& app, Context& context);
 
 /// Adds `--json` to a sub-command.
 void add_json(Command& command, Context& context);

@@ -118,25 +118,12 @@ std::shared_ptr<app::RunRequest> add_run_options(Command& command) {
   command.add_option(
       "--consent", request->consent_version,
       "Version of the consent form; the screen asks the participant to confirm having signed it");
-  add_operator_code(command, request->operator_code);
   command.add_flag("--headless", request->headless, "No screen");
   command.add_flag("--buttons-only", request->buttons_only,
                    "No screen: a person answers with the rig's buttons, the operator types");
   command.add_option("--calibration", request->calibration,
                      "Calibration file; otherwise the newest one beside the rig file");
   return request;
-}
-
-void add_operator_code(Command& command, std::string& code) {
-  command
-      .add_option("--operator-code", code,
-                  "Digits that open the operator's pages, arming and the report on the participant's screen")
-      ->capture_default_str()
-      ->check({"", [](const std::string& text) {
-                 return text.find_first_not_of("0123456789") == std::string::npos
-                            ? std::string()
-                            : "'" + text + "': digits are allowed; the keypad has nothing else";
-               }});
 }
 
 void add_run(CommandLine& app, Context& context) {

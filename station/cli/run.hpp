@@ -10,9 +10,6 @@ namespace turnpoint::cli {
 /// Adds the options of `turnpoint run` to a command; turnpoint-ui takes the same ones.
 std::shared_ptr<app::RunRequest> add_run_options(Command& command);
 
-/// Adds `--operator-code`, of digits.
-void add_operator_code(Command& command, std::string& code);
-
 /// Hands the whole command line to turnpoint-ui beside this program; comes back only by an exception.
 void become_ui(const Context& context);
 

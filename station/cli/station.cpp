@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "station/app/operator_code.hpp"
 #include "station/app/places.hpp"
 #include "station/app/station_request.hpp"
 #include "station/cli/command.hpp"
@@ -14,14 +15,16 @@ void add_station(CommandLine& app, Context& context) {
                       "Folder with protocol files; otherwise the shipped ones");
   command->add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
   command->add_option("--db", request->database, "Database; otherwise one in the user's data folder");
-  add_operator_code(*command, request->operator_code);
   command->add_flag(
       "--locked", request->locked,
-      "Ask for the code before the first page too: where a participant may stand at the screen");
+      "Ask for the operator's code before the first page too: where a participant may stand at the screen");
   command->footer("Example: turnpoint station --db lab.sqlite");
   command->callback([request, &context] {
-    if (request->locked && request->operator_code.empty())
-      throw UsageError("station: --locked without an operator's code; give --operator-code DIGITS");
+    if (request->locked && app::operator_code().is_built_in())
+      throw UsageError(
+          "station: --locked would open with the built-in code, which everybody can look up; store one of "
+          "your "
+          "own: sudo turnpoint operator-code");
     if (!context.screens) return become_ui(context);
     request->rig = app::rig_or_default(request->rig, context.err);
     if (request->protocols.empty()) request->protocols = app::shipped("protocols");

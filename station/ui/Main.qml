@@ -11,7 +11,7 @@ Window {
     required property LiveModel live
     required property ReportModel report
     property OperatorController operating: null
-    property string operatorCode: ""
+    required property OperatorLock operatorLock
     /// The operator's page stays shut until somebody has typed the code.
     property bool locked: false
     required property real pixelsPerMm
@@ -20,13 +20,11 @@ Window {
                                    || start.stage === StartController.Code
 
     /// What somebody who knows the operator's code may do on the participant's screen: "view" the running session,
-    /// "arm" the amplifier, read the "report", "leave" for the operator's page, "unlock" it. Without a code there is
-    /// no view.
+    /// "arm" the amplifier, read the "report", "leave" for the operator's page, "unlock" it.
     property string wish
     function ask(what: string) {
         wish = what
-        if (operatorCode !== "") gate.visible = true
-        else if (what !== "view") grant()
+        gate.visible = true
     }
     function grant() {
         if (wish === "arm") participant.armable = true
@@ -133,7 +131,7 @@ Window {
         anchors.fill: parent
         visible: false
         theme: theme
-        code: root.operatorCode
+        lock: root.operatorLock
         last: root.locked
         onAbandoned: visible = false
         onPassed: {

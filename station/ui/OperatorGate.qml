@@ -6,21 +6,30 @@ import Turnpoint
 Rectangle {
     id: root
     required property Theme theme
-    required property string code
+    required property OperatorLock lock
     /// There is nothing behind it to go back to.
     property bool last: false
     property string typed
-    readonly property var keys: ["1", "2", "3", "4", "5", "6", "7", "8", "9", "", "0", "⌫"]
+    property bool wrong: false
+    readonly property var keys: ["1", "2", "3", "4", "5", "6", "7", "8", "9", "⌫", "0", "OK"]
     signal passed()
     signal abandoned()
 
     color: theme.paper
-    onVisibleChanged: typed = ""
+    onVisibleChanged: {
+        typed = ""
+        wrong = false
+    }
 
     function type(key: string) {
-        typed = key === "⌫" ? typed.slice(0, -1) : typed + key
-        if (typed === code) return passed()
-        if (typed.length >= code.length) typed = ""
+        wrong = false
+        if (key === "OK") lock.enter(typed)
+        typed = key === "OK" ? "" : key === "⌫" ? typed.slice(0, -1) : (typed + key).slice(0, lock.digits)
+    }
+    Connections {
+        target: root.lock
+        function onOpened() { root.passed() }
+        function onRefused() { root.wrong = true }
     }
 
     MouseArea { anchors.fill: parent }
@@ -29,7 +38,10 @@ Rectangle {
         spacing: 1.2 * root.theme.unit
         PlainText {
             anchors.horizontalCenter: parent.horizontalCenter
-            text: root.typed === "" ? "Operator's code" : "•".repeat(root.typed.length)
+            // The dots are what has been typed, never how long the code is.
+            text: root.lock.waitS > 0 ? "Wrong code. Wait " + root.lock.waitS + " s"
+                : root.lock.checking ? "…" : root.wrong ? "Wrong code"
+                : root.typed === "" ? "Operator's code" : "•".repeat(root.typed.length)
             color: root.theme.ink
             font { pixelSize: root.theme.textTitle; weight: Font.Bold }
         }
@@ -42,8 +54,7 @@ Rectangle {
                 ActionButton {
                     required property string modelData
                     objectName: "digit" + modelData
-                    opacity: modelData === "" ? 0 : 1
-                    enabled: modelData !== ""
+                    enabled: root.lock.waitS === 0 && !root.lock.checking
                     width: 11 * root.theme.unit
                     height: Math.min(root.theme.controlHeight, 7 * root.theme.unit)
                     theme: root.theme

@@ -158,7 +158,6 @@ void OperatorController::begin() {
   request.protocol = entry()->path;
   request.rig = request_.rig;
   request.database = request_.database;
-  request.operator_code = request_.operator_code;
   request.mode = live_ ? "live" : "pilot";
   const bool ask_code = participant_.isEmpty();
   const bool ask_language = language_ < 0 && languages().size() > 1;

@@ -64,7 +64,7 @@ session::Summary run_on_screen(app::RunRequest request, std::optional<session::S
   chosen.ask_language = !prepared && request.language.empty() && chosen.setup.protocol.languages.size() > 1;
   chosen.arm = true;  // the command was the operator's
   const Application application;
-  StationWindow window(place_on(application), {nullptr, request.operator_code}, chosen.setup.database);
+  StationWindow window(place_on(application), {nullptr, app::operator_code()}, chosen.setup.database);
   use_second_screen(application, window);
   stop_in_order(application, window);
   window.ask(chosen);
@@ -76,7 +76,7 @@ session::Summary run_on_screen(app::RunRequest request, std::optional<session::S
 void run_station(const app::StationRequest& request) {
   const Application application;
   OperatorController operating(request);
-  StationWindow window(place_on(application), {&operating, request.operator_code, request.locked},
+  StationWindow window(place_on(application), {&operating, app::operator_code(), request.locked},
                        request.database);
   use_second_screen(application, window);
   stop_in_order(application, window);

@@ -15,7 +15,7 @@ namespace turnpoint::ui {
 /// Runs one session: asks for what the request leaves open (language, consent, participant's code), shows the
 /// session's pages and takes its inputs. The session runs on a thread of its own; what it throws is shown as
 /// a fault page and thrown again from here. Throws text::BadInput for files that do not fit. `prepared` is a
-/// session that goes on: it asks nothing, and `request` gives only the operator's code.
+/// session that goes on: it asks nothing, and `request` is not looked at.
 session::Summary run_on_screen(app::RunRequest request, std::optional<session::Setup> prepared);
 
 /// The operator's start page, and the sessions begun there.

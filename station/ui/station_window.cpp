@@ -51,7 +51,9 @@ bool is_known(const std::string& database, const QString& code) {
 }  // namespace
 
 StationWindow::StationWindow(const Place& place, const Operator& allowed, const std::string& database)
-    : operating_(allowed.page), start_([database](const QString& code) { return is_known(database, code); }) {
+    : operating_(allowed.page),
+      start_([database](const QString& code) { return is_known(database, code); }),
+      lock_(allowed.code) {
   connect(&start_, &StartController::ready, this, &StationWindow::begin);
   connect(&start_, &StartController::closed, this, &StationWindow::close);
   if (operating_ != nullptr) connect(operating_, &OperatorController::chosen, this, &StationWindow::ask);
@@ -61,7 +63,7 @@ StationWindow::StationWindow(const Place& place, const Operator& allowed, const 
                         {"live", QVariant::fromValue(&runner_.live())},
                         {"report", QVariant::fromValue(&runner_.report())},
                         {"operating", QVariant::fromValue(operating_)},
-                        {"operatorCode", QString::fromStdString(allowed.code)},
+                        {"operatorLock", QVariant::fromValue(&lock_)},
                         {"locked", allowed.locked},
                         {"pixelsPerMm", place.pixels_per_mm},
                         {"width", place.size.width()},

@@ -6,7 +6,9 @@
 #include <optional>
 #include <string>
 
+#include "station/app/operator_code.hpp"
 #include "station/ui/operator_controller.hpp"
+#include "station/ui/operator_lock.hpp"
 #include "station/ui/session_runner.hpp"
 #include "station/ui/start_controller.hpp"
 
@@ -26,8 +28,8 @@ class StationWindow : public QObject {
 
   struct Operator {
     OperatorController* page = nullptr;  ///< must outlive the window; null: no operator's page
-    std::string code;     ///< opens the operator's view from the participant's pages; "" keeps it shut
-    bool locked = false;  ///< the operator's page stands behind the code from the beginning on
+    app::OperatorCode code;              ///< opens the operator's view from the participant's pages
+    bool locked = false;                 ///< the operator's page stands behind the code from the beginning on
   };
 
   StationWindow(const Place& place, const Operator& allowed, const std::string& database);
@@ -57,6 +59,7 @@ class StationWindow : public QObject {
   bool arm_ = false;
   SessionRunner runner_;
   StartController start_;
+  OperatorLock lock_;
   QQmlApplicationEngine engine_, live_engine_;
   QQuickWindow* window_ = nullptr;
 };

@@ -34,13 +34,6 @@ TEST_CASE(
       "calibrate: --sweep-out alsa:hw:9 plays on the amplifier; with the surface clear, give --arm");
 }
 
-TEST_CASE("a station is not locked without a code that opens it", "[cli]") {
-  check_refused({"station", "--locked", "--operator-code", ""},
-                "station: --locked without an operator's code; give --operator-code DIGITS");
-  check_refused({"station", "--locked", "--operator-code", "24b8"},
-                "--operator-code: '24b8': digits are allowed; the keypad has nothing else");
-}
-
 TEST_CASE("the doctor warns of a simulated panel beside a real converter", "[cli]") {
   const TemporaryFolder folder;
   const auto rig = folder / "rig.toml";

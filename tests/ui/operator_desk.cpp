@@ -15,7 +15,7 @@ OperatorDesk::OperatorDesk(SessionBridge& bridge, QObject* parent) : QObject(par
   mistaken.close();
   operating_ = std::make_unique<OperatorController>(
       app::StationRequest{folder_.path().toStdString(), TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml",
-                          folder_.filePath("lab.sqlite").toStdString(), "1"});
+                          folder_.filePath("lab.sqlite").toStdString()});
   connect(operating_.get(), &OperatorController::chosen, this, [this](const ChosenSession& session) {
     const auto& setup = session.setup;
     chosen_ = QString::fromStdString(setup.protocol.id + " " + setup.participant + " " + setup.language +

@@ -15,6 +15,7 @@
 #include "station/ui/latency_controller.hpp"
 #include "station/ui/live_model.hpp"
 #include "station/ui/operator_controller.hpp"
+#include "station/ui/operator_lock.hpp"
 #include "station/ui/preview_controller.hpp"
 #include "station/ui/report_model.hpp"
 #include "station/ui/screen.hpp"
@@ -59,6 +60,7 @@ class Camera {
     engine_.setInitialProperties({{"bridge", QVariant::fromValue(&bridge_)},
                                   {"start", QVariant::fromValue(&start_)},
                                   {"live", QVariant::fromValue(&live_)},
+                                  {"operatorLock", QVariant::fromValue(&lock_)},
                                   {"report", QVariant::fromValue(&report_)},
                                   {"pixelsPerMm", panel.pixels_per_mm}});
     engine_.load(QUrl("qrc:/qt/qml/Turnpoint/Main.qml"));
@@ -105,6 +107,7 @@ class Camera {
   turnpoint::ui::LiveModel live_;
   turnpoint::ui::ReportModel report_;
   StartController start_;
+  turnpoint::ui::OperatorLock lock_{turnpoint::app::OperatorCode()};
   QQmlApplicationEngine engine_;
   QQuickWindow* window_ = nullptr;
   int count_ = 0;
@@ -179,8 +182,7 @@ int shoot_operator(const QString& out, const QStringList& sizes) {
   const QTemporaryDir folder;
   const std::string source = TURNPOINT_SOURCE_DIR;
   const auto database = ui::interrupted_exhibit(folder.path().toStdString());
-  ui::OperatorController operating(
-      {source + "/protocols", source + "/deploy/rigs/simulated.toml", database, ""});
+  ui::OperatorController operating({source + "/protocols", source + "/deploy/rigs/simulated.toml", database});
   operating.select(9);
   wait_for([&] { return !operating.checking(); });
   ui::PreviewController preview(

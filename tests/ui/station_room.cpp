@@ -47,17 +47,29 @@ void StationRoom::open(const QString& code) {
   reopen(code);
 }
 
-void StationRoom::reopen(const QString& code) { start({code.toStdString(), false}); }
+void StationRoom::entitle(const QString& title) {
+  QFile file(folder_->filePath("protocols/short.toml"));
+  if (!file.open(QIODevice::ReadOnly)) return;
+  auto lines = QString::fromUtf8(file.readAll()).split('\n');
+  file.close();
+  for (auto& line : lines)
+    if (line.startsWith("title = ")) line = "title = '" + title + "'";
+  write(path("protocols/short.toml"), lines.join('\n').toStdString());
+}
 
-void StationRoom::reopenLocked(const QString& code) { start({code.toStdString(), true}); }
+void StationRoom::reopen(const QString& code) { start(code, Begins::open); }
 
-void StationRoom::start(const Lock& lock) {
+void StationRoom::reopenLocked(const QString& code) { start(code, Begins::locked); }
+
+void StationRoom::start(const QString& digits, Begins begins) {
   close();
+  const bool locked = begins == Begins::locked;
   operating_ = std::make_unique<OperatorController>(
-      app::StationRequest{path("protocols"), path("rig.toml"), path("lab.sqlite"), lock.code, lock.locked});
+      app::StationRequest{path("protocols"), path("rig.toml"), path("lab.sqlite"), locked});
   station_ = std::make_unique<StationWindow>(
       StationWindow::Place{5.9, QSize(1280, 800), false},
-      StationWindow::Operator{operating_.get(), lock.code, lock.locked}, path("lab.sqlite"));
+      StationWindow::Operator{operating_.get(), app::OperatorCode::of_digits(digits.toStdString()), locked},
+      path("lab.sqlite"));
   emit opened();
 }
 

@@ -35,6 +35,8 @@ class StationRoom : public QObject {
 
   /// Starts the program anew in an empty folder, with this code for the operator.
   Q_INVOKABLE void open(const QString& code);
+  /// Gives the folder's protocol another title.
+  Q_INVOKABLE void entitle(const QString& title);
   /// Leaves it and starts it again on what is in the folder.
   Q_INVOKABLE void reopen(const QString& code);
   /// The same, locked.
@@ -72,11 +74,8 @@ class StationRoom : public QObject {
   void opened();
 
  private:
-  struct Lock {
-    std::string code;
-    bool locked = false;
-  };
-  void start(const Lock& lock);
+  enum class Begins { open, locked };
+  void start(const QString& digits, Begins begins);
   QStringList read(const std::string& database, const QString& file, const QString& name,
                    const QString& where, const QString& is) const;
   std::string path(const QString& name) const { return folder_->filePath(name).toStdString(); }

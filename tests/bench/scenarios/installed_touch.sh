@@ -13,7 +13,8 @@ stored() { [ "$(rows "SELECT count(*) FROM trial")" = "$1" ]; }
 rig_with "touch=evdev:bench touch panel" </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
 echo '{"device": "/dev/dri/card0", "hwcursor": false}' >/etc/turnpoint/kms.json
 printf 'TURNPOINT_DPI=132\nQT_QPA_EGLFS_KMS_CONFIG=/etc/turnpoint/kms.json\n' >/etc/turnpoint/environment
-echo 'TURNPOINT_OPTIONS=--operator-code 2580 --protocols /usr/share/turnpoint/protocols' >>/etc/turnpoint/environment
+echo 'TURNPOINT_OPTIONS=--protocols /usr/share/turnpoint/protocols' >>/etc/turnpoint/environment
+echo 2580 | turnpoint operator-code
 station() { systemctl restart turnpoint || { journalctl -u turnpoint --no-pager | tail -30; fail "the unit did not get ready"; }; }
 mount -t debugfs debugfs /sys/kernel/debug
 drawn_by() { has /sys/kernel/debug/dri/0/state "allocated by = $1"; }

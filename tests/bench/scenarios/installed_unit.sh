@@ -9,6 +9,12 @@ modprobe vgem
 eventually 5 test -e /dev/dri/card0
 screen_begin
 [ -e /sys/class/drm/card1-Virtual-1 ] || fail "not at the second card: $(ls /sys/class/drm)"
+# Without a code of its own the station does not start, and says how one is stored.
+systemctl start --no-block turnpoint
+refused() { journal | grep -q 'store one of your own: sudo turnpoint operator-code'; }
+eventually 30 refused
+echo 7391 | turnpoint operator-code
+systemctl stop turnpoint
 # As it is installed: eglfs on the kernel's mode setting, drawn by software for want of a GPU.
 systemctl start turnpoint || { journal | tail -30; fail "the unit did not get ready on eglfs"; }
 mount -t debugfs debugfs /sys/kernel/debug

@@ -16,7 +16,9 @@ rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,
 calibrate_for_live /etc/turnpoint/rig.toml
 printf 'QT_QPA_PLATFORM=linuxfb\nQT_QUICK_BACKEND=software\nQT_QPA_GENERIC_PLUGINS=evdevtouch\nQT_QPA_FB_DISABLE_INPUT=1\nTURNPOINT_DPI=132\n' \
   >/etc/turnpoint/environment
-echo 'TURNPOINT_OPTIONS=--operator-code 2580 --protocols /usr/share/turnpoint/protocols' >>/etc/turnpoint/environment
+echo 'TURNPOINT_OPTIONS=--protocols /usr/share/turnpoint/protocols' >>/etc/turnpoint/environment
+echo 2580 | turnpoint operator-code
+[ "$(stat -c '%a %U %G' /etc/turnpoint/operator-code)" = '640 root turnpoint' ] || fail "the code's file: $(stat -c '%a %U %G' /etc/turnpoint/operator-code)"
 systemctl daemon-reload
 
 on() { [ "$(level AMP_EN)" = 1 ]; }
@@ -32,7 +34,7 @@ carry_on() { sleep 0.7; tap 535 395; }
 
 systemctl start turnpoint
 eventually 30 keypad
-sleep 0.3; tap 397 107; tap 280 188; tap 519 188; tap 397 269   # the built-in code, which is not the one here
+sleep 0.3; tap 397 107; tap 280 188; tap 519 188; tap 397 269; tap 519 349   # the built-in code, which is not the one here
 sleep 0.5; keypad || fail "2468 opens a station whose code is another"
 first=$(systemctl show -P MainPID turnpoint)
 unlock

@@ -1,0 +1,80 @@
+#include "station/app/operator_code.hpp"
+
+#include <fmt/ostream.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <iostream>
+#include <string>
+
+#include "station/cli/command.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+/// What is typed on standard input stays invisible for as long as this lives, where that is a terminal.
+/// Ctrl-C is an ordinary character meanwhile, so that the terminal is never left without its echo.
+class NoEcho {
+ public:
+  NoEcho() {
+    if (::tcgetattr(STDIN_FILENO, &before_) != 0) return;
+    auto silent = before_;
+    silent.c_lflag &= ~static_cast<tcflag_t>(ECHO | ISIG);
+    terminal_ = ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &silent) == 0;
+  }
+  NoEcho(const NoEcho&) = delete;
+  NoEcho& operator=(const NoEcho&) = delete;
+  ~NoEcho() {
+    if (terminal_) ::tcsetattr(STDIN_FILENO, TCSAFLUSH, &before_);
+  }
+  bool terminal() const { return terminal_; }
+
+ private:
+  termios before_{};
+  bool terminal_ = false;
+};
+
+std::string line_from(std::istream& in) {
+  std::string line;
+  if (!std::getline(in, line)) throw UsageError("operator-code: nothing was entered; nothing was stored");
+  return line;
+}
+
+/// Typed twice on a terminal; else one line of standard input.
+std::string entered(Context& context) {
+  const NoEcho silent;
+  if (!silent.terminal()) return line_from(std::cin);
+  const auto ask = [&](const char* what) {
+    fmt::print(context.err, "{}: ", what);
+    context.err.flush();
+    auto line = line_from(std::cin);
+    fmt::print(context.err, "\n");
+    return line;
+  };
+  auto code = ask("New operator's code (4 to 12 digits)");
+  if (ask("Again") != code) throw UsageError("operator-code: the two entries differ; nothing was stored");
+  return code;
+}
+
+void set_operator_code(Context& context) {
+  const auto file = app::operator_code_files().front();
+  app::store_operator_code(app::OperatorCode::of_digits(entered(context)), file);
+  fmt::print(
+      context.out,
+      "The operator's code is stored in {} (its hash). A station that runs takes it when it is started "
+      "again: sudo systemctl restart turnpoint\n",
+      file);
+}
+
+}  // namespace
+
+void add_operator_code(CommandLine& app, Context& context) {
+  auto* command = app.add_subcommand("operator-code",
+                                     "Asks for the code that opens the operator's pages on the participant's "
+                                     "screen, and stores its hash; as root for the station's service");
+  command->footer("Example: sudo turnpoint operator-code");
+  command->callback([&context] { set_operator_code(context); });
+}
+
+}  // namespace turnpoint::cli

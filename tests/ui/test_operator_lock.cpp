@@ -1,0 +1,68 @@
+#include <QCoreApplication>
+#include <chrono>
+
+#include "station/ui/operator_lock.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+/// Enough for a machine that does much else; what never comes must end the test as well.
+constexpr std::chrono::seconds kPatience{20};
+
+/// A keypad without its screen, on a clock that the test moves.
+struct Keypad {
+  int argc = 1;
+  char name[5] = "test";
+  char* argv[2] = {name, nullptr};
+  QCoreApplication application{argc, argv};
+  double now_s = 1000;
+  int opened = 0, refused = 0;
+  ui::OperatorLock lock{app::OperatorCode::of_digits("7391"), [this] { return now_s; }};
+
+  Keypad() {
+    QObject::connect(&lock, &ui::OperatorLock::opened, [this] { ++opened; });
+    QObject::connect(&lock, &ui::OperatorLock::refused, [this] { ++refused; });
+  }
+  void enter(const char* code) {
+    lock.enter(code);
+    const auto until = std::chrono::steady_clock::now() + kPatience;
+    while (lock.checking() && std::chrono::steady_clock::now() < until)
+      QCoreApplication::processEvents(QEventLoop::WaitForMoreEvents);
+    REQUIRE_FALSE(lock.checking());
+  }
+};
+
+}  // namespace
+
+TEST_CASE("the operator's lock opens by the code, and is compared off the pages' thread", "[lock]") {
+  Keypad keypad;
+  keypad.lock.enter("7391");
+  CHECK(keypad.lock.checking());  // it came back before the code was compared
+  CHECK(keypad.opened == 0);
+  keypad.enter("1234");  // ignored meanwhile
+  CHECK(keypad.opened == 1);
+  CHECK(keypad.refused == 0);
+}
+
+TEST_CASE("after wrong codes the lock takes not even the right one until its time is over", "[lock]") {
+  Keypad keypad;
+  keypad.enter("1111");
+  keypad.enter("2222");
+  CHECK(keypad.lock.wait_s() == 0);
+  keypad.enter("3333");
+  CHECK(keypad.refused == 3);
+  CHECK(keypad.lock.wait_s() == 5);
+  keypad.enter("7391");
+  keypad.now_s += 4.5;
+  keypad.enter("7391");
+  CHECK(keypad.opened == 0);
+  CHECK(keypad.lock.wait_s() == 1);
+  keypad.now_s += 0.5;
+  keypad.enter("7391");
+  CHECK(keypad.opened == 1);
+  keypad.enter("1111");
+  keypad.enter("2222");
+  CHECK(keypad.lock.wait_s() == 0);  // the right one began the count anew
+}
