@@ -1,5 +1,8 @@
 #include "tests/ui/page_inspector.hpp"
 
+#include <sys/inotify.h>
+#include <unistd.h>
+
 #include <QFontMetricsF>
 #include <QImage>
 #include <QJSValue>
@@ -107,6 +110,30 @@ bool PageInspector::reachesEdge(QQuickItem* item) const {
   for (int y = place.top(); y <= place.bottom(); ++y)
     if (image.pixel(place.left(), y) != ground || image.pixel(place.right(), y) != ground) return true;
   return false;
+}
+
+PageInspector::~PageInspector() {
+  if (watch_ >= 0) ::close(watch_);
+}
+
+QString PageInspector::picture() {
+  const auto path = folder_.filePath("picture.png");
+  QImage image(40, 40, QImage::Format_RGB32);
+  image.fill(Qt::red);
+  image.save(path);
+  if (watch_ >= 0) ::close(watch_);
+  watch_ = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+  opened_ = 0;
+  if (::inotify_add_watch(watch_, path.toLocal8Bit().constData(), IN_OPEN) < 0) qFatal("inotify");
+  return path;
+}
+
+int PageInspector::opened() {
+  alignas(inotify_event) char events[4096];
+  for (auto size = ::read(watch_, events, sizeof events); size > 0;
+       size = ::read(watch_, events, sizeof events))
+    opened_ += static_cast<int>(static_cast<std::size_t>(size) / sizeof(inotify_event));
+  return opened_;
 }
 
 int PageInspector::texts(QQuickItem* page) const {

@@ -2,6 +2,7 @@
 #include <QObject>
 #include <QQuickItem>
 #include <QStringList>
+#include <QTemporaryDir>
 
 namespace turnpoint::ui {
 
@@ -11,6 +12,7 @@ class PageInspector : public QObject {
 
  public:
   using QObject::QObject;
+  ~PageInspector() override;
 
   /// Texts below `page` that are visible and enabled, whose letters and background differ by a contrast (as
   /// WCAG 2.1 defines it) below `least` in the pixels on the screen: "text: contrast", one each.
@@ -23,6 +25,14 @@ class PageInspector : public QObject {
   Q_INVOKABLE bool reachesEdge(QQuickItem* item) const;
   /// How many texts the others look at.
   Q_INVOKABLE int texts(QQuickItem* page) const;
+
+  /// A picture's file that nobody has opened yet; from now on opened() tells how often somebody did.
+  Q_INVOKABLE QString picture();
+  Q_INVOKABLE int opened();
+
+ private:
+  QTemporaryDir folder_;
+  int watch_ = -1, opened_ = 0;
 };
 
 }  // namespace turnpoint::ui

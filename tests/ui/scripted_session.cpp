@@ -20,6 +20,19 @@ void ScriptedSession::show(const QString& name, const QString& language) {
   qFatal("no page %s in the gallery", qPrintable(name));
 }
 
+void ScriptedSession::showWith(const QString& name, const QString& text) {
+  const auto words = text.toStdString();
+  for (auto exhibit : gallery("en")) {
+    if (exhibit.name != name.toStdString()) continue;
+    auto& page = exhibit.page;
+    for (auto* place : {&page.title, &page.text, &page.safe, &page.to_do, &page.detail}) *place = words;
+    for (auto& answer : page.answers) answer.label = words;
+    for (auto& line : page.summary) line.value = words;
+    return bridge_.show(page);
+  }
+  qFatal("no page %s in the gallery", qPrintable(name));
+}
+
 QStringList ScriptedSession::pages() {
   QStringList names;
   for (const auto& exhibit : gallery("en")) names += QString::fromStdString(exhibit.name);

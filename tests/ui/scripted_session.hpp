@@ -24,6 +24,8 @@ class ScriptedSession : public QObject {
   static QStringList pages();
 
   Q_INVOKABLE void show(const QString& name, const QString& language);
+  /// The same page with this text in every place that a file or a device fills.
+  Q_INVOKABLE void showWith(const QString& name, const QString& text);
   Q_INVOKABLE void forget();
   /// From now on the kernel knows every touch, as having begun so many milliseconds before the toolkit saw
   /// it.
