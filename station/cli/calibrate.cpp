@@ -9,6 +9,7 @@
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/run.hpp"
+#include "station/cli/screens.hpp"
 #include "station/text/number.hpp"
 #include "station/text/write_file.hpp"
 

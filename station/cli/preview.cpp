@@ -12,6 +12,7 @@
 #include "station/app/scene_figures.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/run.hpp"
+#include "station/cli/screens.hpp"
 #include "station/text/write_file.hpp"
 
 namespace turnpoint::cli {

@@ -4,6 +4,7 @@
 #include "station/cli/command.hpp"
 #include "station/cli/console_session.hpp"
 #include "station/cli/run.hpp"
+#include "station/cli/screens.hpp"
 
 namespace turnpoint::cli {
 

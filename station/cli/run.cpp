@@ -11,6 +11,7 @@
 #include "station/app/places.hpp"
 #include "station/cli/console_session.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/screens.hpp"
 #include "station/store/read.hpp"
 #include "station/text/number.hpp"
 

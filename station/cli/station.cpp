@@ -5,6 +5,7 @@
 #include "station/app/station_request.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/run.hpp"
+#include "station/cli/screens.hpp"
 
 namespace turnpoint::cli {
 

@@ -126,7 +126,7 @@ int EvdevDevice::axis(int axis) const noexcept {
   return libevdev_get_event_value(device_.get(), EV_ABS, static_cast<unsigned>(axis));
 }
 
-int EvdevDevice::slots() const noexcept {
+int EvdevDevice::slot_count() const noexcept {
   const int count = libevdev_get_num_slots(device_.get());
   return count < 0 ? 0 : count;
 }

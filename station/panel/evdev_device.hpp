@@ -49,7 +49,7 @@ class EvdevDevice {
   /// The state: whether a key is down, where an axis is, and the same of each finger of a multitouch panel.
   bool key(int code) const noexcept;
   int axis(int axis) const noexcept;
-  int slots() const noexcept;  ///< 0 where the device does not tell fingers apart
+  int slot_count() const noexcept;  ///< 0 where the device does not tell fingers apart
   int slot(int slot, int code) const noexcept;
 
  private:

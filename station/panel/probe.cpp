@@ -72,7 +72,7 @@ Check check_touch(const std::string& device, const std::string& text) {
     if (!panel)
       return {device, Status::failed,
               "input device '" + uri.name + "': " + std::generic_category().message(errno), mend};
-    static_cast<void>(panel->range(panel->slots() > 0 ? ABS_MT_POSITION_X : ABS_X));
+    static_cast<void>(panel->range(panel->slot_count() > 0 ? ABS_MT_POSITION_X : ABS_X));
     return {device, Status::ok, "'" + uri.name + "' is there, with monotonic time stamps", ""};
   } catch (const std::exception& error) {
     return {device, Status::failed, error.what(), mend};

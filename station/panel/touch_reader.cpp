@@ -50,14 +50,14 @@ class OpenPanel {
   }
 
  private:
-  bool slots() const { return device_.slots() > 0; }
+  bool slots() const { return device_.slot_count() > 0; }
 
   std::vector<Finger> fingers() const {
     if (!slots())
       return {{device_.key(BTN_TOUCH) ? std::optional(0) : std::nullopt, device_.axis(ABS_X),
                device_.axis(ABS_Y)}};
     std::vector<Finger> all;
-    for (int k = 0; k < device_.slots(); ++k) {
+    for (int k = 0; k < device_.slot_count(); ++k) {
       const int id = device_.slot(k, ABS_MT_TRACKING_ID);
       all.push_back({id >= 0 ? std::optional(id) : std::nullopt, device_.slot(k, ABS_MT_POSITION_X),
                      device_.slot(k, ABS_MT_POSITION_Y)});

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "station/cli/command.hpp"
+#include "station/cli/screens.hpp"
 #include "station/ui/screens.hpp"
 
 Q_IMPORT_QML_PLUGIN(TurnpointPlugin)

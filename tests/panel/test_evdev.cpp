@@ -13,7 +13,7 @@ TEST_CASE("a device is read report by report, with the kernel's stamps", "[panel
   FakeEvdev fake(0);
   EvdevDevice device(fake.descriptor(), "fake");
   CHECK(device.range(ABS_X).highest == 799);
-  CHECK(device.slots() == 0);
+  CHECK(device.slot_count() == 0);
   CHECK_THROWS_AS(device.range(ABS_MT_POSITION_X), std::system_error);
   CHECK(device.next() == News::none);
   fake.send(5'000'001, EV_ABS, ABS_X, 400);
@@ -65,7 +65,7 @@ TEST_CASE("after dropped events fingers are in the slots that the kernel says, a
           "[panel][evdev]") {
   FakeEvdev fake(2);
   EvdevDevice device(fake.descriptor(), "fake");
-  REQUIRE(device.slots() == 2);
+  REQUIRE(device.slot_count() == 2);
   fake.send(10, EV_ABS, ABS_MT_SLOT, 0);
   fake.send(10, EV_ABS, ABS_MT_TRACKING_ID, 5);
   fake.send(10, EV_ABS, ABS_MT_POSITION_X, 80);
