@@ -1,5 +1,6 @@
 #include "station/session/replay.hpp"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -24,6 +25,24 @@ void enter_stored(Director& director, const store::BlockStart& block) {
                              " is not the one that the protocol runs next; they do not belong together");
 }
 
+/// Half of a session by one simulated observer and half by another would be neither's. Sliders are left out:
+/// their row has no answer of the observer.
+void check_observer(const Setup& setup, const store::StoredSession& stored, const TrialSpec& spec,
+                    const store::TrialRow& trial) {
+  constexpr double tolerance_s = 1e-3;
+  if (trial.outcome != store::TrialOutcome::answered || !trial.response_time_s || spec.slider) return;
+  const observer::Observer observer(observer::parse(setup.observer));
+  const auto reply = observer.answer(question_of(spec, setup.protocol, stored.session.start.seed));
+  const auto& choices = setup.protocol.task.choices;
+  if (reply.choice && choices[static_cast<std::size_t>(*reply.choice)].id == trial.response &&
+      std::fabs(reply.response_time_s - *trial.response_time_s) < tolerance_s)
+    return;
+  throw std::runtime_error(
+      "resume: trial " + std::to_string(trial.trial_index) + " was not answered by \"" + setup.observer +
+      "\" as this program simulates it; an earlier program did, and only that one can go "
+      "on with the session");
+}
+
 }  // namespace
 
 Director replayed(const Setup& setup, const store::StoredSession& stored) {
@@ -31,7 +50,11 @@ Director replayed(const Setup& setup, const store::StoredSession& stored) {
   for (const auto& block : stored.blocks) {
     enter_stored(director, block.start);
     for (const auto& trial : block.trials)
-      if (trial.type != store::TrialType::warmup) replay(director, trial, setup.protocol);
+      if (trial.type != store::TrialType::warmup) {
+        const auto spec = director.next();
+        replay(director, trial, setup.protocol);
+        if (spec && !setup.observer.empty()) check_observer(setup, stored, *spec, trial);
+      }
   }
   switch (setup.resume_at) {
     case ResumeAt::next_trial:

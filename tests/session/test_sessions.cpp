@@ -252,3 +252,25 @@ TEST_CASE("the response device's latency and the consent form are stored, and no
   CHECK(trials_of(folder / "c.sqlite", other.session_id).front().response_offset_s == 0);
   CHECK(a.front().response_time_s == b.front().response_time_s);
 }
+
+TEST_CASE("a simulated session is not continued by another simulated observer", "[session]") {
+  const Folder folder;
+  const auto database = folder / "a.sqlite";
+  Cut cut(30);
+  session::Inputs inputs;
+  const auto setup = app::prepare(request_for("demo", database));
+  CHECK_THROWS_AS(session::run(setup, &cut, inputs), std::runtime_error);
+  std::ostringstream messages;
+  auto resumed = app::prepare_resume({database, "", "resume", true}, messages);
+  REQUIRE(resumed.has_value());
+  const auto before = store::list_sessions(database).front();
+  REQUIRE(before.trials > 0);
+  const auto kept = resumed->observer;
+  resumed->observer = "sim:residual=0.4";
+  CHECK_THROWS_AS(session::run(*resumed, nullptr, inputs), std::runtime_error);
+  const auto after = store::list_sessions(database).front();
+  CHECK(after.trials == before.trials);
+  CHECK(after.segments == before.segments);
+  resumed->observer = kept;
+  CHECK(session::run(*resumed, nullptr, inputs).status == store::SessionStatus::completed);
+}
