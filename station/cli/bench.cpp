@@ -5,6 +5,7 @@
 #include <fstream>
 #include <memory>
 
+#include "station/benchmark/intervals.hpp"
 #include "station/benchmark/physics.hpp"
 #include "station/benchmark/procedures.hpp"
 #include "station/benchmark/store.hpp"
@@ -26,12 +27,13 @@ struct Options {
   int trials = 200;
 };
 
-const std::vector<std::string> kAll{"physics", "synth", "procedures", "store"};
+const std::vector<std::string> kAll{"physics", "synth", "procedures", "intervals", "store"};
 
 Report measure(const std::string& what, const Options& options) {
   if (what == "physics") return benchmark::bench_physics(options.seconds);
   if (what == "synth") return benchmark::bench_synth();
   if (what == "procedures") return benchmark::bench_procedures();
+  if (what == "intervals") return benchmark::bench_intervals();
   return benchmark::bench_store(options.disk, options.trials);
 }
 
@@ -86,7 +88,8 @@ void bench(const Options& options, Context& context) {
 void add_bench(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("bench", "Speed against accuracy on this machine, as tables and plots");
-  command->add_option("what", options->what, "physics | synth | procedures | store; otherwise all")
+  command
+      ->add_option("what", options->what, "physics | synth | procedures | intervals | store; otherwise all")
       ->check(one_of(kAll));
   command->add_option("--out", options->out, "Folder for CSV tables and SVG plots");
   command->add_option("--seconds", options->seconds, "About how long physics may measure")

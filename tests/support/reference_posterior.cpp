@@ -13,6 +13,8 @@ namespace {
 
 namespace rnd = turnpoint::random;
 
+constexpr int kKeptOneIn = 5;
+
 using Point = std::array<double, 4>;  // threshold, ln slope, lapse, guess
 
 double guess_of(const Prior& prior, const Point& at) { return prior.guess_is_lapse ? at[2] : at[3]; }
@@ -48,6 +50,16 @@ double level_75(Shape shape, const Prior& prior, const Point& at) {
 
 }  // namespace
 
+std::vector<Level> merged(std::vector<Level> levels) {
+  std::sort(levels.begin(), levels.end(), [](const Level& a, const Level& b) { return a.level < b.level; });
+  std::vector<Level> result;
+  for (const auto& one : levels) {
+    if (result.empty() || result.back().level < one.level) result.push_back({one.level, 0, 0});
+    result.back().trials += one.trials, result.back().positive += one.positive;
+  }
+  return result;
+}
+
 Samples sample(Shape shape, const std::vector<Level>& data, const Prior& prior, int steps,
                std::uint64_t seed) {
   rnd::Draws draws({seed, rnd::Stream::observer, 1, 0, 0});
@@ -74,7 +86,7 @@ Samples sample(Shape shape, const std::vector<Level>& data, const Prior& prior, 
       const double found = log_likelihood(shape, data, prior, next);
       if (found >= value || draws.uniform() < std::exp(found - value)) here = next, value = found;
     }
-    if (i < 0) continue;
+    if (i < 0 || i % kKeptOneIn != 0) continue;
     samples.threshold.push_back(here[0]), samples.slope.push_back(std::exp(here[1]));
     samples.lapse.push_back(here[2]), samples.guess.push_back(guess_of(prior, here));
     samples.level_75.push_back(level_75(shape, prior, here));

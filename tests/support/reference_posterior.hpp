@@ -13,6 +13,9 @@ struct Level {
   int trials = 0, positive = 0;
 };
 
+/// Ascending, one entry a level.
+std::vector<Level> merged(std::vector<Level> levels);
+
 /// Uniform in threshold, logarithm of the slope, lapse rate and guess rate; equal ends fix a parameter.
 struct Prior {
   double threshold_low = 0, threshold_high = 1, slope_low = 1, slope_high = 2, lapse_low = 0, lapse_high = 0,
@@ -25,8 +28,8 @@ struct Samples {
   std::vector<double> threshold, slope, lapse, guess, level_75;
 };
 
-/// `steps` draws after a tenth as many that are dropped. Steps have scales from a thousandth of the prior's
-/// range to all of it, so that narrow and wide posteriors are both walked without tuning.
+/// One in five of `steps` draws, after a tenth as many that are dropped. Steps have scales from a thousandth
+/// of the prior's range to all of it, so that narrow and wide posteriors are both walked without tuning.
 Samples sample(Shape shape, const std::vector<Level>& data, const Prior& prior, int steps,
                std::uint64_t seed);
 

@@ -1,0 +1,106 @@
+// coverage [--folder DIR] [--sessions N] [--procedure NAME] [--threads N] [--table]: how often the report's
+// 95 % intervals of adaptive data hold the true value. Keeps each session in DIR and goes on where it was
+// stopped; prints the table of what is there. Ends with 1 where an interval breaks its promise.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+
+#include "station/app/parallel.hpp"
+#include "tests/coverage/table.hpp"
+
+namespace {
+
+using namespace coverage;
+
+struct Request {
+  std::string folder = "build/coverage";
+  std::vector<std::string> procedures = kProcedures;
+  int sessions = 2000, threads = 1;
+  bool table_only = false;
+};
+
+/// So many sessions of each cell also have the reference's widths.
+constexpr int kReferences = 60;
+/// Sessions between two writes.
+constexpr int kPart = 20;
+
+std::string file_of(const Request& request, const std::string& procedure, std::size_t source) {
+  return fmt::format("{}/{}-{}.csv", request.folder, procedure, source);
+}
+
+void simulate(const Request& request, const std::string& procedure, std::size_t source) {
+  const auto path = file_of(request, procedure, source);
+  const Design design(procedure);
+  for (auto done = static_cast<int>(read(path).size()); done < request.sessions;) {
+    const int part = std::min(kPart, request.sessions - done);
+    std::vector<Session> sessions(static_cast<std::size_t>(part));
+    turnpoint::app::in_parallel(part, request.threads, {}, [&](int i) {
+      const int index = done + i;
+      sessions[static_cast<std::size_t>(i)] =
+          design.run(sources()[source], static_cast<std::uint64_t>(index + 1), index < kReferences);
+    });
+    append(path, sessions);
+    done += part;
+    fmt::print(stderr, "\r{}, {}: {} of {}   ", procedure, sources()[source].name, done, request.sessions);
+  }
+}
+
+std::string cell(const Tally& tally, const std::string& broken) {
+  if (tally.printed == 0) return "none printed";
+  auto text = fmt::format("{:.1f} % ({:.1f} %, {})", 100 * tally.coverage(), 100 * tally.abstained(),
+                          tally.width_ratio ? fmt::format("{:.2f}", *tally.width_ratio) : "-");
+  return broken.empty() ? text : text + " BROKEN:" + broken;
+}
+
+/// Whether every promise is kept.
+bool print_table(const Request& request) {
+  fmt::print("| procedure | true values | trials | sessions | threshold | slope | 75 % point |\n");
+  fmt::print("|---|---|---|---|---|---|---|\n");
+  bool kept = true;
+  for (const auto& procedure : request.procedures)
+    for (std::size_t source = 0; source < sources().size(); ++source) {
+      const auto sessions = read(file_of(request, procedure, source));
+      if (sessions.empty()) continue;
+      for (std::size_t t = 0; t < kTrials.size(); ++t) {
+        fmt::print("| {} | {} | {} | {} |", procedure, sources()[source].name, kTrials[t], sessions.size());
+        for (const auto quantity : {threshold, slope, level_75}) {
+          const auto found = tally(sessions, t, quantity);
+          const auto broken = broken_promise(found, sources()[source], quantity, kTrials[t]);
+          kept = kept && broken.empty();
+          fmt::print(" {} |", cell(found, broken));
+        }
+        fmt::print("\n");
+      }
+    }
+  return kept;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Request request;
+  CLI::App app("How often the report's 95 % intervals of adaptive data hold the true value");
+  app.add_option("--folder", request.folder, "Where sessions are kept; goes on with those there")
+      ->capture_default_str();
+  app.add_option("--procedure", request.procedures, "Only these")->check(CLI::IsMember(kProcedures));
+  app.add_option("--sessions", request.sessions, "Of each cell")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  app.add_option("--threads", request.threads, "At once")->capture_default_str()->check(CLI::PositiveNumber);
+  app.add_flag("--table", request.table_only, "Only print what is there");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    std::filesystem::create_directories(request.folder);
+    if (!request.table_only)
+      for (const auto& procedure : request.procedures)
+        for (std::size_t source = 0; source < sources().size(); ++source)
+          simulate(request, procedure, source);
+    return print_table(request) ? 0 : 1;
+  } catch (const std::exception& error) {
+    std::cerr << "coverage: " << error.what() << "\n";
+    return 2;
+  }
+}
