@@ -7,6 +7,7 @@ and left as it is. The clock of the program is set to a minute after the archive
 import csv
 import json
 import os
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -141,7 +142,7 @@ class Release:
 
     def tampered(self):
         """A trial that this program would never have presented."""
-        database = "interrupted/demo.sqlite"
+        database = "interrupted/boundary-adjustment.sqlite"
         connection = sqlite3.connect(self.path(database))
         connection.executescript("DROP TRIGGER trial_is_never_changed; UPDATE trial SET state_hash = state_hash + 1"
                                  " WHERE trial_index = 2; PRAGMA wal_checkpoint(TRUNCATE)")
@@ -149,6 +150,29 @@ class Release:
         before = contents(self.path(database))
         done = self.call("resume", "--db", database, "--headless", expected=1)
         self.refused(database, before, done)
+
+    def set_clock(self, seconds):
+        self.environment["CLOCK_OFFSET_S"] = str(int(self.environment["CLOCK_OFFSET_S"]) + seconds)
+
+    def clock(self):
+        """A clock that went back, or is ahead, prevents no resume."""
+        name = "boundary-adjustment"
+        database, copy = f"interrupted/{name}.sqlite", "interrupted/copy.sqlite"
+        for suffix in ("", "-wal"):
+            shutil.copy(self.path(database + suffix), self.path(copy + suffix))
+        with open(self.path(f"expected/{name}.json"), encoding="utf-8") as file:
+            expected = json.load(file)
+        self.set_clock(10 * 365 * 24 * 3600)
+        before = contents(self.path(database))
+        refused = self.call("resume", "--db", database, "--headless", expected=2)
+        if "--any-age" not in refused.stderr or contents(self.path(database)) != before:
+            fail(f"{database}: not refused as too old, or changed: {refused.stderr}")
+        self.call("resume", "--db", database, "--headless", "--any-age", "--policy", "resume")
+        self.set_clock(-11 * 365 * 24 * 3600)
+        self.call("resume", "--db", copy, "--headless", "--policy", "resume")
+        for resumed in (database, copy):
+            if decisions(self.path(resumed)) != expected:
+                fail(f"{resumed}: the resumed session is not the one that was interrupted")
 
     def by_buttons(self):
         """Nobody simulates this participant, so nothing excuses a refusal."""
@@ -182,6 +206,7 @@ def main():
         release = Release(program, archive, faulty_system, folder)
         named = {"finished": release.finished, "backups": release.backups, "stations": release.stations,
                  "texts": release.texts, "calibration": release.calibration, "tampered": release.tampered,
+                 "clock": release.clock,
                  "by-buttons": release.by_buttons}
         if case in named:
             named[case]()
