@@ -62,7 +62,7 @@ report::SessionData report_data(const std::string& database, const std::string& 
   const auto protocol = protocol::parse(start.protocol_text, start.protocol_path);
   report::SessionData data;
   data.title = protocol.title;
-  data.participant = start.participant;
+  data.participant = stored.session.person;
   data.session_id = stored.session.session_id;
   data.run_mode = store::name(start.run_mode);
   data.status = store::name(stored.session.status);
@@ -84,7 +84,7 @@ std::string session_to_report(const std::string& database, const store::SessionF
   const auto sessions = store::list_sessions(database, filter);
   for (const auto& session : sessions)
     if (session.trials > 0 &&
-        (!newest || session.last_activity_realtime_ns > newest->last_activity_realtime_ns))
+        (!newest || session.last_trial_id > newest->last_trial_id))
       newest = &session;
   if (!newest)
     throw store::StoreError(store::Fault::missing, database + ": no session with trials to report");

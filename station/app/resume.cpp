@@ -42,13 +42,15 @@ std::optional<session::Setup> prepare_resume(const ResumeRequest& request, std::
   if (start.calibration_id) take_calibration(start.calibration_text, "the session's calibration", setup);
   setup.consent_version = start.consent_version;
   const double age_h = found->age_s / 3600, allowed_h = setup.protocol.resume.max_age_h;
-  if (age_h > allowed_h || age_h < 0)
+  if (age_h < 0)
+    messages << "resume: the clock was set back since the session was interrupted; its age is not known\n";
+  if (age_h > allowed_h && !request.any_age)
     throw text::BadInput(
         {{{start.protocol_path, 0, 0},
           fmt::format("session {} was interrupted {} h ago", found->session.session_id,
                       text::number(age_h, 3)),
           fmt::format("the protocol allows {} h (resume.max_age_h); begin a new session with "
-                      "turnpoint run",
+                      "turnpoint run, or, if the clock is or was wrong, resume it with --any-age",
                       text::number(allowed_h))}});
   setup.participant = start.participant;
   setup.database = request.database;

@@ -13,6 +13,7 @@ struct ResumeRequest {
   std::string
       policy;  ///< "" (the protocol's; being called is the answer to "ask") | resume | restart | block
   bool headless = false;
+  bool any_age = false;  ///< also a session older than its protocol allows: the clock was wrong
 };
 
 /// The sitting that goes on with an interrupted session: rig, protocol text, observer and language from its

@@ -15,14 +15,16 @@ namespace {
 struct Options {
   std::string database;
   store::BackupOptions backup;
+  std::string database_id;
   bool restore = false;
 };
 
 void back_up(const Options& options, Context& context) {
   const auto report = store::backup(options.database, options.backup);
   if (context.json) {
-    context.out << Json{{"path", report.path},         {"sha256", report.sha256}, {"bytes", report.bytes},
-                        {"sessions", report.sessions}, {"trials", report.trials}, {"removed", report.removed}}
+    context.out << Json{{"path", report.path},      {"number", report.number},     {"sha256", report.sha256},
+                        {"bytes", report.bytes},    {"sessions", report.sessions}, {"trials", report.trials},
+                        {"removed", report.removed}}
                        .dump(2)
                 << "\n";
     return;
@@ -33,9 +35,11 @@ void back_up(const Options& options, Context& context) {
 }
 
 void restore(const Options& options, Context& context) {
-  const auto restored = store::restore_backup(options.database, options.backup.directory);
+  const auto restored =
+      store::restore_backup(options.database, {options.backup.directory, options.database_id});
   if (context.json) {
     context.out << Json{{"from", restored.from},
+                        {"database_id", restored.database_id},
                         {"quarantined", restored.quarantined},
                         {"sessions", restored.sessions},
                         {"trials", restored.trials},
@@ -45,10 +49,11 @@ void restore(const Options& options, Context& context) {
     return;
   }
   for (const auto& path : restored.rejected) fmt::print(context.out, "failed its check: {}\n", path);
-  fmt::print(context.out, "{} restored from {}: {} sessions, {} trials\n", options.database, restored.from,
-             restored.sessions, restored.trials);
+  fmt::print(context.out, "{} restored from {}: {} sessions, {} trials, opened and checked\n",
+             options.database, restored.from, restored.sessions, restored.trials);
   if (!restored.quarantined.empty())
-    fmt::print(context.out, "the damaged file is kept as {}\n", restored.quarantined);
+    fmt::print(context.out, "what was there before is kept as {}, with its log if it had one\n",
+               restored.quarantined);
 }
 
 }  // namespace
@@ -64,6 +69,8 @@ void add_backup(CommandLine& app, Context& context) {
       ->capture_default_str();
   command->add_flag("--restore", options->restore,
                     "Put the newest good backup in the place of a damaged, empty or missing database");
+  command->add_option("--database-id", options->database_id,
+                      "With --restore: whose backups, where the folder holds those of several databases");
   add_json(*command, context);
   command->footer("Example: turnpoint backup --db lab.sqlite --dir /mnt/backup --keep 30");
   command->callback([options, &context] {

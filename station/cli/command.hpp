@@ -41,6 +41,7 @@ void add_sessions(CommandLine& app, Context& context);
 void add_backup(CommandLine& app, Context& context);
 void add_merge(CommandLine& app, Context& context);
 void add_verify(CommandLine& app, Context& context);
+void add_join(CommandLine& app, Context& context);
 void add_withdraw(CommandLine& app, Context& context);
 void add_annotate(CommandLine& app, Context& context);
 void add_check(CommandLine& app, Context& context);

@@ -63,7 +63,7 @@ void add_export(CommandLine& app, Context& context) {
   command->add_option("--db", options->database, "Database")->required();
   command->add_option("--out", options->out, "Folder to write to")->required();
   command->add_option("--session", options->selection.session_id, "Only this session");
-  command->add_option("--participant", options->selection.participant, "Only this participant code");
+  command->add_option("--participant", options->selection.participant, "Only this participant: CODE or CODE@STATION");
   command->add_option("--protocol", options->selection.protocol_id, "Only this protocol");
   command->add_option("--format", options->format, "csv | bids")
       ->check(one_of({"csv", "bids"}))

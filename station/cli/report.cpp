@@ -37,7 +37,7 @@ void add_report(CommandLine& app, Context& context) {
   auto* command = app.add_subcommand("report", "One page about a session: fits, bias, the trade, health");
   command->add_option("--db", options->database, "Database")->required();
   command->add_option("--session", options->filter.session_id, "This session; otherwise the newest");
-  command->add_option("--participant", options->filter.participant, "The newest of this participant code");
+  command->add_option("--participant", options->filter.participant, "The newest of this participant: CODE or CODE@STATION");
   command->add_option("--protocol", options->filter.protocol_id, "The newest of this protocol");
   command->add_option("--out", options->out, "HTML file; otherwise report-SESSION.html, with --json none");
   add_json(*command, context);

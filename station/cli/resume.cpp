@@ -15,6 +15,8 @@ void add_resume(CommandLine& app, Context& context) {
   command->add_option("--session", request->session_id, "Session; otherwise the newest interrupted one");
   command->add_option("--policy", request->policy, "resume | restart | block; otherwise the protocol's")
       ->check(one_of({"resume", "restart", "block"}));
+  command->add_flag("--any-age", request->any_age,
+                    "Also a session older than its protocol allows, because the clock is or was wrong");
   command->add_flag("--headless", request->headless, "No screen");
   add_json(*command, context);
   command->footer("Example: turnpoint resume --db lab.sqlite --policy resume");

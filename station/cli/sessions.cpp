@@ -20,6 +20,7 @@ Json to_json(const store::SessionRecord& session) {
   const auto& start = session.start;
   return {{"session_id", session.session_id},
           {"participant", start.participant},
+          {"person", session.person},
           {"protocol_id", start.protocol_id},
           {"protocol_version", start.protocol_version},
           {"session_index", session.session_index},
@@ -41,9 +42,9 @@ void print(std::ostream& out, const std::vector<store::SessionRecord>& sessions)
   fmt::print(out, "{:<36}  {:<12} {:<24} {:>3} {:<9} {:<11} {:>6}  {}\n", "session", "participant",
              "protocol", "no", "mode", "status", "trials", "started");
   for (const auto& s : sessions) {
-    fmt::print(out, "{:<36}  {:<12} {:<24} {:>3} {:<9} {:<11} {:>6}  {}{}\n", s.session_id,
-               s.start.participant, s.start.protocol_id, s.session_index, store::name(s.start.run_mode),
-               store::name(s.status), s.trials, s.start.started_local,
+    fmt::print(out, "{:<36}  {:<12} {:<24} {:>3} {:<9} {:<11} {:>6}  {}{}\n", s.session_id, s.person,
+               s.start.protocol_id, s.session_index, store::name(s.start.run_mode), store::name(s.status),
+               s.trials, s.start.started_local,
                s.segments > 1 ? fmt::format(", resumed {} times", s.segments - 1) : "");
     for (const auto& note : s.annotations) fmt::print(out, "{:>38}note: {}\n", "", note);
   }
@@ -65,7 +66,8 @@ void add_sessions(CommandLine& app, Context& context) {
   auto* command = app.add_subcommand("sessions", "List the sessions of a database");
   command->add_option("--db", options->database, "Database")->required();
   command->add_option("--session", options->filter.session_id, "Only this session");
-  command->add_option("--participant", options->filter.participant, "Only this participant code");
+  command->add_option("--participant", options->filter.participant,
+                      "Only this participant: CODE or CODE@STATION");
   command->add_option("--protocol", options->filter.protocol_id, "Only this protocol");
   add_json(*command, context);
   command->footer("Example: turnpoint sessions --db lab.sqlite --participant P07");

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <iostream>
 #include <memory>
 
 #include "station/cli/command.hpp"
@@ -13,18 +14,26 @@ namespace turnpoint::cli {
 namespace {
 
 struct Options {
-  std::string database, participant, backups;
+  std::string database;
+  store::WithdrawOptions withdraw;
+  bool dry_run = false, yes = false;
 };
 
-Json to_json(const store::Withdrawal& gone) {
+Json to_json(const store::Withdrawal& gone, const Options& options) {
   Json sessions = Json::array();
   for (const auto& s : gone.sessions)
     sessions.push_back({{"session_id", s.session_id},
+                        {"participant", s.start.participant},
+                        {"station_id", s.start.station_id},
                         {"protocol_id", s.start.protocol_id},
                         {"started", s.start.started_local},
                         {"trials", s.trials}});
+  Json codes = Json::array();
+  for (const auto& bearer : gone.bearers) codes.push_back(store::full_name(bearer));
   return {{"participant", gone.participant},
+          {"dry_run", options.dry_run},
           {"sessions", sessions},
+          {"codes", codes},
           {"trials", gone.trials},
           {"tones", gone.tones},
           {"events", gone.events},
@@ -33,27 +42,55 @@ Json to_json(const store::Withdrawal& gone) {
           {"remaining_copies", gone.remaining_copies}};
 }
 
-void print(std::ostream& out, const store::Withdrawal& gone, const Options& options) {
+/// What there is to delete, or was deleted.
+void print(std::ostream& out, const store::Withdrawal& gone, const std::string& verb) {
   for (const auto& s : gone.sessions)
-    fmt::print(out, "removed: session {}, {} of {}, {} trials\n", s.session_id, s.start.protocol_id,
-               s.start.started_local, s.trials);
-  fmt::print(out, "{}: {} sessions, {} trials, {} tones, {} events, {} annotations removed\n",
-             gone.participant, gone.sessions.size(), gone.trials, gone.tones, gone.events, gone.annotations);
-  for (const auto& path : gone.removed_copies) fmt::print(out, "backup removed: {}\n", path);
+    fmt::print(out, "{}: session {} of {} at {}, {} of {}, {} trials\n", verb, s.session_id,
+               s.start.participant, s.start.station_id, s.start.protocol_id, s.start.started_local, s.trials);
+  fmt::print(out, "{}: {} sessions, {} trials, {} tones, {} events, {} annotations\n", verb,
+             gone.sessions.size(), gone.trials, gone.tones, gone.events, gone.annotations);
+  for (const auto& path : gone.removed_copies) fmt::print(out, "{}: {}\n", verb, path);
+}
+
+void print_what_stays(std::ostream& out, const store::Withdrawal& gone, const Options& options) {
   for (const auto& path : gone.remaining_copies)
-    fmt::print(out, "STILL HOLDS the participant, remove it: {}\n", path);
-  if (options.backups.empty())
+    fmt::print(out, "holds these data as well or cannot be read, and stays: {}; remove it by hand\n", path);
+  if (options.withdraw.backup_directory.empty())
     fmt::print(out,
                "Earlier backups and exports are not searched: give --backups FOLDER, and remove exports by "
                "hand.\n");
 }
 
+/// Lists what would go, and asks. Nothing is deleted on anything but the word itself.
+bool agreed(const Options& options, Context& context) {
+  const auto plan = store::plan_withdrawal(options.database, options.withdraw);
+  print(context.err, plan, "would be deleted");
+  print_what_stays(context.err, plan, options);
+  context.err << "This cannot be undone. Type the participant's code (" << options.withdraw.participant
+              << ") to delete: " << std::flush;
+  std::string answer;
+  if (!std::getline(std::cin, answer))
+    throw UsageError(
+        "withdraw: nobody has agreed: standard input has ended; nothing was deleted; a script gives --yes");
+  return answer == options.withdraw.participant;
+}
+
 void withdraw(const Options& options, Context& context) {
-  const auto gone = store::withdraw(options.database, options.participant, options.backups);
-  if (context.json)
-    context.out << to_json(gone).dump(2) << "\n";
-  else
-    print(context.out, gone, options);
+  if (!options.dry_run && !options.yes && !agreed(options, context)) {
+    context.err << "Nothing was deleted.\n";
+    context.exit_code = 1;
+    return;
+  }
+  const auto gone = options.dry_run ? store::plan_withdrawal(options.database, options.withdraw)
+                                    : store::withdraw(options.database, options.withdraw);
+  if (context.json) {
+    context.out << to_json(gone, options).dump(2) << "\n";
+  } else {
+    print(context.out, gone, options.dry_run ? "would be deleted" : "deleted");
+    print_what_stays(context.out, gone, options);
+  }
+  // Not withdrawn as long as a copy stays.
+  if (!options.dry_run && !gone.remaining_copies.empty()) context.exit_code = 1;
 }
 
 }  // namespace
@@ -61,12 +98,19 @@ void withdraw(const Options& options, Context& context) {
 void add_withdraw(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
-      app.add_subcommand("withdraw", "Delete all data of a participant who withdraws; cannot be undone");
+      app.add_subcommand("withdraw", "Delete the data of a participant who withdraws; cannot be undone");
   command->add_option("--db", options->database, "Database")->required();
-  command->add_option("--participant", options->participant, "Participant code")->required();
+  command
+      ->add_option("--participant", options->withdraw.participant,
+                   "Participant: CODE, or CODE@STATION where several people have the code")
+      ->required();
+  command->add_option("--station", options->withdraw.station, "Only the sessions at this station");
+  command->add_option("--session", options->withdraw.session_id, "Only this session; the code stays in use");
   command->add_option(
-      "--backups", options->backups,
-      "Folder of the backups: a new one is made, those that hold the participant are removed");
+      "--backups", options->withdraw.backup_directory,
+      "Folder of the backups: a new one is made, this database's that hold the data are removed");
+  command->add_flag("--dry-run", options->dry_run, "List what would be deleted, and delete nothing");
+  command->add_flag("--yes", options->yes, "Do not ask: for scripts");
   add_json(*command, context);
   command->footer("Example: turnpoint withdraw --db lab.sqlite --participant P07 --backups /mnt/backup");
   command->callback([options, &context] { withdraw(*options, context); });

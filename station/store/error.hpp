@@ -11,6 +11,7 @@ enum class Fault {
   corrupt,         ///< the file is damaged; it is left untouched
   not_a_database,  ///< empty, or something else than a Turnpoint database
   newer_schema,    ///< written by a newer release
+  cannot_open,     ///< it is there and cannot be opened: its permissions, or a folder where a file should be
   busy,            ///< another station process has it
   missing,         ///< no such file, session or participant
   conflict,        ///< rows contradict what is there

@@ -104,17 +104,19 @@ void export_csv(Database& database, const ProtocolSelection& selection, const Ta
   TextTable sessions(style, names_of(session_row));
   for (const auto& session : selection.sessions) {
     const auto stored = read_session(database, session.session_id);
+    const auto spans = stimulus_spans(stored);
     sessions.row(cells_of(session_row, {&stored.session}));
     for (const auto& block : stored.blocks)
       for (const auto& trial : block.trials) {
         ExportRow row{&stored.session, &block.start, &trial};
+        row.span = span_of(spans, trial);
         trials.row(cells_of(trial_row, row));
         for (const auto& tone : trial.tones) {
           row.tone = &tone;
           intervals.row(cells_of(interval_row, row));
         }
       }
-    for (const auto& event : stored.events) {
+    for (const auto& event : in_order_of_time(stored.events)) {
       const auto& segment = stored.segments.at(static_cast<std::size_t>(event.segment_index) - 1);
       events.row(
           cells_of(event_row, {&stored.session, nullptr, nullptr, nullptr, &event, segment.monotonic_ns}));
@@ -141,10 +143,15 @@ std::vector<ExportedFile> export_data(const std::string& path, const std::string
                                                  path, path));
   std::vector<ExportedFile> files;
   for (const auto& selection : selections) {
+    // Files of an earlier export may stand beside new ones until the last is written.
+    const auto mark = selection.folder + "/EXPORT-INCOMPLETE.txt";
+    write_file(mark, "An export into this folder has not ended. Export again.\n");
     if (options.format == ExportFormat::bids)
       export_bids(database, selection, files);
     else
       export_csv(database, selection, {TableStyle::Kind::rfc4180, options.separator, options.decimal}, files);
+    sync_path(selection.folder);
+    remove_file(mark);
   }
   return files;
 }

@@ -22,7 +22,8 @@ struct ExportedFile {
 
 /// Writes one folder a protocol below `directory`: trials.csv, intervals.csv, events.csv, sessions.csv and
 /// codebook.json (or the BIDS set). Reads SQLite only, through a read-only connection; the same data give the
-/// same bytes. Throws StoreError.
+/// same bytes. While it lasts, and after one that was interrupted, a folder holds EXPORT-INCOMPLETE.txt.
+/// Throws StoreError.
 std::vector<ExportedFile> export_data(const std::string& database, const std::string& directory,
                                       const ExportOptions& options);
 

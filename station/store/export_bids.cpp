@@ -6,9 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "station/store/export_bids_texts.hpp"
 #include "station/store/export_files.hpp"
 #include "station/store/export_tables.hpp"
 #include "station/store/sqlite.hpp"
+#include "station/text/number.hpp"
 
 namespace turnpoint::store {
 
@@ -18,40 +20,54 @@ namespace {
 
 const TableStyle kBids{TableStyle::Kind::bids, '\t', '.'};
 
-/// BIDS labels are letters and digits only.
-std::string label(const std::string& text) {
-  std::string letters;
-  for (const char c : text)
-    if (std::isalnum(static_cast<unsigned char>(c)) != 0) letters += c;
-  return letters;
+std::string joined(const std::set<std::string>& texts) {
+  std::string all;
+  for (const auto& text : texts) all += (all.empty() ? "" : "; ") + text;
+  return all;
 }
 
 struct Labels {
-  std::map<std::string, std::string> participants;  ///< code -> label
+  std::map<std::string, std::string> participants;  ///< person -> label
   std::map<std::string, std::string> sessions;      ///< session_id -> label
 };
 
-[[noreturn]] void collide(const std::string& what) {
-  throw StoreError(Fault::conflict,
-                   "export bids: " + what + " would share one label; export them one by one");
+/// Labels for names that BIDS and the file systems it is kept on must be able to tell apart: letters and
+/// digits only, and not by case alone. Whoever shares what is left of a name gets a piece of its hash, the
+/// same in every export.
+std::map<std::string, std::string> labels_for(const std::set<std::string>& names) {
+  std::map<std::string, int> users;
+  const auto folded = [](std::string text) {
+    for (auto& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+  };
+  for (const auto& name : names) ++users[folded(bids_label(name))];
+  std::map<std::string, std::string> labels;
+  for (const auto& name : names) {
+    const bool shared = users[folded(bids_label(name))] > 1 || bids_label(name).empty();
+    labels[name] = bids_label(name) + (shared ? "x" + text::sha256(name).substr(0, 8) : "");
+  }
+  return labels;
 }
 
+/// A person's sessions are numbered; where two stations have each numbered theirs, by station as well.
 Labels label_all(const ProtocolSelection& selection) {
   Labels labels;
-  std::map<std::string, std::string> owners;
-  std::set<std::string> taken;
+  std::set<std::string> persons;
+  std::map<std::string, std::set<std::string>> names_of_person;
+  const auto numbered = [](const SessionRecord& session) {
+    return fmt::format("{:02}", session.session_index);
+  };
+  std::map<std::pair<std::string, std::string>, int> users;
   for (const auto& session : selection.sessions) {
-    const auto& code = session.start.participant;
-    const auto [owner, fresh] = owners.emplace(label(code), code);
-    if (!fresh && owner->second != code) collide("participants " + owner->second + " and " + code);
-    labels.participants[code] = owner->first;
-    auto name = fmt::format("{:02}", session.session_index);
-    if (!taken.insert(code + "/" + name).second) {
-      // Two stations may both have a first session of one participant.
-      name += label(session.start.station_id);
-      if (!taken.insert(code + "/" + name).second) collide("sessions of participant " + code);
-    }
-    labels.sessions[session.session_id] = name;
+    persons.insert(session.person);
+    ++users[{session.person, numbered(session)}];
+  }
+  labels.participants = labels_for(persons);
+  for (const auto& session : selection.sessions) {
+    const bool shared = users[{session.person, numbered(session)}] > 1;
+    labels.sessions[session.session_id] =
+        numbered(session) +
+        (shared ? bids_label(session.start.station_id) + "x" + session.session_id.substr(0, 8) : "");
   }
   return labels;
 }
@@ -72,44 +88,21 @@ void refuse_leftovers(const std::string& folder, const Labels& labels) {
   }
 }
 
-std::string description_json(const ProtocolSelection& selection) {
-  nlohmann::ordered_json json;
-  json["Name"] = selection.protocol_id;
-  json["BIDSVersion"] = "1.9.0";
-  json["DatasetType"] = "raw";
-  json["License"] = "n/a";
-  json["Authors"] = {"n/a"};
-  json["GeneratedBy"] = {
-      {{"Name", "Turnpoint"}, {"Version", selection.sessions.back().start.software_version}}};
-  return json.dump(2) + "\n";
-}
-
-std::vector<Column> bids_event_columns() {
-  return {{"onset", "Time of the event, from the start of the run", "s", ""},
-          {"duration", "Events are moments", "s", ""},
-          {"trial_type", "What happened", "", ""},
-          {"value", "Detail", "", ""},
-          {"trial_index", "Trial of the session, from 0", "", ""}};
-}
-
 class BidsWriter {
  public:
   BidsWriter(const ProtocolSelection& selection, std::vector<ExportedFile>& files)
       : selection_(selection),
         files_(files),
         labels_(label_all(selection)),
-        task_(label(selection.protocol_id)) {}
+        task_(bids_label(selection.protocol_id)) {}
 
   void write(Database& database) {
     refuse_leftovers(selection_.folder, labels_);
-    plain("dataset_description.json", description_json(selection_));
-    plain("README",
-          fmt::format("Behavioural data of the protocol {}, exported by Turnpoint. One run is one process "
-                      "run of the station: a session that was resumed has several.\n",
-                      selection_.protocol_id));
+    plain("dataset_description.json", bids_description(selection_));
+    plain("README", bids_readme(selection_));
     plain(fmt::format("task-{}_beh.json", task_),
-          sidecar_json(task_, explanations(trial_columns(selection_.factors))));
-    plain(fmt::format("task-{}_events.json", task_), sidecar_json(task_, bids_event_columns()));
+          bids_sidecar(selection_, explanations(bids_trial_columns(selection_.factors))));
+    plain(fmt::format("task-{}_events.json", task_), bids_sidecar(selection_, bids_event_columns()));
     participants();
     for (const auto& session : selection_.sessions) runs(read_session(database, session.session_id));
   }
@@ -121,37 +114,43 @@ class BidsWriter {
   }
 
   void participants() {
-    TextTable table(kBids, {"participant_id", "code", "sessions"});
-    std::map<std::string, int> counts;
-    for (const auto& session : selection_.sessions) ++counts[session.start.participant];
-    for (const auto& [code, count] : counts)
-      table.row({cell("sub-" + labels_.participants.at(code)), cell(code), cell(count)});
+    TextTable table(kBids, names_of(bids_participant_columns()));
+    std::map<std::string, std::vector<const SessionRecord*>> sessions;
+    for (const auto& session : selection_.sessions) sessions[session.person].push_back(&session);
+    for (const auto& [person, list] : sessions) {
+      std::set<std::string> codes, stations;
+      for (const auto* session : list)
+        codes.insert(session->start.participant), stations.insert(session->start.station_id);
+      table.row({cell("sub-" + labels_.participants.at(person)), cell(joined(codes)),
+                 cell(static_cast<int>(list.size())), cell(joined(stations))});
+    }
     write_table(selection_.folder + "/participants.tsv", table, files_);
-    nlohmann::ordered_json json;
-    json["code"]["Description"] = "Participant code as given to the station";
-    json["sessions"]["Description"] = "Number of sessions in this data set";
-    plain("participants.json", json.dump(2) + "\n");
+    plain("participants.json", columns_json(bids_participant_columns()));
   }
 
   void runs(const StoredSession& stored) {
+    const auto spans = stimulus_spans(stored);
+    const auto all_events = in_order_of_time(stored.events);
     for (std::size_t i = 0; i < stored.segments.size(); ++i) {
       const int segment = static_cast<int>(i) + 1;
-      const auto subject = "sub-" + labels_.participants.at(stored.session.start.participant);
+      const auto subject = "sub-" + labels_.participants.at(stored.session.person);
       const auto session = "ses-" + labels_.sessions.at(stored.session.session_id);
       const auto base = fmt::format("{0}/{1}/{2}/beh/{1}_{2}_task-{3}_run-{4:02}", selection_.folder, subject,
                                     session, task_, segment);
-      const auto columns = trial_columns(selection_.factors);
+      const auto columns = bids_trial_columns(selection_.factors);
       TextTable trials(kBids, names_of(columns));
       for (const auto& block : stored.blocks)
         for (const auto& trial : block.trials)
-          if (trial.segment_index == segment)
-            trials.row(cells_of(columns, {&stored.session, &block.start, &trial}));
+          if (trial.segment_index == segment) {
+            ExportRow row{&stored.session, &block.start, &trial};
+            row.span = span_of(spans, trial);
+            trials.row(cells_of(columns, row));
+          }
       write_table(base + "_beh.tsv", trials, files_);
-      TextTable events(kBids, {"onset", "duration", "trial_type", "value", "trial_index"});
-      for (const auto& event : stored.events)
+      TextTable events(kBids, names_of(bids_event_columns()));
+      for (const auto& event : all_events)
         if (event.segment_index == segment)
-          events.row({cell(static_cast<double>(event.time_ns - stored.segments[i].monotonic_ns) * 1e-9),
-                      cell(0), cell(event.kind), cell(event.value), cell(event.trial_index)});
+          events.row(bids_event_cells(event, stored.segments[i].monotonic_ns));
       write_table(base + "_events.tsv", events, files_);
     }
   }

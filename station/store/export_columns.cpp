@@ -42,6 +42,31 @@ ExportColumn session_id() {
           [](const ExportRow& row) { return cell(row.session->session_id); }};
 }
 
+ExportColumn participant_id() {
+  return {
+      {"participant_id", "Participant: the code, or CODE@STATION where several people have the code", "", ""},
+      [](const ExportRow& row) { return cell(row.session->person); }};
+}
+
+/// Version 2: onset and duration are the stimulus', as in BIDS; the zero of the response time and the length
+/// of the trial have columns of their own; a participant is a person.
+ExportColumn columns_version() {
+  return {{"columns_version", "Version of this set of columns", "", ""},
+          [](const ExportRow&) { return cell(std::string("2")); }};
+}
+
+ExportColumn stimulus_onset() {
+  return {
+      {"onset", "Start of the trial's first stimulus, from the start of the segment; n/a where none began",
+       "s", ""},
+      [](const ExportRow& row) { return row.span ? cell(row.span->onset_s) : Cell{}; }};
+}
+
+ExportColumn stimulus_duration() {
+  return {{"duration", "From there to the end of the trial's last stimulus", "s", ""},
+          [](const ExportRow& row) { return row.span ? cell(row.span->duration_s) : Cell{}; }};
+}
+
 ExportColumn last_model() {
   return {{"model", "Model that planned that scene", "", ""}, [](const ExportRow& row) {
             const auto& tones = row.trial->tones;
@@ -50,7 +75,8 @@ ExportColumn last_model() {
 }
 
 ExportColumn event_onset() {
-  return {{"onset", "Time of the event, from the start of the segment", "s", ""}, [](const ExportRow& row) {
+  return {{"onset", "Time of the event, from the start of the segment; rows are in this order", "s", ""},
+          [](const ExportRow& row) {
             return cell(static_cast<double>(row.event->time_ns - row.origin_ns) * 1e-9);
           }};
 }
@@ -123,6 +149,12 @@ std::vector<std::string> names_of(const ExportColumns& columns) {
   return names;
 }
 
+std::vector<std::string> names_of(const std::vector<Column>& columns) {
+  std::vector<std::string> names;
+  for (const auto& column : columns) names.push_back(column.name);
+  return names;
+}
+
 std::vector<Cell> cells_of(const ExportColumns& columns, const ExportRow& row) {
   std::vector<Cell> cells;
   cells.reserve(columns.size());
@@ -137,10 +169,13 @@ std::vector<Column> explanations(const ExportColumns& columns) {
 }
 
 ExportColumns trial_columns(const std::vector<std::string>& factors) {
-  ExportColumns columns{session("participant_id"), session_id()};
+  ExportColumns columns{participant_id(), session_id()};
   add(columns, session, {"session_index", "run_mode", "protocol_id", "protocol_version", "protocol_sha256"});
   add(columns, block, {"block_index", "block_name", "instruction", "practice", "attempt"});
-  add(columns, trial, {"segment_id", "trial_index", "trial_type", "procedure", "onset", "duration", "level"});
+  add(columns, trial, {"segment_id", "trial_index", "trial_type", "procedure"});
+  columns.push_back(stimulus_onset());
+  columns.push_back(stimulus_duration());
+  add(columns, trial, {"level"});
   add(columns, session, {"level_unit"});
   const auto at = static_cast<std::ptrdiff_t>(columns.size());
   add(columns, trial, {"boundary_mm", "frequency_hz", "amplitude"});
@@ -149,33 +184,35 @@ ExportColumns trial_columns(const std::vector<std::string>& factors) {
       {"correct_response", "response", "correct", "outcome", "response_time", "decision_time",
        "movement_time", "response_zero", "response_time_quality", "response_offset_s", "deadline", "xruns",
        "extra_touches", "threshold_est", "threshold_sd"});
-  add(columns, session, {"seed", "station_id", "calibration_id", "software_version", "columns_version"});
+  add(columns, session, {"seed", "station_id", "calibration_id", "software_version"});
+  add(columns, trial, {"response_zero_onset", "trial_duration"});
+  columns.push_back(columns_version());
   add_factors(columns, at, factors);
   return columns;
 }
 
 ExportColumns interval_columns() {
-  ExportColumns columns{session("participant_id"), session_id(), session("run_mode")};
+  ExportColumns columns{participant_id(), session_id(), session("run_mode")};
   add(columns, block, {"block_index", "attempt"});
   add(columns, trial, {"trial_index"});
   add(columns, tone,
       {"interval_index", "scene_index", "tone_index", "scene", "boundary_mm", "frequency_hz", "amplitude_um",
        "displacement_um", "friction", "rove_db", "model", "error_bound_mm", "uncertainty_mm", "reason",
        "onset_frame", "length_frames"});
-  add(columns, session, {"columns_version"});
+  columns.push_back(columns_version());
   return columns;
 }
 
 ExportColumns event_columns() {
-  ExportColumns columns{session("participant_id"), session_id(), session("run_mode"), event("segment_id"),
+  ExportColumns columns{participant_id(), session_id(), session("run_mode"), event("segment_id"),
                         event_onset()};
   add(columns, event, {"time_ns", "kind", "value", "trial_index"});
-  add(columns, session, {"columns_version"});
+  columns.push_back(columns_version());
   return columns;
 }
 
 ExportColumns session_columns() {
-  ExportColumns columns{session("participant_id"), session_id()};
+  ExportColumns columns{participant_id(), session_id()};
   add(columns, session,
       {"session_index", "sequence_index", "run_mode", "status", "status_reason", "started"});
   columns.push_back(segments());
@@ -186,7 +223,8 @@ ExportColumns session_columns() {
        "station_id", "realtime_rights", "consent_version"});
   columns.push_back(annotations());
   columns.push_back(checksum());
-  add(columns, session, {"columns_version"});
+  add(columns, session, {"participant_code"});
+  columns.push_back(columns_version());
   return columns;
 }
 
@@ -201,9 +239,8 @@ std::string codebook_json(const std::string& protocol_id, const std::vector<std:
   return json.dump(2) + "\n";
 }
 
-std::string sidecar_json(const std::string& task, const std::vector<Column>& columns) {
-  Json json;
-  json["TaskName"] = task;
+std::string columns_json(const std::vector<Column>& columns) {
+  Json json = Json::object();
   for (const auto& column : columns) json[column.name] = explained(column);
   return json.dump(2) + "\n";
 }

@@ -209,9 +209,9 @@ const Table<TrialRow>& trial_table() {
             "How the trial ended; only answered trials have a response, a score and a response time", "",
             "answered | timeout | anticipation | aborted | fault"}),
        field<&T::onset_ns>({"onset_ns"}),
-       field<&T::onset_s>(
-           {"onset_s", "onset", "Zero of the response time, from the start of the segment", "s"}),
-       field<&T::duration_s>({"duration_s", "duration", "Of the whole trial", "s"}),
+       field<&T::onset_s>({"onset_s", "response_zero_onset",
+                           "Zero of the response time, from the start of the segment", "s"}),
+       field<&T::duration_s>({"duration_s", "trial_duration", "Of the whole trial", "s"}),
        field<&T::response_time_s>(
            {"response_time_s", "response_time", "From response_zero to the answer, raw", "s"}),
        field<&T::decision_time_s>(
@@ -287,7 +287,7 @@ const Table<SessionRecord>& session_table() {
   static const Table<R> table{
       "session",
       {"session_id", "protocol_key", "rig_key"},
-      {start<&S::participant>({"participant", "participant_id", "Participant code"}),
+      {start<&S::participant>({"participant", "participant_code", "Code under which the session was run"}),
        start<&S::protocol_path>({"protocol_path", "protocol_path", "File it was read from"}),
        start<&S::rig_path>({"rig_path", "rig_path", "File it was read from"}),
        start<&S::calibration_id>(
@@ -304,7 +304,7 @@ const Table<SessionRecord>& session_table() {
        start<&S::factor_columns>({"factor_columns"}),
        start<&S::level_unit>({"level_unit", "level_unit", "Unit of the level"}),
        start<&S::software_version>({"software_version", "software_version", "Version of the program"}),
-       start<&S::columns_version>({"columns_version", "columns_version", "Version of this set of columns"}),
+       start<&S::columns_version>({"columns_version"}),
        start<&S::kernel>({"kernel", "kernel", "Kernel of the station"}),
        start<&S::station_id>({"station_id", "station_id", "Identifier of the station"}),
        start<&S::realtime_rights>(

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -41,10 +42,10 @@ struct stat status_of(int descriptor, const std::string& path) {
 void give_to_owner_of_folder(int descriptor, const std::string& path) {
   if (::geteuid() != 0 || status_of(descriptor, path).st_uid != 0) return;
   struct stat folder {};
-  const auto name = fs::absolute(path).parent_path();  // of a bare name as well
+  const auto name = folder_of(path);
   if (::stat(name.c_str(), &folder) != 0 || ::fchown(descriptor, folder.st_uid, folder.st_gid) != 0)
     fail_system(fault_of_errno(errno), "owner of " + path, errno,
-                "run this as the user of the folder " + name.string());
+                "run this as the user of the folder " + name);
 }
 
 }  // namespace
@@ -59,10 +60,57 @@ Fault fault_of_errno(int code) {
   return code == ENOENT ? Fault::missing : Fault::io;
 }
 
+bool file_exists(const std::string& path) {
+  struct stat status {};
+  if (::lstat(path.c_str(), &status) == 0) return true;
+  if (errno == ENOENT) return false;
+  fail_system(fault_of_errno(errno), path, errno, "check the path, its permissions and the disk");
+}
+
+std::uint64_t file_size(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) == 0) return static_cast<std::uint64_t>(status.st_size);
+  if (errno == ENOENT) return 0;
+  fail_system(fault_of_errno(errno), path, errno, "check the path, its permissions and the disk");
+}
+
+std::string read_bytes(const std::string& path) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  std::string bytes(file_size(path), '\0');
+  std::size_t done = 0;
+  while (file.get() >= 0 && done < bytes.size()) {
+    const auto size = ::read(file.get(), bytes.data() + done, bytes.size() - done);
+    if (size < 0 && errno == EINTR) continue;
+    if (size == 0) errno = EIO;  // shorter than the system said
+    if (size <= 0) break;
+    done += static_cast<std::size_t>(size);
+  }
+  if (file.get() < 0 || done < bytes.size())
+    fail_system(fault_of_errno(errno), "read " + path, errno, "check the disk and the permissions");
+  return bytes;
+}
+
+std::string folder_of(const std::string& path) { return fs::absolute(path).parent_path().string(); }
+
+std::vector<std::string> list_folder(const std::string& path) {
+  std::error_code error;
+  std::vector<std::string> names;
+  fs::directory_iterator entry(path, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error))
+    names.push_back(entry->path().filename().string());
+  if (error)
+    fail_system(fault_of_errno(error.value()), "list " + path, error.value(),
+                "name a folder that can be read");
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 std::string canonical(const std::string& path) {
-  std::error_code ignored;
-  const auto resolved = fs::weakly_canonical(fs::absolute(path, ignored), ignored);
-  return resolved.empty() ? path : resolved.string();
+  std::error_code error;
+  const auto resolved = fs::weakly_canonical(fs::absolute(path, error), error);
+  if (error)
+    fail_system(fault_of_errno(error.value()), path, error.value(), "check the path and its permissions");
+  return resolved.string();
 }
 
 int open_lock(const std::string& path) {
@@ -93,7 +141,8 @@ void give_to_owner_of_folder(const std::string& path) {
 
 void permit_as(const std::string& original, const std::string& path) {
   struct stat status {};
-  if (::stat(original.c_str(), &status) != 0) return;
+  status.st_mode = 0640;  // the station's group may read a new database
+  if (!original.empty() && ::stat(original.c_str(), &status) != 0) return;
   // A disk without permissions has its own for all files.
   if (::chmod(path.c_str(), (status.st_mode & 0666) | 0600) != 0 && errno != EPERM)
     fail_system(fault_of_errno(errno), "permissions of " + path, errno, "check the disk");
@@ -104,6 +153,22 @@ void sync_path(const std::string& path) {
   const Descriptor file(::open(name.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.get() < 0 || ::fsync(file.get()) != 0)
     fail_system(fault_of_errno(errno), "sync " + name, errno, "check the disk");
+}
+
+void rename_file(const std::string& from, const std::string& to) {
+  if (::rename(from.c_str(), to.c_str()) != 0)
+    fail_system(fault_of_errno(errno), "rename " + from + " to " + to, errno,
+                "check the folder and the disk");
+}
+
+void remove_file(const std::string& path) {
+  if (::unlink(path.c_str()) != 0 && errno != ENOENT)
+    fail_system(fault_of_errno(errno), "remove " + path, errno, "remove it by hand");
+}
+
+void remove_database(const std::string& path) {
+  for (const auto* suffix : kLogSuffixes) remove_file(path + suffix);
+  remove_file(path);
 }
 
 }  // namespace turnpoint::store

@@ -6,8 +6,10 @@
 
 #include "station/store/backup.hpp"
 #include "station/store/checksum.hpp"
+#include "station/store/files.hpp"
 #include "station/store/identity.hpp"
 #include "station/store/open.hpp"
+#include "station/store/whole_file.hpp"
 #include "station/store/withdraw.hpp"
 
 namespace turnpoint::store {
@@ -28,7 +30,9 @@ const std::vector<Part>& parts() {
   static const std::vector<Part> all = {
       {"participant", "code", "", "s.code IN (SELECT participant FROM temp.incoming)"},
       {"enrolment", "station_id,protocol_id,participant", "",
-       "s.participant IN (SELECT participant FROM temp.incoming)"},
+       "(s.station_id, s.participant) IN (SELECT station_id, participant FROM temp.incoming)"},
+      {"same_person", "station_a,code_a,station_b,code_b", "realtime_ns",
+       "(s.station_a, s.code_a) IN temp.bearer AND (s.station_b, s.code_b) IN temp.bearer"},
       {"protocol", "protocol_key", "", "s.protocol_key IN (SELECT protocol_key FROM temp.incoming)"},
       {"rig", "rig_key", "", "s.rig_key IN (SELECT rig_key FROM temp.incoming)"},
       {"calibration", "calibration_id", "", "s.calibration_id IN (SELECT calibration_id FROM temp.incoming)"},
@@ -94,8 +98,8 @@ void refuse_shared_places(Database& database) {
       database,
       "SELECT s.station_id, s.protocol_id, s.sequence_index, m.participant, s.participant"
       " FROM source.enrolment s JOIN main.enrolment m USING (station_id, protocol_id, sequence_index)"
-      " WHERE s.participant <> m.participant AND s.participant IN (SELECT participant FROM temp.incoming)"
-      " LIMIT 1");
+      " WHERE s.participant <> m.participant"
+      " AND (s.station_id, s.participant) IN (SELECT station_id, participant FROM temp.incoming) LIMIT 1");
   if (rows.step())
     throw StoreError(Fault::conflict,
                      fmt::format("merge: table enrolment: station {} has given place {} of protocol "
@@ -131,7 +135,7 @@ std::vector<MergedSession> list_incoming(Database& database) {
   while (rows.step()) {
     MergedSession session{
         rows.text(0), rows.text(1), rows.text(2), rows.text(3), "", MergedSession::What::added, 0};
-    if (rows.integer(4) != 0 || is_withdrawn(database, session.participant))
+    if (rows.integer(4) != 0 || is_withdrawn(database, {session.station_id, session.participant}))
       session.what = MergedSession::What::withdrawn;
     else if (rows.integer(5) != 0)
       session.what = MergedSession::What::unchanged;
@@ -190,16 +194,19 @@ MergeReport merge_attached(Database& database, const std::string& source) {
   report.sessions = list_incoming(database);
   Statement gone(database, "SELECT session_id FROM source.tombstone JOIN main.session USING (session_id)");
   while (gone.step()) report.withdrawn_there.push_back(gone.text(0));
-  Statement incoming(
-      database,
-      "INSERT INTO temp.incoming SELECT session_id, participant, protocol_key, rig_key, calibration_id"
-      " FROM source.session WHERE session_id = ?");
+  Statement incoming(database,
+                     "INSERT INTO temp.incoming SELECT session_id, station_id, participant, protocol_key, "
+                     "rig_key, calibration_id"
+                     " FROM source.session WHERE session_id = ?");
   std::vector<std::pair<std::int64_t, std::string>> before;
   for (const auto& session : report.sessions) {
     if (session.what != MergedSession::What::withdrawn) incoming.bind(session.session_id).run();
     before.emplace_back(trials_of(database, "main", session.session_id),
                         session_checksum(database, "main", session.session_id));
   }
+  database.execute(
+      "INSERT INTO temp.bearer SELECT station_id, participant FROM main.session"
+      " UNION SELECT station_id, participant FROM temp.incoming");
   refuse_shared_places(database);
   for (const auto& part : parts()) refuse_conflicts(database, part);
   for (const auto& part : parts()) copy_rows(database, part);
@@ -221,8 +228,11 @@ class SourceCopy {
   SourceCopy(const SourceCopy&) = delete;
   SourceCopy& operator=(const SourceCopy&) = delete;
   ~SourceCopy() {
-    std::error_code ignored;
-    fs::remove(path_, ignored);
+    try {
+      remove_database(path_);
+    } catch (const StoreError&) {
+      // Whoever next writes this database removes it.
+    }
   }
   const std::string& path() const { return path_; }
 
@@ -246,7 +256,8 @@ const char* name(MergedSession::What what) {
   return "";
 }
 
-MergeReport merge(const std::string& path, const std::string& source) {
+MergeReport merge(const std::string& name, const std::string& source) {
+  const auto path = canonical(name);
   if (fs::exists(source) && fs::exists(path) && fs::equivalent(source, path))
     throw StoreError(Fault::refused, fmt::format("merge: {} and {} are one file", path, source));
   auto writer = open_writer(path, IfMissing::create);
@@ -254,7 +265,9 @@ MergeReport merge(const std::string& path, const std::string& source) {
   auto& database = writer.database;
   Statement(database, "ATTACH ? AS source").bind(copy.path()).run();
   database.execute(
-      "CREATE TEMP TABLE incoming (session_id, participant, protocol_key, rig_key, calibration_id)");
+      "CREATE TEMP TABLE incoming (session_id, station_id, participant, protocol_key, rig_key, "
+      "calibration_id);"
+      "CREATE TEMP TABLE bearer (station_id, code)");
   return merge_attached(database, source);
 }
 

@@ -1,33 +1,28 @@
 #include "station/store/open.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sqlite3.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <filesystem>
 #include <utility>
 
 #include "station/store/files.hpp"
-#include "station/store/identity.hpp"
 #include "station/store/records.hpp"
 #include "station/store/schema.hpp"
+#include "station/store/whole_file.hpp"
 
 namespace turnpoint::store {
-
-namespace fs = std::filesystem;
 
 namespace {
 
 enum class FileState { absent, empty, something };
 
 FileState state_of(const std::string& path) {
-  std::error_code error;
-  const auto size = fs::file_size(path, error);
-  if (error == std::errc::no_such_file_or_directory) return FileState::absent;
-  if (error) fail_system(Fault::missing, "database " + path, error.value(), "name a file");
-  return size == 0 ? FileState::empty : FileState::something;
+  if (!file_exists(path)) return FileState::absent;
+  return file_size(path) == 0 ? FileState::empty : FileState::something;
 }
 
 void refuse_empty(const std::string& path) {
@@ -37,26 +32,6 @@ void refuse_empty(const std::string& path) {
                   "database; it was left untouched; restore the newest backup (turnpoint backup --db "
                   "FILE --dir FOLDER --restore), or remove it to begin a new one",
                   path));
-}
-
-void refuse_absent(const std::string& path) {
-  throw StoreError(Fault::missing, fmt::format("database {}: there is no such file; check the path", path));
-}
-
-/// A half-made file must never stand under the final name: a later start could not tell it from a lost one.
-void create_file(const std::string& path) {
-  const auto temporary = path + ".new";
-  for (const auto* suffix : {"", "-wal", "-shm", "-journal"}) fs::remove(temporary + suffix);
-  {
-    Database database(temporary, Database::Access::create);
-    database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
-    create_schema(database, schema_version());
-    Statement(database, "INSERT INTO meta VALUES ('database_id', ?)").bind(new_uuid()).run();
-  }
-  give_to_owner_of_folder(temporary);
-  sync_path(temporary);
-  fs::rename(temporary, path);
-  sync_path(fs::path(path).parent_path().string());
 }
 
 void recover_sessions(Database& database) {
@@ -92,8 +67,8 @@ Database open_plain_reader(const std::string& path) {
     database.integer("SELECT count(*) FROM sqlite_schema");
     return database;
   } catch (const StoreError& error) {
-    const bool no_shared_memory = error.fault() == Fault::missing || error.fault() == Fault::read_only;
-    if (!no_shared_memory || fs::exists(path + "-wal")) throw;
+    const bool no_shared_memory = error.fault() == Fault::cannot_open || error.fault() == Fault::read_only;
+    if (!no_shared_memory || file_exists(path + "-wal")) throw;
   }
   return Database(path, Database::Access::immutable);
 }
@@ -110,25 +85,54 @@ void refuse_second_name(const std::string& path) {
                   path));
 }
 
+/// A lock file holds the process that has it, and the database's id: "PID\nID\n".
+struct LockNote {
+  std::string process, database_id;
+};
+
+LockNote note_in(int descriptor) {
+  char bytes[128] = {};
+  const auto size = ::pread(descriptor, bytes, sizeof bytes - 1, 0);
+  const std::string text(bytes, size > 0 ? static_cast<std::size_t>(size) : 0);
+  const auto end = text.find('\n');
+  LockNote note{text.substr(0, end), end == std::string::npos ? "" : text.substr(end + 1, 36)};
+  if (note.database_id.size() != 36) note.database_id.clear();
+  return note;
+}
+
 }  // namespace
 
 StationLock::StationLock(const std::string& database) {
   refuse_second_name(database);
   descriptor_ = open_lock(database + ".lock");
+  const auto found = note_in(descriptor_);
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-    char owner[64] = {};
-    const auto size = ::pread(descriptor_, owner, sizeof owner - 1, 0);
     ::close(std::exchange(descriptor_, -1));
     throw StoreError(
         Fault::busy,
         fmt::format("database {}: another station process{}{} is writing it; end that one first, or "
                     "name another database",
-                    database, size > 0 ? ", pid " : "", std::string(owner)));
+                    database, found.process.empty() ? "" : ", pid ", found.process));
   }
-  const auto owner = std::to_string(::getpid());
-  // Only a courtesy to whoever finds the lock taken: a full disk must not keep the station from starting
-  // here.
-  if (::ftruncate(descriptor_, 0) == 0) (void)!::pwrite(descriptor_, owner.data(), owner.size(), 0);
+  note(found.database_id);
+}
+
+void StationLock::remember(const std::string& database_id) { note(database_id); }
+
+/// Only a courtesy to whoever finds the lock taken or the file lost: a full disk must not keep the station
+/// from starting here.
+void StationLock::note(const std::string& database_id) {
+  const auto text = fmt::format("{}\n{}{}", ::getpid(), database_id, database_id.empty() ? "" : "\n");
+  if (::pwrite(descriptor_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()))
+    (void)!::ftruncate(descriptor_, static_cast<off_t>(text.size()));
+}
+
+std::string remembered_database_id(const std::string& database) {
+  const int lock = ::open((database + ".lock").c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+  if (lock < 0) return "";
+  const auto note = note_in(lock);
+  ::close(lock);
+  return note.database_id;
 }
 
 StationLock::StationLock(StationLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
@@ -137,41 +141,16 @@ StationLock::~StationLock() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-void check_pages(Database& database) {
-  const auto pages = database.text("PRAGMA quick_check(1)");
-  if (pages != "ok") database.fail(SQLITE_CORRUPT, "quick_check: " + pages);
-  Statement keys(database, "PRAGMA foreign_key_check");
-  if (keys.step()) database.fail(SQLITE_CORRUPT, "foreign_key_check: table " + keys.text(0));
+namespace {
+
+/// The name for the copy of a database before its migration: an earlier copy, perhaps of another, stays.
+std::string copy_before_migration(const std::string& path) {
+  const auto name = fmt::format("{}.before-v{}", path, schema_version());
+  if (!file_exists(name)) return name;
+  return name + "-" + time_stamp();
 }
 
-void copy_to_file(Database& from, const std::string& to, const std::string& original) {
-  const auto temporary = to + ".new";
-  const auto clean = [&temporary] {
-    for (const auto* suffix : {"", "-wal", "-shm", "-journal"}) {
-      std::error_code ignored;
-      fs::remove(temporary + suffix, ignored);
-    }
-  };
-  clean();
-  try {
-    create_private(temporary);
-    {
-      Database copy(temporary, Database::Access::create);
-      copy_database(from, copy);
-      check_pages(copy);
-      // A copy is one file: out of WAL mode it can be read from any medium.
-      copy.execute("PRAGMA journal_mode = DELETE");
-    }
-    give_to_owner_of_folder(temporary);
-    permit_as(original, temporary);
-    sync_path(temporary);
-    fs::rename(temporary, to);
-    sync_path(fs::path(to).parent_path().string());
-  } catch (...) {
-    clean();
-    throw;
-  }
-}
+}  // namespace
 
 Writer open_writer(const std::string& name, IfMissing if_missing) {
   const auto path = canonical(name);
@@ -185,11 +164,12 @@ Writer open_writer(const std::string& name, IfMissing if_missing) {
   const int version = checked_version(database);
   require_writable(database);
   check_pages(database);
-  if (version < schema_version())
-    copy_to_file(database, fmt::format("{}.before-v{}", path, schema_version()), path);
+  remove_leftovers(path);
+  if (version < schema_version()) copy_to_file(database, copy_before_migration(path), path);
   database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
   migrate(database);
   recover_sessions(database);
+  lock.remember(database.text("SELECT value FROM meta WHERE key = 'database_id'"));
   return {std::move(lock), std::move(database)};
 }
 

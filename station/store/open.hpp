@@ -15,9 +15,16 @@ class StationLock {
   StationLock& operator=(StationLock&&) = delete;
   ~StationLock();
 
+  /// Notes in the lock file whose database it guards: what tells a lost file's backups from others.
+  void remember(const std::string& database_id);
+
  private:
+  void note(const std::string& database_id);
   int descriptor_ = -1;
 };
+
+/// What remember() has noted beside this database, also after the file itself is lost; "" for nothing.
+std::string remembered_database_id(const std::string& database);
 
 /// A lock and the write connection under it.
 struct Writer {
@@ -29,21 +36,15 @@ struct Writer {
 enum class IfMissing { create, fail };
 
 /// Opens a database for writing: WAL, synchronous FULL, foreign keys; checks its pages, and takes an older
-/// schema to the current one after a copy FILE.before-vN. A new file appears whole or not at all.
-/// What root makes anew in another user's folder, the lock as well, is that user's.
-/// Sessions that a dead process left running become interrupted, those without trials abandoned.
-/// Throws StoreError and changes nothing for a file that is empty, damaged, not Turnpoint's or newer.
+/// schema to the current one after a copy FILE.before-vN. A new file appears whole or not at all. What
+/// interrupted operations have left beside the database is removed. What root makes anew in another user's
+/// folder, the lock as well, is that user's. Sessions that a dead process left running become interrupted,
+/// those without trials abandoned. Throws StoreError and changes nothing for a file that is empty, damaged,
+/// not Turnpoint's or newer.
 Writer open_writer(const std::string& path, IfMissing if_missing);
 
 /// Opens a database for reading only, also beside a running session and on a read-only disk. An older schema
 /// is read through a migrated copy in memory.
 Database open_reader(const std::string& path);
-
-/// PRAGMA quick_check and foreign_key_check; throws StoreError (corrupt) with what they say.
-void check_pages(Database& database);
-
-/// Writes all of `from` into the file `to` by way of a temporary: durable, checked, then renamed. Private
-/// until then; afterwards with the permissions of `original`, the file that `from` was read from.
-void copy_to_file(Database& from, const std::string& to, const std::string& original);
 
 }  // namespace turnpoint::store

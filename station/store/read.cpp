@@ -1,8 +1,13 @@
 #include "station/store/read.hpp"
 
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
 #include "station/store/fields.hpp"
 #include "station/store/identity.hpp"
 #include "station/store/open.hpp"
+#include "station/store/people.hpp"
 #include "station/store/rows.hpp"
 #include "station/store/sqlite.hpp"
 
@@ -20,11 +25,12 @@ std::string sessions_sql() {
   max((SELECT max(g.realtime_ns) FROM segment g WHERE g.session_id = s.session_id),
       coalesce((SELECT t.recorded_realtime_ns FROM trial t WHERE t.session_id = s.session_id
                 ORDER BY t.trial_index DESC LIMIT 1), 0)),
-  (SELECT l.sha256 FROM link l WHERE l.session_id = s.session_id ORDER BY l.link_index DESC LIMIT 1)
+  (SELECT l.sha256 FROM link l WHERE l.session_id = s.session_id ORDER BY l.link_index DESC LIMIT 1),
+  coalesce((SELECT max(t.trial_id) FROM trial t WHERE t.session_id = s.session_id), 0),
+  EXISTS (SELECT 1 FROM merged m WHERE m.session_id = s.session_id)
 FROM session s JOIN protocol p USING (protocol_key) JOIN rig r USING (rig_key)
   LEFT JOIN calibration c USING (calibration_id)
-WHERE ?1 IN ('', s.session_id) AND ?2 IN ('', s.participant) AND ?3 IN ('', p.protocol_id)
-ORDER BY s.participant, p.protocol_id, s.session_index, s.session_id
+WHERE ?1 IN ('', s.session_id) AND ?2 IN ('', p.protocol_id)
 )sql";
 }
 
@@ -45,6 +51,8 @@ SessionRecord session_from(const Statement& row) {
   session.trials = static_cast<int>(row.integer(column + 1));
   session.last_activity_realtime_ns = row.integer(column + 2);
   session.checksum = row.text(column + 3);
+  session.last_trial_id = row.integer(column + 4);
+  session.merged = row.integer(column + 5) != 0;
   return session;
 }
 
@@ -70,6 +78,17 @@ std::vector<BlockRecord> read_blocks(Database& database, const std::string& sess
   return blocks;
 }
 
+bool is_among(const Bearer& bearer, const std::vector<std::vector<Bearer>>& persons) {
+  return std::any_of(persons.begin(), persons.end(), [&](const auto& person) {
+    return std::find(person.begin(), person.end(), bearer) != person.end();
+  });
+}
+
+/// Trials are numbered in the order in which they were stored; the clock may have been set since.
+bool newer(const SessionRecord& a, const SessionRecord& b) {
+  return std::make_pair(!a.merged, a.last_trial_id) > std::make_pair(!b.merged, b.last_trial_id);
+}
+
 }  // namespace
 
 std::vector<SessionRecord> list_sessions(Database& database, const SessionFilter& filter) {
@@ -77,13 +96,23 @@ std::vector<SessionRecord> list_sessions(Database& database, const SessionFilter
   Statement rows(database, sessions_sql());
   Statement notes(database,
                   "SELECT text FROM annotation WHERE session_id = ? ORDER BY realtime_ns, annotation_id");
-  rows.bind(filter.session_id, filter.participant, filter.protocol_id);
+  rows.bind(filter.session_id, filter.protocol_id);
+  const People people(database);
+  const auto wanted = people.named(filter.participant);
   while (rows.step()) {
     auto session = session_from(rows);
+    const Bearer bearer{session.start.station_id, session.start.participant};
+    if (!filter.participant.empty() && !is_among(bearer, wanted)) continue;
+    session.person = people.label(bearer);
     notes.bind(session.session_id);
     while (notes.step()) session.annotations.push_back(notes.text(0));
     sessions.push_back(std::move(session));
   }
+  const auto place = [](const SessionRecord& session) {
+    return std::tie(session.person, session.start.protocol_id, session.session_index, session.session_id);
+  };
+  std::sort(sessions.begin(), sessions.end(),
+            [&](const auto& a, const auto& b) { return place(a) < place(b); });
   return sessions;
 }
 
@@ -112,7 +141,7 @@ std::optional<Interrupted> interrupted_session(const std::string& path, const st
     const bool open =
         session.status == SessionStatus::interrupted || session.status == SessionStatus::running;
     if (!open || session.trials == 0) continue;
-    if (newest && newest->session.last_activity_realtime_ns > session.last_activity_realtime_ns) continue;
+    if (newest && !newer(session, newest->session)) continue;
     const auto age_ns = realtime_ns() - session.last_activity_realtime_ns;
     newest = Interrupted{std::move(session), static_cast<double>(age_ns) * 1e-9};
   }

@@ -9,12 +9,13 @@ namespace turnpoint::store {
 
 class Database;
 
-/// Which sessions; "" takes all.
+/// Which sessions; "" takes all. A participant is a code, CODE@STATION, or what SessionRecord::person says;
+/// where several people have the code it takes all of theirs.
 struct SessionFilter {
   std::string session_id, participant, protocol_id;
 };
 
-/// Sessions in the order of participant, protocol, index and id. Reads only; works beside a running session.
+/// Sessions in the order of person, protocol, index and id. Reads only; works beside a running session.
 /// Throws StoreError.
 std::vector<SessionRecord> list_sessions(const std::string& database, const SessionFilter& filter = {});
 std::vector<SessionRecord> list_sessions(Database& database, const SessionFilter& filter = {});
@@ -32,11 +33,13 @@ StoredSession read_session(Database& database, const std::string& session_id);
 /// A session that can be gone on with.
 struct Interrupted {
   SessionRecord session;
-  /// Wall-clock time since its last commit; below 0 where the clock was set back since.
+  /// Wall-clock time since its last commit; below 0 where the clock was set back since: its age is not known
+  /// then.
   double age_s = 0;
 };
 
-/// The interrupted session of that id, or the newest one for ""; none where there is none. Sessions without a
+/// The interrupted session of that id, or the newest one for "", by the order in which trials were stored and
+/// not by the clock, those of this database before merged ones; none where there is none. Sessions without a
 /// trial are not among them: the next write access closes them as abandoned.
 std::optional<Interrupted> interrupted_session(const std::string& database,
                                                const std::string& session_id = "");

@@ -235,8 +235,9 @@ CREATE TRIGGER session_stays_gone BEFORE INSERT ON session
   BEGIN SELECT RAISE(ABORT, 'the session was withdrawn'); END;
 )sql";
 
-// Version 3: a chain of checksums over each session (checksum.hpp). The sessions that an earlier release recorded
-// have none until they are resumed, and are listed, so that a chain that is missing can be told from them.
+// Version 3: a chain of checksums over each session (checksum.hpp). The sessions that an earlier release
+// recorded have none until they are resumed, and are listed, so that a chain that is missing can be told from
+// them.
 const char* const kStep3 = R"sql(
 CREATE TABLE link (
   session_id TEXT NOT NULL REFERENCES session (session_id),
@@ -262,6 +263,23 @@ CREATE TRIGGER link_is_never_deleted BEFORE DELETE ON link
   BEGIN SELECT RAISE(ABORT, 'link is append-only'); END;
 )sql";
 
+// Version 4: a code belongs to the station that gave it out. Two of them are one person only where a row says
+// so. A tombstone's code is that of its station; '' in older ones: of any. One without a hash withdrew a
+// session only.
+const char* const kStep4 = R"sql(
+CREATE TABLE same_person (
+  station_a TEXT NOT NULL,
+  code_a TEXT NOT NULL,
+  station_b TEXT NOT NULL,
+  code_b TEXT NOT NULL,
+  realtime_ns INTEGER NOT NULL,
+  PRIMARY KEY (station_a, code_a, station_b, code_b),
+  CHECK (station_a <> station_b OR code_a <> code_b)
+) STRICT, WITHOUT ROWID;
+
+ALTER TABLE tombstone ADD COLUMN station_id TEXT NOT NULL DEFAULT '';
+)sql";
+
 [[noreturn]] void refuse(Fault fault, const Database& database, const std::string& what) {
   throw StoreError(fault, fmt::format("database {}: {}", database.path(), what));
 }
@@ -275,7 +293,7 @@ void apply(Database& database, int from, int to) {
 }  // namespace
 
 const std::vector<std::string>& schema_steps() {
-  static const std::vector<std::string> steps = {kStep1, kStep2, kStep3};
+  static const std::vector<std::string> steps = {kStep1, kStep2, kStep3, kStep4};
   return steps;
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/statvfs.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -10,6 +11,7 @@
 #include "station/store/fields.hpp"
 #include "station/store/identity.hpp"
 #include "station/store/open.hpp"
+#include "station/store/people.hpp"
 #include "station/store/read.hpp"
 #include "station/store/rows.hpp"
 #include "station/store/withdraw.hpp"
@@ -42,16 +44,29 @@ void refuse(Database& database, Fault fault, const std::string& what) {
 /// The participant's place in the protocol's counterbalancing: kept for a code that is known, else the lowest
 /// one free, so that who withdrew leaves no hole in the design.
 int enrol(Database& database, const SessionStart& start) {
-  if (is_withdrawn(database, start.participant))
+  const Bearer bearer{start.station_id, start.participant};
+  if (is_withdrawn(database, bearer))
     throw StoreError(Fault::refused,
                      fmt::format("database {}: participant {} has withdrawn; the code is not given out "
                                  "again; take a new one",
                                  database.path(), start.participant));
-  Statement known(database,
-                  "SELECT sequence_index FROM enrolment WHERE protocol_id = ?1 AND participant = ?2"
-                  " ORDER BY station_id <> ?3, station_id LIMIT 1");
-  known.bind(start.protocol_id, start.participant, start.station_id);
-  if (known.step()) return static_cast<int>(known.integer(0));
+  Statement known(
+      database,
+      "SELECT sequence_index FROM enrolment WHERE protocol_id = ? AND station_id = ? AND participant = ?");
+  auto same = People(database).same_as(bearer);
+  same.insert(same.begin(), bearer);  // the place that this station gave comes first
+  for (const auto& one : same) {
+    known.bind(start.protocol_id, one.station_id, one.code);
+    if (known.step()) return static_cast<int>(known.integer(0));
+  }
+  Statement earlier(
+      database,
+      "SELECT sequence_index FROM session JOIN protocol USING (protocol_key) WHERE protocol_id = ?"
+      " AND station_id = ? AND participant = ? ORDER BY session_index DESC LIMIT 1");
+  for (const auto& one : same) {
+    earlier.bind(start.protocol_id, one.station_id, one.code);
+    if (earlier.step()) return static_cast<int>(earlier.integer(0));
+  }
   Statement taken(
       database,
       "SELECT DISTINCT sequence_index FROM enrolment WHERE protocol_id = ? ORDER BY sequence_index");
@@ -89,11 +104,14 @@ std::string keep_rig(Database& database, const SessionRecord& session) {
 
 int next_session_index(Database& database, const SessionStart& start) {
   Statement last(database,
-                 "SELECT coalesce(max(session_index), 0) + 1 FROM session JOIN protocol USING (protocol_key)"
-                 " WHERE participant = ? AND protocol_id = ?");
-  last.bind(start.participant, start.protocol_id);
-  last.step();
-  return static_cast<int>(last.integer(0));
+                 "SELECT coalesce(max(session_index), 0) FROM session JOIN protocol USING (protocol_key)"
+                 " WHERE station_id = ? AND participant = ? AND protocol_id = ?");
+  std::int64_t highest = 0;
+  for (const auto& bearer : People(database).same_as({start.station_id, start.participant})) {
+    last.bind(bearer.station_id, bearer.code, start.protocol_id).step();
+    highest = std::max(highest, last.integer(0));
+  }
+  return static_cast<int>(highest) + 1;
 }
 
 void insert_session(Database& database, const std::string& id, const SessionStart& start) {

@@ -16,11 +16,15 @@ struct SessionRecord {
   SessionStatus status = SessionStatus::running;
   std::string status_reason;
   SessionStart start;
+  std::string person;  ///< what this participant is called in this database: the code, or CODE@STATION
   int segments = 0;
   int trials = 0;                              ///< committed, of every type and outcome
   std::int64_t last_activity_realtime_ns = 0;  ///< wall clock of the last commit of a trial or segment
-  std::vector<std::string> annotations;        ///< oldest first
-  std::string checksum;  ///< the last link of its chain (checksum.hpp); "" where an earlier release recorded it
+  std::int64_t last_trial_id = 0;        ///< rises with every trial of this database, whatever the clock says
+  bool merged = false;                   ///< came from another database
+  std::vector<std::string> annotations;  ///< oldest first
+  std::string
+      checksum;  ///< the last link of its chain (checksum.hpp); "" where an earlier release recorded it
 };
 
 /// A block of a stored session with its finished trials, in the order run.
@@ -49,7 +53,7 @@ class SessionLog {
   SessionLog& operator=(SessionLog&&) noexcept;
   ~SessionLog();
 
-  const SessionRecord& session() const;  ///< with the checksum of the last commit
+  const SessionRecord& session() const;                   ///< with the checksum of the last commit
   const std::vector<BlockRecord>& stored_blocks() const;  ///< of a resumed session; empty for a new one
 
   /// A block that the log knows already (same index and attempt) goes on; it must be described the same way.

@@ -26,7 +26,7 @@ Fault fault_of(int code) {
     case SQLITE_LOCKED:
       return Fault::busy;
     case SQLITE_CANTOPEN:
-      return Fault::missing;
+      return Fault::cannot_open;
     case SQLITE_CONSTRAINT:
       return Fault::refused;
     default:
@@ -47,8 +47,9 @@ const char* advice(Fault fault) {
       return "name a Turnpoint database, or a file that does not exist yet";
     case Fault::busy:
       return "another program has it open; end that one first";
-    case Fault::missing:
-      return "check the path and the permissions of its folder";
+    case Fault::cannot_open:
+      return "check the permissions of the file and of its folder; nothing is known to be wrong with its "
+             "content";
     case Fault::refused:
       return "the row contradicts the rules of the data and was not written";
     default:

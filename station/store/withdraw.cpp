@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <algorithm>
 
 #include "station/store/backup.hpp"
+#include "station/store/copies.hpp"
 #include "station/store/files.hpp"
 #include "station/store/identity.hpp"
 #include "station/store/open.hpp"
@@ -14,12 +15,72 @@
 
 namespace turnpoint::store {
 
-namespace fs = std::filesystem;
-
 namespace {
 
-std::string digest(const std::string& salt, const std::string& participant) {
-  return text::sha256(salt + "/" + participant);
+std::string digest(const std::string& salt, const std::string& code) {
+  return text::sha256(salt + "/" + code);
+}
+
+/// Tombstones of this code; of any station where none is given.
+bool has_tombstone(Database& database, const std::string& station, const std::string& code) {
+  Statement rows(
+      database,
+      "SELECT DISTINCT salt, participant_sha256 FROM tombstone WHERE ?1 = '' OR station_id IN ('', ?1)");
+  rows.bind(station);
+  while (rows.step())
+    if (rows.text(1) == digest(rows.text(0), code)) return true;
+  return false;
+}
+
+/// Nobody of that name has sessions: fine where they were withdrawn before.
+void require_withdrawn_before(Database& database, const WithdrawOptions& options) {
+  const auto at = options.participant.rfind('@');
+  const auto code = options.participant.substr(0, at);
+  const auto station = at == std::string::npos ? options.station : options.participant.substr(at + 1);
+  if (!options.participant.empty() && has_tombstone(database, station, code)) return;
+  throw StoreError(
+      Fault::missing,
+      fmt::format("withdraw: database {} has no participant \"{}\"{}; nothing was removed", database.path(),
+                  options.participant, options.station.empty() ? "" : " at station " + options.station));
+}
+
+/// The person's bearers, of one station where one is asked for.
+std::vector<Bearer> chosen_bearers(const People& people, const WithdrawOptions& options) {
+  auto persons = people.named(options.participant);
+  for (auto& person : persons)
+    std::erase_if(person, [&](const auto& bearer) {
+      return !options.station.empty() && bearer.station_id != options.station;
+    });
+  std::erase_if(persons, [](const auto& person) { return person.empty(); });
+  if (persons.empty()) return {};
+  if (persons.size() > 1) only_person(people, options.participant, "withdraw");
+  return persons.front();
+}
+
+Withdrawal choose(Database& database, const WithdrawOptions& options) {
+  Withdrawal withdrawal;
+  withdrawal.participant = options.participant;
+  const auto bearers = chosen_bearers(People(database), options);
+  for (auto& session : list_sessions(database, {options.session_id, "", ""})) {
+    const Bearer bearer{session.start.station_id, session.start.participant};
+    if (std::find(bearers.begin(), bearers.end(), bearer) != bearers.end())
+      withdrawal.sessions.push_back(std::move(session));
+  }
+  if (options.session_id.empty()) withdrawal.bearers = bearers;
+  if (withdrawal.sessions.empty() && !options.session_id.empty())
+    throw StoreError(Fault::missing,
+                     fmt::format("withdraw: participant \"{}\" has no session {}; nothing was removed",
+                                 options.participant, options.session_id));
+  if (withdrawal.sessions.empty()) require_withdrawn_before(database, options);
+  return withdrawal;
+}
+
+std::vector<std::string> ids_of(Database& database, const Withdrawal& withdrawal) {
+  std::vector<std::string> ids;
+  for (const auto& session : withdrawal.sessions) ids.push_back(session.session_id);
+  Statement gone(database, "SELECT session_id FROM tombstone");
+  while (gone.step()) ids.push_back(gone.text(0));
+  return ids;
 }
 
 std::int64_t remove(Database& database, const std::string& table, const std::string& session_id) {
@@ -27,28 +88,53 @@ std::int64_t remove(Database& database, const std::string& table, const std::str
   return database.changes();
 }
 
-void remove_sessions(Database& database, Withdrawal& withdrawal) {
+std::int64_t count(Database& database, const std::string& table, const std::string& session_id) {
+  Statement rows(database, "SELECT count(*) FROM " + table + " WHERE session_id = ?");
+  rows.bind(session_id).step();
+  return rows.integer(0);
+}
+
+void count_rows(Database& database, Withdrawal& withdrawal) {
+  for (const auto& session : withdrawal.sessions) {
+    withdrawal.trials += count(database, "trial", session.session_id);
+    withdrawal.tones += count(database, "tone", session.session_id);
+    withdrawal.events += count(database, "event", session.session_id);
+    withdrawal.annotations += count(database, "annotation", session.session_id);
+  }
+}
+
+void remove_bearer(Database& database, const Bearer& bearer) {
+  Statement(database, "DELETE FROM enrolment WHERE station_id = ? AND participant = ?")
+      .bind(bearer.station_id, bearer.code)
+      .run();
+  Statement(
+      database,
+      "DELETE FROM same_person WHERE (station_a = ?1 AND code_a = ?2) OR (station_b = ?1 AND code_b = ?2)")
+      .bind(bearer.station_id, bearer.code)
+      .run();
+  Statement(
+      database,
+      "DELETE FROM participant WHERE code = ?1 AND NOT EXISTS (SELECT 1 FROM session WHERE participant = ?1)"
+      " AND NOT EXISTS (SELECT 1 FROM enrolment WHERE participant = ?1)")
+      .bind(bearer.code)
+      .run();
+}
+
+void remove_sessions(Database& database, const Withdrawal& withdrawal) {
   const auto salt = new_uuid();
-  const auto& code = withdrawal.participant;
   Transaction transaction(database);
   for (const auto& session : withdrawal.sessions) {
     const auto& id = session.session_id;
-    Statement(database, "INSERT INTO tombstone VALUES (?,?,?,?)")
-        .bind(id, salt, digest(salt, code), realtime_ns())
+    const bool code_goes = !withdrawal.bearers.empty();
+    Statement(database, "INSERT INTO tombstone VALUES (?,?,?,?,?)")
+        .bind(id, salt, code_goes ? digest(salt, session.start.participant) : "", realtime_ns(),
+              session.start.station_id)
         .run();
-    withdrawal.annotations += remove(database, "annotation", id);
-    remove(database, "merged", id);
-    remove(database, "link", id);
-    remove(database, "unsealed", id);
-    withdrawal.events += remove(database, "event", id);
-    withdrawal.tones += remove(database, "tone", id);
-    withdrawal.trials += remove(database, "trial", id);
-    remove(database, "block", id);
-    remove(database, "segment", id);
-    remove(database, "session", id);
+    for (const auto* table : {"annotation", "merged", "link", "unsealed", "event", "tone", "trial", "block",
+                              "segment", "session"})
+      remove(database, table, id);
   }
-  Statement(database, "DELETE FROM enrolment WHERE participant = ?").bind(code).run();
-  Statement(database, "DELETE FROM participant WHERE code = ?").bind(code).run();
+  for (const auto& bearer : withdrawal.bearers) remove_bearer(database, bearer);
   transaction.commit();
 }
 
@@ -57,69 +143,55 @@ void scrub(Database& database) {
   database.execute("PRAGMA wal_checkpoint(TRUNCATE)");
   database.execute("PRAGMA temp_store = MEMORY; VACUUM");
   Statement checkpoint(database, "PRAGMA wal_checkpoint(TRUNCATE)");
-  if (checkpoint.step() && checkpoint.integer(0) != 0)
+  if (!checkpoint.step() || checkpoint.integer(0) != 0)
     throw StoreError(Fault::busy,
                      fmt::format("database {}: the rows are deleted, but a reader keeps the log from "
                                  "being cut; end the other program and withdraw again",
                                  database.path()));
 }
 
-bool holds(const std::string& path, const std::string& participant) {
-  try {
-    return !list_sessions(path, {"", participant, ""}).empty();
-  } catch (const StoreError&) {
-    return true;  // what cannot be read may hold anything
-  }
-}
-
-/// Files beside the database that were once copies of it: before a migration, or damaged and set aside.
-std::vector<std::string> copies_beside(const std::string& database, const std::string& participant) {
-  std::vector<std::string> copies;
-  const auto stem = fs::path(database).filename().string();
-  for (const auto& entry : fs::directory_iterator(fs::absolute(database).parent_path())) {
-    const auto name = entry.path().filename().string();
-    const bool copy = name.rfind(stem + ".before-v", 0) == 0 || name.rfind(stem + ".damaged-", 0) == 0;
-    const bool part = name.size() > 4 && (name.ends_with("-wal") || name.ends_with("-shm"));
-    if (copy && !part && holds(entry.path().string(), participant)) copies.push_back(entry.path().string());
-  }
-  return copies;
+void note_copies(Withdrawal& withdrawal, const Copies& copies) {
+  withdrawal.removed_copies = copies.own;
+  withdrawal.remaining_copies = copies.foreign;
 }
 
 }  // namespace
 
-bool is_withdrawn(Database& database, const std::string& participant) {
-  Statement rows(database, "SELECT DISTINCT salt, participant_sha256 FROM tombstone");
-  while (rows.step())
-    if (rows.text(1) == digest(rows.text(0), participant)) return true;
-  return false;
+bool is_withdrawn(Database& database, const Bearer& bearer) {
+  return has_tombstone(database, bearer.station_id, bearer.code);
 }
 
-Withdrawal withdraw(const std::string& path, const std::string& participant,
-                    const std::string& backup_directory) {
-  Withdrawal withdrawal;
-  withdrawal.participant = participant;
-  {
-    auto writer = open_writer(path, IfMissing::fail);
-    auto& database = writer.database;
-    if (!participant.empty()) withdrawal.sessions = list_sessions(database, {"", participant, ""});
-    if (withdrawal.sessions.empty() && !is_withdrawn(database, participant))
-      throw StoreError(Fault::missing,
-                       fmt::format("withdraw: database {} has no participant \"{}\"; nothing was removed",
-                                   path, participant));
-    database.execute("PRAGMA secure_delete = ON");
-    remove_sessions(database, withdrawal);
-    scrub(database);
+Withdrawal plan_withdrawal(const std::string& name, const WithdrawOptions& options) {
+  const auto path = canonical(name);
+  auto database = open_reader(path);
+  auto withdrawal = choose(database, options);
+  count_rows(database, withdrawal);
+  note_copies(withdrawal, copies_of(path, database, options.backup_directory, ids_of(database, withdrawal)));
+  return withdrawal;
+}
+
+Withdrawal withdraw(const std::string& name, const WithdrawOptions& options) {
+  const auto path = canonical(name);
+  auto writer = open_writer(path, IfMissing::fail);
+  auto& database = writer.database;
+  auto withdrawal = choose(database, options);
+  count_rows(database, withdrawal);
+  const auto ids = ids_of(database, withdrawal);
+  copies_of(path, database, options.backup_directory, ids);  // a folder that cannot be read stops it here
+  database.execute("PRAGMA secure_delete = ON");
+  remove_sessions(database, withdrawal);
+  scrub(database);
+  try {
+    if (!options.backup_directory.empty()) backup(path, {options.backup_directory, 0});
+    const auto copies = copies_of(path, database, options.backup_directory, ids);
+    note_copies(withdrawal, copies);
+    remove_copies(copies, options.backup_directory);
+  } catch (const StoreError& error) {
+    throw StoreError(error.fault(),
+                     fmt::format("withdraw: the database no longer holds them, but copies of it may: {}; "
+                                 "then withdraw again",
+                                 error.what()));
   }
-  withdrawal.remaining_copies = copies_beside(path, participant);
-  if (backup_directory.empty()) return withdrawal;
-  const auto fresh = backup(path, {backup_directory, 0}).path;
-  for (const auto& old : backups_in(backup_directory, path)) {
-    if (old == fresh || !holds(old, participant)) continue;
-    fs::remove(old);
-    fs::remove(old + ".sha256");
-    withdrawal.removed_copies.push_back(old);
-  }
-  sync_path(backup_directory);
   return withdrawal;
 }
 

@@ -282,6 +282,14 @@ int fchmod(int descriptor, mode_t mode) {
   return fails("fchmod", Effect::arranges, path_of(descriptor)) ? -1 : the_real(descriptor, mode);
 }
 
+int gethostname(char* name, size_t size) noexcept {
+  static const auto given = variable("HOST_NAME");
+  static auto* const the_real = real<int(char*, size_t)>("gethostname");
+  if (given.empty()) return the_real(name, size);
+  std::snprintf(name, size, "%s", given.c_str());
+  return 0;
+}
+
 int clock_gettime(clockid_t clock, struct timespec* time) {
   const int result = static_cast<int>(::syscall(SYS_clock_gettime, clock, time));
   if (result == 0 && clock == CLOCK_REALTIME) time->tv_sec += settings().clock_offset_s;

@@ -5,6 +5,7 @@ pandas runs the snippet of the README; bids runs bids-validator-deno. Ends with 
 is not installed: pip install pandas bids-validator-deno==3.0.2
 """
 import csv
+import glob
 import io
 import json
 import os
@@ -51,22 +52,35 @@ def check_pandas(folder, readme):
     os.chdir("/")
 
 
-def errors_of(validator, dataset):
+def issues_of(validator, dataset):
     done = subprocess.run([validator, "--json", dataset], capture_output=True, text=True, check=False)
-    issues = json.loads(done.stdout)["issues"]["issues"]
-    return [issue for issue in issues if issue["severity"] == "error"]
+    return json.loads(done.stdout)["issues"]["issues"]
 
 
-def check_bids(folder, _readme):
+def name_of(issue):
+    """What the README calls a warning: a key that is missing, or the code of a rule."""
+    return issue.get("subCode") or issue["code"]
+
+
+def check_bids(folder, readme):
     validator = shutil.which("bids-validator-deno")
     if validator is None:
         skip("bids-validator-deno")
     dataset = os.path.join(folder, "bids", "two-boundaries")
-    errors = errors_of(validator, dataset)
-    assert not errors, json.dumps(errors, indent=2)
+    issues = issues_of(validator, dataset)
+    assert not [issue for issue in issues if issue["severity"] == "error"], json.dumps(issues, indent=2)
+    with open(readme, encoding="utf-8") as file:
+        section = file.read().split("The BIDS validator warns")[1].split("\n\n")[1]
+    documented = set(re.findall(r"`(\w+)`", section))
+    warned = {name_of(issue) for issue in issues}
+    assert warned <= documented, f"warnings that the README does not explain: {warned - documented}"
+    for table in glob.glob(dataset + "/sub-*/ses-*/beh/*_events.tsv"):
+        with open(table, encoding="utf-8") as file:
+            onsets = [float(row["onset"]) for row in csv.DictReader(file, delimiter="\t")]
+        assert onsets == sorted(onsets), table
     # Negative control: the validator does look.
     os.remove(os.path.join(dataset, "dataset_description.json"))
-    assert errors_of(validator, dataset)
+    assert any(issue["severity"] == "error" for issue in issues_of(validator, dataset))
 
 
 def main():

@@ -11,6 +11,7 @@
 #include "station/store/read.hpp"
 #include "station/store/text_table.hpp"
 #include "station/store/verify.hpp"
+#include "station/store/whole_file.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 

@@ -32,7 +32,7 @@ const char* const kHeader =
     "correct,"
     "outcome,response_time,decision_time,movement_time,response_zero,response_time_quality,response_offset_s,"
     "deadline,xruns,extra_touches,threshold_est,threshold_sd,seed,station_id,calibration_id,software_version,"
-    "columns_version";
+    "response_zero_onset,trial_duration,columns_version";
 
 }  // namespace
 
@@ -53,9 +53,9 @@ TEST_CASE("trials.csv has the fixed columns, all of them, with the factors in th
   CHECK(
       lines[1] ==
       "P01," + id + ",1,simulated,two-boundaries,1.2.0," + std::string(64, 'a') +
-          ",0,main,speed,0,0,1,0,experimental,staircase,2,3.5,-12.5,dB,0.30000000000000004,speed,150.25,"
+          ",0,main,speed,0,0,1,0,experimental,staircase,n/a,n/a,-12.5,dB,0.30000000000000004,speed,150.25,"
           "30123.4567890123,2.5,mode,first,second,0,answered,0.4375,n/a,n/a,go_cue,simulated,0,2,0,0,-10,1.5,"
-          "20240229,bench-a,n/a,0.1.0,1");
+          "20240229,bench-a,n/a,0.1.0,2,3.5,2");
   CHECK(sample::contains(lines[5], ",mode,first,n/a,n/a,timeout,n/a,n/a,n/a,go_cue,n/a,"));
 }
 
@@ -99,6 +99,7 @@ std::string session_of_unlike_values(const std::string& db) {
     trial.tones[3].friction.reset();
     log.presented(1, 4'000'000'001);
     log.event({4'100'000'002, "touch", "0.1 0.2", std::nullopt});
+    log.event({4'050'000'000, "stimulus", "0.75", 1});  // known only after it has ended
     log.append(trial);
     log.finish(SessionStatus::interrupted, "the participant left");
     id = log.session().session_id;

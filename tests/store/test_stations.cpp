@@ -42,7 +42,7 @@ TEST_CASE("merge brings the sessions of another station, whole, and a second tim
           "[store]") {
   TemporaryFolder folder;
   const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
-  sample::session(a, 5, at_station("P01", "a"));
+  sample::session(a, 5, at_station("P00", "a"));
   const auto id = sample::session(b, 7, at_station("P01", "b"));
   sample::session(b, 3, at_station("P02", "b"));
   annotate(b, id, "lights went out at trial 3");
@@ -157,7 +157,7 @@ TEST_CASE("a damaged database is set aside and the newest good backup takes its 
   backup(db, {dir, 9});
   sample::session(db, 3, sample::start("P02"));
   const auto newest = backup(db, {dir, 9});
-  CHECK(sample::failure([&] { restore_backup(db, dir); }).first == Fault::refused);  // it is good
+  CHECK(sample::failure([&] { restore_backup(db, {dir, ""}); }).first == Fault::refused);  // it is good
   auto bytes = sample::bytes_of(db);
   bytes.resize(6000);
   std::ofstream(db, std::ios::binary | std::ios::trunc) << bytes;
@@ -167,7 +167,7 @@ TEST_CASE("a damaged database is set aside and the newest good backup takes its 
     newest_is_good = false;
     std::filesystem::resize_file(newest.path, 5000);
   }
-  const auto restored = restore_backup(db, dir);
+  const auto restored = restore_backup(db, {dir, ""});
   CHECK(restored.trials == (newest_is_good ? 7 : 4));
   CHECK(restored.rejected.size() == (newest_is_good ? 0 : 1));
   CHECK(sample::bytes_of(restored.quarantined) == bytes);
@@ -210,7 +210,7 @@ TEST_CASE("what root makes in the station's folder is the station's, and a copy 
   CHECK(status_of(copy.path).st_uid == 0);  // of the folder for backups
   std::filesystem::remove(db + ".lock");
   std::filesystem::resize_file(db, 6000);
-  restore_backup(db, dir);
+  restore_backup(db, {dir, ""});
   is_stations(db);
   is_stations(db + ".lock");
   CHECK((status_of(db).st_mode & 0777) == 0640);
@@ -271,7 +271,7 @@ TEST_CASE("without a good backup nothing is moved", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   std::ofstream(db, std::ios::binary) << "";
-  CHECK(sample::failure([&] { restore_backup(db, folder / "none"); }).first == Fault::missing);
+  CHECK(sample::failure([&] { restore_backup(db, {folder / "none", ""}); }).first == Fault::missing);
   CHECK(std::filesystem::exists(db));
 }
 
@@ -286,7 +286,7 @@ TEST_CASE("withdraw lists what it removes and leaves no trace in the file, its l
   sample::session(db, 5, sample::start("P02"));
   CHECK(sample::contains(all_bytes(db), "XQ77ZK"));  // the search finds what is there
   const auto old_backup = backup(db, {folder / "backups", 9});
-  const auto gone = withdraw(db, "XQ77ZK", folder / "backups");
+  const auto gone = withdraw(db, {"XQ77ZK", "", "", folder / "backups"});
   REQUIRE(gone.sessions.size() == 1);
   CHECK(gone.sessions[0].session_id == id);
   CHECK(gone.trials == 60);
@@ -301,8 +301,8 @@ TEST_CASE("withdraw lists what it removes and leaves no trace in the file, its l
   }
   CHECK(list_sessions(db).size() == 1);
   CHECK(sample::raw(db).text("PRAGMA integrity_check") == "ok");
-  CHECK(withdraw(db, "XQ77ZK").sessions.empty());  // repeating it is harmless
-  CHECK(sample::failure([&] { withdraw(db, "P99"); }).first == Fault::missing);
+  CHECK(withdraw(db, {"XQ77ZK", "", "", ""}).sessions.empty());  // repeating it is harmless
+  CHECK(sample::failure([&] { withdraw(db, {"P99", "", "", ""}); }).first == Fault::missing);
   CHECK(sample::failure([&] { sample::session(db, 1, start); }).first == Fault::refused);
 }
 
@@ -320,7 +320,7 @@ TEST_CASE("what was withdrawn is not brought back by merge, nor are later sessio
   const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
   sample::session(b, 4, at_station("P01", "b"));
   merge(a, b);
-  withdraw(a, "P01");
+  withdraw(a, {"P01", "", "", ""});
   sample::session(b, 4, at_station("P01", "b"));
   sample::session(b, 2, at_station("P02", "b"));
   const auto report = merge(a, b);
@@ -337,7 +337,7 @@ TEST_CASE("who comes after a withdrawal takes the place that became free", "[sto
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   for (const auto* code : {"P01", "P02", "P03"}) sample::session(db, 1, sample::start(code));
-  withdraw(db, "P02");
+  withdraw(db, {"P02", "", "", ""});
   const auto id = sample::session(db, 1, sample::start("P04"));
   CHECK(read_session(db, id).session.sequence_index == 1);
 }

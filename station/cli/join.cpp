@@ -1,0 +1,48 @@
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <memory>
+
+#include "station/cli/command.hpp"
+#include "station/cli/json.hpp"
+#include "station/store/people.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+struct Options {
+  std::string database, first, second;
+  bool undo = false;
+};
+
+void join(const Options& options, Context& context) {
+  const auto relation = options.undo ? store::Relation::two_people : store::Relation::same_person;
+  const auto label = store::join(options.database, options.first, options.second, relation);
+  if (context.json)
+    context.out << Json{{"participant", label}, {"joined", !options.undo}}.dump(2) << "\n";
+  else if (options.undo)
+    fmt::print(context.out, "{} and {} are two people again\n", options.first, options.second);
+  else
+    fmt::print(context.out, "{} and {} are one person, called {}\n", options.first, options.second, label);
+}
+
+}  // namespace
+
+void add_join(CommandLine& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  auto* command = app.add_subcommand("join", "Say that two participant codes are one person");
+  command->add_option("--db", options->database, "Database")->required();
+  command
+      ->add_option("first", options->first,
+                   "CODE@STATION, or a code that only one person has; gives the name")
+      ->required();
+  command->add_option("second", options->second, "CODE@STATION, or a code that only one person has")
+      ->required();
+  command->add_flag("--undo", options->undo, "Take it back: they are two people");
+  add_json(*command, context);
+  command->footer("Example: turnpoint join --db lab.sqlite P01@station-a P07@station-b");
+  command->callback([options, &context] { join(*options, context); });
+}
+
+}  // namespace turnpoint::cli

@@ -1,0 +1,148 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <set>
+
+#include "station/store/backup.hpp"
+#include "station/store/backup_folder.hpp"
+#include "station/store/files.hpp"
+#include "station/store/open.hpp"
+#include "station/store/whole_file.hpp"
+
+namespace turnpoint::store {
+
+namespace {
+
+/// Nothing but a file that is known to be lost or damaged is replaced. One that cannot be opened or read just
+/// now may be whole.
+void require_lost(const std::string& path) {
+  try {
+    open_reader(path);
+  } catch (const StoreError& error) {
+    const auto fault = error.fault();
+    const bool absent = fault == Fault::missing && !file_exists(path);
+    if (absent || fault == Fault::corrupt || fault == Fault::not_a_database) return;
+    throw;
+  }
+  throw StoreError(Fault::refused,
+                   fmt::format("restore: database {} is good; nothing was changed; to go back to a "
+                               "backup all the same, move it away first, with {}-wal if there is one",
+                               path, path));
+}
+
+/// What the damaged file still says of itself, or its lock file; "" where neither does.
+std::string id_of_lost(const std::string& path) {
+  try {
+    Database damaged(path, Database::Access::immutable);
+    const auto id = damaged.text("SELECT value FROM meta WHERE key = 'database_id'");
+    if (id.size() == 36) return id;
+  } catch (const StoreError&) {
+    // It is damaged there as well.
+  }
+  return remembered_database_id(path);
+}
+
+[[noreturn]] void refuse_ambiguous(const std::string& path, const std::vector<StoredBackup>& backups) {
+  std::string list;
+  std::set<std::string> told;
+  for (auto backup = backups.rbegin(); backup != backups.rend(); ++backup)
+    if (told.insert(backup->database_id).second)
+      list +=
+          fmt::format("; {} (of station {}, newest {})", backup->database_id, backup->station, backup->path);
+  throw StoreError(
+      Fault::conflict,
+      fmt::format("restore: nothing tells which database {} was, and the folder holds backups of {}; "
+                  "nothing was changed; name one with --database-id{}",
+                  path, told.size(), list));
+}
+
+struct Candidates {
+  std::vector<StoredBackup> backups;    ///< newest first
+  std::vector<std::string> unreadable;  ///< with the name of this database
+};
+
+Candidates candidates_for(const std::string& path, const RestoreOptions& options) {
+  const auto stem = std::filesystem::path(path).stem().string();
+  const auto wanted = options.database_id.empty() ? id_of_lost(path) : options.database_id;
+  Candidates candidates;
+  std::set<std::string> ids;
+  for (const auto& backup : stored_backups(canonical(options.directory))) {
+    if (!backup.trouble.empty() && backup.stem == stem)
+      throw StoreError(
+          Fault::io,
+          "restore: nothing was changed: a backup that may be the newest cannot be read: " + backup.trouble);
+    if (!backup.readable() && backup.stem == stem) candidates.unreadable.push_back(backup.path);
+    if (!backup.readable() || (wanted.empty() ? backup.stem != stem : backup.database_id != wanted)) continue;
+    candidates.backups.push_back(backup);
+    ids.insert(backup.database_id);
+  }
+  if (ids.size() > 1) refuse_ambiguous(path, candidates.backups);
+  std::reverse(candidates.backups.begin(), candidates.backups.end());
+  return candidates;
+}
+
+bool is_damage(const StoreError& error) {
+  return error.fault() == Fault::corrupt || error.fault() == Fault::not_a_database;
+}
+
+/// False for a backup that is damaged. One whose bytes are those that were written is not damaged: what goes
+/// wrong with it is the disk's, and no reason to take an older one.
+bool is_good(const StoredBackup& candidate) {
+  try {
+    verify_checksum_file(candidate.path);
+  } catch (const StoreError& error) {
+    if (is_damage(error)) return false;
+    throw;
+  }
+  try {
+    open_reader(candidate.path);
+    return true;
+  } catch (const StoreError& error) {
+    if (is_damage(error) && !file_exists(candidate.path + ".sha256")) return false;
+    throw;
+  }
+}
+
+/// The backup as `path`.restored, checked.
+void prepare(const std::string& path, const StoredBackup& candidate) {
+  auto good = open_reader(candidate.path);
+  copy_to_file(good, path + ".restored", candidate.path, clear_backup_note);
+}
+
+void count(Restoration& restoration, const std::string& path) {
+  auto restored = open_reader(path);
+  restoration.sessions = restored.integer("SELECT count(*) FROM session");
+  restoration.trials = restored.integer("SELECT count(*) FROM trial");
+  restoration.database_id = restored.text("SELECT value FROM meta WHERE key = 'database_id'");
+}
+
+}  // namespace
+
+Restoration restore_backup(const std::string& name, const RestoreOptions& options) {
+  const auto path = canonical(name);
+  StationLock lock(path);
+  require_lost(path);
+  const auto candidates = candidates_for(path, options);
+  Restoration restoration;
+  restoration.rejected = candidates.unreadable;
+  for (const auto& candidate : candidates.backups) {
+    if (!is_good(candidate)) {
+      restoration.rejected.push_back(candidate.path);
+      continue;
+    }
+    prepare(path, candidate);
+    restoration.quarantined = replace_by_restored(path);
+    restoration.from = candidate.path;
+    count(restoration, path);
+    lock.remember(restoration.database_id);
+    return restoration;
+  }
+  throw StoreError(Fault::missing,
+                   fmt::format("restore: {} holds no good backup of {} ({} failed their check); "
+                               "nothing was changed",
+                               options.directory, path, restoration.rejected.size()));
+}
+
+}  // namespace turnpoint::store

@@ -1,0 +1,135 @@
+#include "station/store/whole_file.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sqlite3.h>
+
+#include "station/store/files.hpp"
+#include "station/store/identity.hpp"
+#include "station/store/schema.hpp"
+
+namespace turnpoint::store {
+
+namespace {
+
+/// Opens the finished file again, past every cache of the connection that made it, and checks it.
+void verify(const std::string& path) {
+  for (const auto* suffix : kLogSuffixes)
+    if (file_size(path + suffix) > 0)
+      throw StoreError(Fault::io,
+                       fmt::format("{}: SQLite left {} of it behind; check the disk", path, suffix));
+  Database copy(path, Database::Access::immutable);
+  checked_version(copy);
+  check_pages(copy);
+  if (copy.text("SELECT value FROM meta WHERE key = 'database_id'").empty())
+    copy.fail(SQLITE_CORRUPT, "the database has no id");
+}
+
+/// Makes the file `to` by way of a temporary, which `make` opens, fills and closes.
+void publish(const std::string& to, const std::string& original,
+             const std::function<void(const std::string& temporary)>& make) {
+  const auto temporary = to + ".new";
+  remove_database(temporary);
+  try {
+    create_private(temporary);
+    make(temporary);
+    verify(temporary);
+    give_to_owner_of_folder(temporary);
+    permit_as(original, temporary);
+    sync_path(temporary);
+    rename_file(temporary, to);
+  } catch (...) {
+    try {
+      remove_database(temporary);
+    } catch (const StoreError&) {
+      // What is told is why it failed. The next attempt removes what stays.
+    }
+    throw;
+  }
+  sync_path(folder_of(to));
+}
+
+/// What stands beside the name of a database that is not there, although it belongs to one; "" for nothing.
+std::string orphan_of(const std::string& path) {
+  for (const auto* suffix : {"-wal", "-journal"})
+    if (file_size(path + suffix) > 0) return path + suffix;
+  return file_exists(path + ".restored") ? path + ".restored" : "";
+}
+
+}  // namespace
+
+std::string time_stamp() {
+  const auto ns = realtime_ns();
+  const std::time_t seconds = ns / 1'000'000'000;
+  return fmt::format("{:%Y%m%dT%H%M%S}.{:03}Z", fmt::gmtime(seconds), ns / 1'000'000 % 1000);
+}
+
+void check_pages(Database& database) {
+  const auto pages = database.text("PRAGMA quick_check(1)");
+  if (pages != "ok") database.fail(SQLITE_CORRUPT, "quick_check: " + pages);
+  Statement keys(database, "PRAGMA foreign_key_check");
+  if (keys.step()) database.fail(SQLITE_CORRUPT, "foreign_key_check: table " + keys.text(0));
+}
+
+void refuse_absent(const std::string& path) {
+  const auto orphan = orphan_of(path);
+  if (orphan.empty())
+    throw StoreError(Fault::missing, fmt::format("database {}: there is no such file; check the path", path));
+  throw StoreError(
+      Fault::missing,
+      fmt::format(
+          "database {}: there is no such file, but {} is there: the database was removed without its log, or "
+          "a restore was interrupted; nothing was changed; restore the newest backup (turnpoint backup --db "
+          "FILE --dir FOLDER --restore), or move {} away to begin a new database",
+          path, orphan, orphan));
+}
+
+void create_file(const std::string& path) {
+  if (!orphan_of(path).empty()) refuse_absent(path);
+  // An empty log or a rest of shared memory belongs to nothing any longer.
+  for (const auto* suffix : kLogSuffixes) remove_file(path + suffix);
+  publish(path, "", [](const std::string& temporary) {
+    // In rollback mode: all of it is in the one file when the transaction has ended.
+    Database database(temporary, Database::Access::read_write);
+    database.execute("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA");
+    create_schema(database, schema_version());
+    Statement(database, "INSERT INTO meta VALUES ('database_id', ?)").bind(new_uuid()).run();
+  });
+}
+
+void copy_to_file(Database& from, const std::string& to, const std::string& original,
+                  const std::function<void(Database&)>& finish) {
+  publish(to, original, [&](const std::string& temporary) {
+    Database copy(temporary, Database::Access::read_write);
+    copy_database(from, copy);
+    // A copy is one file: out of WAL mode it can be read from any medium.
+    if (copy.text("PRAGMA journal_mode = DELETE") != "delete")
+      throw StoreError(Fault::io, "copy " + temporary + ": it cannot leave WAL mode; check the disk");
+    copy.execute("PRAGMA synchronous = EXTRA");
+    if (finish) finish(copy);
+  });
+}
+
+std::string replace_by_restored(const std::string& path) {
+  const auto aside = path + ".damaged-" + time_stamp();
+  bool moved = false;
+  // The file first. From then on the name has no database, which every program refuses; a log without its
+  // file, or the new file with the old log, never passes for a database.
+  for (const auto* suffix : {"", "-wal", "-journal", "-shm"}) {
+    if (!file_exists(path + suffix)) continue;
+    rename_file(path + suffix, aside + suffix);
+    moved = true;
+  }
+  sync_path(folder_of(path));
+  rename_file(path + ".restored", path);
+  sync_path(folder_of(path));
+  return moved ? aside : "";
+}
+
+void remove_leftovers(const std::string& path) {
+  for (const auto* name : {".new", ".merging", ".merging.new", ".restored", ".restored.new"})
+    remove_database(path + name);
+  remove_database(fmt::format("{}.before-v{}.new", path, schema_version()));
+}
+
+}  // namespace turnpoint::store

@@ -1,0 +1,436 @@
+#!/usr/bin/env python3
+"""sweep.py PROGRAM FAULTY_SYSTEM SCHEMA_V1 [--seed N --points N | --all] [OPERATION...]: a fault at each call.
+
+Each operation runs once to count its calls on files, and then again from the same start for each chosen call, which is
+killed before or within it, or answered with EIO or ENOSPC. Afterwards, with Python's own SQLite as the judge:
+  - whatever bears a database's name is whole, and holds every trial that was there before;
+  - an operation that said that it succeeded has done what it says; one that failed has said why;
+  - done again without a fault, it succeeds.
+Without --all it takes --points of all points by a seeded rotation: with N = 0, 1, 2, ... every point has its turn.
+"""
+import argparse
+import glob
+import os
+import re
+import shutil
+import sqlite3
+import subprocess
+import sys
+import tempfile
+
+SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+RIG = os.path.join(SOURCE, "deploy/rigs/simulated.toml")
+DEMO = os.path.join(SOURCE, "protocols/demo.toml")
+
+
+class Wrong(Exception):
+    pass
+
+
+def wrong(what):
+    raise Wrong(what)
+
+
+def trials(path):
+    """Every trial of a database that must be whole; none where there is no file."""
+    if not os.path.exists(path):
+        return set()
+    folder = tempfile.mkdtemp(dir="/dev/shm" if os.path.isdir("/dev/shm") else None)
+    try:
+        for suffix in ("", "-wal", "-journal"):
+            if os.path.exists(path + suffix):
+                shutil.copy(path + suffix, os.path.join(folder, "copy" + suffix))
+        connection = sqlite3.connect(os.path.join(folder, "copy"))
+        try:
+            if connection.execute("PRAGMA integrity_check").fetchall() != [("ok",)]:
+                wrong(f"{path} is damaged")
+            if connection.execute("PRAGMA application_id").fetchone()[0] != 0x54504E54:
+                wrong(f"{path} is not a database of the station")
+            if not connection.execute("SELECT value FROM meta WHERE key = 'database_id'").fetchone():
+                wrong(f"{path} has no id")
+            rows = connection.execute("SELECT session_id, trial_index, state_hash, response FROM trial").fetchall()
+            return set(rows)
+        finally:
+            connection.close()
+    except sqlite3.Error as error:
+        wrong(f"{path}: {error}")
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def holds(folder, text):
+    """Files below a folder that hold a text."""
+    found = []
+    for base, _, names in os.walk(folder):
+        for name in names:
+            with open(os.path.join(base, name), "rb") as file:
+                if text.encode() in file.read():
+                    found.append(os.path.join(base, name))
+    return found
+
+
+def publish_half_made(folder):
+    """What a program would leave that writes under the final name."""
+    for base, _, names in os.walk(folder):
+        for name in names:
+            if name.endswith(".new"):
+                os.rename(os.path.join(base, name), os.path.join(base, name[:-len(".new")]))
+
+
+class Operation:
+    """One command. prepare() makes its start, once; check() judges what it leaves."""
+    databases = ["lab.sqlite"]
+
+    def __init__(self, sweep):
+        self.sweep = sweep
+
+    def run(self, folder, *arguments, environment=None):
+        environment = dict(os.environ, **(environment or {}))
+        return subprocess.run([self.sweep.program, *arguments], cwd=folder, env=environment,
+                              stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False, timeout=120)
+
+    def good(self, folder, *arguments, station="a"):
+        done = self.run(folder, *arguments, environment=dict(LD_PRELOAD=self.sweep.faulty_system, HOST_NAME=station))
+        if done.returncode != 0:
+            sys.exit(f"sweep: {arguments}: {done.stdout}{done.stderr}")
+
+    def session(self, database, participant):
+        return ("run", DEMO, "--rig", RIG, "--participant", participant, "--db", database, "--observer", "sim",
+                "--headless", "--seed", "7")
+
+    def prepare(self, folder):
+        self.good(folder, *self.session("lab.sqlite", "P01"))
+        self.good(folder, *self.session("lab.sqlite", "QX9"))
+
+    def arguments(self):
+        raise NotImplementedError
+
+    def kept(self, before, after):
+        if not before <= after:
+            wrong(f"{len(before - after)} trials are lost")
+
+    def done(self, folder):
+        """What must hold where the command says that it has succeeded."""
+
+    def check(self, folder, before):
+        for name in self.databases:
+            self.kept(before[name], trials(os.path.join(folder, name)))
+
+
+class Create(Operation):
+    def prepare(self, folder):
+        pass
+
+    def arguments(self):
+        return self.session("lab.sqlite", "P01")
+
+    def done(self, folder):
+        if len(trials(os.path.join(folder, "lab.sqlite"))) < 10:
+            wrong("a session was completed and is not there")
+
+
+class Run(Create):
+    def prepare(self, folder):
+        Operation.prepare(self, folder)
+
+    def arguments(self):
+        return self.session("lab.sqlite", "P02")
+
+
+class Migrate(Create):
+    def prepare(self, folder):
+        connection = sqlite3.connect(os.path.join(folder, "lab.sqlite"))
+        with open(self.sweep.schema, encoding="utf-8") as file:
+            connection.executescript(file.read())
+        connection.executescript(f"PRAGMA application_id = {0x54504E54}; PRAGMA user_version = 1; PRAGMA journal_mode = WAL")
+        connection.close()
+
+    def done(self, folder):
+        Create.done(self, folder)
+        if not glob.glob(os.path.join(folder, "lab.sqlite.before-v*[0-9Z]")):
+            wrong("no copy was kept before the migration")
+
+    def check(self, folder, before):
+        Operation.check(self, folder, before)
+        for copy in glob.glob(os.path.join(folder, "lab.sqlite.before-v*[0-9Z]")):
+            self.kept(before["lab.sqlite"], trials(copy))
+
+
+class Resume(Create):
+    def prepare(self, folder):
+        self.good(folder, *self.session("lab.sqlite", "P01"))
+        connection = sqlite3.connect(os.path.join(folder, "lab.sqlite"))
+        connection.executescript("DROP TRIGGER trial_is_never_deleted; DROP TRIGGER tone_is_never_deleted;"
+                                 "DELETE FROM tone WHERE trial_index > 4; DELETE FROM trial WHERE trial_index > 4;"
+                                 "UPDATE session SET status = 'interrupted'")
+        connection.close()
+
+    def arguments(self):
+        return ("resume", "--db", "lab.sqlite", "--headless", "--policy", "resume")
+
+
+class Backup(Operation):
+    def prepare(self, folder):
+        Operation.prepare(self, folder)
+        for _ in range(2):
+            self.good(folder, "backup", "--db", "lab.sqlite", "--dir", "backups", "--keep", "2")
+        self.good(folder, *self.session("lab.sqlite", "P02"))
+
+    def arguments(self):
+        return ("backup", "--db", "lab.sqlite", "--dir", "backups", "--keep", "2")
+
+    def backups(self, folder):
+        return sorted(glob.glob(os.path.join(folder, "backups", "*Z.sqlite")))
+
+    def done(self, folder):
+        if trials(self.backups(folder)[-1]) != trials(os.path.join(folder, "lab.sqlite")):
+            wrong("the newest backup is not what was backed up")
+
+    def check(self, folder, before):
+        Operation.check(self, folder, before)
+        backups = self.backups(folder)
+        if len(backups) < 2:
+            wrong("good backups are gone")
+        for backup in backups:
+            trials(backup)
+
+
+class Restore(Backup):
+    """Beside a log that belongs to the lost file."""
+    databases = []
+
+    def prepare(self, folder):
+        Backup.prepare(self, folder)
+        self.good(folder, "backup", "--db", "lab.sqlite", "--dir", "backups")
+        path = os.path.join(folder, "lab.sqlite")
+        connection = sqlite3.connect(path)
+        connection.execute("CREATE TABLE x (a)")
+        connection.executemany("INSERT INTO x VALUES (?)", [(os.urandom(3000),) for _ in range(60)])
+        connection.commit()
+        shutil.copy(path + "-wal", path + "-stale")
+        connection.close()
+        shutil.move(path + "-stale", path + "-wal")
+        with open(path, "r+b") as file:
+            file.truncate(20000)
+
+    def arguments(self):
+        return ("backup", "--db", "lab.sqlite", "--dir", "backups", "--restore")
+
+    def done(self, folder):
+        if trials(os.path.join(folder, "lab.sqlite")) != trials(self.backups(folder)[-1]):
+            wrong("what was restored is not the newest backup")
+        if os.path.getsize(glob.glob(os.path.join(folder, "lab.sqlite.damaged-*Z"))[0]) != 20000:
+            wrong("the damaged file was not kept")
+
+    def check(self, folder, before):
+        path = os.path.join(folder, "lab.sqlite")
+        if os.path.exists(path) and os.path.getsize(path) != 20000:
+            if os.path.exists(path + "-wal") and os.path.getsize(path + "-wal") > 0:
+                wrong("the restored file has a log that is not its own")
+            trials(path)
+        # Until the restored file is in place nobody may begin a new one.
+        if not os.path.exists(path):
+            started = self.run(folder, *self.session("lab.sqlite", "P05"))
+            if started.returncode == 0 or os.path.exists(path):
+                wrong("a new database was begun in the middle of a restore")
+
+
+class Merge(Operation):
+    def prepare(self, folder):
+        Operation.prepare(self, folder)
+        self.good(folder, *self.session("other.sqlite", "P05"), station="b")
+
+    databases = ["lab.sqlite", "other.sqlite"]
+
+    def arguments(self):
+        return ("merge", "--db", "lab.sqlite", "other.sqlite")
+
+    def done(self, folder):
+        self.kept(trials(os.path.join(folder, "other.sqlite")), trials(os.path.join(folder, "lab.sqlite")))
+
+
+class Withdraw(Backup):
+    """With what interrupted operations of every kind have left behind."""
+    databases = []
+
+    def prepare(self, folder):
+        Backup.prepare(self, folder)
+        path = os.path.join(folder, "lab.sqlite")
+        for name in (".merging", ".merging.new", ".restored", ".new", ".before-v3", ".before-v2"):
+            shutil.copy(path, path + name)
+        newest = self.backups(folder)[-1]
+        shutil.copy(newest, newest + ".new")
+        shutil.copy(newest, os.path.join(folder, "backups", "lab-20200101T000000.000Z.sqlite.new"))
+
+    def arguments(self):
+        return ("withdraw", "--db", "lab.sqlite", "--participant", "QX9", "--backups", "backups", "--yes")
+
+    def done(self, folder):
+        if left := holds(folder, "QX9"):
+            wrong(f"the participant is still in {left}")
+
+    def check(self, folder, before):
+        after = trials(os.path.join(folder, "lab.sqlite"))
+        if len(before["lab.sqlite"] - after) not in (0, 10):
+            wrong("a part of the participant's trials is gone, or others are")
+        if not self.backups(folder):
+            wrong("no backup is left")
+        for backup in self.backups(folder):
+            trials(backup)
+
+
+class Export(Operation):
+    def arguments(self):
+        return ("export", "--db", "lab.sqlite", "--out", "export")
+
+    def tables(self, folder):
+        return glob.glob(os.path.join(folder, "export", "*", "*.csv"))
+
+    def done(self, folder):
+        if len(self.tables(folder)) != 4 or glob.glob(os.path.join(folder, "export", "*", "*INCOMPLETE*")):
+            wrong("the export is not whole")
+
+    def check(self, folder, before):
+        Operation.check(self, folder, before)
+        if 0 < len(self.tables(folder)) < 4 and not glob.glob(os.path.join(folder, "export", "*", "*INCOMPLETE*")):
+            wrong("half an export without a mark")
+
+
+class Calibrate(Operation):
+    databases = []
+
+    def prepare(self, folder):
+        shutil.copy(RIG, os.path.join(folder, "rig.toml"))
+        with open(os.path.join(folder, "friction.csv"), "w", encoding="utf-8") as file:
+            file.write("displacement_um,relative_friction\n" + "".join(f"{d},{1 / (1 + d / 3):.4f}\n" for d in range(9)))
+        self.good(folder, *self.arguments())
+
+    def arguments(self):
+        return ("calibrate", "--rig", "rig.toml", "--friction", "friction.csv", "--out", "calibration.toml")
+
+    def text(self, folder):
+        with open(os.path.join(folder, "calibration.toml"), encoding="utf-8") as file:
+            return re.sub(r'(?m)^(made|created|date|expires|valid)\w* = .*$', "", file.read())
+
+    def check(self, folder, before):
+        if self.text(folder) != self.text(self.sweep.start):
+            wrong("calibration.toml is half written")
+
+
+OPERATIONS = {"create": Create, "migrate": Migrate, "run": Run, "resume": Resume, "backup": Backup, "restore": Restore,
+              "merge": Merge, "withdraw": Withdraw, "export": Export, "calibrate": Calibrate}
+
+
+class Sweep:
+    def __init__(self, program, faulty_system, schema, work, careless):
+        self.program, self.faulty_system, self.schema, self.work = program, faulty_system, schema, work
+        self.careless = careless
+        self.start = ""
+
+    def once(self, operation, folder, environment):
+        return operation.run(folder, *operation.arguments(),
+                             environment=dict(LD_PRELOAD=self.faulty_system, FAULT_UNDER=folder, HOST_NAME="a",
+                                              **environment))
+
+    def fresh(self):
+        folder = os.path.join(self.work, "now")
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(self.start, folder)
+        return folder
+
+    def calls(self, operation):
+        """[(number, what, kinds)] of all calls of the operation."""
+        log = os.path.join(self.work, "calls.log")
+        if os.path.exists(log):
+            os.remove(log)
+        done = self.once(operation, self.fresh(), {"FAULT_LOG": log})
+        if done.returncode != 0:
+            sys.exit(f"sweep: without a fault: {done.stdout}{done.stderr}")
+        operation.done(os.path.join(self.work, "now"))
+        found = []
+        with open(log, encoding="utf-8", errors="replace") as file:
+            for line in file:
+                number, call, effect, path = line.rstrip("\n").split(" ", 3)
+                kinds = {"r": ["EIO"], "w": ["kill", "EIO", "ENOSPC"], "a": ["kill", "EIO"]}[effect]
+                found += [(int(number), f"{call} {path}", kind) for kind in kinds]
+        return found
+
+    def point(self, operation, before, number, kind):
+        folder = self.fresh()
+        done = self.once(operation, folder, {"FAULT_AT": str(number), "FAULT_KIND": kind})
+        if self.careless:
+            publish_half_made(folder)
+        if done.returncode == 0:
+            operation.done(folder)
+        elif done.returncode > 0 and len((done.stdout + done.stderr).strip()) < 20:
+            wrong(f"status {done.returncode} without a reason")
+        elif done.returncode < 0 and done.returncode != -9:
+            wrong(f"ended by signal {-done.returncode}: {done.stderr}")
+        operation.check(folder, before)
+        again = operation.run(folder, *operation.arguments(),
+                              environment=dict(LD_PRELOAD=self.faulty_system, HOST_NAME="a"))
+        if done.returncode != 0 and again.returncode != 0 and not self.complete(operation, folder, again):
+            wrong(f"after {done.stderr.strip()!r} it fails again: {again.stderr.strip()}")
+        operation.done(folder)
+        operation.check(folder, before)
+
+    @staticmethod
+    def complete(operation, folder, again):
+        """Failed after all was done: to do it again is refused, and what it was to do holds."""
+        return "is good; nothing was changed" in again.stderr
+
+    def run(self, name, choose):
+        operation = OPERATIONS[name](self)
+        self.start = os.path.join(self.work, "start-" + name)
+        os.mkdir(self.start)
+        operation.prepare(self.start)
+        before = {database: trials(os.path.join(self.start, database)) for database in ("lab.sqlite", "other.sqlite")
+                  if name not in ("restore", "calibrate")}
+        points = self.calls(operation)
+        failures, tried = [], 0
+        for index, (number, what, kind) in enumerate(points):
+            if not choose(index, len(points)):
+                continue
+            tried += 1
+            try:
+                self.point(operation, before, number, kind)
+            except Wrong as found:
+                failures.append(f"{name}: {kind} at call {number} ({what.replace(self.work, '...')}): {found}")
+        print(f"{name}: {tried} of {len(points)} points, {len(failures)} wrong", flush=True)
+        return failures
+
+
+def commits():
+    done = subprocess.run(["git", "-C", SOURCE, "rev-list", "--count", "HEAD"], capture_output=True, text=True, check=False)
+    return int(done.stdout) if done.returncode == 0 else 0
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("faulty_system")
+    parser.add_argument("schema")
+    parser.add_argument("operations", nargs="*", help="some of these: " + " ".join(OPERATIONS))
+    parser.add_argument("--seed", type=int, default=commits(), help="otherwise the number of commits")
+    parser.add_argument("--points", type=int, default=6, help="of each operation")
+    parser.add_argument("--all", action="store_true")
+    parser.add_argument("--careless", action="store_true", help="half-made files are published: must be found")
+    options = parser.parse_intermixed_args()
+
+    def choose(index, count):
+        """A seeded rotation: the seeds 0 to count / points - 1 have each point once."""
+        turns = max(1, -(-count // options.points))
+        return options.all or index % turns == options.seed % turns
+
+    failures = []
+    with tempfile.TemporaryDirectory(dir="/dev/shm" if os.path.isdir("/dev/shm") else None) as work:
+        sweep = Sweep(os.path.abspath(options.program), os.path.abspath(options.faulty_system), options.schema, os.path.realpath(work),
+                      options.careless)
+        for name in options.operations or OPERATIONS:
+            failures += sweep.run(name, choose)
+    for failure in failures:
+        print(failure)
+    sys.exit(1 if bool(failures) != options.careless else 0)
+
+
+main()
