@@ -22,7 +22,8 @@ using terms::FaultKind;
 using Ask = GuardOrders::Ask;
 
 constexpr int guard_priority = 75;
-constexpr std::int64_t look_again_ns = 100'000'000;
+constexpr std::int64_t open_again_ns = 100'000'000;
+constexpr std::int64_t look_ns = 500'000;  // how often fault and stop are read while the line is high
 static_assert(terms::fault_kinds.size() <= 32, "a trip is a bit of a word");
 
 /// What ordinary threads may know of the guard.
@@ -57,7 +58,13 @@ class GuardThread {
  private:
   void publish() noexcept { report.store({guard_.state(), guard_.fault(), reaction_ns_}); }
 
-  void drive_enable() { lines_->drive(roles_.enable, guard_.outputs().enable); }
+  bool wants_high() const noexcept { return guard_.outputs().enable == 1; }
+
+  void drive_enable() {
+    lines_->drive(roles_.enable, wants_high() ? 1 : 0);
+    if (driven_high_ && !wants_high()) lowered_ns_ = drive::monotonic_ns();
+    driven_high_ = wants_high();
+  }
 
   bool fault_at(bool level) const noexcept { return level != roles_.fault_active_low; }
   bool stop_at(bool level) const noexcept { return level != roles_.stop_active_low; }
@@ -77,6 +84,7 @@ class GuardThread {
   /// Lines whose outputs are low, and what was pressed or faulty before.
   void take_up() {
     lines_ = open_();
+    driven_high_ = false;
     drive_enable();
     read_levels();
     publish();
@@ -86,7 +94,7 @@ class GuardThread {
   void let_go(const char* why) noexcept {
     guard_.trip(drive::monotonic_ns(), FaultKind::lines_gone);
     lines_.reset();
-    next_look_ns_ = drive::monotonic_ns() + look_again_ns;
+    next_open_ns_ = drive::monotonic_ns() + open_again_ns;
     Reason reason{};
     std::strncpy(reason.data(), why, reason.size() - 1);
     gone.store(reason);
@@ -99,19 +107,29 @@ class GuardThread {
     const bool active = fault ? fault_at(edge.rising) : stop_at(edge.rising);
     if (active) {
       lines_->drive(roles_.enable, 0);
-      reaction_ns_ = drive::monotonic_ns() - edge.time_ns;
+      // The levels may have told it before the edge did.
+      reaction_ns_ = (driven_high_ ? drive::monotonic_ns() : lowered_ns_) - edge.time_ns;
     }
     fault ? guard_.fault_line(edge.time_ns, active) : guard_.stop_line(edge.time_ns, active);
     drive_enable();
     publish();
   }
 
+  /// The kernel hands edges on by a thread of its own, which a busy real-time thread can hold up.
+  void look() {
+    read_levels();
+    drive_enable();
+    publish();
+    next_look_ns_ = drive::monotonic_ns() + look_ns;
+  }
+
   void beat() {
     take_signs();
-    read_levels();
+    guard_.tick(drive::monotonic_ns());
+    look();
+    // Compared with what has just been driven, not with what was wanted before.
     if (const auto level = roles_.read_back ? lines_->read_back(roles_.enable) : std::nullopt)
       guard_.enable_line(drive::monotonic_ns(), *level);
-    guard_.tick(drive::monotonic_ns());
     drive_enable();
     if (roles_.heartbeat >= 0) lines_->drive(roles_.heartbeat, guard_.outputs().heartbeat);
     publish();
@@ -152,19 +170,23 @@ class GuardThread {
     orders.done(*taken, refusal);
   }
 
-  /// Edges and orders until the next beat, and then the beat.
+  /// Edges and orders until it is time to look or to beat.
   void watch() {
-    const auto wait_ns = std::max<std::int64_t>(0, guard_.next_tick_ns() - drive::monotonic_ns());
+    const auto until_ns =
+        wants_high() ? std::min(guard_.next_tick_ns(), next_look_ns_) : guard_.next_tick_ns();
+    const auto wait_ns = std::max<std::int64_t>(0, until_ns - drive::monotonic_ns());
     if (const auto seen = lines_->wait(wait_ns, orders.descriptor())) edge(*seen);
-    if (drive::monotonic_ns() >= guard_.next_tick_ns()) beat();
+    const auto now = drive::monotonic_ns();
+    if (now >= guard_.next_tick_ns()) return beat();
+    if (wants_high() && now >= next_look_ns_) look();
   }
 
   /// Orders are answered meanwhile, however many come.
   void look_for_lines() {
-    const std::int64_t left_ns = std::max<std::int64_t>(0, next_look_ns_ - drive::monotonic_ns());
+    const std::int64_t left_ns = std::max<std::int64_t>(0, next_open_ns_ - drive::monotonic_ns());
     pollfd order{orders.descriptor(), POLLIN, 0};
     ::poll(&order, 1, static_cast<int>(left_ns / 1'000'000) + 1);
-    if (drive::monotonic_ns() >= next_look_ns_) take_up();
+    if (drive::monotonic_ns() >= next_open_ns_) take_up();
   }
 
   void run(const std::stop_token& stop) noexcept {
@@ -187,7 +209,10 @@ class GuardThread {
   GuardLines roles_;
   Guard guard_;
   std::unique_ptr<Lines> lines_;   ///< none while they are gone
-  std::int64_t next_look_ns_ = 0;  ///< for lines that are gone
+  std::int64_t next_open_ns_ = 0;  ///< of lines that are gone
+  std::int64_t next_look_ns_ = 0;
+  bool driven_high_ = false;
+  std::int64_t lowered_ns_ = 0;  ///< when it was last driven low from high
   std::int64_t reaction_ns_ = -1;
   std::jthread thread_;
 };

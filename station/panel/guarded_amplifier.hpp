@@ -27,8 +27,9 @@ struct GuardOptions {
 };
 
 /// An amplifier on lines (kernel or simulated) with its guard thread, SCHED_FIFO 75 where that is granted.
-/// Once the lines are open only that thread uses them. It reads fault and stop in every beat and before each
-/// arming and enabling, so a lost edge does not matter. The enable line is low on return and after
+/// Once the lines are open only that thread uses them. It takes the edges of fault and stop, and also reads
+/// their levels: every 0.5 ms while the enable line is high, in every beat, and before each arming and
+/// enabling. So an edge that is lost, or that the kernel hands on late, does not matter. The enable line is low on return and after
 /// destruction. Lines whose chip has gone are a latched fault, and are looked for until they are back; then
 /// an operator can clear and arm. Throws what `open` throws at the start.
 std::unique_ptr<drive::Amplifier> guard_amplifier(OpenLines open, const GuardLines& roles,
