@@ -18,6 +18,12 @@ DeviceStream::DeviceStream(const StreamConfig& config)
 
 std::int64_t DeviceStream::delay_ns() const noexcept { return std::llround(config_.converter_delay_s * 1e9); }
 
+std::vector<MemoryRange> DeviceStream::memory() const {
+  auto ranges = core_.memory();
+  ranges.insert(ranges.end(), {range_of(block_), range_of(*positions_), range_of(*rates_)});
+  return ranges;
+}
+
 std::optional<Event> DeviceStream::poll() {
   gather_positions();
   return core_.poll();

@@ -7,6 +7,7 @@
 
 #include "station/drive/engine.hpp"
 #include "station/drive/engine_core.hpp"
+#include "station/drive/rights.hpp"
 #include "station/drive/ring.hpp"
 
 namespace turnpoint::drive {
@@ -22,6 +23,9 @@ class DeviceStream : public Stream {
   /// Audio side: renders the next block and writes it, which takes as long as the device does. After lost
   /// frames the block is not played later instead: the next step renders the frames whose time it then is.
   void step() noexcept;
+
+  /// What the audio side uses beside this object itself, but for what the sound library keeps for itself.
+  std::vector<MemoryRange> memory() const;
 
   std::uint32_t schedule(const Burst& burst) override {
     return core_.schedule(burst, [this] { return earliest_frame(); });

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "station/drive/engine.hpp"
+#include "station/drive/rights.hpp"
 #include "station/drive/ring.hpp"
 
 namespace turnpoint::drive {
@@ -25,6 +26,8 @@ class EngineCore {
   void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame);
   std::optional<Event> poll();
   Counters counters() const noexcept;
+  /// What the audio side uses beside this object itself.
+  std::vector<MemoryRange> memory() const;
 
   /// Takes the waiting commands and renders the frames from `frame`.
   void process(std::int64_t frame, std::span<std::int32_t> samples) noexcept;

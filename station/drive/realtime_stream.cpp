@@ -14,9 +14,15 @@ namespace {
 class Realtime final : public DeviceStream {
  public:
   explicit Realtime(const StreamConfig& config) : DeviceStream(config) {
-    rights_ = lock_memory();
+    auto used = memory();
+    used.push_back(range_of(*this));
+    rights_ = lock_memory(used);
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
     started_.wait();
+    if (const int error = stack_denied_.load(); error != 0 && rights_.memory_locked) {
+      rights_.memory_locked = false;
+      rights_.note = fmt::format("stack: {} (raise LimitMEMLOCK)", std::strerror(error));
+    }
     const int denied = granted_.load();
     rights_.fifo_priority = denied == 0 ? config.fifo_priority : 0;
     if (denied != 0)
@@ -42,12 +48,13 @@ class Realtime final : public DeviceStream {
  private:
   void run(const std::stop_token& stop) noexcept {
     granted_.store(become_realtime(config().fifo_priority));
+    stack_denied_.store(lock_stack());
     started_.count_down();
     while (!stop.stop_requested()) step();
   }
 
   Rights rights_;
-  std::atomic<int> granted_{0};
+  std::atomic<int> granted_{0}, stack_denied_{0};
   std::latch started_{1};
   std::jthread thread_;  // last: joined before what it uses goes
 };

@@ -6,16 +6,21 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace turnpoint::drive {
 namespace {
+
+constexpr std::size_t used_stack = 256 * 1024;  ///< more than any real-time thread here needs
 
 // Touches the stack that the thread will use, so that no page of it is missing later.
 void prefault_stack() noexcept {
@@ -23,14 +28,9 @@ void prefault_stack() noexcept {
   for (std::size_t k = 0; k < sizeof stack; k += 1024) stack[k] = 0;
 }
 
-struct Range {
-  const void* start = nullptr;
-  std::size_t length = 0;
-};
-
 /// The range of a line of /proc/self/maps that is to be locked: readable files (the program and its
 /// libraries) and the heap.
-std::optional<Range> lockable(const std::string& line) {
+std::optional<MemoryRange> lockable(const std::string& line) {
   std::istringstream words(line);
   std::string range, rights, offset, device, path;
   std::uint64_t inode = 0;
@@ -41,19 +41,21 @@ std::optional<Range> lockable(const std::string& line) {
   if (!file && path != "[heap]") return std::nullopt;
   const auto start = std::stoull(range.substr(0, dash), nullptr, 16);
   const auto end = std::stoull(range.substr(dash + 1), nullptr, 16);
-  return Range{reinterpret_cast<const void*>(start), end - start};
+  return MemoryRange{reinterpret_cast<const void*>(start), end - start};
 }
 
 }  // namespace
 
-Rights lock_memory() {
+Rights lock_memory(const std::vector<MemoryRange>& ranges) {
+  std::vector<MemoryRange> wanted = ranges;
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);)
+    if (const auto range = lockable(line)) wanted.push_back(*range);
   Rights rights;
   rights.asked = true;
   rights.memory_locked = true;
-  std::ifstream maps("/proc/self/maps");
-  for (std::string line; std::getline(maps, line);) {
-    const auto range = lockable(line);
-    if (!range || ::mlock(range->start, range->length) == 0) continue;
+  for (const MemoryRange& range : wanted) {
+    if (range.length == 0 || ::mlock(range.start, range.length) == 0) continue;
     rights.memory_locked = false;
     rights.note = fmt::format("mlock: {} (raise LimitMEMLOCK)", std::strerror(errno));
     return rights;
@@ -61,8 +63,22 @@ Rights lock_memory() {
   return rights;
 }
 
+int lock_stack() noexcept {
+  pthread_attr_t attributes;
+  if (const int error = ::pthread_getattr_np(::pthread_self(), &attributes); error != 0) return error;
+  void* lowest = nullptr;
+  std::size_t size = 0;
+  const int error = ::pthread_attr_getstack(&attributes, &lowest, &size);
+  ::pthread_attr_destroy(&attributes);
+  if (error != 0) return error;
+  // Stacks grow downwards: the used part is the upper one.
+  const std::size_t used = std::min(size, used_stack);
+  return ::mlock(static_cast<std::byte*>(lowest) + (size - used), used) == 0 ? 0 : errno;
+}
+
 int become_realtime(int priority) noexcept {
   prefault_stack();
+  static_cast<void>(lock_stack());
   const rlimit limit{200'000, 400'000};  // microseconds without a blocking call
   static_cast<void>(::setrlimit(RLIMIT_RTTIME, &limit));
   sched_param parameters{};

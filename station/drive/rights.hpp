@@ -1,17 +1,38 @@
 #pragma once
+#include <cstddef>
+#include <vector>
+
 #include "station/drive/engine.hpp"
 
 namespace turnpoint::drive {
 
-/// Locks program, libraries and heap into memory, before the audio thread starts; the note says why not.
-/// These are what a machine without swap can page out. Not mlockall: it also pins the pages that a garbage
-/// collector gives back, madvise(MADV_DONTNEED) then fails, and Qt's JavaScript engine, which relies on
-/// getting zeroed pages again, crashes.
-Rights lock_memory();
+/// A piece of memory that a real-time thread uses.
+struct MemoryRange {
+  const void* start = nullptr;
+  std::size_t length = 0;
+};
+template <typename T>
+MemoryRange range_of(const T& object) noexcept {
+  return {&object, sizeof object};
+}
+template <typename T>
+MemoryRange range_of(const std::vector<T>& elements) noexcept {
+  return {elements.data(), elements.capacity() * sizeof(T)};
+}
 
-/// For the calling thread: SCHED_FIFO at `priority`, a prefaulted stack, and a limit on real-time run time so
-/// that a spinning thread is killed rather than the machine frozen. Returns 0 or the errno of what was
-/// denied.
+/// Locks into memory, before the audio thread starts, the program, its libraries, the heap as far as it has
+/// grown, and the ranges given: objects made by a thread other than the first lie in anonymous memory of
+/// their own. The note says why not. Not mlockall: it also pins the pages that a garbage collector gives
+/// back, madvise(MADV_DONTNEED) then fails, and Qt's JavaScript engine, which relies on getting zeroed pages
+/// again, crashes.
+Rights lock_memory(const std::vector<MemoryRange>& ranges);
+
+/// Locks the part of the calling thread's stack that a real-time thread uses. Returns 0 or an errno.
+int lock_stack() noexcept;
+
+/// For the calling thread: SCHED_FIFO at `priority`, a stack that is in memory, and a limit on real-time run
+/// time so that a spinning thread is killed rather than the machine frozen. Returns 0 or the errno of what
+/// was denied.
 int become_realtime(int priority) noexcept;
 
 }  // namespace turnpoint::drive

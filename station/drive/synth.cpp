@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "station/drive/noise.hpp"
+#include "station/drive/rights.hpp"
 #include "station/drive/voice.hpp"
 
 namespace turnpoint::drive {
@@ -194,6 +195,8 @@ std::span<const SynthEvent> Synth::events() const noexcept {
   return {state_->events.data(), state_->event_count};
 }
 void Synth::clear_events() noexcept { state_->event_count = 0; }
+
+MemoryRange Synth::memory() const noexcept { return range_of(*state_); }
 
 bool Synth::active() const noexcept { return state_->active(); }
 

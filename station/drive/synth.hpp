@@ -13,6 +13,8 @@ namespace turnpoint::drive {
 /// fast: float, below -130 dB.
 enum class Precision { exact, fast };
 
+struct MemoryRange;  // rights.hpp
+
 /// The cheapest path whose error stays below `tolerance_dB` re full scale (negative).
 Precision precision_for(double tolerance_dB) noexcept;
 
@@ -66,6 +68,9 @@ class Synth {
   /// Events since the last call, oldest first; valid until the next render.
   std::span<const SynthEvent> events() const noexcept;
   void clear_events() noexcept;
+
+  /// All that render() uses beside this object itself.
+  MemoryRange memory() const noexcept;
 
   bool active() const noexcept;              ///< a burst waits or sounds
   std::uint64_t saturated() const noexcept;  ///< samples that left the range: 0 unless limits were lifted

@@ -3,6 +3,8 @@
 #include <dlfcn.h>
 #include <pthread.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdio>
 
@@ -12,6 +14,23 @@ thread_local bool watched = false;
 thread_local int violations = 0;
 void note() noexcept {
   if (watched) ++violations;
+}
+
+thread_local bool recorded = false;
+thread_local std::array<turnpoint::drive::Allocation, 4096> taken;
+thread_local std::size_t taken_count = 0;
+
+void* note_taken(void* memory, std::size_t size) noexcept {
+  note();
+  if (recorded && taken_count < taken.size()) taken[taken_count++] = {memory, size};
+  return memory;
+}
+void note_given_back(const void* memory) noexcept {
+  note();
+  if (!recorded) return;
+  const auto end = taken.begin() + static_cast<std::ptrdiff_t>(taken_count);
+  const auto found = std::find_if(taken.begin(), end, [&](const auto& one) { return one.start == memory; });
+  if (found != end) *found = taken[--taken_count];
 }
 
 template <typename Function>
@@ -33,6 +52,16 @@ int end_watch() noexcept {
   return violations;
 }
 
+void begin_record() noexcept {
+  taken_count = 0;
+  recorded = true;
+}
+
+std::vector<Allocation> end_record() {
+  recorded = false;
+  return {taken.begin(), taken.begin() + static_cast<std::ptrdiff_t>(taken_count)};
+}
+
 }  // namespace turnpoint::drive
 
 extern "C" {
@@ -43,24 +72,19 @@ void* __libc_realloc(void*, std::size_t);
 void* __libc_memalign(std::size_t, std::size_t);
 void __libc_free(void*);
 
-void* malloc(std::size_t size) {
-  note();
-  return __libc_malloc(size);
-}
+void* malloc(std::size_t size) { return note_taken(__libc_malloc(size), size); }
 void* calloc(std::size_t count, std::size_t size) {
-  note();
-  return __libc_calloc(count, size);
+  return note_taken(__libc_calloc(count, size), count * size);
 }
 void* realloc(void* memory, std::size_t size) {
-  note();
-  return __libc_realloc(memory, size);
+  note_given_back(memory);
+  return note_taken(__libc_realloc(memory, size), size);
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
-  note();
-  return __libc_memalign(alignment, size);
+  return note_taken(__libc_memalign(alignment, size), size);
 }
 void free(void* memory) {
-  note();
+  note_given_back(memory);
   __libc_free(memory);
 }
 int pthread_mutex_lock(pthread_mutex_t* mutex) noexcept {

@@ -1,4 +1,6 @@
 #pragma once
+#include <cstddef>
+#include <vector>
 
 namespace turnpoint::drive {
 
@@ -7,6 +9,14 @@ namespace turnpoint::drive {
 /// well.
 void begin_watch() noexcept;
 int end_watch() noexcept;
+
+/// Memory that the calling thread took between the two calls and has not given back.
+struct Allocation {
+  const void* start = nullptr;
+  std::size_t size = 0;
+};
+void begin_record() noexcept;
+std::vector<Allocation> end_record();
 
 template <typename Function>
 int violations_in(Function&& function) {

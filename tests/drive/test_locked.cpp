@@ -1,0 +1,105 @@
+// "memory locked" is recorded only where it is so: looked up in /proc/self/smaps, for the audio thread's
+// stack and for all that the engine allocates, on a thread whose memory is not the program's heap.
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+#include "station/drive/engine.hpp"
+#include "tests/drive/watch.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+using namespace turnpoint::drive;
+
+namespace {
+
+/// Says where the audio thread's stack is, as seen from that thread.
+struct StackProbe : Amplifier {
+  std::atomic<std::uintptr_t> address{0};
+
+  void audio_alive() noexcept override {
+    address = reinterpret_cast<std::uintptr_t>(__builtin_frame_address(0));
+  }
+  Refusal arm() override { return std::nullopt; }
+  void disarm() noexcept override {}
+  Refusal enable() override { return std::nullopt; }
+  void disable() noexcept override {}
+  void trip(terms::FaultKind, std::string_view) noexcept override {}
+  Refusal clear() override { return std::nullopt; }
+  void session_alive() noexcept override {}
+  void page_alive(std::int64_t) noexcept override {}
+  AmplifierState state() const noexcept override { return AmplifierState::disarmed; }
+  AmplifierFault fault() const override { return {}; }
+  std::int64_t reaction_ns() const noexcept override { return -1; }
+};
+
+struct Mapping {
+  std::uintptr_t start = 0, end = 0;
+  bool locked = false;
+};
+
+std::vector<Mapping> mappings() {
+  std::vector<Mapping> all;
+  std::ifstream smaps("/proc/self/smaps");
+  for (std::string line; std::getline(smaps, line);) {
+    Mapping mapping;
+    char dash = 0;
+    std::istringstream words(line);
+    if (line.starts_with("VmFlags:"))
+      all.back().locked = line.find(" lo") != std::string::npos;
+    else if (words >> std::hex >> mapping.start >> dash >> mapping.end && dash == '-')
+      all.push_back(mapping);
+  }
+  return all;
+}
+
+/// Bytes from `start` on that are in no locked mapping.
+std::size_t unlocked(const std::vector<Mapping>& all, std::uintptr_t start, std::size_t length) {
+  std::size_t locked = 0;
+  for (const auto& m : all)
+    if (m.locked && m.start < start + length && start < m.end)
+      locked += std::min(m.end, start + length) - std::max(m.start, start);
+  return length - locked;
+}
+
+}  // namespace
+
+TEST_CASE("what is recorded as locked is locked: the audio thread's stack, its blocks and its rings",
+          "[drive][realtime]") {
+  StackProbe probe;
+  std::thread([&probe] {
+    StreamConfig config;
+    config.output.period_frames = 4096;
+    config.output.periods = 2;
+    config.amplifier = &probe;
+    begin_record();
+    const auto stream = open_realtime(config);
+    const auto allocations = end_record();
+    if (!stream->rights().memory_locked) {
+      CHECK_FALSE(stream->rights().note.empty());
+      WARN("not allowed to lock memory here: " << stream->rights().note);
+      return;
+    }
+    while (probe.address == 0) std::this_thread::yield();
+    const auto all = mappings();
+    CHECK(unlocked(all, probe.address - 16384, 16384) == 0);
+    // The clock's pairs, 16 kB, belong to the control side.
+    std::size_t engine = 0, left_out = 0;
+    for (const auto& allocation : allocations) {
+      if (allocation.size < 1024) continue;
+      const auto missing = unlocked(all, reinterpret_cast<std::uintptr_t>(allocation.start), allocation.size);
+      engine += allocation.size, left_out += missing;
+      INFO(allocation.size << " bytes");
+      CHECK((missing == 0 || allocation.size <= 16384));
+    }
+    CHECK(engine > 150'000);
+    CHECK(left_out <= 32'768);
+    std::vector<char> other(1 << 20);  // the negative control: nobody has locked this
+    CHECK(unlocked(all, reinterpret_cast<std::uintptr_t>(other.data()), other.size()) > 0);
+  }).join();
+}
