@@ -16,6 +16,9 @@ std::int64_t now_ns() {
   return std::chrono::steady_clock::now().time_since_epoch().count();
 }
 
+/// Several signs of life within the two seconds after which the amplifier's guard switches off.
+constexpr int kLife_ms = 250;
+
 /// Pages on which a late frame could be felt, and is counted.
 bool is_trial(PageModel::Kind kind) {
   using Kind = PageModel::Kind;
@@ -30,6 +33,8 @@ SessionRunner::SessionRunner(QObject* parent)
       bridge_(now_ns, [this](session::Input input) { inputs_.push(std::move(input)); }),
       live_(bridge_),
       frames_(now_ns) {
+  connect(&life_, &QTimer::timeout, this, [this] { inputs_.page_alive(now_ns()); });
+  connect(this, &SessionRunner::over, &life_, &QTimer::stop);
   connect(&bridge_, &SessionBridge::shown, this, [this] {
     const auto kind = bridge_.page()->kind();
     if (is_trial(kind)) return frames_.asked();
@@ -62,6 +67,8 @@ void SessionRunner::begin(session::Setup setup) {
   open_touch();
   view_ = std::make_unique<app::LiveView>(setup_.protocol, setup_.rig,
                                           [this](app::LiveState state) { live_.take(std::move(state)); });
+  inputs_.page_alive(now_ns());
+  life_.start(kLife_ms);
   thread_ = std::jthread([this] { run(); });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <QObject>
+#include <QTimer>
 #include <atomic>
 #include <exception>
 #include <memory>
@@ -59,6 +60,7 @@ class SessionRunner : public QObject {
   LiveModel live_;
   ReportModel report_;
   FrameWatch frames_;
+  QTimer life_;  ///< tells the session that the pages' event loop turns
   std::unique_ptr<panel::TouchReader> touch_;
   std::unique_ptr<app::LiveView> view_;
   std::optional<session::Summary> summary_;

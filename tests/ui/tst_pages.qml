@@ -188,8 +188,9 @@ Item {
         }
 
         function test_every_fault_says_what_happened_what_is_safe_and_what_to_do_data() {
-            return ["converter_gone", "amplifier", "stop_pressed", "touch_gone", "disk_full", "stimulus_missed"]
-                .map(kind => ({ tag: kind, arms: ["converter_gone", "amplifier", "stop_pressed"].includes(kind) }))
+            const goOn = ["touch_gone", "disk_full", "limits", "stimulus_missed"]
+            return ["converter_gone", "converter_rate", "converter_saturated", "suspended", "amplifier", "enable_line",
+                "stop_pressed", ...goOn].map(kind => ({ tag: kind, arms: !goOn.includes(kind) }))
         }
         function test_every_fault_says_what_happened_what_is_safe_and_what_to_do(row) {
             show("fault-" + row.tag)

@@ -1,0 +1,64 @@
+#pragma once
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "station/drive/engine.hpp"
+
+/// A real stream to which a device's misfortunes happen when the test says so.
+struct Misfortunes {
+  std::mutex mutex;
+  std::optional<turnpoint::drive::Event> event;
+  std::atomic<std::int64_t> clipped{0};
+
+  void happen(turnpoint::drive::Event what) {
+    const std::lock_guard lock(mutex);
+    event = what;
+  }
+};
+
+class FaultyStream : public turnpoint::drive::Stream {
+ public:
+  using Burst = turnpoint::drive::Burst;
+  FaultyStream(std::unique_ptr<Stream> real, Misfortunes& misfortunes)
+      : real_(std::move(real)), misfortunes_(misfortunes) {}
+
+  std::optional<turnpoint::drive::Event> poll() override {
+    const std::lock_guard lock(misfortunes_.mutex);
+    if (auto event = std::exchange(misfortunes_.event, std::nullopt)) return event;
+    return real_->poll();
+  }
+  turnpoint::drive::Counters counters() const override {
+    auto counters = real_->counters();
+    counters.saturated += misfortunes_.clipped;
+    return counters;
+  }
+
+  std::uint32_t schedule(const Burst& burst) override { return real_->schedule(burst); }
+  std::vector<turnpoint::drive::Scheduled> schedule_together(
+      std::span<const turnpoint::drive::PreparedBurst> bursts) override {
+    return real_->schedule_together(bursts);
+  }
+  void change(std::uint32_t burst, const turnpoint::drive::Change& change) override {
+    real_->change(burst, change);
+  }
+  void stop(std::uint32_t burst, const turnpoint::drive::Ramp& ramp,
+            std::optional<std::int64_t> frame) override {
+    real_->stop(burst, ramp, frame);
+  }
+  std::int64_t earliest_frame() const override { return real_->earliest_frame(); }
+  turnpoint::drive::ClockFit clock() override { return real_->clock(); }
+  std::optional<std::int64_t> time_of(std::int64_t frame) override { return real_->time_of(frame); }
+  std::optional<std::int64_t> frame_at(std::int64_t time_ns) override { return real_->frame_at(time_ns); }
+  std::optional<turnpoint::drive::MeasuredRate> measured_rate() override { return real_->measured_rate(); }
+  turnpoint::drive::Rights rights() const override { return real_->rights(); }
+  const turnpoint::drive::StreamConfig& config() const override { return real_->config(); }
+
+ private:
+  std::unique_ptr<Stream> real_;
+  Misfortunes& misfortunes_;
+};

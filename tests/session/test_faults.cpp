@@ -1,0 +1,250 @@
+// Each cause that can switch the amplifier off, produced where it arises and followed to the page that
+// explains it: the trial is void, the line is low before the page is shown, and once the operator has dealt
+// with it the trial comes again. Touch panel and disk have their turn in tests/ui/tst_faults.qml.
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <functional>
+#include <memory>
+#include <thread>
+#include <utility>
+
+#include "tests/session/faulty_stream.hpp"
+#include "tests/session/live_room.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace turnpoint;
+using namespace turnpoint::live_room;
+using terms::FaultKind;
+
+namespace {
+
+/// Lines whose enable output is broken when the test says so.
+struct BrokenLines : SharedLines {
+  BrokenLines(const std::shared_ptr<panel::SimulatedLines>& shared, std::atomic<bool>& broken_)
+      : SharedLines(shared), broken(broken_) {}
+  std::optional<bool> read_back(int index) override {
+    return broken ? std::optional(false) : SharedLines::read_back(index);
+  }
+  std::atomic<bool>& broken;
+};
+
+/// A room in which one thing goes wrong during the first stimulus.
+struct Mishap {
+  TemporaryFolder folder;
+  session::Setup setup = live_setup(folder / "a.sqlite");
+  Room room;
+  Misfortunes misfortunes;
+  std::atomic<std::int64_t> slept_ns{0};
+  std::atomic<bool> enable_broken{false};
+  std::atomic<bool> audio_lives{true};
+  bool chip_gone = false;  ///< and nobody can read its levels
+  std::function<void()> strikes, operator_repairs = [] {};
+  std::vector<session::Page> faults;
+  std::unique_ptr<std::jthread> audio;
+  int low_when_shown = 0;
+
+  session::Devices devices() {
+    auto devices = room.devices();
+    devices.amplifier = panel::guard_amplifier(
+        [this] {
+          static_cast<void>(room.lines->level(0));
+          return std::make_unique<BrokenLines>(room.lines, enable_broken);
+        },
+        {SharedLines::enable, SharedLines::heartbeat, SharedLines::fault, SharedLines::stop});
+    devices.open_stream = [this](drive::StreamConfig config) {
+      return std::make_unique<FaultyStream>(drive::open_realtime(config), misfortunes);
+    };
+    devices.clocks = [this] {
+      auto clocks = session::read_clocks();
+      clocks.boottime_ns += slept_ns;
+      clocks.realtime_ns += slept_ns;
+      return clocks;
+    };
+    return devices;
+  }
+
+  void react(const session::Page& page) {
+    if (page.kind == PageKind::end) audio.reset();  // what it speaks to goes with the session
+    if (page.kind == PageKind::stimulus && room.stimuli == 1) return strikes();
+    if (page.kind == PageKind::fault && room.stimuli == 1) {
+      faults.push_back(page);
+      low_when_shown += chip_gone || !room.lines->level(SharedLines::enable) ? 1 : 0;
+      operator_repairs();
+    }
+    room.cooperate(page);
+  }
+
+  /// The page that explained it.
+  session::Page runs(session::Devices with) {
+    room.reacts = [this](const auto& page) { react(page); };
+    const auto summary = session::run(setup, &room, room.inputs, std::move(with));
+    CHECK(summary.status == store::SessionStatus::completed);
+    const auto trials = trials_of(setup.database, summary);
+    REQUIRE(trials.size() == 3);
+    CHECK(trials[0].outcome == store::TrialOutcome::fault);
+    CHECK(trials[1].level == trials[0].level);
+    REQUIRE_FALSE(faults.empty());
+    CHECK(low_when_shown == static_cast<int>(faults.size()));
+    const auto logged = events_of(setup.database, summary, "fault");
+    REQUIRE_FALSE(logged.empty());
+    CHECK(logged.front().value.find(terms::name(faults.front().fault)) == 0);
+    return faults.front();
+  }
+  session::Page runs() { return runs(devices()); }
+};
+
+/// Until the guard has acted; ten seconds are a failure, not a measurement.
+void until_low(const Room& room) {
+  const auto end_ns = drive::monotonic_ns() + 10'000'000'000;
+  while (room.lines->level(SharedLines::enable) && drive::monotonic_ns() < end_ns) std::this_thread::yield();
+}
+
+}  // namespace
+
+TEST_CASE("the amplifier's own fault has its page", "[session][live][fault]") {
+  Mishap mishap;
+  mishap.strikes = [&] { mishap.room.lines->set(SharedLines::fault, true, drive::monotonic_ns()); };
+  mishap.operator_repairs = [&] { mishap.room.lines->set(SharedLines::fault, false, drive::monotonic_ns()); };
+  const auto page = mishap.runs();
+  CHECK(page.fault == FaultKind::amplifier);
+  CHECK(page.detail.find("amplifier off after") == 0);
+}
+
+TEST_CASE("the stop has its page", "[session][live][fault]") {
+  Mishap mishap;
+  mishap.strikes = [&] { mishap.room.lines->set(SharedLines::stop, true, drive::monotonic_ns()); };
+  mishap.operator_repairs = [&] { mishap.room.lines->set(SharedLines::stop, false, drive::monotonic_ns()); };
+  CHECK(mishap.runs().fault == FaultKind::stop_pressed);
+}
+
+TEST_CASE("an enable line that does not follow has its page", "[session][live][fault]") {
+  Mishap mishap;
+  mishap.strikes = [&] { mishap.enable_broken = true; };
+  mishap.operator_repairs = [&] { mishap.enable_broken = false; };
+  const auto page = mishap.runs();
+  CHECK(page.fault == FaultKind::enable_line);
+  CHECK(page.detail == "driven high, reads low");
+}
+
+TEST_CASE("lines that are gone have their page", "[session][live][fault]") {
+  Mishap mishap;
+  mishap.strikes = [&] {
+    mishap.chip_gone = true;
+    mishap.room.lines->remove();
+  };
+  mishap.operator_repairs = [&] { mishap.room.lines->put_back(); };
+  const auto page = mishap.runs();
+  CHECK(page.fault == FaultKind::lines_gone);
+  CHECK(page.detail == "simulated gpio chip: No such device");
+}
+
+TEST_CASE("a silent audio thread has its page", "[session][live][fault][threads]") {
+  Mishap mishap;
+  auto devices = mishap.devices();
+  devices.open_stream = [](drive::StreamConfig config) {
+    config.amplifier = nullptr;  // its signs of life come from the test
+    return drive::open_realtime(config);
+  };
+  mishap.audio = std::make_unique<std::jthread>(
+      [&amplifier = *devices.amplifier, &lives = mishap.audio_lives](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+          if (lives) amplifier.audio_alive();
+          drive::sleep_until_ns(drive::monotonic_ns() + 2'000'000);
+        }
+      });
+  mishap.strikes = [&] { mishap.audio_lives = false; };
+  mishap.operator_repairs = [&] { mishap.audio_lives = true; };
+  CHECK(mishap.runs(std::move(devices)).fault == FaultKind::audio_silent);
+}
+
+TEST_CASE("a session that hangs has its page", "[session][live][fault][threads]") {
+  Mishap mishap;
+  mishap.strikes = [&] { until_low(mishap.room); };  // on the session's own thread
+  CHECK(mishap.runs().fault == FaultKind::session_silent);
+}
+
+TEST_CASE("a participant's page that hangs has its page", "[session][live][fault]") {
+  Mishap mishap;
+  auto& inputs = mishap.room.inputs;
+  inputs.page_alive(drive::monotonic_ns() + 3'600'000'000'000);
+  mishap.strikes = [&] { inputs.page_alive(drive::monotonic_ns() - 1'900'000'000); };
+  mishap.operator_repairs = [&] { inputs.page_alive(drive::monotonic_ns() + 3'600'000'000'000); };
+  CHECK(mishap.runs().fault == FaultKind::page_silent);
+}
+
+TEST_CASE("a suspended machine has its page", "[session][live][fault]") {
+  Mishap mishap;
+  mishap.strikes = [&] { mishap.slept_ns = 90'000'000'000; };
+  const auto page = mishap.runs();
+  CHECK(page.fault == FaultKind::suspended);
+  CHECK(page.detail == "the machine slept for 90.0 s");
+}
+
+TEST_CASE("a sound device that is lost has its page", "[session][live][fault]") {
+  Mishap mishap;
+  mishap.strikes = [&] { mishap.misfortunes.happen({drive::EventKind::device_lost, 0, 0, 0, -ENODEV}); };
+  const auto page = mishap.runs();
+  CHECK(page.fault == FaultKind::converter_gone);
+  CHECK(page.detail == "No such device");
+}
+
+TEST_CASE("a wrong rate has its page, and nothing can be armed until the device was opened anew",
+          "[session][live][fault]") {
+  Mishap mishap;
+  mishap.strikes = [&] { mishap.misfortunes.happen({drive::EventKind::rate_wrong, 0, 0, 96'000'000, 0}); };
+  mishap.operator_repairs = [&] {
+    if (mishap.faults.size() == 3) mishap.misfortunes.happen({drive::EventKind::device_back, 0, 0, 0, 0});
+  };
+  const auto page = mishap.runs();
+  CHECK(page.fault == FaultKind::converter_rate);
+  CHECK(page.detail.find("96000.0 Hz instead of ") == 0);
+  REQUIRE(mishap.faults.size() >= 3);
+  CHECK(mishap.faults[1].detail.find("refused: sound device running at a wrong rate") == 0);
+}
+
+TEST_CASE("clipping has its page", "[session][live][fault]") {
+  Mishap mishap;
+  mishap.strikes = [&] { mishap.misfortunes.clipped = 384; };
+  const auto page = mishap.runs();
+  CHECK(page.fault == FaultKind::converter_saturated);
+  CHECK(page.detail == "384 samples clipped");
+}
+
+TEST_CASE("an amplifier that nobody has armed has its page", "[session][live][fault]") {
+  Mishap mishap;
+  mishap.strikes = [&] { mishap.room.push(InputKind::disarm); };
+  mishap.room.reacts = [&](const auto& page) { mishap.react(page); };
+  const auto summary = session::run(mishap.setup, &mishap.room, mishap.room.inputs, mishap.devices());
+  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(mishap.room.pages.front().fault == FaultKind::disarmed);  // before the first arming
+  REQUIRE_FALSE(mishap.faults.empty());
+  CHECK(mishap.faults.front().fault == FaultKind::disarmed);
+}
+
+TEST_CASE("a stimulus that came too late has its page", "[session][live][fault]") {
+  Mishap mishap;
+  mishap.strikes = [&] { mishap.misfortunes.happen({drive::EventKind::burst_missed, 1, 0, 0, 0}); };
+  mishap.room.reacts = [&](const auto& page) { mishap.react(page); };
+  const auto summary = session::run(mishap.setup, &mishap.room, mishap.room.inputs, mishap.devices());
+  CHECK(summary.voided == 1);
+  REQUIRE_FALSE(mishap.faults.empty());
+  CHECK(mishap.faults.front().fault == FaultKind::stimulus_missed);
+}
+
+TEST_CASE("a limit of the rig has its page; the session ends there, with the reason",
+          "[session][live][fault]") {
+  Mishap mishap;
+  mishap.setup.rig.limits.session_minutes = 2.5 / 60;
+  mishap.room.reacts = [&](const auto& page) { mishap.room.cooperate(page); };
+  const auto summary = session::run(mishap.setup, &mishap.room, mishap.room.inputs, mishap.devices());
+  CHECK(summary.status == store::SessionStatus::interrupted);
+  const auto& pages = mishap.room.pages;
+  const auto page = std::find_if(pages.begin(), pages.end(),
+                                 [](const auto& shown) { return shown.fault == FaultKind::limits; });
+  REQUIRE(page != pages.end());
+  CHECK(page->kind == PageKind::fault);
+  CHECK(page->detail == summary.reason);
+  CHECK(events_of(mishap.setup.database, summary, "fault").size() == 1);
+}

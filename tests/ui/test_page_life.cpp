@@ -1,0 +1,68 @@
+// The amplifier's guard counts on the participant's page: when the thread that draws it hangs, the amplifier
+// goes off, and once the thread turns again the page says so.
+#include <QCoreApplication>
+#include <chrono>
+#include <thread>
+
+#include "station/ui/session_runner.hpp"
+#include "tests/session/live_room.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+/// A pilot session on simulated lines, whose stimuli are felt for half a minute.
+struct PilotSession {
+  int argc = 1;
+  char name[5] = "test";
+  char* argv[2] = {name, nullptr};
+  QCoreApplication application{argc, argv};
+  TemporaryFolder folder;
+  ui::SessionRunner runner;
+
+  PilotSession() {
+    auto setup = live_room::live_setup(folder / "a.sqlite", "touch");
+    auto text = live_room::protocol_text("touch");
+    text.replace(text.find("explore_s = 2.0"), 15, "explore_s = 20.0");
+    text.replace(text.find("deadline_s = 3.0"), 16, "deadline_s = 25.0");
+    setup.protocol = protocol::parse(text, "pilot.toml");
+    setup.run_mode = store::RunMode::pilot;
+    runner.begin(std::move(setup));
+  }
+
+  const session::Page& page() { return runner.bridge().page()->page(); }
+
+  /// Turns the event loop until the page is there; half a minute is a failure, not a measurement.
+  bool shows(session::PageKind kind) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    while (page().kind != kind) {
+      if (std::chrono::steady_clock::now() > until) return false;
+      if (page().kind == session::PageKind::instructions) runner.bridge().next();
+      QCoreApplication::processEvents(QEventLoop::AllEvents, 10);
+    }
+    return true;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a page whose thread hangs switches the amplifier off, and then says so", "[page]") {
+  PilotSession session;
+  REQUIRE(session.shows(session::PageKind::stimulus));
+  // The thread turns: nothing happens for as long as it will hang afterwards.
+  const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(2600);
+  while (std::chrono::steady_clock::now() < until) {
+    QCoreApplication::processEvents(QEventLoop::AllEvents, 10);
+    REQUIRE(session.page().kind == session::PageKind::stimulus);
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(2600));  // it hangs
+  REQUIRE(session.shows(session::PageKind::fault));
+  CHECK(session.page().fault == terms::FaultKind::page_silent);
+  CHECK(session.page().amplifier == "faulted");
+  session.runner.ask_to_stop();
+  const auto summary = session.runner.finish();
+  REQUIRE(summary);
+  CHECK(summary->voided == 1);
+}
