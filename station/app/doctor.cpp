@@ -177,6 +177,34 @@ void clock(std::vector<Check>& checks) {
 
 }  // namespace
 
+Check check_swap(const std::string& swaps) {
+  std::ifstream file(swaps);
+  if (!file) return {"swap", Status::warning, swaps + " cannot be read", "look with: swapon --show"};
+  std::string line, active;
+  std::getline(file, line);  // the heading
+  while (std::getline(file, line))
+    if (const auto name = line.substr(0, line.find_first_of(" \t")); !name.empty())
+      active += (active.empty() ? "" : ", ") + name;
+  if (active.empty()) return {"swap", Status::ok, "off", ""};
+  return {
+      "swap", Status::failed, "on: " + active,
+      "Raspberry Pi OS 12: sudo systemctl disable --now dphys-swapfile; 13: Mechanism=none below [Main] in "
+      "/etc/rpi/swap.conf; elsewhere: sudo swapoff -a, and take swap out of /etc/fstab; then restart"};
+}
+
+Check check_watchdog(const std::string& folder) {
+  const char* const mend =
+      "sudo install -D -m 644 /usr/share/turnpoint/system/watchdog.conf "
+      "/etc/systemd/system.conf.d/turnpoint-watchdog.conf, then restart";
+  std::ifstream file(folder + "/watchdog0/state");
+  std::string state;
+  if (!(file >> state))
+    return {"hardware watchdog", Status::warning, "the kernel has none",
+            "on a Raspberry Pi: dtparam=watchdog=on in config.txt; a PC may have none"};
+  if (state != "active") return {"hardware watchdog", Status::warning, state, mend};
+  return {"hardware watchdog", Status::ok, state, ""};
+}
+
 std::vector<Check> examine(const rig::Rig& rig, const std::string& data_path) {
   std::vector<Check> checks;
   converter(rig, checks);
@@ -194,6 +222,8 @@ std::vector<Check> examine(const rig::Rig& rig, const std::string& data_path) {
   display(checks);
   input(checks);
   rights(checks);
+  checks.push_back(check_swap());
+  checks.push_back(check_watchdog());
   disk(data_path, checks);
   clock(checks);
   return checks;

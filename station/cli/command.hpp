@@ -33,6 +33,7 @@ void add_plan(CommandLine& app, Context& context);
 void add_synth(CommandLine& app, Context& context);
 void add_trace(CommandLine& app, Context& context);
 void add_run(CommandLine& app, Context& context);
+void add_amplifier_off(CommandLine& app, Context& context);
 void add_doctor(CommandLine& app, Context& context);
 void add_calibrate(CommandLine& app, Context& context);
 void add_resume(CommandLine& app, Context& context);

@@ -21,23 +21,26 @@ bool is_on(const std::string& value, const Uri& uri) {
   return value == "on";
 }
 
-}  // namespace
+/// What a rig's text asks for; no requests where it is simulated.
+struct Asked {
+  GuardLines roles;
+  std::vector<LineRequest> requests;
+};
 
-std::unique_ptr<drive::Amplifier> open_amplifier(const std::string& text) {
+Asked read(const std::string& text) {
   Uri uri = parse_uri(text);
-  if (uri.scheme == "sim" && uri.name.empty() && uri.values.empty())
-    return guard_amplifier([] { return std::make_unique<SimulatedLines>(4); }, {0, 1, 2, 3});
+  if (uri.scheme == "sim" && uri.name.empty() && uri.values.empty()) return {{0, 1, 2, 3}, {}};
   if (uri.scheme != "gpio" || !uri.name.empty())
     throw std::invalid_argument("amplifier '" + text +
                                 "'; allowed sim: or gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE");
-  GuardLines roles;
-  std::vector<LineRequest> requests;
+  Asked asked;
   const auto want = [&](const char* key, const char* consumer, LineUse use) {
     const std::string line = uri.take(key, "");
     if (line.empty()) return -1;
-    requests.push_back({line, consumer, use});
-    return static_cast<int>(requests.size()) - 1;
+    asked.requests.push_back({line, consumer, use});
+    return static_cast<int>(asked.requests.size()) - 1;
   };
+  auto& roles = asked.roles;
   roles.enable = want("enable", "turnpoint-amp-enable", LineUse::output_low);
   roles.heartbeat = want("heartbeat", "turnpoint-amp-heartbeat", LineUse::output_low);
   roles.fault = want("fault", "turnpoint-amp-fault", LineUse::input);
@@ -48,7 +51,26 @@ std::unique_ptr<drive::Amplifier> open_amplifier(const std::string& text) {
   roles.read_back = is_on(uri.take("read_back", "on"), uri);
   uri.check_empty("enable, heartbeat, fault, stop, active, fault_active, stop_active, read_back");
   if (roles.enable < 0) throw std::invalid_argument("amplifier '" + text + "' has no enable line");
-  return guard_amplifier([requests] { return open_gpio_lines(requests); }, roles);
+  return asked;
+}
+
+}  // namespace
+
+std::unique_ptr<drive::Amplifier> open_amplifier(const std::string& text) {
+  const Asked asked = read(text);
+  if (asked.requests.empty())
+    return guard_amplifier([] { return std::make_unique<SimulatedLines>(4); }, asked.roles);
+  return guard_amplifier([requests = asked.requests] { return open_gpio_lines(requests); }, asked.roles);
+}
+
+void force_amplifier_off(const std::string& text) {
+  Asked asked = read(text);
+  if (asked.requests.empty()) return;
+  std::erase_if(asked.requests, [](const LineRequest& wanted) { return wanted.use == LineUse::input; });
+  const auto lines = open_gpio_lines(asked.requests);  // outputs are low from the request on
+  const auto level = asked.roles.read_back ? lines->read_back(asked.roles.enable) : std::nullopt;
+  if (level.value_or(false))
+    throw std::runtime_error("gpio line " + asked.requests.front().name + ": driven low, reads high");
 }
 
 }  // namespace turnpoint::panel

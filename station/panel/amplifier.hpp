@@ -13,4 +13,9 @@ namespace turnpoint::panel {
 /// Throws std::invalid_argument, LineError.
 std::unique_ptr<drive::Amplifier> open_amplifier(const std::string& uri);
 
+/// Drives the enable and heartbeat lines of such a rig low, whatever state a station that died has left them
+/// in, and lets them go. Throws as above, LineError where a living program holds them, std::runtime_error where
+/// the enable line reads high all the same.
+void force_amplifier_off(const std::string& uri);
+
 }  // namespace turnpoint::panel

@@ -101,6 +101,13 @@ void read_output(TableReader& file, Rig& rig) {
   output.periods = reader.integer("periods", 2, 64, 4);
   output.converter_delay_s = 1e-3 * reader.number("converter_delay_ms", {0, 100, Ends::closed, "ms"}, 0);
   if (reader.has("device_channels")) output.device_channels = reader.integer("device_channels", 1, 64);
+  if (const double period_s = static_cast<double>(output.period_frames) / std::max(output.rate_Hz, 1);
+      output.rate_Hz > 0 && period_s > longest_period_s)
+    reader.problem("period_frames",
+                   "a period of " + text::number(1e3 * period_s, 3) +
+                       " ms; the amplifier's guard would take the audio thread for dead",
+                   "at most " + text::number(1e3 * longest_period_s) +
+                       " ms: " + text::number(std::floor(longest_period_s * output.rate_Hz)) + " frames");
   if (!reader.has("allow_plugin")) reader.defaulted("allow_plugin", "[]");
   output.allow_plugin = reader.maybe_strings("allow_plugin");
   reader.finish();

@@ -53,6 +53,10 @@ struct Transducer {
   std::vector<ResponsePoint> response;  ///< from response_csv, rising in frequency
 };
 
+/// The audio thread gives the amplifier's guard a sign of life once a period, and the guard expects one every
+/// 100 ms: two periods have to fit.
+inline constexpr double longest_period_s = 0.05;
+
 /// Where the drive goes: `null:`, `wav:FILE` or `alsa:NAME`.
 struct Output {
   std::string uri;

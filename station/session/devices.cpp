@@ -5,8 +5,12 @@
 #include <utility>
 
 #include "station/panel/amplifier.hpp"
+#include "station/panel/guard.hpp"
 
 namespace turnpoint::session {
+
+static_assert(2e9 * rig::longest_period_s <= static_cast<double>(panel::Guard::Config{}.audio_timeout_ns),
+              "the guard must not miss the sign of a period that a rig may have");
 
 panel::PanelHandlers handlers_for(Inputs& inputs) {
   const auto stamped = [](std::int64_t time_ns, InputKind kind) {

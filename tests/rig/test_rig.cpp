@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -163,6 +164,22 @@ TEST_CASE("a plate needs its modulus, a tensioned membrane may leave it out", "[
   CHECK_THROWS_AS(rig::parse(without, "r.toml"), text::BadInput);
   const auto membrane = rig::parse(replaced(without, "tension_Pa = 0 ", "tension_Pa = 1e8 "), "r.toml");
   CHECK_FALSE(membrane.surface.modulus_Pa.has_value());
+}
+
+TEST_CASE("a period that the amplifier's guard would take for a dead audio thread is refused, with its line",
+          "[rig]") {
+  const auto with_period = [](int frames) {
+    return "rate_Hz = 192000\nperiod_frames = " + std::to_string(frames);
+  };
+  CHECK(problems("rate_Hz = 192000", with_period(9600)).empty());
+  const auto before = source().substr(0, source().find("rate_Hz = 192000"));
+  const auto line = std::count(before.begin(), before.end(), '\n') + 2;
+  for (const int frames : {9601, 19200, 65536}) {
+    const auto why = problems("rate_Hz = 192000", with_period(frames));
+    CAPTURE(why);
+    CHECK(contains(why, "r.toml:" + std::to_string(line) + ":"));
+    CHECK(contains(why, "at most 50 ms: 9600 frames"));
+  }
 }
 
 TEST_CASE("tables beside the rig file are read, and their rows checked", "[rig]") {

@@ -29,3 +29,13 @@ awk '$1 == "fault" && ($3 < 0 || $3 > 1e6) { bad++ } END { exit bad > 0 }' stati
 grep ^fault station.txt
 kill -KILL $station
 eventually 1 equals level AMP_EN 0
+
+# What the service runs afterwards, whatever the station has left: it waits for nobody, and says who is in the way.
+rig_with amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB <"$SOURCE/deploy/rigs/simulated.toml" >rig.toml
+gpio_line hold AMP_EN 1 >hold.txt & holder=$!
+eventually 2 equals level AMP_EN 1
+fails 1 turnpoint amplifier-off --rig rig.toml
+has refusal.txt "AMP_EN: in use by bench"
+kill -KILL $holder
+eventually 2 turnpoint amplifier-off --rig rig.toml
+[ "$(level AMP_EN)" = 0 ] || fail "AMP_EN is high after amplifier-off"
