@@ -55,7 +55,7 @@ reference::Samples sampled(const PosteriorFit& fit) {
   same.guess_is_lapse = o.guess == Guess::tied_to_lapse;
   return reference::sample(
       o.function == Function::weibull ? reference::Shape::weibull_dB : reference::Shape::normal, data, same,
-      300'000, 3);
+      1'500'000, 3);
 }
 
 /// Both tails hold 2.5 % of the samples, and the estimate half of them, as far as samples can tell.

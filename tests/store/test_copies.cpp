@@ -171,7 +171,7 @@ TEST_CASE("backups are numbered: a clock that was ahead loses none", "[store]") 
   CHECK(restored.trials == 3);
 }
 
-TEST_CASE("--keep 1 keeps the backup that was just made", "[store]") {
+TEST_CASE("a backup that keeps one keeps the one that was just made", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 1);
