@@ -58,6 +58,32 @@ std::string id_of_lost(const std::string& path) {
                   path, told.size(), list));
 }
 
+bool is_damage(const StoreError& error) {
+  return error.fault() == Fault::corrupt || error.fault() == Fault::not_a_database;
+}
+
+/// Throws only for what keeps the bytes from being read.
+bool agrees_with_checksum(const std::string& path) {
+  try {
+    verify_checksum_file(path);
+    return true;
+  } catch (const StoreError& error) {
+    if (is_damage(error)) return false;
+    throw;
+  }
+}
+
+/// A backup that is not known to be damaged, and cannot be read all the same, may be the newest.
+void refuse_unread(const StoredBackup& backup) {
+  if (backup.trouble.empty()) {
+    if (!file_exists(backup.path + ".sha256") || !agrees_with_checksum(backup.path)) return;
+  }
+  throw StoreError(Fault::io,
+                   fmt::format("restore: nothing was changed: {}, which may be the newest backup, cannot "
+                               "be read although it is not known to be damaged; check its disk. {}",
+                               backup.path, backup.trouble));
+}
+
 struct Candidates {
   std::vector<StoredBackup> backups;    ///< newest first
   std::vector<std::string> unreadable;  ///< with the name of this database
@@ -69,10 +95,7 @@ Candidates candidates_for(const std::string& path, const RestoreOptions& options
   Candidates candidates;
   std::set<std::string> ids;
   for (const auto& backup : stored_backups(canonical(options.directory))) {
-    if (!backup.trouble.empty() && backup.stem == stem)
-      throw StoreError(
-          Fault::io,
-          "restore: nothing was changed: a backup that may be the newest cannot be read: " + backup.trouble);
+    if (!backup.readable() && backup.stem == stem) refuse_unread(backup);
     if (!backup.readable() && backup.stem == stem) candidates.unreadable.push_back(backup.path);
     if (!backup.readable() || (wanted.empty() ? backup.stem != stem : backup.database_id != wanted)) continue;
     candidates.backups.push_back(backup);
@@ -83,19 +106,10 @@ Candidates candidates_for(const std::string& path, const RestoreOptions& options
   return candidates;
 }
 
-bool is_damage(const StoreError& error) {
-  return error.fault() == Fault::corrupt || error.fault() == Fault::not_a_database;
-}
-
 /// False for a backup that is damaged. One whose bytes are those that were written is not damaged: what goes
 /// wrong with it is the disk's, and no reason to take an older one.
 bool is_good(const StoredBackup& candidate) {
-  try {
-    verify_checksum_file(candidate.path);
-  } catch (const StoreError& error) {
-    if (is_damage(error)) return false;
-    throw;
-  }
+  if (!agrees_with_checksum(candidate.path)) return false;
   try {
     open_reader(candidate.path);
     return true;
