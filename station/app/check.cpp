@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "station/app/parallel.hpp"
 #include "station/observer/observer.hpp"
 #include "station/session/director.hpp"
 #include "station/session/rows.hpp"
@@ -42,10 +43,11 @@ double stimulus_s(const Protocol& protocol, const session::TrialSpec& trial) {
 }
 
 void run_block(session::Director& director, const Protocol& protocol, const observer::Observer& observer,
-               std::uint64_t seed, Sitting& sitting) {
+               std::uint64_t seed, Sitting& sitting, TrialCensus& census) {
   const auto& block = *director.block();
   int since_break = 0;
   while (const auto trial = director.next()) {
+    census.add(block, *trial);
     const auto reply = observer.answer(session::question_of(*trial, protocol, seed));
     const double answer_s = std::clamp(reply.response_time_s, 0.0, std::max(trial->deadline_s, 0.0));
     const bool answered = reply.choice && reply.response_time_s <= trial->deadline_s;
@@ -66,7 +68,7 @@ void run_block(session::Director& director, const Protocol& protocol, const obse
   }
 }
 
-Sitting simulate(const Protocol& protocol, int index, std::uint64_t seed) {
+Sitting simulate(const Protocol& protocol, int index, std::uint64_t seed, TrialCensus& census) {
   Sitting sitting;
   session::Director director(protocol, index, seed);
   const observer::Observer observer{observer::Parameters{}};
@@ -81,7 +83,7 @@ Sitting simulate(const Protocol& protocol, int index, std::uint64_t seed) {
     sitting.trials.push_back(std::exchange(repeated, 0));
     sitting.duration_s += instruction_s;
     const int here = director.block_index();
-    run_block(director, protocol, observer, seed, sitting);
+    run_block(director, protocol, observer, seed, sitting, census);
     if (sitting.trials.back() > 20000) return sitting;
     director.finish_block();
     const bool again = director.block() && director.block_index() == here;
@@ -103,13 +105,21 @@ Spread spread_of(std::vector<double> values) {
   return {at(0.05), at(0.5), at(0.95)};
 }
 
-void estimate(const Protocol& protocol, int sessions, const std::stop_token& stop, Check& check) {
+void estimate(const Protocol& protocol, int sessions, const std::stop_token& stop, Check& check,
+              TrialCensus& census) {
   std::vector<double> durations, trials;
   std::vector<std::vector<double>> by_block;
-  for (int i = 0; i < sessions; ++i) {
+  std::vector<Sitting> sittings(static_cast<std::size_t>(sessions));
+  std::vector<TrialCensus> counted(sittings.size(), TrialCensus(protocol));
+  in_parallel(sessions, processors(), {}, [&](int i) {
     if (stop.stop_requested()) throw protocol::Abandoned();
+    const auto at = static_cast<std::size_t>(i);
     // Sequence index 0 throughout: the blocks of all rows are the same, in another order.
-    const auto sitting = simulate(protocol, 0, static_cast<std::uint64_t>(i));
+    sittings[at] = simulate(protocol, 0, static_cast<std::uint64_t>(i), counted[at]);
+  });
+  for (int i = 0; i < sessions; ++i) {
+    const auto& sitting = sittings[static_cast<std::size_t>(i)];
+    census.add(counted[static_cast<std::size_t>(i)]);
     if (i == 0) {
       by_block.resize(sitting.names.size());
       for (std::size_t b = 0; b < sitting.names.size(); ++b)
@@ -152,15 +162,23 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   check.survey = protocol::survey(*protocol, *rig, stop);
   check.problems = check.survey.problems;
   check.warnings = check.survey.warnings;
-  check.cues = protocol::cue_guard(*protocol, check.survey);
   try {
-    estimate(*protocol, options.sessions, stop, check);
+    TrialCensus census(*protocol);
+    estimate(*protocol, options.sessions, stop, check, census);
+    if (stop.stop_requested()) throw protocol::Abandoned();
+    census.settle(options.sessions);
+    if (check.problems.empty()) check.cues = cue_guard(*protocol, *rig, check.survey, census);
   } catch (const protocol::Abandoned&) {
     throw;
   } catch (const std::exception& error) {
     // What the procedures cannot do must stop a session before anybody sits down.
     check.problems.push_back({{protocol_path, 0, 0}, error.what(), ""});
   }
+  if (!check.cues.not_compared.empty())
+    check.warnings.push_back(
+        {{protocol_path, 0, 0},
+         "the cues of " + check.cues.not_compared + " are not known: nothing is known of leaks",
+         "fewer combinations of factors in one scene"});
   if (check.duration_s.median > 60 * rig->limits.session_minutes)
     check.warnings.push_back({{protocol_path, 0, 0},
                               "the session will last about " +

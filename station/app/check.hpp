@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "station/protocol/cue_guard.hpp"
+#include "station/app/cue_guard.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/rig/rig.hpp"
@@ -31,7 +31,7 @@ struct Check {
   Spread trials, duration_s;
   int simulated_sessions = 0;
   protocol::Survey survey;
-  std::vector<protocol::CueReport> cues;
+  CueGuard cues;
   std::vector<std::string> protocol_defaults, rig_defaults;
 };
 

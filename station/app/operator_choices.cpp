@@ -114,7 +114,7 @@ CheckWords words_of(const Check& check) {
                                                                           : " (" + block.instruction + ")") +
             ", " + range(block.trials, 1) + " trials");
   add_tones(check, words);
-  for (const auto& cue : check.cues) {
+  for (const auto& cue : check.cues.reports) {
     const bool leaks = cue.accuracy > cue.chance + kNoticeable;
     words.cues.push_back({cue.cue,
                           fmt::format("{} % right by it alone (chance {} %)", std::lround(100 * cue.accuracy),

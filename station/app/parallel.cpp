@@ -1,11 +1,14 @@
 #include "station/app/parallel.hpp"
 
+#include <algorithm>
 #include <exception>
 #include <mutex>
 #include <thread>
 #include <vector>
 
 namespace turnpoint::app {
+
+int processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 void in_parallel(int count, int threads, const std::function<void(int done, int of)>& progress,
                  const std::function<void(int)>& work) {

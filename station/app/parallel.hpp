@@ -9,4 +9,7 @@ namespace turnpoint::app {
 void in_parallel(int count, int threads, const std::function<void(int done, int of)>& progress,
                  const std::function<void(int)>& work);
 
+/// How many threads can run at once; at least 1.
+int processors();
+
 }  // namespace turnpoint::app

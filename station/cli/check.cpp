@@ -85,7 +85,7 @@ Json to_json(const app::Check& check) {
                       {"instruction", block.instruction.empty() ? Json(nullptr) : Json(block.instruction)},
                       {"practice", block.practice},
                       {"trials", spread_json(block.trials)}});
-  for (const auto& cue : check.cues)
+  for (const auto& cue : check.cues.reports)
     cues.push_back({{"cue", cue.cue},
                     {"low", json_number(cue.low)},
                     {"high", json_number(cue.high)},
@@ -95,24 +95,26 @@ Json to_json(const app::Check& check) {
                     {"above_chance", cue.accuracy > cue.chance + noticeable}});
   const auto extremes = extremes_of(check.survey);
   const bool planned = !check.survey.sights.empty();
-  return {{"problems", problems_json(check.problems)},
-          {"warnings", problems_json(check.warnings)},
-          {"id", check.id},
-          {"rig", check.rig_name},
-          {"trials", json_number(check.trials.median)},
-          {"trials_range", {json_number(check.trials.low), json_number(check.trials.high)}},
-          {"duration_s", json_number(check.duration_s.median)},
-          {"duration_range_s", {json_number(check.duration_s.low), json_number(check.duration_s.high)}},
-          {"blocks", blocks},
-          {"frequencies",
-           {{"lowest_Hz", planned ? json_number(extremes.lowest_Hz) : Json(nullptr)},
-            {"highest_Hz", planned ? json_number(extremes.highest_Hz) : Json(nullptr)}}},
-          {"displacement_um", planned ? json_number(extremes.displacement_um) : Json(nullptr)},
-          {"models", check.survey.models},
-          {"combinations", check.survey.combinations},
-          {"scenes", scenes_json(check.survey)},
-          {"cues", cues},
-          {"defaults", {{"protocol", check.protocol_defaults}, {"rig", check.rig_defaults}}}};
+  return {
+      {"problems", problems_json(check.problems)},
+      {"warnings", problems_json(check.warnings)},
+      {"id", check.id},
+      {"rig", check.rig_name},
+      {"trials", json_number(check.trials.median)},
+      {"trials_range", {json_number(check.trials.low), json_number(check.trials.high)}},
+      {"duration_s", json_number(check.duration_s.median)},
+      {"duration_range_s", {json_number(check.duration_s.low), json_number(check.duration_s.high)}},
+      {"blocks", blocks},
+      {"frequencies",
+       {{"lowest_Hz", planned ? json_number(extremes.lowest_Hz) : Json(nullptr)},
+        {"highest_Hz", planned ? json_number(extremes.highest_Hz) : Json(nullptr)}}},
+      {"displacement_um", planned ? json_number(extremes.displacement_um) : Json(nullptr)},
+      {"models", check.survey.models},
+      {"combinations", check.survey.combinations},
+      {"scenes", scenes_json(check.survey)},
+      {"cues", cues},
+      {"cues_not_compared", check.cues.not_compared.empty() ? Json(nullptr) : Json(check.cues.not_compared)},
+      {"defaults", {{"protocol", check.protocol_defaults}, {"rig", check.rig_defaults}}}};
 }
 
 std::string range(const app::Spread& spread, double unit) {
@@ -121,25 +123,31 @@ std::string range(const app::Spread& spread, double unit) {
   return low == high ? median : median + " (" + low + " to " + high + ")";
 }
 
-void print_cues(std::ostream& out, const app::Check& check) {
+void print_cues(std::ostream& out, const app::CueGuard& cues) {
+  if (!cues.not_compared.empty())
+    return fmt::print(out, "Cues: NOT COMPARED ({}): nothing is known of leaks\n", cues.not_compared);
+  if (!cues.nothing_to_tell.empty())
+    return fmt::print(out, "Cues: none to compare: {}\n", cues.nothing_to_tell);
   std::string named;
-  for (const auto& cue : check.cues)
+  for (const auto& cue : cues.reports)
     if (cue.accuracy > cue.chance + noticeable)
       named += fmt::format("\n  {}: {} % right, {} to {} {}", cue.cue, std::lround(100 * cue.accuracy),
                            number(cue.low, 3), number(cue.high, 3), cue.unit);
-  if (check.cues.empty()) return;
+  const auto chance = std::lround(100 * cues.reports.front().chance);
   if (named.empty())
-    fmt::print(out, "Cues: an observer with one cue alone stays near chance, for each of the {} cues\n",
-               check.cues.size());
+    fmt::print(out,
+               "Cues: an observer with one cue alone stays near chance ({} %), for each of the {} cues\n",
+               chance, cues.reports.size());
   else
     fmt::print(out,
-               "Cues: with one of these alone an observer who knows the best criterion does better than "
-               "chance ({} %):{}\n",
-               std::lround(100 * check.cues.front().chance), named);
+               "Cues: with one of these alone an observer who knows the best rule does better than "
+               "without it ({} %):{}\n",
+               chance, named);
 }
 
 void print(std::ostream& out, const app::Check& check, const std::string& path) {
-  fmt::print(out, "{} is good on \"{}\": {}\n", path, check.rig_name, check.title);
+  const bool known = check.cues.not_compared.empty();
+  fmt::print(out, "{} {} on \"{}\": {}\n", path, known ? "is good" : "can run", check.rig_name, check.title);
   for (const auto& block : check.blocks)
     fmt::print(out, "  {}{}{}: {} trials\n", block.practice ? "practice block " : "block ", block.name,
                block.instruction.empty() ? "" : " (" + block.instruction + ")", range(block.trials, 1));
@@ -153,7 +161,7 @@ void print(std::ostream& out, const app::Check& check, const std::string& path) 
       "Tones: {} to {} kHz; the surface moves at most {} um; models: {} ({} of {} combinations planned)\n",
       number(1e-3 * extremes.lowest_Hz, 4), number(1e-3 * extremes.highest_Hz, 4),
       number(extremes.displacement_um, 3), models, check.survey.sights.size(), check.survey.combinations);
-  print_cues(out, check);
+  print_cues(out, check.cues);
   if (!check.protocol_defaults.empty()) fmt::print(out, "Defaults that stood in:\n");
   for (const auto& line : check.protocol_defaults) fmt::print(out, "  {}\n", line);
   for (const auto& line : check.rig_defaults) fmt::print(out, "  rig: {}\n", line);

@@ -8,11 +8,11 @@
 #include <filesystem>
 #include <memory>
 
+#include "station/app/cue_guard.hpp"
 #include "station/app/places.hpp"
 #include "station/app/power_figure.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
-#include "station/protocol/cue_guard.hpp"
 #include "station/text/number.hpp"
 #include "station/text/write_file.hpp"
 
@@ -55,7 +55,7 @@ Json to_json(const app::Recovery& recovery) {
 // Above chance by this much, a cue is named: what 20 trials could just show.
 constexpr double noticeable = 0.1;
 
-Json to_json(const std::vector<protocol::CueReport>& cues) {
+Json to_json(const std::vector<app::CueReport>& cues) {
   Json list = Json::array();
   for (const auto& cue : cues)
     list.push_back({{"cue", cue.cue},
@@ -65,8 +65,8 @@ Json to_json(const std::vector<protocol::CueReport>& cues) {
   return list;
 }
 
-Json to_json(const app::Power& power, const std::vector<protocol::CueReport>& cues,
-             const std::string& protocol, const std::vector<std::string>& files) {
+Json to_json(const app::Power& power, const std::vector<app::CueReport>& cues, const std::string& protocol,
+             const std::vector<std::string>& files) {
   Json recoveries = Json::array();
   for (const auto& recovery : power.recoveries) recoveries.push_back(to_json(recovery));
   return {{"protocol", protocol},
@@ -110,7 +110,7 @@ void print(std::ostream& out, const app::Power& power) {
              power.interval_sessions);
 }
 
-void print(std::ostream& out, const std::vector<protocol::CueReport>& cues) {
+void print(std::ostream& out, const std::vector<app::CueReport>& cues) {
   if (cues.empty()) return;
   fmt::print(out, "An observer with one cue alone and the best criterion for it (chance {} %):\n",
              number(100 * cues.front().chance, 3));
@@ -133,7 +133,7 @@ void power(const Options& options, Context& context) {
   const auto rig = rig::load(app::rig_or_default(options.rig, context.err));
   const auto survey = protocol::survey(protocol, rig);
   if (!survey.problems.empty()) throw text::BadInput(survey.problems);
-  const auto cues = protocol::cue_guard(protocol, survey);
+  const auto cues = app::cue_guard(protocol, rig, survey, app::census_of(protocol)).reports;
   app::PowerOptions wanted;
   wanted.observers = options.observers;
   wanted.interval_sessions = options.intervals;

@@ -37,20 +37,48 @@ void cross(const Protocol& protocol, const Source& source, const std::string& sc
   all.insert(all.end(), product.begin(), product.end());
 }
 
+template <typename T>
+std::vector<T> evenly(const std::vector<T>& sorted, std::size_t most) {
+  if (sorted.size() <= most) return sorted;
+  std::vector<T> chosen;
+  for (std::size_t i = 0; i < most; ++i)
+    chosen.push_back(sorted[most == 1 ? 0 : i * (sorted.size() - 1) / (most - 1)]);
+  return chosen;
+}
+
+// So many values of each factor that their product stays within `most`: first the two extremes of each, then
+// one more of the factor that is thinned most.
+std::map<std::string, std::set<FactorValue>> grid_of(
+    const std::map<std::string, std::set<FactorValue>>& values, std::size_t most) {
+  std::map<std::string, std::size_t> counts;
+  for (const auto& [name, all] : values) counts[name] = std::min<std::size_t>(2, all.size());
+  for (;;) {
+    std::size_t product = 1;
+    for (const auto& [name, count] : counts) product *= count;
+    const std::string* next = nullptr;
+    double thinnest = 1;
+    for (const auto& [name, all] : values) {
+      const double share = static_cast<double>(all.size()) / static_cast<double>(counts[name]);
+      if (share > thinnest && product / counts[name] * (counts[name] + 1) <= most)
+        thinnest = share, next = &name;
+    }
+    if (next == nullptr) break;
+    ++counts[*next];
+  }
+  std::map<std::string, std::set<FactorValue>> kept;
+  for (const auto& [name, all] : values) {
+    const auto some = evenly(std::vector<FactorValue>(all.begin(), all.end()), counts[name]);
+    kept[name] = {some.begin(), some.end()};
+  }
+  return kept;
+}
+
 }  // namespace
 
 std::set<std::string> factors_of(const Scene& scene) {
   std::set<std::string> names;
-  const auto add = [&](const std::optional<Linear>& expression) {
-    if (!expression) return;
+  for (const auto* expression : expressions_of(scene))
     for (const auto& [name, coefficient] : expression->terms) names.insert(name);
-  };
-  for (const auto* expression :
-       {&scene.boundary_mm, &scene.displacement_um, &scene.friction, &scene.friction_contrast_dB})
-    add(*expression);
-  if (scene.zone) add(scene.zone->friction);
-  for (const auto& tone : scene.tones)
-    add(tone.boundary_mm), add(tone.frequency_Hz), add(tone.displacement_um);
   return names;
 }
 
@@ -65,27 +93,42 @@ std::vector<Combination> combinations_of(const Protocol& protocol) {
   return unique;
 }
 
-std::vector<Combination> thinned(const std::vector<Combination>& of_one_scene, std::size_t most) {
-  if (of_one_scene.size() <= most) return of_one_scene;
-  std::map<std::string, std::pair<FactorValue, FactorValue>> extremes;
-  for (const auto& combination : of_one_scene)
-    for (const auto& [name, value] : combination.factors) {
-      auto& [low, high] = extremes.try_emplace(name, value, value).first->second;
-      low = std::min(low, value), high = std::max(high, value);
-    }
-  const auto is_corner = [&](const Combination& combination) {
-    return std::all_of(combination.factors.begin(), combination.factors.end(), [&](const auto& factor) {
-      const auto& [low, high] = extremes.at(factor.first);
-      return factor.second == low || factor.second == high;
-    });
-  };
+const Linear* only_expression(const Scene& scene) {
+  const Linear* only = nullptr;
+  for (const auto* expression : expressions_of(scene)) {
+    if (expression->is_constant()) continue;
+    if (only != nullptr) return nullptr;
+    only = expression;
+  }
+  return only;
+}
+
+bool edge_moves_with_strength(const Scene& scene) {
+  const auto by_friction = [](const SceneTone& tone) { return tone.edge.friction.has_value(); };
+  return scene.rove_dB > 0 && !scene.zone &&
+         (scene.edge.friction || std::any_of(scene.tones.begin(), scene.tones.end(), by_friction));
+}
+
+std::vector<Combination> thinned(const Scene& scene, const std::vector<Combination>& of_the_scene,
+                                 std::size_t most) {
+  if (of_the_scene.size() <= most) return of_the_scene;
+  if (const auto* only = only_expression(scene)) {
+    auto sorted = of_the_scene;
+    const auto less = [&](const Combination& a, const Combination& b) {
+      return evaluate(*only, a.factors) < evaluate(*only, b.factors);
+    };
+    std::stable_sort(sorted.begin(), sorted.end(), less);
+    return evenly(sorted, most);
+  }
+  std::map<std::string, std::set<FactorValue>> values;
+  for (const auto& combination : of_the_scene)
+    for (const auto& [name, value] : combination.factors) values[name].insert(value);
+  const auto kept = grid_of(values, most);
   std::vector<Combination> chosen;
-  for (const auto& combination : of_one_scene)
-    if (chosen.size() < most && is_corner(combination)) chosen.push_back(combination);
-  const auto rest = most - chosen.size();
-  for (std::size_t i = 0; i < rest; ++i) {
-    const auto& combination = of_one_scene[(2 * i + 1) * of_one_scene.size() / (2 * rest)];
-    if (!is_corner(combination)) chosen.push_back(combination);
+  for (const auto& combination : of_the_scene) {
+    const auto on_grid = [&](const auto& factor) { return kept.at(factor.first).count(factor.second) > 0; };
+    if (chosen.size() < most && std::all_of(combination.factors.begin(), combination.factors.end(), on_grid))
+      chosen.push_back(combination);
   }
   return chosen;
 }

@@ -16,9 +16,19 @@ struct Combination {
 /// with the levels of the factors that are drawn.
 std::vector<Combination> combinations_of(const Protocol& protocol);
 
-/// At most `most` of one scene's combinations: those with an extreme value of every factor first, then an
-/// even choice.
-std::vector<Combination> thinned(const std::vector<Combination>& of_one_scene, std::size_t most);
+/// The one expression on which everything that varies in a scene depends; null where there are none or
+/// several.
+const Linear* only_expression(const Scene& scene);
+
+/// Whether roving moves more than the strength: an edge by friction is found for the strength that is drawn,
+/// but a zone's tones are designed without roving.
+bool edge_moves_with_strength(const Scene& scene);
+
+/// At most `most` of one scene's combinations, extreme values included: even steps of the scene's only
+/// expression, else of each factor, so that everything between can be interpolated. With so many factors that
+/// their extremes alone are more than `most`, the first combinations.
+std::vector<Combination> thinned(const Scene& scene, const std::vector<Combination>& of_the_scene,
+                                 std::size_t most);
 
 /// `mark_mm = 164, offset_mm = -30`.
 std::string format(const Factors& factors);

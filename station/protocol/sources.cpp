@@ -8,22 +8,26 @@ namespace turnpoint::protocol {
 
 namespace {
 
-void add(const std::optional<Linear>& expression, std::set<std::string>& names) {
-  if (!expression) return;
-  for (const auto& [name, coefficient] : expression->terms) names.insert(name);
+void add(const Linear& expression, std::set<std::string>& names) {
+  for (const auto& [name, coefficient] : expression.terms) names.insert(name);
 }
 
-// What a staircase can reach is everything between its limits: those stand for it. A slider reaches the whole
-// range of its factor.
+void add_steps(double low, double high, int steps, std::vector<double>& levels) {
+  for (int i = 0; i <= steps; ++i) levels.push_back(low + (high - low) * i / steps);
+}
+
+// A staircase can reach everything between its limits, and a slider the whole range of its factor: even steps
+// stand for them.
 std::vector<double> levels_of(const Protocol& protocol, const procedure::Spec& spec) {
   auto levels = spec.values;
   levels.insert(levels.end(), spec.stimuli.values.begin(), spec.stimuli.values.end());
-  for (const auto& limit : {spec.min, spec.start, spec.max})
-    if (limit) levels.push_back(*limit);
+  if (spec.start) levels.push_back(*spec.start);
+  if (spec.min && spec.max) add_steps(*spec.min, *spec.max, 24, levels);
   const auto* factor = find_factor(protocol.factors, spec.level);
   if (spec.kind == procedure::Kind::adjustment && factor && factor->range)
-    for (int i = 0; i <= 4; ++i)
-      levels.push_back(factor->range->first + 0.25 * i * (factor->range->second - factor->range->first));
+    add_steps(factor->range->first, factor->range->second, 4, levels);
+  std::sort(levels.begin(), levels.end());
+  levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
   return levels;
 }
 
@@ -49,6 +53,22 @@ void add_block(const Protocol& protocol, const Block& block, const std::string& 
 
 }  // namespace
 
+std::vector<const Linear*> expressions_of(const Scene& scene) {
+  std::vector<const Linear*> all;
+  const auto add = [&](const std::optional<Linear>& expression) {
+    if (expression) all.push_back(&*expression);
+  };
+  for (const auto* expression :
+       {&scene.boundary_mm, &scene.displacement_um, &scene.friction, &scene.friction_contrast_dB})
+    add(*expression);
+  if (scene.zone) add(scene.zone->friction);
+  for (const auto& tone : scene.tones) {
+    add(tone.boundary_mm), add(tone.frequency_Hz);
+    all.push_back(&tone.displacement_um);
+  }
+  return all;
+}
+
 std::vector<Source> sources_of(const Protocol& protocol) {
   std::vector<Source> sources;
   for (const auto& part : protocol.plan) {
@@ -72,15 +92,8 @@ std::vector<std::string> scenes_used(const Protocol& protocol) {
 
 std::set<std::string> factors_used(const Protocol& protocol) {
   std::set<std::string> names;
-  for (const auto& name : scenes_used(protocol)) {
-    const auto& scene = protocol.scenes.at(name);
-    for (const auto& expression :
-         {scene.boundary_mm, scene.displacement_um, scene.friction, scene.friction_contrast_dB})
-      add(expression, names);
-    if (scene.zone) add(scene.zone->friction, names);
-    for (const auto& tone : scene.tones)
-      add(tone.boundary_mm, names), add(tone.frequency_Hz, names), add(tone.displacement_um, names);
-  }
+  for (const auto& name : scenes_used(protocol))
+    for (const auto* expression : expressions_of(protocol.scenes.at(name))) add(*expression, names);
   for (const auto& [id, comparison] : protocol.task.correct_answer)
     add(comparison.left, names), add(comparison.right, names);
   return names;

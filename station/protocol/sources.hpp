@@ -21,6 +21,9 @@ struct Source {
 /// All origins of trials; pointers are into the protocol.
 std::vector<Source> sources_of(const Protocol& protocol);
 
+/// All arithmetic of a scene; pointers are into it.
+std::vector<const Linear*> expressions_of(const Scene& scene);
+
 /// The factors on which the task's scenes and its right answers depend.
 std::set<std::string> factors_used(const Protocol& protocol);
 

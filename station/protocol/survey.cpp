@@ -19,7 +19,8 @@ namespace turnpoint::protocol {
 namespace {
 
 // A zone's design takes some 15 ms, a boundary's less than 2: together a check should feel immediate.
-constexpr std::size_t most_plans_of_a_scene = 120, most_plans_of_a_zone = 6;
+// A zone that depends on one sum of factors is interpolated between few plans, others need a grid of them.
+constexpr std::size_t most_plans_of_a_scene = 120, most_plans_of_a_zone = 6, most_plans_of_a_zone_grid = 36;
 
 // Where the edges of a boundary can be put with this rig's bands, for messages.
 std::string reach(const scene::Scene& scene, const rig::Rig& rig, const scene::Planner& planner) {
@@ -84,8 +85,11 @@ std::vector<Combination> planned(const Protocol& protocol, const std::vector<Com
     std::vector<Combination> of_scene;
     for (const auto& combination : all)
       if (combination.scene == name) of_scene.push_back(combination);
-    const bool zone = protocol.scenes.at(name).zone.has_value();
-    const auto some = thinned(of_scene, zone ? most_plans_of_a_zone : most_plans_of_a_scene);
+    const auto& scene = protocol.scenes.at(name);
+    const auto most = !scene.zone              ? most_plans_of_a_scene
+                      : only_expression(scene) ? most_plans_of_a_zone
+                                               : most_plans_of_a_zone_grid;
+    const auto some = thinned(scene, of_scene, most);
     chosen.insert(chosen.end(), some.begin(), some.end());
   }
   return chosen;
@@ -94,6 +98,7 @@ std::vector<Combination> planned(const Protocol& protocol, const std::vector<Com
 // What the rig makes of one combination: a plan, or why there is none and what there could be.
 struct Answer {
   std::optional<scene::DrivePlan> plan;
+  std::optional<scene::Cues> cues_roved_down;
   std::string refused, allowed;
 };
 
@@ -108,6 +113,9 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
     const auto scene = resolve(protocol, combination.scene, combination.factors, from.rove_dB);
     try {
       answers[i].plan = planner.plan(scene);
+      if (edge_moves_with_strength(from))
+        answers[i].cues_roved_down =
+            planner.plan(resolve(protocol, combination.scene, combination.factors, -from.rove_dB)).cues;
     } catch (const scene::Unreachable& error) {
       answers[i].refused = error.what();
       if (explained.insert(combination.scene).second) answers[i].allowed = reach(scene, rig, planner);
@@ -149,6 +157,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
     }
     const auto& plan = *answers[i].plan;
     survey.sights.push_back(sight_of(combination, plan));
+    survey.sights.back().cues_roved_down = answers[i].cues_roved_down;
     survey.models.emplace(physics::name(plan.model));
     if (!plan.inside_tolerance && inexact[combination.scene].cases++ == 0)
       inexact[combination.scene].first = in_case(combination) + ": " + plan.reason;

@@ -23,7 +23,9 @@ struct Sight {
   std::string model;
   double error_bound_mm = 0;
   bool inside_tolerance = true;
-  scene::Cues cues;
+  scene::Cues cues;  ///< with the strength roved upwards
+  /// With the strength roved downwards, where that moves more than the strength: edges by friction.
+  std::optional<scene::Cues> cues_roved_down;
 };
 
 /// What a protocol asks of a rig. Problems prevent a session, warnings do not.
@@ -41,9 +43,10 @@ class Abandoned : public std::runtime_error {
 };
 
 /// Plans every scene for the combinations of factors that can occur (a staircase by its limits), and checks
-/// devices, limits and levels. Beyond 120 combinations of a scene, or 6 of one with a zone, it takes those
-/// with extreme values and an even choice of the others: sights.size() against combinations says so. Throws
-/// Abandoned soon after `stop` asks it to (within the plan at hand).
+/// devices, limits and levels. Beyond 120 combinations of a scene, 36 of one with a zone, or 6 of one
+/// with a zone that depends on one sum of factors, it takes the extremes and even steps between them:
+/// sights.size() against combinations says so. Throws Abandoned soon after `stop` asks it to (within the plan
+/// at hand).
 Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop = {});
 
 /// What is probably not meant, whatever the rig: targets that the steps miss, one-point grids, levels below

@@ -74,10 +74,12 @@ Cues cues_of(const physics::Surface& surface, const std::vector<physics::Tone>& 
     cues.wide_end_amplitude_m += amplitude[i];
   cues.wide_end_amplitude_m /= std::max(n, 1.0);
   const auto& profile = fields[strongest].v;
-  // Half a wavelength is the distance of the first two sign changes of the strongest tone's displacement.
+  // Half a wavelength is the distance of the first two zeros of the strongest tone's displacement.
   std::vector<double> nodes;
-  for (std::size_t i = 1; i < profile.size() && nodes.size() < 2; ++i)
-    if ((profile[i - 1].real() < 0) != (profile[i].real() < 0)) nodes.push_back(x_m[i]);
+  for (std::size_t i = 1; i < profile.size() && nodes.size() < 2; ++i) {
+    const double from = profile[i - 1].real(), to = profile[i].real();
+    if ((from < 0) != (to < 0)) nodes.push_back(x_m[i - 1] + (x_m[i] - x_m[i - 1]) * from / (from - to));
+  }
   if (nodes.size() == 2) cues.stripe_pitch_m = nodes[1] - nodes[0];
   const auto peak = last_maximum(amplitude);
   cues.displacement_m = amplitude[peak];

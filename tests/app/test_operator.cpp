@@ -232,7 +232,7 @@ TEST_CASE("participants are known once a session of theirs is stored, and an int
 
 TEST_CASE("a check in words names the cues that would give answers away first", "[operator]") {
   app::Check check;
-  check.cues = {{"pitch", 0, 0, "Hz", 0.5, 0.5}, {"loudness", 0, 1, "dB", 0.9, 0.5}};
+  check.cues.reports = {{"pitch", 0, 0, "Hz", 0.5, 0.5}, {"loudness", 0, 1, "dB", 0.9, 0.5}};
   const auto words = app::words_of(check);
   REQUIRE(words.cues.size() == 2);
   CHECK(words.cues[0].name == "loudness");

@@ -1,0 +1,43 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "station/app/trial_census.hpp"
+#include "station/protocol/survey.hpp"
+
+namespace turnpoint::app {
+
+/// What an observer reaches who attends to one cue only. A cue far above chance is either what the task asks
+/// for or a leak.
+struct CueReport {
+  std::string cue;           ///< "pitch", "loudness", "amplitude at the wide end", ...
+  double low = 0, high = 0;  ///< over everything that the main trials present, in `unit`
+  std::string unit;
+  double accuracy = 0;  ///< proportion right
+  double chance = 0.5;  ///< proportion right without the cue: by guessing, or always with the same key
+};
+
+struct CueGuard {
+  std::vector<CueReport> reports;  ///< one a cue; empty where one of the following says why
+  std::string nothing_to_tell;     ///< the task has no right answers that a cue could betray
+  std::string not_compared;        ///< trials that could not be compared: nothing is known of any cue
+};
+
+/// Compares all that the main trials present: standard and target as they stand together in a trial, each
+/// kind of trial weighted by how often it occurs in the census, catch trials included and practice left out.
+/// Order of intervals, drawn factors and roving are taken with their exact probabilities.
+///
+/// The observer knows the task and the best rule for these trials: of one interval, a criterion or a band of
+/// the cue (of what the interval ends with, begins with, or of its change where it has two scenes); of two
+/// intervals the larger, the smaller, the one that differs more from the usual, or less; of three, the odd
+/// one; same or different by a criterion or a band on the difference. Cues that differ by less than a
+/// thousandth (0.01 dB of loudness) are equal. Who has no cue presses the one key that is
+/// right most often: that is the last report. What a procedure presents that follows the answers is what it
+/// presented to the participant of the census.
+///
+/// Duration is that at half the amplitude: of two equally long intervals, the one with the longer ramps is
+/// shorter.
+CueGuard cue_guard(const protocol::Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey,
+                   const TrialCensus& census);
+
+}  // namespace turnpoint::app
