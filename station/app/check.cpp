@@ -7,6 +7,7 @@
 
 #include "station/app/parallel.hpp"
 #include "station/observer/observer.hpp"
+#include "station/protocol/design_advice.hpp"
 #include "station/session/director.hpp"
 #include "station/session/rows.hpp"
 
@@ -162,6 +163,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   check.survey = protocol::survey(*protocol, *rig, stop);
   check.problems = check.survey.problems;
   check.warnings = check.survey.warnings;
+  check.notes = protocol::notes(*protocol);
   try {
     TrialCensus census(*protocol);
     estimate(*protocol, options.sessions, stop, check, census);

@@ -26,6 +26,7 @@ struct CheckedBlock {
 struct Check {
   std::vector<text::Problem> problems;  ///< of both files and of one on the other; then all else is empty
   std::vector<text::Problem> warnings;
+  std::vector<text::Problem> notes;  ///< matters of taste
   std::string id, title, rig_name;
   std::vector<CheckedBlock> blocks;
   Spread trials, duration_s;

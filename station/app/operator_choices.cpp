@@ -55,7 +55,9 @@ void add_tones(const Check& check, CheckWords& words) {
 std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+    // Hidden files are those of editors, such as the lock that Emacs makes.
+    if (entry.path().extension() == ".toml" && entry.path().filename().string().front() != '.')
+      files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   std::vector<ProtocolEntry> list;
   for (const auto& file : files) {
@@ -69,6 +71,9 @@ std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
       entry.problem = format(bad.problems().front());
       if (bad.problems().size() > 1)
         entry.problem += fmt::format(" (and {} more)", bad.problems().size() - 1);
+    } catch (const std::exception& error) {
+      // A file that cannot be read must not hide the others.
+      entry.problem = error.what();
     }
     list.push_back(std::move(entry));
   }

@@ -94,7 +94,7 @@ void find_calibration(const RunRequest& request, session::Setup& setup, std::vec
   const auto path =
       request.calibration.empty() ? calibration::newest_for(setup.rig.path) : request.calibration;
   if (path.empty()) return;
-  const auto source = text::read_file(path);
+  const auto source = text::read_text_file(path);
   const auto faults =
       calibration::problems(calibration::parse(source, path), setup.rig.sha256, calibration::today());
   const bool live = request.observer.empty() && request.mode == "live";

@@ -196,7 +196,7 @@ std::string to_toml(const Calibration& c) {
   return out;
 }
 
-Calibration load(const std::string& path) { return parse(text::read_file(path), path); }
+Calibration load(const std::string& path) { return parse(text::read_text_file(path), path); }
 
 Calibration parse(const std::string& source, const std::string& path) {
   const text::Value document = text::parse_toml(source, path);

@@ -98,6 +98,7 @@ Json to_json(const app::Check& check) {
   return {
       {"problems", problems_json(check.problems)},
       {"warnings", problems_json(check.warnings)},
+          {"notes", problems_json(check.notes)},
       {"id", check.id},
       {"rig", check.rig_name},
       {"trials", json_number(check.trials.median)},
@@ -173,6 +174,7 @@ void check(const Options& options, Context& context) {
   if (!result.problems.empty()) context.exit_code = 2;
   for (const auto& problem : result.problems) fmt::print(context.err, "{}\n", format(problem));
   for (const auto& warning : result.warnings) fmt::print(context.err, "warning: {}\n", format(warning));
+  for (const auto& note : result.notes) fmt::print(context.err, "note: {}\n", format(note));
   if (context.json)
     context.out << to_json(result).dump(2) << "\n";
   else if (result.problems.empty())

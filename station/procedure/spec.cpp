@@ -45,6 +45,12 @@ void validate_staircase(const Spec& spec, std::vector<Fault>& faults) {
                       "at least two fewer than the reversals at which the staircase stops"});
 }
 
+void validate_rate(const char* key, const Grid& grid, std::vector<Fault>& faults) {
+  for (const double rate : grid.values)
+    if (!(rate >= 0 && rate < 1))
+      return faults.push_back({key, "a rate outside 0 to 1", "probabilities from 0 up to, but not, 1"});
+}
+
 }  // namespace
 
 const char* name(Kind kind) {
@@ -84,6 +90,8 @@ std::vector<Fault> validate(const Spec& spec) {
       if (spec.stimuli.values.empty()) faults.push_back({"stimuli", "missing", "the levels to choose from"});
       if (spec.threshold.values.empty()) faults.push_back({"grid.threshold", "missing", "its values"});
       if (spec.slope.values.empty()) faults.push_back({"grid.slope", "missing", "its values"});
+      validate_rate("grid.guess", spec.guess, faults);
+      validate_rate("grid.lapse", spec.lapse, faults);
       if (!spec.stop.trials && !spec.stop.threshold_sd && !spec.stop.entropy_nats)
         faults.push_back({"stop", "nothing stops it", "trials or threshold_sd"});
       break;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/expression.hpp"
@@ -14,8 +15,9 @@ namespace {
 using text::number;
 using text::Problem;
 
-// Just noticeable Weber fractions of friction are reported between 0.11 (Gueorguiev et al. 2017) and 0.2
-// (Fehlberg et al. 2022); above the larger one everybody feels the difference.
+// Just noticeable Weber fractions of friction are reported between 0.11
+// (Gueorguiev et al. 2017) and 0.2 (Fehlberg et al. 2022); above the larger one
+// everybody feels the difference.
 constexpr double felt_by_all = 0.2;
 
 Place place_of(const Protocol& protocol, const procedure::Spec& spec) {
@@ -23,7 +25,8 @@ Place place_of(const Protocol& protocol, const procedure::Spec& spec) {
   return found == protocol.procedure_places.end() ? Place{protocol.path, 0, 0} : found->second;
 }
 
-// By how much the scene's boundary (mm) and zone friction change for one unit of the factor.
+// By how much the scene's boundary (mm) and zone friction change for one unit
+// of the factor.
 double coefficient(const std::optional<Linear>& expression, const std::string& factor) {
   if (!expression || expression->absolute) return 0;
   for (const auto& [name, value] : expression->terms)
@@ -38,7 +41,8 @@ double smallest(const std::vector<double>& levels) {
   return least;
 }
 
-// A level must stand out from what the planner may get wrong: four times the tolerance.
+// A level must stand out from what the planner may get wrong: four times the
+// tolerance.
 void check_fineness(const Protocol& protocol, const procedure::Spec& spec, std::vector<Problem>& advice) {
   const bool fixed_levels = spec.kind == procedure::Kind::constant_stimuli;
   const double level = smallest(spec.values);
@@ -82,8 +86,9 @@ void check_coarseness(const Protocol& protocol, const procedure::Spec& spec, std
   }
 }
 
-// Where both staircase steps are stated, a run settles where p(down) times the step down equals p(up) times
-// the step up (Kaernbach 1991, generalised by Garcia-Perez 1998).
+// Where both staircase steps are stated, a run settles where p(down) times the
+// step down equals p(up) times the step up (Kaernbach 1991, generalised by
+// Garcia-Perez 1998).
 void check_steps(const Protocol& protocol, const procedure::Spec& spec, std::vector<Problem>& advice) {
   if (spec.kind != procedure::Kind::up_down || spec.step_down.empty() || spec.step_up.empty()) return;
   const double down = spec.step_down.back(), up = spec.step_up.back();
@@ -114,22 +119,35 @@ double one_key_share(const Protocol& protocol, const Block& block) {
   return all > 0 ? most / all : 0.5;
 }
 
+// The ends of the factor's range, which are its easiest levels.
+std::string easy_on_both_sides(const Protocol& protocol, const std::string& name) {
+  const auto* factor = find_factor(protocol.factors, name);
+  if (!factor || !factor->range) return "easy levels for each answer";
+  return "easy levels for each answer, such as " + name + " = [" + number(factor->range->first) + ", " +
+         number(factor->range->second) + "]";
+}
+
 void check_practice(const Protocol& protocol, const Block& block, std::vector<Problem>& advice) {
   const auto& task = protocol.task;
   if (block.pass && one_key_share(protocol, block) >= block.pass->accuracy)
     advice.push_back({block.place,
                       "practice \"" + block.name + "\" is passed by one key, always pressed (" +
                           number(100 * one_key_share(protocol, block), 3) + " % right)",
-                      "levels with each answer right equally often, and an accuracy above that"});
+                      "levels with each answer right equally often, and an "
+                      "accuracy above that"});
   const bool one_sided_catch = block.catch_trials && task.kind == TaskKind::single_interval && [&] {
-    const auto& levels = block.catch_trials->levels;
-    const auto positive = [](double level) { return level > 0; };
-    return std::all_of(levels.begin(), levels.end(), positive) ||
-           std::none_of(levels.begin(), levels.end(), positive);
+    std::set<std::string> right;
+    for (const double level : block.catch_trials->levels) {
+      auto factors = any_factors(protocol);
+      factors[block.catch_trials->factor] = level;
+      for (const auto& [id, comparison] : task.correct_answer)
+        if (holds(comparison, factors)) right.insert(id);
+    }
+    return !task.correct_answer.empty() && right.size() < 2;
   }();
   if (one_sided_catch)
     advice.push_back({block.place, "the catch trials of \"" + block.name + "\" have one right answer only",
-                      "easy levels on both sides: " + block.catch_trials->factor + " = [-25.0, 25.0]"});
+                      easy_on_both_sides(protocol, block.catch_trials->factor)});
 }
 
 void check_unused(const Protocol& protocol, std::vector<Problem>& advice) {

@@ -28,6 +28,6 @@ Protocol parse(const std::string& source, const std::string& path) {
   return protocol;
 }
 
-Protocol load(const std::string& path) { return parse(text::read_file(path), path); }
+Protocol load(const std::string& path) { return parse(text::read_text_file(path), path); }
 
 }  // namespace turnpoint::protocol

@@ -43,9 +43,9 @@ void check_factor_name(TableReader& reader, const std::string& name) {
   if (name.empty()) return;
   if (!std::all_of(name.begin(), name.end(), good) || std::isdigit(static_cast<unsigned char>(name[0])) ||
       name == "abs")
-    reader.problem(
-        "name", "\"" + name + "\" cannot stand in arithmetic",
-        "letters, digits and _, not starting with a digit; the unit goes at its end: \"offset_mm\"");
+    reader.problem("name", "\"" + name + "\" cannot stand in arithmetic",
+                   "letters, digits and _, not starting with a digit; the unit "
+                   "goes at its end: \"offset_mm\"");
 }
 
 void read_level(const text::Value& item, Factor& factor, text::Findings& findings) {
@@ -110,7 +110,12 @@ void read_header(TableReader& file, Reading& reading) {
 
 void read_factors(TableReader& file, Reading& reading) {
   auto& factors = reading.protocol.factors;
-  for (const auto* table : file.tables("factor")) {
+  constexpr std::size_t most_factors = 100;
+  const auto tables = file.tables("factor");
+  if (tables.size() > most_factors)
+    return reading.findings.add(tables[most_factors]->place, std::to_string(tables.size()) + " factors",
+                                "at most " + std::to_string(most_factors));
+  for (const auto* table : tables) {
     auto factor = read_factor(*table, reading);
     if (find_factor(factors, factor.name))
       reading.findings.add(table->place, "a second factor named \"" + factor.name + "\"",

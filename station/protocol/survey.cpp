@@ -9,6 +9,7 @@
 
 #include "physics/boundary_map.hpp"
 #include "station/protocol/combinations.hpp"
+#include "station/protocol/design_advice.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/scene/planner.hpp"
 #include "station/scene/transducer.hpp"
@@ -18,8 +19,9 @@ namespace turnpoint::protocol {
 
 namespace {
 
-// A zone's design takes some 15 ms, a boundary's less than 2: together a check should feel immediate.
-// A zone that depends on one sum of factors is interpolated between few plans, others need a grid of them.
+// A zone's design takes some 15 ms, a boundary's less than 2: together a check
+// should feel immediate. A zone that depends on one sum of factors is
+// interpolated between few plans, others need a grid of them.
 constexpr std::size_t most_plans_of_a_scene = 120, most_plans_of_a_zone = 6, most_plans_of_a_zone_grid = 36;
 
 // Where the edges of a boundary can be put with this rig's bands, for messages.
@@ -63,9 +65,11 @@ Sight sight_of(const Combination& combination, const scene::DrivePlan& plan) {
   return sight;
 }
 
-// The same trouble in many combinations is one problem, with its first case and the number of the others.
+// The same trouble in many combinations is one problem, with its first case and
+// the number of the others.
 struct Trouble {
   std::string first, allowed;
+  Place place = {};
   int cases = 0;
 };
 
@@ -95,12 +99,38 @@ std::vector<Combination> planned(const Protocol& protocol, const std::vector<Com
   return chosen;
 }
 
-// What the rig makes of one combination: a plan, or why there is none and what there could be.
+// What the rig makes of one combination: a plan, or why there is none and what
+// there could be.
 struct Answer {
+  bool too_strong = false;  ///< a weaker one could be had
   std::optional<scene::DrivePlan> plan;
   std::optional<scene::Cues> cues_roved_down;
   std::string refused, allowed;
 };
+
+// Whether the same scene could be had with a thousandth of its strength: then
+// the strength is to blame.
+bool is_too_strong(scene::Scene scene, scene::Planner& planner) {
+  scene.rove_dB -= 60;
+  try {
+    planner.plan(scene);
+    return true;
+  } catch (const std::logic_error&) {
+    return false;
+  }
+}
+
+// Where the file says how strong the scene is.
+Place strength_place(const Scene& scene) {
+  if (scene.displacement_um) return scene.displacement_um->place;
+  if (scene.friction_contrast_dB) return scene.friction_contrast_dB->place;
+  if (scene.friction) return scene.friction->place;
+  if (scene.zone && scene.zone->friction) return scene.zone->friction->place;
+  const SceneTone* strongest = nullptr;
+  for (const auto& tone : scene.tones)
+    if (!strongest || tone.displacement_um.constant > strongest->displacement_um.constant) strongest = &tone;
+  return strongest ? strongest->displacement_um.place : scene.place;
+}
 
 void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector<Combination>& combinations,
                 std::size_t begin, std::size_t end, scene::Planner& planner, std::vector<Answer>& answers,
@@ -109,22 +139,28 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
   for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
     const auto& combination = combinations[i];
     const auto& from = protocol.scenes.at(combination.scene);
-    // Roving upwards: the limits must hold for the strongest stimulus that can be drawn.
+    // Roving upwards: the limits must hold for the strongest stimulus that can
+    // be drawn.
     const auto scene = resolve(protocol, combination.scene, combination.factors, from.rove_dB);
     try {
       answers[i].plan = planner.plan(scene);
       if (edge_moves_with_strength(from))
         answers[i].cues_roved_down =
             planner.plan(resolve(protocol, combination.scene, combination.factors, -from.rove_dB)).cues;
-    } catch (const scene::Unreachable& error) {
+    } catch (const std::logic_error& error) {  // unreachable, or nonsense as a zone behind the strip
       answers[i].refused = error.what();
-      if (explained.insert(combination.scene).second) answers[i].allowed = reach(scene, rig, planner);
+      answers[i].too_strong = is_too_strong(scene, planner);
+      if (explained.insert(combination.scene).second) try {
+          answers[i].allowed = reach(scene, rig, planner);
+        } catch (const std::logic_error&) {  // no boundary at all has this edge
+        }
     }
   }
 }
 
-// Combinations side by side differ least, and a planner remembers: so each of two threads takes a half, after
-// the first combination has made the maps that all need.
+// Combinations side by side differ least, and a planner remembers: so each of
+// two threads takes a half, after the first combination has made the maps that
+// all need.
 std::vector<Answer> plan_all(const Protocol& protocol, const rig::Rig& rig,
                              const std::vector<Combination>& combinations, const std::stop_token& stop) {
   std::vector<Answer> answers(combinations.size());
@@ -152,7 +188,10 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
     if (!answers[i].plan) {
       auto& trouble = unreachable[combination.scene];
       if (trouble.cases++ == 0)
-        trouble = {in_case(combination) + ": " + answers[i].refused, answers[i].allowed, 1};
+        trouble = {in_case(combination) + ": " + answers[i].refused, answers[i].allowed,
+                   answers[i].too_strong ? strength_place(protocol.scenes.at(combination.scene))
+                                         : protocol.scenes.at(combination.scene).place,
+                   1};
       continue;
     }
     const auto& plan = *answers[i].plan;
@@ -165,7 +204,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
       told.emplace(warning.code, in_case(combination) + ": " + warning.text);
   }
   for (const auto& [name, trouble] : unreachable)
-    survey.problems.push_back({protocol.scenes.at(name).place, counted(trouble), trouble.allowed});
+    survey.problems.push_back({trouble.place, counted(trouble), trouble.allowed});
   for (const auto& [name, trouble] : inexact)
     survey.warnings.push_back(
         {protocol.scenes.at(name).place, counted(trouble), "no model is known to be inside its tolerance"});
@@ -198,7 +237,8 @@ void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey
   const bool contact = zero == ResponseZero::first_contact || zero == ResponseZero::lift_off;
   if (contact && !rig.contact_uri)
     add(protocol.timing.response_zero_place,
-        "response times are counted from the finger's contact, and the rig does not sense it",
+        "response times are counted from the finger's contact, and the rig "
+        "does not sense it",
         "a rig with [contact], or another \"response_zero\"");
 }
 
@@ -219,6 +259,7 @@ Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_tok
   check_limits(protocol, rig, survey);
   plan_scenes(protocol, rig, stop, survey);
   for (auto& warning : advice(protocol)) survey.warnings.push_back(std::move(warning));
+  for (auto& warning : design_advice(protocol)) survey.warnings.push_back(std::move(warning));
   return survey;
 }
 

@@ -37,7 +37,7 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
                                             const text::Place& needed_by, text::Findings& findings) {
   std::string bytes;
   try {
-    bytes = text::read_file(path);
+    bytes = text::read_text_file(path);
   } catch (const std::system_error& error) {
     findings.add(needed_by, "cannot read " + std::string(error.what()), "a path relative to the rig file");
     return {};

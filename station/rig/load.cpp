@@ -213,6 +213,6 @@ Rig parse(const std::string& source, const std::string& path) {
   return rig;
 }
 
-Rig load(const std::string& path) { return parse(text::read_file(path), path); }
+Rig load(const std::string& path) { return parse(text::read_text_file(path), path); }
 
 }  // namespace turnpoint::rig

@@ -1,18 +1,20 @@
 #include "station/text/toml.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <string_view>
 #include <system_error>
 #include <tuple>
 
 #include "station/text/toml_scan.hpp"
 
-// Some malformed files trip assertions of toml++ 3.3 (a key that begins with a byte that begins none); an
-// abort would take the station down, so they become exceptions. With NDEBUG toml++ would take the conditions
-// for granted instead.
+// Some malformed files trip assertions of toml++ 3.3 (a key that begins with a
+// byte that begins none); an abort would take the station down, so they become
+// exceptions. With NDEBUG toml++ would take the conditions for granted instead.
 #undef NDEBUG
 namespace turnpoint::text {
 namespace {
@@ -24,7 +26,8 @@ constexpr void parser_assert(bool holds) {
 }  // namespace turnpoint::text
 #define TOML_ASSERT(condition) ::turnpoint::text::parser_assert(static_cast<bool>(condition))
 
-// The only file that sees toml++: the rest of the station works on plain Values and compiles faster.
+// The only file that sees toml++: the rest of the station works on plain Values
+// and compiles faster.
 #include <toml++/toml.h>
 
 namespace turnpoint::text {
@@ -34,6 +37,8 @@ namespace {
 Place place_of(const toml::source_region& region, const std::string& path) {
   return {path, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
+
+constexpr std::size_t most_items = 10'000;
 
 Value convert(const toml::node& node, const std::string& path);
 
@@ -56,6 +61,10 @@ Value convert(const toml::node& node, const std::string& path) {
       break;
     case toml::node_type::array:
       value.kind = Value::Kind::array;
+      if (node.as_array()->size() > most_items)
+        throw BadInput({{place_of(node.source(), path),
+                         "a list of " + std::to_string(node.as_array()->size()) + " items",
+                         "at most " + std::to_string(most_items)}});
       for (const auto& item : *node.as_array()) value.items.push_back(convert(item, path));
       break;
     case toml::node_type::boolean:
@@ -124,15 +133,67 @@ std::string describe(const Value& value) {
   return "a table";
 }
 
+namespace {
+
+/// A file that is open for reading, and closed at the end.
+class OpenFile {
+ public:
+  explicit OpenFile(const std::string& path) : path_(path) {
+    // Without O_NONBLOCK a pipe that nobody writes to would be waited for.
+    descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    if (descriptor_ < 0) fail(errno);
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0) close_and_fail(errno);
+    if (S_ISDIR(status.st_mode)) close_and_fail(EISDIR);
+    if (!S_ISREG(status.st_mode)) {
+      ::close(descriptor_);
+      throw std::system_error(std::make_error_code(std::errc::invalid_argument),
+                              path + ": not a file but a pipe or a device");
+    }
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  ~OpenFile() { ::close(descriptor_); }
+
+  /// The next bytes, none at the end.
+  std::string_view read() {
+    for (;;) {
+      const auto count = ::read(descriptor_, buffer_.data(), buffer_.size());
+      if (count >= 0) return {buffer_.data(), static_cast<std::size_t>(count)};
+      if (errno != EINTR) fail(errno);
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(int error) const { throw std::system_error(error, std::generic_category(), path_); }
+  [[noreturn]] void close_and_fail(int error) const {
+    ::close(descriptor_);
+    fail(error);
+  }
+
+  std::string path_;
+  int descriptor_ = -1;
+  std::vector<char> buffer_ = std::vector<char>(1 << 16);
+};
+
+}  // namespace
+
 std::string read_file(const std::string& path) {
-  errno = 0;
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream bytes;
-  // A folder can be opened like a file, and then reads as an empty one.
-  if (std::filesystem::is_directory(path)) throw std::system_error(EISDIR, std::generic_category(), path);
-  if (in) bytes << in.rdbuf();
-  if (!in) throw std::system_error(errno ? errno : EIO, std::generic_category(), path);
-  return bytes.str();
+  OpenFile file(path);
+  std::string bytes;
+  for (auto part = file.read(); !part.empty(); part = file.read()) bytes += part;
+  return bytes;
+}
+
+std::string read_text_file(const std::string& path) {
+  OpenFile file(path);
+  std::string bytes;
+  for (auto part = file.read(); !part.empty(); part = file.read()) {
+    bytes += part;
+    if (bytes.size() > most_text_bytes)
+      throw BadInput({{{path, 0, 0}, "the file has more than 4 MiB", "at most 4 MiB"}});
+  }
+  return bytes;
 }
 
 }  // namespace turnpoint::text

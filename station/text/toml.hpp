@@ -32,13 +32,21 @@ struct Entry {
   Value value;
 };
 
-/// The document in `source`; `path` names it in places. Throws BadInput with the place of a syntax error.
+/// The document in `source`; `path` names it in places. Throws BadInput with the place of a syntax error, of a
+/// list with more than 10 000 items, or of a key with more than 16 parts.
 Value parse_toml(const std::string& source, const std::string& path);
 
 /// `a number`, `text`, `a table`, ...: what a value is, for messages.
 std::string describe(const Value& value);
 
-/// The bytes of a file. Throws std::system_error naming it.
+/// The bytes of a file. Throws std::system_error naming it where it cannot be opened or read to its end, and
+/// where it is no regular file (a folder, a pipe, a device).
 std::string read_file(const std::string& path);
+
+/// Files that people write (protocols, rigs, calibrations) have at most so many bytes.
+constexpr std::size_t most_text_bytes = 4 << 20;
+
+/// The same of a file that people write. Throws BadInput where it is longer than `most_text_bytes`.
+std::string read_text_file(const std::string& path);
 
 }  // namespace turnpoint::text

@@ -51,6 +51,7 @@ class Scanner {
     if (source_[at_] == '\n') {
       if (quote_.size() < 3) quote_ = {};
       comment_ = false;
+      parts_ = 1;
       trimming_ = quote_.size() == 3 && (trimming_ || escaped_);
       escaped_ = false;
       copy(1);
@@ -73,6 +74,7 @@ class Scanner {
             "keys without quotes take A-Z a-z 0-9 _ -"}});
     const char c = source_[at_];
     if (c == '#') comment_ = true;
+    count_parts(c);
     if (c == '"' || c == '\'') {
       const bool three = source_.substr(at_, 3) == std::string_view(c == '"' ? "\"\"\"" : "'''");
       quote_ = source_.substr(at_, three ? 3 : 1);
@@ -80,6 +82,18 @@ class Scanner {
     } else {
       copy(1);
     }
+  }
+
+  // The parser calls itself once for each part of a key: a long enough one would exhaust the stack.
+  void count_parts(char c) {
+    if (c == '.')
+      ++parts_;
+    else if (std::string_view("=,[]{}#").find(c) != std::string_view::npos)
+      parts_ = 1;
+    if (parts_ > most_parts)
+      throw BadInput({{{path_, line_, column_},
+                       "a key with more than " + std::to_string(most_parts) + " parts",
+                       "fewer dots"}});
   }
 
   void inside(const Character& character) {
@@ -116,7 +130,10 @@ class Scanner {
     ++column_;
   }
 
+  static constexpr int most_parts = 16;
+
   std::string_view source_;
+  int parts_ = 1;  ///< of the key at hand
   std::string path_, out_;
   std::string_view quote_;  // the quotes that close the string we are in, else empty
   std::size_t at_ = 0;

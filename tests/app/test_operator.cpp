@@ -1,3 +1,5 @@
+#include <sys/stat.h>
+
 #include <unistd.h>
 
 #include <condition_variable>
@@ -205,6 +207,22 @@ TEST_CASE("protocol files of a folder are listed with the ones that cannot be us
   CHECK(list[0].id == "demo");
   CHECK(list[0].languages.size() == 3);
   CHECK(list[1].problem.find("b.toml: ") != std::string::npos);
+}
+
+TEST_CASE("odd entries among the protocols have a message and hide no other", "[operator]") {
+  const Folder folder;
+  const auto shipped = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/demo.toml";
+  fs::copy_file(shipped, folder.path / "demo.toml");
+  fs::create_symlink("/nowhere/at/all", folder.path / "dangling.toml");
+  fs::create_symlink("anna@host.1234", folder.path / ".#demo.toml");
+  fs::create_directory(folder.path / "folder.toml");
+  REQUIRE(::mkfifo((folder.path / "pipe.toml").c_str(), 0600) == 0);
+  const auto list = app::list_protocols(folder.path.string());
+  REQUIRE(list.size() == 4);
+  for (const auto& entry : list) {
+    INFO(entry.path);
+    CHECK(entry.problem.empty() == (entry.id == "demo"));
+  }
 }
 
 TEST_CASE("participants are known once a session of theirs is stored, and an interrupted one is offered",

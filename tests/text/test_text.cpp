@@ -80,3 +80,28 @@ TEST_CASE("an estimate is printed to the digits that its uncertainty leaves", "[
   CHECK(uncertainty(0, 0, 0.06) == 0.015);
   CHECK(estimated(std::numeric_limits<double>::quiet_NaN(), 1) == "none");
 }
+
+TEST_CASE("what cannot be read to its end is an error and never an empty file", "[text]") {
+  CHECK_THROWS_AS(read_file("/proc/self/mem"), std::system_error);  // EIO at its first byte
+  CHECK_THROWS_AS(read_file("/proc/self"), std::system_error);
+  CHECK_THROWS_AS(read_file("/dev/zero"), std::system_error);
+  CHECK_THROWS_AS(read_file("/nowhere/at/all"), std::system_error);
+}
+
+TEST_CASE("keys with too many parts and lists with too many items are refused at their place", "[text]") {
+  std::string deep = "x = 1\n", list = "y = [";
+  for (int i = 0; i < 50'000; ++i) deep += "a.", list += "1,";
+  const auto refused = [](const std::string& source) -> std::string {
+    try {
+      parse_toml(source, "t.toml");
+    } catch (const BadInput& bad) {
+      return format(bad.problems().front());
+    }
+    return "";
+  };
+  CHECK(refused(deep + "b = 1\n").find("t.toml:2:") == 0);
+  CHECK(refused("z = { " + deep.substr(6) + "b = 1 }\n").find("parts") != std::string::npos);
+  CHECK(refused(list + "1]\n").find("at most 10000") != std::string::npos);
+  CHECK(refused("a.b.c.d = [1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, 8.5, 9.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5, "
+                "8.5]") == "");
+}

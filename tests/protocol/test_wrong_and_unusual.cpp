@@ -1,0 +1,140 @@
+// The corpus of tests/protocol/corpus: wrong protocols with the line at which that must be said, and unusual
+// ones that are right. Its README explains the form.
+#include <filesystem>
+#include <set>
+#include <sstream>
+
+#include "station/protocol/protocol.hpp"
+#include "station/protocol/survey.hpp"
+#include "station/text/toml.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string root = TURNPOINT_SOURCE_DIR;
+
+struct Case {
+  std::string title, base;
+  std::vector<std::pair<std::string, std::string>> edits;
+};
+
+std::string with_lines(std::string text) {
+  for (auto at = text.find("\\n"); at != std::string::npos; at = text.find("\\n")) text.replace(at, 2, "\n");
+  return text;
+}
+
+std::vector<Case> cases_in(const fs::path& path) {
+  std::vector<Case> cases;
+  std::istringstream lines(text::read_file(path.string()));
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("## ", 0) == 0) {
+      cases.push_back({line.substr(3), "", {}});
+    } else if (!line.empty() && line[0] != '#' && !cases.empty()) {
+      const auto arrow = line.find(" => ");
+      if (arrow == std::string::npos)
+        cases.back().base = line;
+      else
+        cases.back().edits.emplace_back(with_lines(line.substr(0, arrow)),
+                                        with_lines(line.substr(arrow + 4)));
+    }
+  }
+  return cases;
+}
+
+struct Edited {
+  std::string source;
+  std::set<int> must, may;  ///< lines
+};
+
+Edited edited(const Case& wanted) {
+  Edited result;
+  auto text = text::read_file(root + "/protocols/" + wanted.base + ".toml");
+  for (const auto& [from, to] : wanted.edits) {
+    const auto at = text.find(from);
+    INFO("edit: " << from);
+    REQUIRE(at != std::string::npos);
+    text.replace(at, from.size(), to);
+  }
+  std::istringstream lines(text);
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    for (const auto& [mark, into] : {std::pair{"<!>", &result.must}, std::pair{"<~>", &result.may}})
+      for (auto at = line.find(mark); at != std::string::npos; at = line.find(mark))
+        line.erase(at, 3), into->insert(number);
+    result.source += line + "\n";
+  }
+  return result;
+}
+
+/// In closed form, so that a survey is quick.
+const rig::Rig& quick() {
+  static const auto rig = [] {
+    auto text = text::read_file(root + "/deploy/rigs/simulated.toml");
+    for (const auto& [from, to] : {std::pair{"edges = \"clamped\"", "edges = \"supported\""},
+                                   std::pair{"thickness_mm = 2.0", "thickness_mm = 4.2"}})
+      text.replace(text.find(from), std::string(from).size(), to);
+    return rig::parse(text, "r.toml");
+  }();
+  return rig;
+}
+
+/// Problems of the file or, where it has none, what a check on a rig says.
+std::vector<text::Problem> said_of(const std::string& source) {
+  try {
+    auto survey = protocol::survey(protocol::parse(source, "p.toml"), quick());
+    auto said = survey.problems;
+    said.insert(said.end(), survey.warnings.begin(), survey.warnings.end());
+    return said;
+  } catch (const text::BadInput& error) {
+    return error.problems();
+  }
+}
+
+std::string missed(const Case& wanted) {
+  const auto text = edited(wanted);
+  std::set<int> said;
+  std::string all;
+  for (const auto& problem : said_of(text.source)) {
+    said.insert(problem.place.line);
+    all += "  " + format(problem) + "\n";
+  }
+  for (const int line : text.must)
+    if (!said.count(line)) return "line " + std::to_string(line) + " is passed over; said is:\n" + all;
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("each wrong protocol is refused, or warned of, at its line", "[protocol][corpus]") {
+  int cases = 0, accepted = 0;
+  for (const auto& entry : fs::directory_iterator(root + "/tests/protocol/corpus")) {
+    if (entry.path().filename().string().rfind("wrong-", 0) != 0) continue;
+    for (const auto& wanted : cases_in(entry.path())) {
+      INFO(entry.path().filename().string() << ": " << wanted.title);
+      const bool known = wanted.title.rfind("[accepted]", 0) == 0;
+      ++(known ? accepted : cases);
+      const auto fault = missed(wanted);
+      if (known)
+        CHECK_FALSE(fault.empty());
+      else
+        CHECK(fault == "");
+    }
+  }
+  WARN(cases << " wrong protocols are noticed, " << accepted << " are not yet");
+  CHECK(cases >= 250);
+}
+
+TEST_CASE("unusual protocols that are right are accepted without a word", "[protocol][corpus]") {
+  const auto cases = cases_in(root + "/tests/protocol/corpus/unusual.txt");
+  CHECK(cases.size() >= 50);
+  for (const auto& unusual : cases) {
+    INFO(unusual.title);
+    std::string all;
+    for (const auto& problem : said_of(edited(unusual).source)) all += format(problem) + "\n";
+    CHECK(all == "");
+  }
+}
