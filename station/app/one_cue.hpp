@@ -34,7 +34,7 @@ struct Rule {
   Statistic statistic = Statistic::value;
   double low = 0, high = 0;  ///< the band: from low (inclusive) to high; it may be open to infinity
   int inside = 0;
-  double usual = 0;  ///< the cue of an interval that is not to be chosen, on the mean
+  double usual = 0;  ///< mean cue of the intervals that are not to be chosen
   Grain grain = {};
 };
 

@@ -48,7 +48,7 @@ struct Recovery {
 /// What a protocol's sessions would find with this observer.
 struct Power {
   int observers = 0, interval_sessions = 0;
-  double trials = 0, minutes = 0;  ///< of a session, on the mean
+  double trials = 0, minutes = 0;  ///< mean over the sessions
   std::optional<double> accuracy;  ///< share right of scored experimental answers
   std::vector<Recovery> recoveries;
 };

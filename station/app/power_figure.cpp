@@ -48,7 +48,7 @@ plot::Figure figure_of(const Power& power, const std::string& title) {
   figure.columns = 3;
   figure.panel_width_px = 360, figure.panel_height_px = 240;
   figure.caption = title + ". " + std::to_string(power.observers) +
-                   " simulated sessions; a session on the mean " + text::number(power.trials, 3) +
+                   " simulated sessions; mean length " + text::number(power.trials, 3) +
                    " trials and " + text::number(power.minutes, 2) + " minutes.";
   return figure;
 }

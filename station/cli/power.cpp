@@ -81,7 +81,7 @@ Json to_json(const app::Power& power, const std::vector<app::CueReport>& cues, c
 }
 
 void print(std::ostream& out, const app::Power& power) {
-  fmt::print(out, "{} simulated sessions, each {} trials and {} minutes on the mean{}\n", power.observers,
+  fmt::print(out, "{} simulated sessions, on average {} trials and {} minutes each{}\n", power.observers,
              number(power.trials, 4), number(power.minutes, 3),
              power.accuracy ? fmt::format(", {} % right", number(100 * *power.accuracy, 3)) : "");
   constexpr auto line = "{:<22} {:<34} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20} {:>9} {:>9}  {}\n";

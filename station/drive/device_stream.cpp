@@ -122,7 +122,7 @@ void DeviceStream::check_rate(const Position& position) noexcept {
     core_.report({EventKind::rate_wrong, 0, position.frame, std::llround(rate->rate_Hz * 1000)});
 }
 
-// Files and null take frames at once; the clock stands in for a converter one period behind.
+// Files and null take frames at once. The clock paces them like a converter that is one period behind.
 void DeviceStream::follow_clock() noexcept {
   const std::int64_t rate = config_.output.rate_Hz, heard = frame_ - config_.output.period_frames;
   const std::int64_t due_ns = origin_ns_ + heard / rate * 1'000'000'000 + heard % rate * 1'000'000'000 / rate;

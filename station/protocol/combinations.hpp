@@ -25,8 +25,8 @@ const Linear* only_expression(const Scene& scene);
 bool edge_moves_with_strength(const Scene& scene);
 
 /// At most `most` of one scene's combinations, extreme values included: even steps of the scene's only
-/// expression, else of each factor, so that everything between can be interpolated. With so many factors that
-/// their extremes alone are more than `most`, the first combinations.
+/// expression, else of each factor, so that everything between can be interpolated. If the extremes alone
+/// are more than `most`, returns the first `most` combinations.
 std::vector<Combination> thinned(const Scene& scene, const std::vector<Combination>& of_the_scene,
                                  std::size_t most);
 

@@ -44,7 +44,7 @@ class RealStage : public Stage {
 
   std::vector<Input> drain() override {
     attend();
-    // What is still to be heard belongs to the trial that is over: nothing of it is told to the next one.
+    // Reports of stimuli still under way belong to the trial that is over; the next trial must not see them.
     presented_.clear();
     unheard_ = 0;
     const auto gathered = inputs_.drain();

@@ -168,7 +168,7 @@ TEST_CASE("a target that differs in both directions is found by whoever knows th
   CHECK(accuracy(fixed, "strip width") == Approx(1));
 }
 
-TEST_CASE("a target with ramps of its own is told by its duration", "[app][cues]") {
+TEST_CASE("a target with ramps of its own is recognised by its duration", "[app][cues]") {
   const auto text = source("friction-2ifc.toml");
   const std::string contrast = "friction_contrast_dB = \"contrast_dB\"";
   CHECK(accuracy(replaced(text, contrast, contrast + "\nramp_ms = 300"), "duration") == Approx(1));
@@ -192,7 +192,7 @@ TEST_CASE("a mark that stays in one place lets the strip's width tell the side, 
   CHECK(report(moving, "always the same key").accuracy == Approx(0.5));
 }
 
-TEST_CASE("an answer that depends on the distance from the mark is told by a band of the cue",
+TEST_CASE("an answer that depends on the distance from the mark is found by a band of the cue",
           "[app][cues]") {
   auto text =
       replaced(source("boundary-constant.toml"), "levels = [152.0, 158.0, 164.0]", "levels = [158.0]");
