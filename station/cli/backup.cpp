@@ -37,13 +37,15 @@ void back_up(const Options& options, Context& context) {
 void restore(const Options& options, Context& context) {
   const auto restored =
       store::restore_backup(options.database, {options.backup.directory, options.database_id});
+  if (!restored.changed.empty()) context.exit_code = 1;
   if (context.json) {
     context.out << Json{{"from", restored.from},
                         {"database_id", restored.database_id},
                         {"quarantined", restored.quarantined},
                         {"sessions", restored.sessions},
                         {"trials", restored.trials},
-                        {"rejected", restored.rejected}}
+                        {"rejected", restored.rejected},
+                        {"changed", restored.changed}}
                        .dump(2)
                 << "\n";
     return;
@@ -51,6 +53,11 @@ void restore(const Options& options, Context& context) {
   for (const auto& path : restored.rejected) fmt::print(context.out, "failed its check: {}\n", path);
   fmt::print(context.out, "{} restored from {}: {} sessions, {} trials, opened and checked\n",
              options.database, restored.from, restored.sessions, restored.trials);
+  for (const auto& id : restored.changed)
+    fmt::print(context.out,
+               "session {} is not as it was recorded, and was not when the backup was made; "
+               "`turnpoint verify` says what differs\n",
+               id);
   if (!restored.quarantined.empty())
     fmt::print(context.out, "what was there before is kept as {}, with its log if it had one\n",
                restored.quarantined);

@@ -41,6 +41,9 @@ struct Restoration {
   std::string quarantined;  ///< where the damaged file is now; "" where there was none
   std::int64_t sessions = 0, trials = 0;
   std::vector<std::string> rejected;  ///< backups of it that failed their check
+  /// Sessions whose rows are not as they were recorded (checksum.hpp): the backup holds them so, since they were
+  /// changed before it was made.
+  std::vector<std::string> changed;
 };
 
 /// Puts the newest good backup in the place of a missing, empty or damaged database, which is moved aside

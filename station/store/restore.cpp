@@ -7,6 +7,7 @@
 
 #include "station/store/backup.hpp"
 #include "station/store/backup_folder.hpp"
+#include "station/store/checksum.hpp"
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
 #include "station/store/whole_file.hpp"
@@ -130,6 +131,8 @@ void count(Restoration& restoration, const std::string& path) {
   restoration.sessions = restored.integer("SELECT count(*) FROM session");
   restoration.trials = restored.integer("SELECT count(*) FROM trial");
   restoration.database_id = restored.text("SELECT value FROM meta WHERE key = 'database_id'");
+  for (const auto& session : verify_database(restored))
+    if (!session.problems.empty()) restoration.changed.push_back(session.session_id);
 }
 
 }  // namespace

@@ -181,6 +181,23 @@ TEST_CASE("a backup that keeps one keeps the one that was just made", "[store]")
   CHECK(fs::exists(second.path));
 }
 
+TEST_CASE("a restore names the sessions that were changed before the backup was made", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", dir = folder / "backups";
+  sample::session(db, 4);
+  const auto changed = sample::session(db, 3, sample::start("P02"));
+  const bool edited = GENERATE(false, true);
+  if (edited)
+    sample::raw(db).execute(
+        "DROP TRIGGER trial_is_never_changed; UPDATE trial SET level = 7 WHERE session_id = '" + changed +
+        "' AND trial_index = 1");
+  backup(db, {dir, 9});
+  damage(db);
+  const auto restored = restore_backup(db, {dir, ""});
+  CHECK(restored.sessions == 2);
+  CHECK(restored.changed == (edited ? std::vector<std::string>{changed} : std::vector<std::string>{}));
+}
+
 TEST_CASE("a database is named without a folder as with one", "[store]") {
   TemporaryFolder folder;
   const auto before = fs::current_path();
