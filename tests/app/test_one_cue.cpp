@@ -40,7 +40,8 @@ TEST_CASE("of two intervals the larger, the smaller or the unusual one is chosen
   CHECK(best(two, {{{5, 5.0005, 0}, 1, 1}, {{5.0005, 5, 0}, 0, 1}}) == Approx(0.5));
 }
 
-TEST_CASE("same and different are told by the difference, whichever interval is larger", "[app][cues]") {
+TEST_CASE("same and different are recognised by the difference, whichever interval is larger",
+          "[app][cues]") {
   const auto pair = TaskKind::same_different;
   CHECK(best(pair, {{{1, 1, 0}, 0, 1}, {{2, 2, 0}, 0, 1}, {{1, 2, 0}, 1, 1}, {{2, 1, 0}, 1, 1}}) == 1);
   CHECK(best(pair, {{{1, 1, 0}, 0, 1}, {{1, 1, 0}, 1, 1}}) == Approx(0.5));

@@ -26,7 +26,7 @@ TEST_CASE("2-down-1-up with an initial 1-down rule steps and reverses as Levitt 
   CHECK(result.reversals == std::vector<double>{8, 10, 9, 11});
 }
 
-TEST_CASE("a staircase averages the reversals that it is told to, and says which", "[procedure]") {
+TEST_CASE("a staircase averages the reversals that the protocol chose, and says which", "[procedure]") {
   auto spec = two_down_one_up();  // reversals 8, 10, 9, 11
   const auto estimate = [&spec](int discard) {
     spec.discard_reversals = discard;
