@@ -6,9 +6,9 @@
 namespace turnpoint::drive {
 
 /// A sound card in memory, below the station's own ALSA output: in the program that links fake_pcm.cpp its
-/// functions stand in for alsa-lib's, and its time for CLOCK_MONOTONIC. Time passes where the test says so
-/// and where the program waits, and only then; each frame of it plays one frame of the buffer, or silence
-/// where that is empty.
+/// functions replace those of alsa-lib, and its clock replaces CLOCK_MONOTONIC. Time passes where the test
+/// says so and where the program waits, and only then; each frame of it plays one frame of the buffer, or
+/// silence where that is empty.
 struct FakePcm {
   enum class State { prepared, running, xrun, suspended, gone };
 

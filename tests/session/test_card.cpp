@@ -9,7 +9,7 @@
 #include "tests/support/catch.hpp"
 
 // What a session schedules, on the station's real stream and output and a sound card in memory: when
-// intervals are really played, told by the marker on the second channel.
+// intervals are really played, as the marker on the second channel shows.
 
 using namespace turnpoint;
 using drive::fake_pcm;
