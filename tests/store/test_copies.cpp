@@ -65,8 +65,9 @@ TEST_CASE("neither a new nor a restored database gets the log of a lost one", "[
   CHECK(sample::raw(db).text("PRAGMA integrity_check") == "ok");
 }
 
-TEST_CASE("a restore that was interrupted between two names is gone on with, and nothing is begun meanwhile",
-          "[store]") {
+TEST_CASE(
+    "a restore interrupted between two renames can be continued, and no new database is made before that",
+    "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4);
