@@ -10,9 +10,9 @@ namespace {
 constexpr double table_end = 10;
 constexpr double spacing = 0.5;
 constexpr int nodes = 41;
-constexpr int order = 24;
+constexpr int kOrder = 24;
 constexpr int terms = 18;
-using Polynomial = std::array<double, order + 1>;
+using Polynomial = std::array<double, kOrder + 1>;
 
 struct Coefficients {
   std::array<double, terms> u{}, v{};
@@ -65,15 +65,15 @@ Polynomial polynomial(double t0, double ai, double dai) {
   c[0] = ai;
   c[1] = dai;
   c[2] = 0.5 * t0 * c[0];
-  for (std::size_t n = 1; n + 2 <= order; ++n) {
+  for (std::size_t n = 1; n + 2 <= kOrder; ++n) {
     c[n + 2] = (t0 * c[n] + c[n - 1]) / static_cast<double>((n + 1) * (n + 2));
   }
   return c;
 }
 
 Airy at(const Polynomial& c, double h) {
-  double value = c[order], slope = 0;
-  for (std::size_t k = order; k-- > 0;) {
+  double value = c[kOrder], slope = 0;
+  for (std::size_t k = kOrder; k-- > 0;) {
     slope = slope * h + value;
     value = value * h + c[k];
   }

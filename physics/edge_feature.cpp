@@ -10,9 +10,9 @@ namespace turnpoint::physics {
 namespace {
 
 // Five-point Gauss-Legendre rule on [-1, 1].
-constexpr std::array nodes{-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
+constexpr std::array kNodes{-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
                            0.9061798459386640};
-constexpr std::array weights{0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
+constexpr std::array kWeights{0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                              0.2369268850561891};
 
 }  // namespace
@@ -40,9 +40,9 @@ std::optional<double> friction_edge_m(double length_m, const CentreLine& line, c
     constexpr int panels = 4;
     double sum = 0;
     for (int p = 0; p < panels; ++p) {
-      for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const double t = (p + 0.5 * (1 + nodes[i])) / panels;
-        sum += 0.5 * weights[i] / panels * friction_at(low + t * (high - low));
+      for (std::size_t i = 0; i < kNodes.size(); ++i) {
+        const double t = (p + 0.5 * (1 + kNodes[i])) / panels;
+        sum += 0.5 * kWeights[i] / panels * friction_at(low + t * (high - low));
       }
     }
     return sum;

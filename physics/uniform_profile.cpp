@@ -22,7 +22,7 @@ constexpr std::array<double, 8> weights{0.0506142681451881, 0.1111905172266872, 
                                         0.1111905172266872, 0.0506142681451881};
 
 // Phase integral (positive on both sides) and p at a point.
-struct Phase {
+struct PhaseIntegral {
   double integral;
   double p;
 };
@@ -44,8 +44,8 @@ class UniformLine final : public CentreLine {
  private:
   double potential(double x) const;
   double half_width(double x) const { return taper_.half_width_m(x); }
-  Phase phase(double x) const;
-  Phase linear_phase(double x) const;
+  PhaseIntegral phase(double x) const;
+  PhaseIntegral linear_phase(double x) const;
   void find_turning();
   void tabulate();
 
@@ -116,7 +116,7 @@ void UniformLine::tabulate() {
   }
 }
 
-Phase UniformLine::linear_phase(double x) const {
+PhaseIntegral UniformLine::linear_phase(double x) const {
   const auto& linear = std::get<LinearTaper>(taper_.form());
   const double mu = std::sqrt(equation_.b / (linear.slope * linear.slope) + equation_.c);
   const double z = k_ * half_width(x) / linear.slope;
@@ -125,7 +125,7 @@ Phase UniformLine::linear_phase(double x) const {
   return {integral, k_ * k_ * (z - mu) * (z + mu) / (z * z)};
 }
 
-Phase UniformLine::phase(double x) const {
+PhaseIntegral UniformLine::phase(double x) const {
   if (taper_.apex_m()) return linear_phase(x);
   const std::size_t side = x < turning_m_ ? 0 : 1;
   const double sign = side == 0 ? -1 : 1;
@@ -148,7 +148,7 @@ Scaled UniformLine::value(double x) const {
   double zeta = -distance;               // Ai(-zeta)
   double amplitude = 1 / std::sqrt(k0);  // limit of (zeta/p)^(1/4) at the turning point
   if (std::abs(distance) > 1e-4) {
-    const Phase here = phase(x);
+    const PhaseIntegral here = phase(x);
     const double size = std::pow(1.5 * here.integral, 2.0 / 3);
     zeta = distance < 0 ? size : -size;
     amplitude = std::pow(size / std::abs(here.p), 0.25);

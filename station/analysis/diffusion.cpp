@@ -9,7 +9,6 @@ namespace turnpoint::analysis {
 
 namespace {
 
-constexpr double s = kDiffusionScale;
 constexpr double kNearChance = 1e-3;  ///< of Pc from 1/2: there L^3 loses its digits
 
 /// Variance of the decision time is (a / s)^4 h(L).
@@ -54,14 +53,14 @@ EzResult ez_diffusion(const EzMoments& moments) {
   const double p = corrected(moments), e = p - 0.5, variance = moments.variance_s2;
   EzDiffusion result;
   if (std::abs(e) < kNearChance) {
-    result.drift = s * e * std::pow(32 / (3 * variance), 0.25);
-    result.boundary = s * std::pow(24 * variance, 0.25);
+    result.drift = kDiffusionScale * e * std::pow(32 / (3 * variance), 0.25);
+    result.boundary = kDiffusionScale * std::pow(24 * variance, 0.25);
     result.nondecision_s = moments.mean_s - std::sqrt(24 * variance) / 4;
   } else {
     const double L = logit(p), x = L * (L * p * p - L * p + p - 0.5) / variance;
-    result.drift = std::copysign(s * std::pow(x, 0.25), e);
-    result.boundary = s * s * L / result.drift;
-    const double y = -result.drift * result.boundary / (s * s);
+    result.drift = std::copysign(kDiffusionScale * std::pow(x, 0.25), e);
+    result.boundary = kDiffusionScale * kDiffusionScale * L / result.drift;
+    const double y = -result.drift * result.boundary / (kDiffusionScale * kDiffusionScale);
     const double decision_s = result.boundary / (2 * result.drift) * (1 - std::exp(y)) / (1 + std::exp(y));
     result.nondecision_s = moments.mean_s - decision_s;
   }
@@ -94,12 +93,12 @@ SharedEzResult shared_ez_diffusion(const std::vector<EzMoments>& conditions) {
     return result;
   }
   SharedEz shared;
-  shared.boundary = s * std::pow(sum_power / sum_weight, 0.25);
+  shared.boundary = kDiffusionScale * std::pow(sum_power / sum_weight, 0.25);
   shared.log_boundary_sd = 0.25 / std::sqrt(sum_weight);
-  const double unit = shared.boundary * shared.boundary / (s * s);
+  const double unit = shared.boundary * shared.boundary / (kDiffusionScale * kDiffusionScale);
   double sum = 0, total = 0;
   for (std::size_t i = 0; i < conditions.size(); ++i) {
-    shared.drift.push_back(s * s * L[i] / shared.boundary);
+    shared.drift.push_back(kDiffusionScale * kDiffusionScale * L[i] / shared.boundary);
     if (weight[i] == 0) continue;
     const double w = conditions[i].proportion_correct * conditions[i].trials / conditions[i].variance_s2;
     sum += w * (conditions[i].mean_s - unit * m(L[i]));

@@ -7,9 +7,6 @@ namespace turnpoint::analysis {
 
 namespace {
 
-// Keeps logarithms finite where a model probability reaches 0 or 1 in rounding; far below any count's reach.
-constexpr double kFloor = 1e-12;
-
 /// Solves the damped system for the free parameters by Cholesky; false where it is not positive definite.
 bool solve(std::array<std::array<double, 4>, 4> a, std::array<double, 4> b, const std::array<bool, 4>& free,
            std::array<double, 4>& x) {
@@ -48,14 +45,15 @@ Theta Likelihood::project(Theta theta) const {
 Likelihood::Anchor Likelihood::anchor(const Theta& theta) const {
   if (!anchor_) return {};
   const double height = 1 - theta[3] - theta[2];
-  const double inside = std::clamp((*anchor_ - theta[3]) / height, kFloor, 1 - kFloor);
+  const double inside = std::clamp((*anchor_ - theta[3]) / height, kProbabilityFloor, 1 - kProbabilityFloor);
   const double z = core_inverse(function_, inside), slope = core_derivative(function_, z);
   return {z, inside / height / slope, (inside - 1) / height / slope};
 }
 
 double Likelihood::probability(const Theta& theta, const Anchor& at, double u) const {
   const double z = std::exp(theta[1]) * (u - theta[0]) + at.z;
-  return std::clamp(theta[3] + (1 - theta[3] - theta[2]) * core(function_, z), kFloor, 1 - kFloor);
+  return std::clamp(theta[3] + (1 - theta[3] - theta[2]) * core(function_, z), kProbabilityFloor,
+                    1 - kProbabilityFloor);
 }
 
 double Likelihood::negative_log(const Theta& theta) const {

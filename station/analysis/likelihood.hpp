@@ -7,6 +7,9 @@
 
 namespace turnpoint::analysis {
 
+/// Keeps logarithms finite where a probability reaches 0 or 1 in rounding.
+constexpr double kProbabilityFloor = 1e-12;
+
 /// Threshold on the axis, ln rate, lapse, guess: the optimiser's parameters. A parameter with equal bounds is
 /// fixed; a tied guess follows the lapse.
 using Theta = std::array<double, 4>;

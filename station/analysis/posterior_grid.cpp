@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/analysis/likelihood.hpp"
+
 namespace turnpoint::analysis {
 
 namespace {
 
-/// Keeps logarithms finite where a probability reaches 0 or 1 in rounding.
-constexpr double kFloor = 1e-12;
 /// Cells whose profile likelihood lies so far below the largest are left out: 4.2 standard deviations.
 constexpr double kNegligible_nats = 9;
 /// Half the 95 % point of chi squared with one degree of freedom.
@@ -80,7 +80,8 @@ void PosteriorGrid::add_log_likelihoods(const std::vector<double>& between) {
   for (const auto& ends : ends_) {
     double sum = 0;
     for (std::size_t i = 0; i < between.size(); ++i) {
-      const double p = std::clamp(ends.low + ends.range * between[i], kFloor, 1 - kFloor);
+      const double p =
+          std::clamp(ends.low + ends.range * between[i], kProbabilityFloor, 1 - kProbabilityFloor);
       const double misses = counts_.trials[i] - counts_.positive[i];
       if (counts_.positive[i] > 0) sum += counts_.positive[i] * std::log(p);
       if (misses > 0) sum += misses * std::log(1 - p);

@@ -24,10 +24,10 @@
 namespace turnpoint::app {
 namespace {
 
-using Status = Check::Status;
+using Status = panel::Check::Status;
 
 // Two and a half seconds of silence, to see the device's own clock; longer where its time stamps are coarse.
-Check measured_clock(drive::Stream& stream) {
+panel::Check measured_clock(drive::Stream& stream) {
   for (int k = 0; k < 220; ++k) {
     drive::sleep_until_ns(drive::monotonic_ns() + 100'000'000);
     while (stream.poll()) {
@@ -48,7 +48,7 @@ Check measured_clock(drive::Stream& stream) {
 
 // A PCM512x mutes its analogue side after 1024 frames of zeros, 5 ms (TI, PCM512x data sheet, zero data
 // detection), and unmutes it at each onset. The stream of a session is zeros between stimuli.
-void converter_mute(const rig::Rig& rig, std::vector<Check>& checks) {
+void converter_mute(const rig::Rig& rig, std::vector<panel::Check>& checks) {
   const auto on = drive::card_switch(rig.output.uri, "Auto Mute Switch");
   if (!on) return;
   checks.push_back(
@@ -58,7 +58,7 @@ void converter_mute(const rig::Rig& rig, std::vector<Check>& checks) {
        *on ? "amixer -c CARD sset 'Auto Mute' off, then sudo alsactl store" : ""});
 }
 
-void converter(const rig::Rig& rig, std::vector<Check>& checks) {
+void converter(const rig::Rig& rig, std::vector<panel::Check>& checks) {
   if (!rig.output.uri.starts_with("alsa:")) {
     checks.push_back({"converter", Status::ok, rig.output.uri + " (no converter)", ""});
     return;
@@ -83,7 +83,7 @@ void converter(const rig::Rig& rig, std::vector<Check>& checks) {
 }
 
 // A rig file begins with a simulated panel: easily forgotten beside a real converter.
-Check touch(const rig::Rig& rig) {
+panel::Check touch(const rig::Rig& rig) {
   auto check = panel::check_touch("touch", *rig.touch_uri);
   if (check.status == Status::ok && *rig.touch_uri == "sim:" && rig.output.uri.starts_with("alsa:"))
     return {"touch", Status::warning, "simulated: answers by touch have no kernel time",
@@ -91,7 +91,7 @@ Check touch(const rig::Rig& rig) {
   return check;
 }
 
-void rights(std::vector<Check>& checks) {
+void rights(std::vector<panel::Check>& checks) {
   rlimit priority{}, memory{};
   ::getrlimit(RLIMIT_RTPRIO, &priority);
   ::getrlimit(RLIMIT_MEMLOCK, &memory);
@@ -108,7 +108,7 @@ void rights(std::vector<Check>& checks) {
        locked ? "" : "LimitMEMLOCK=infinity in the service, or @audio - memlock unlimited in limits.d"});
 }
 
-void display(std::vector<Check>& checks) {
+void display(std::vector<panel::Check>& checks) {
   std::error_code ignored;
   const bool session = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
   const bool direct = !screen_card().empty() || std::filesystem::exists("/dev/fb0", ignored);
@@ -121,7 +121,7 @@ void display(std::vector<Check>& checks) {
 }
 
 // On a desktop its server hands touches on; a bare screen takes them from the devices.
-void input(std::vector<Check>& checks) {
+void input(std::vector<panel::Check>& checks) {
   if (std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY")) return;
   const auto devices = panel::try_input_devices();
   if (!devices.refused.empty())
@@ -138,7 +138,7 @@ void input(std::vector<Check>& checks) {
          fmt::format("{} open for reading and writing, as the screen needs them", devices.opened), ""});
 }
 
-void disk(const std::string& path, std::vector<Check>& checks) {
+void disk(const std::string& path, std::vector<panel::Check>& checks) {
   std::filesystem::path existing = std::filesystem::absolute(path);
   std::error_code ignored;
   while (!std::filesystem::exists(existing, ignored) && existing.has_relative_path())
@@ -159,7 +159,7 @@ void disk(const std::string& path, std::vector<Check>& checks) {
                       : "give the user the right to write there"});
 }
 
-void clock(std::vector<Check>& checks) {
+void clock(std::vector<panel::Check>& checks) {
   std::ifstream file("/sys/devices/system/clocksource/clocksource0/current_clocksource");
   std::string source = "unknown";
   file >> source;
@@ -177,7 +177,7 @@ void clock(std::vector<Check>& checks) {
 
 }  // namespace
 
-Check check_swap(const std::string& swaps) {
+panel::Check check_swap(const std::string& swaps) {
   std::ifstream file(swaps);
   if (!file) return {"swap", Status::warning, swaps + " cannot be read", "look with: swapon --show"};
   std::string line, active;
@@ -192,7 +192,7 @@ Check check_swap(const std::string& swaps) {
       "/etc/rpi/swap.conf; elsewhere: sudo swapoff -a, and take swap out of /etc/fstab; then restart"};
 }
 
-Check check_watchdog(const std::string& folder) {
+panel::Check check_watchdog(const std::string& folder) {
   const char* const mend =
       "sudo install -D -m 644 /usr/share/turnpoint/system/watchdog.conf "
       "/etc/systemd/system.conf.d/turnpoint-watchdog.conf, then restart";
@@ -205,8 +205,8 @@ Check check_watchdog(const std::string& folder) {
   return {"hardware watchdog", Status::ok, state, ""};
 }
 
-std::vector<Check> examine(const rig::Rig& rig, const std::string& data_path) {
-  std::vector<Check> checks;
+std::vector<panel::Check> examine(const rig::Rig& rig, const std::string& data_path) {
+  std::vector<panel::Check> checks;
   converter(rig, checks);
   converter_mute(rig, checks);
   const auto lines = [&checks](const char* device, const std::string& uri) {
@@ -229,9 +229,9 @@ std::vector<Check> examine(const rig::Rig& rig, const std::string& data_path) {
   return checks;
 }
 
-bool fit_for_use(const std::vector<Check>& checks) {
+bool fit_for_use(const std::vector<panel::Check>& checks) {
   return std::none_of(checks.begin(), checks.end(),
-                      [](const Check& check) { return check.status == Status::failed; });
+                      [](const panel::Check& check) { return check.status == Status::failed; });
 }
 
 }  // namespace turnpoint::app

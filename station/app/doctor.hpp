@@ -7,23 +7,22 @@
 
 namespace turnpoint::app {
 
-using panel::Check;
 using panel::try_input_devices;
 
 /// Looks at everything a session on this rig depends on: converter (rate, type, depth, measured clock: two
-/// seconds of silence), GPIO lines, touch, display, input devices, real-time rights, swap, watchdog, disk, clock. Changes nothing; the
-/// amplifier stays off. `data_path` is where databases go.
-std::vector<Check> examine(const rig::Rig& rig, const std::string& data_path);
+/// seconds of silence), GPIO lines, touch, display, input devices, real-time rights, swap, watchdog, disk,
+/// clock. Changes nothing; the amplifier stays off. `data_path` is where databases go.
+std::vector<panel::Check> examine(const rig::Rig& rig, const std::string& data_path);
 
 /// Whether the machine swaps: a page that has to come back from a card takes longer than a buffer lasts.
 /// `swaps` is the kernel's list.
-Check check_swap(const std::string& swaps = "/proc/swaps");
+panel::Check check_swap(const std::string& swaps = "/proc/swaps");
 
 /// Whether the hardware watchdog is fed, which resets a kernel that hangs. `folder` is where the kernel lists
 /// them.
-Check check_watchdog(const std::string& folder = "/sys/class/watchdog");
+panel::Check check_watchdog(const std::string& folder = "/sys/class/watchdog");
 
 /// True where nothing failed; warnings do not count.
-bool fit_for_use(const std::vector<Check>& checks);
+bool fit_for_use(const std::vector<panel::Check>& checks);
 
 }  // namespace turnpoint::app

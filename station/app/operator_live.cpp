@@ -237,7 +237,7 @@ void LiveView::show(const Begun& begun) {
   state_.scene.clear();
   state_.surfaces.clear();
   peak_displacement_m_.reset();
-  std::vector<Look> looks;
+  std::vector<SceneLook> looks;
   for (const auto& interval : begun.plans)
     for (const auto& plan : interval) looks.push_back(look_at(plan, spec.factors, planner_));
   for (const auto& look : looks) {

@@ -20,13 +20,11 @@ namespace turnpoint::app {
 
 namespace {
 
-using analysis::Interval;
-
 /// One number that one session found.
 struct Finding {
   std::string source, parameter, unit;
   double value = 0;
-  std::optional<Interval> interval;
+  std::optional<analysis::Interval> interval;
 };
 
 struct Outcome {
@@ -42,7 +40,7 @@ std::string of(const std::string& what, const std::string& instruction) {
   return instruction.empty() ? what : what + " " + instruction;
 }
 
-std::optional<Interval> interval_of(const std::optional<analysis::ParameterInterval>& found) {
+std::optional<analysis::Interval> interval_of(const std::optional<analysis::ParameterInterval>& found) {
   return found ? std::optional(found->interval) : std::nullopt;
 }
 
@@ -209,7 +207,7 @@ class Truths {
   std::vector<Finding> truths_;
 };
 
-void finish(Recovery& entry, const std::vector<Interval>& intervals) {
+void finish(Recovery& entry, const std::vector<analysis::Interval>& intervals) {
   const auto n = static_cast<double>(entry.estimates.size());
   entry.heavy_tailed = heavy_tailed(entry.parameter);
   entry.mean = std::accumulate(entry.estimates.begin(), entry.estimates.end(), 0.0) / n;
@@ -237,7 +235,7 @@ void finish(Recovery& entry, const std::vector<Interval>& intervals) {
 std::vector<Recovery> recover(const protocol::Protocol& protocol, const PowerOptions& options,
                               const std::vector<Outcome>& outcomes) {
   std::vector<Recovery> recoveries;
-  std::vector<std::vector<Interval>> intervals;
+  std::vector<std::vector<analysis::Interval>> intervals;
   for (const auto& outcome : outcomes)
     for (const auto& finding : outcome.findings) {
       auto& entry = entry_for(finding, recoveries);

@@ -51,7 +51,7 @@ std::optional<Knob> knob_of(const protocol::Factor& factor) {
 }
 
 /// The look in words.
-void describe(Look& look) {
+void describe(SceneLook& look) {
   const auto& plan = look.plan;
   look.facts = {{"Boundary", in_mm(plan.boundary_m) + " (" + physics::format(plan.scene.edge) + ")"},
                 {"Model", plan.reason.empty() ? std::string(physics::name(plan.model)) : plan.reason},
@@ -113,8 +113,8 @@ std::vector<Knob> Preview::knobs(const std::string& scene) const {
   return knobs;
 }
 
-Look Preview::look(const std::string& scene, const protocol::Factors& factors) {
-  Look look;
+SceneLook Preview::look(const std::string& scene, const protocol::Factors& factors) {
+  SceneLook look;
   look.scene = scene;
   look.factors = factors;
   if (!protocol_.scenes.count(scene)) throw std::out_of_range("no scene named \"" + scene + "\"");
@@ -158,8 +158,8 @@ protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vec
   return factors;
 }
 
-Look look_at(scene::DrivePlan planned, protocol::Factors factors, scene::Planner& planner) {
-  Look look;
+SceneLook look_at(scene::DrivePlan planned, protocol::Factors factors, scene::Planner& planner) {
+  SceneLook look;
   look.scene = planned.scene.name;
   look.factors = std::move(factors);
   look.plan = std::move(planned);

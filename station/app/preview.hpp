@@ -24,7 +24,7 @@ struct Knob {
 };
 
 /// What a scene is on the surface, for eyes: plan, profile, and both in words.
-struct Look {
+struct SceneLook {
   std::string scene;
   protocol::Factors factors;
   std::string problem;  ///< why this rig cannot present it; then everything below is empty
@@ -53,7 +53,7 @@ class Preview {
 
   /// Plans the scene; what the rig cannot do is the look's problem, not an exception. A zone's inverse design
   /// takes up to a second, everything else some milliseconds. Throws std::out_of_range for an unknown scene.
-  Look look(const std::string& scene, const protocol::Factors& factors);
+  SceneLook look(const std::string& scene, const protocol::Factors& factors);
 
  private:
   protocol::Protocol protocol_;
@@ -67,6 +67,6 @@ protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vec
                               std::vector<std::string>& assumed);
 
 /// A planned scene for eyes: its profile by the planner that made it, and both in words.
-Look look_at(scene::DrivePlan plan, protocol::Factors factors, scene::Planner& planner);
+SceneLook look_at(scene::DrivePlan plan, protocol::Factors factors, scene::Planner& planner);
 
 }  // namespace turnpoint::app

@@ -27,12 +27,12 @@ constexpr double kName_px = 14, kNameAbove_px = 20;  // the boundary's position,
 /// From this height on a drawing of the surface says what it shows.
 constexpr double kCaptionFrom_px = 165;
 
-void require_plan(const Look& look) {
+void require_plan(const SceneLook& look) {
   if (!look.problem.empty() || look.profile.x_m.size() < 2)
     throw std::invalid_argument("scene " + look.scene + " has no plan to draw: " + look.problem);
 }
 
-std::optional<double> mark_of(const Look& look) {
+std::optional<double> mark_of(const SceneLook& look) {
   const auto found = look.factors.find("mark_mm");
   if (found == look.factors.end()) return std::nullopt;
   const auto* value = std::get_if<double>(&found->second);
@@ -77,7 +77,7 @@ Place place_on(const rig::Rig& rig, double width_px, double height_px) {
   return at;
 }
 
-void draw_heat(plot::Svg& svg, const Look& look, const Place& at) {
+void draw_heat(plot::Svg& svg, const SceneLook& look, const Place& at) {
   const auto& profile = look.profile;
   const double top = *std::max_element(profile.displacement_m.begin(), profile.displacement_m.end());
   for (std::size_t i = 0; i + 1 < profile.x_m.size(); ++i) {
@@ -109,7 +109,7 @@ void draw_transducer(plot::Svg& svg, const Place& at) {
 }
 
 /// The mark where the participant sees it, its name on the side that is away from the boundary.
-void draw_mark(plot::Svg& svg, const Look& look, const Place& at) {
+void draw_mark(plot::Svg& svg, const SceneLook& look, const Place& at) {
   const auto mark = mark_of(look);
   if (!mark || *mark <= 0 || *mark >= at.length_m) return;
   const auto [x, y] = at.above(*mark, 3);
@@ -120,7 +120,7 @@ void draw_mark(plot::Svg& svg, const Look& look, const Place& at) {
 }
 
 /// Where the boundary's name has its lower end: above the mark and its name, where both would meet.
-double boundary_name_y(const Look& look, const Place& at, const std::string& name) {
+double boundary_name_y(const SceneLook& look, const Place& at, const std::string& name) {
   const double boundary = *look.plan.boundary_m, own = at.above(boundary).second;
   const auto mark = mark_of(look);
   if (!mark) return own - kNameAbove_px;
@@ -129,7 +129,7 @@ double boundary_name_y(const Look& look, const Place& at, const std::string& nam
   return (near ? std::min(own, at.above(*mark).second) : own) - kNameAbove_px;
 }
 
-void draw_boundary(plot::Svg& svg, const Look& look, const Place& at) {
+void draw_boundary(plot::Svg& svg, const SceneLook& look, const Place& at) {
   for (const auto& tone : look.plan.tones)
     if (tone.turning_point_m)
       svg.line(at.below(*tone.turning_point_m, -0.4 * at.half(*tone.turning_point_m)),
@@ -159,7 +159,7 @@ Drawing drawing_of(plot::Figure figure) {
   };
 }
 
-Drawing drawing_of_surface(const Look& look, const rig::Rig& rig) {
+Drawing drawing_of_surface(const SceneLook& look, const rig::Rig& rig) {
   require_plan(look);
   return [look, rig](double width_px, double height_px) {
     // Below that its scale and its labels have no room.
@@ -168,7 +168,7 @@ Drawing drawing_of_surface(const Look& look, const rig::Rig& rig) {
   };
 }
 
-std::string surface_svg(const Look& look, const rig::Rig& rig, double width_px, double height_px) {
+std::string surface_svg(const SceneLook& look, const rig::Rig& rig, double width_px, double height_px) {
   require_plan(look);
   plot::Svg svg(width_px, height_px, "Surface from above, scene " + look.scene);
   svg.rectangle({0, 0}, width_px, height_px, fill(kPaper));
@@ -184,7 +184,7 @@ std::string surface_svg(const Look& look, const rig::Rig& rig, double width_px, 
   return svg.finish();
 }
 
-plot::Figure profile_figure(const std::vector<Look>& looks) {
+plot::Figure profile_figure(const std::vector<SceneLook>& looks) {
   if (looks.empty()) throw std::invalid_argument("no scene to draw");
   plot::Figure figure;
   figure.title = "Displacement and friction";
@@ -222,7 +222,7 @@ plot::Figure profile_figure(const std::vector<Look>& looks) {
   return figure;
 }
 
-plot::Figure spectrum_figure(const Look& look) {
+plot::Figure spectrum_figure(const SceneLook& look) {
   require_plan(look);
   plot::Points points;
   double most = 0;

@@ -17,17 +17,18 @@ namespace turnpoint::app {
 using Drawing = std::function<std::string(double width_px, double height_px)>;
 Drawing drawing_of(plot::Figure figure);
 /// The same of surface_svg().
-Drawing drawing_of_surface(const Look& look, const rig::Rig& rig);
+Drawing drawing_of_surface(const SceneLook& look, const rig::Rig& rig);
 
 /// The surface from above, to scale along its length: a heat map of the displacement, the boundary with its
 /// model error, turning points of the tones, and a mark where one is asked about. An SVG document.
-std::string surface_svg(const Look& look, const rig::Rig& rig, double width_px = 860, double height_px = 190);
+std::string surface_svg(const SceneLook& look, const rig::Rig& rig, double width_px = 860,
+                        double height_px = 190);
 
 /// Displacement and friction along the centre line, with the boundary; several scenes in the order presented,
 /// numbered. Throws std::invalid_argument for no look at all.
-plot::Figure profile_figure(const std::vector<Look>& looks);
+plot::Figure profile_figure(const std::vector<SceneLook>& looks);
 
 /// The drive's tones: displacement of the drive edge against frequency.
-plot::Figure spectrum_figure(const Look& look);
+plot::Figure spectrum_figure(const SceneLook& look);
 
 }  // namespace turnpoint::app

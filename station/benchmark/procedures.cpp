@@ -114,7 +114,7 @@ std::vector<std::vector<Cell>> peer(const std::string& name, const Shape& shape,
 }
 
 /// Time per trial against the size of the grid, one series a program.
-Picture picture_of(const Table& table) {
+Picture picture_of_procedures(const Table& table) {
   plot::Panel panel;
   panel.title = "One trial of QUEST+: median (marker) to 99th percentile";
   std::vector<double> sizes, times;
@@ -156,7 +156,7 @@ Report bench_procedures() {
     for (auto& row : peer("jsQuestPlus", shape, run_node(jsquestplus_program(shape))))
       report.table.rows.push_back(std::move(row));
   }
-  report.pictures.push_back(picture_of(report.table));
+  report.pictures.push_back(picture_of_procedures(report.table));
   return report;
 }
 

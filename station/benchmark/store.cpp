@@ -6,7 +6,7 @@ namespace turnpoint::benchmark {
 
 namespace {
 
-Picture picture_of(const Table& table) {
+Picture picture_of_store(const Table& table) {
   plot::Panel panel;
   panel.title = "A durable trial: median (marker) to 99th percentile";
   std::vector<double> times;
@@ -38,7 +38,7 @@ Report bench_store(const std::string& directory, int trials) {
   for (const auto& row : store::bench(directory, trials))
     report.table.rows.push_back(
         {row.what, static_cast<double>(row.trials), row.median_ms, row.p99_ms, row.ratio});
-  report.pictures.push_back(picture_of(report.table));
+  report.pictures.push_back(picture_of_store(report.table));
   return report;
 }
 

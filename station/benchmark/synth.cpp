@@ -31,7 +31,7 @@ plot::Panel panel_of(const char* title, const drive::SynthBenchmark& measured, s
 }
 
 /// Error against the time since the start; cost per tone and frame in the legend.
-Picture picture_of(const drive::SynthBenchmark& measured) {
+Picture picture_of_synth(const drive::SynthBenchmark& measured) {
   constexpr std::size_t exact = 6;  // our two first, then those of others that do not age
   plot::Figure figure;
   figure.title = "Ways of making a sinusoid";
@@ -55,7 +55,7 @@ Report bench_synth() {
                   "a time, and cost",
                   measured.frequency_Hz, measured.rate_Hz, measured.processor),
       {{"method", "ns_per_tone_frame"}, {}},
-      {picture_of(measured)}};
+      {picture_of_synth(measured)}};
   for (const double time : measured.times_s)
     report.table.columns.push_back(fmt::format("error_dB_{}_s", time));
   for (const auto& method : measured.methods) {

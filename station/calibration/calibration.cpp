@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <stdexcept>
 
 #include "station/rig/csv.hpp"
@@ -14,8 +13,6 @@
 
 namespace turnpoint::calibration {
 namespace {
-
-constexpr double degree = std::numbers::pi / 180;
 
 std::optional<std::chrono::sys_days> parsed_date(const std::string& text) {
   int year = 0, month = 0, day = 0;
@@ -44,7 +41,7 @@ Calibration fit_measurements(const Measurements& measurements) {
           fmt::format("sweep at {} of full scale; allowed above 0 to 1", sweep.full_scale));
     sweeps.emplace_back();
     for (const auto& row : table(sweep.csv, {"frequency_Hz", "displacement_um", "phase_deg"}))
-      sweeps.back().push_back({row[0], row[1] * 1e-6 / sweep.full_scale, row[2] * degree});
+      sweeps.back().push_back({row[0], row[1] * 1e-6 / sweep.full_scale, row[2] * kDegree_rad});
   }
   std::vector<BoundaryPoint> boundaries;
   for (const auto& row : table(measurements.boundaries_csv, {"frequency_Hz", "boundary_mm", "sd_mm"}))

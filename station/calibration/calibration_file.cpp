@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <numbers>
 
 #include "station/calibration/calibration.hpp"
 #include "station/text/number.hpp"
@@ -12,7 +11,6 @@ namespace {
 using text::exact;
 using text::Range;
 using Ends = text::Range::Ends;
-constexpr double degree = std::numbers::pi / 180;
 constexpr double large = 1e300;
 
 std::string quoted(const std::string& plain) {
@@ -49,10 +47,10 @@ std::string transducer_toml(const Calibration::Transducer& transducer) {
   std::string out =
       fmt::format("\n[[transducer]]\nname = {}\nband_kHz = [{}, {}]\nresidual_dB = {}\nresidual_deg = {}\n",
                   quoted(transducer.name), exact(fit.low_Hz * 1e-3), exact(fit.high_Hz * 1e-3),
-                  exact(fit.residual_dB), exact(fit.residual_rad / degree));
+                  exact(fit.residual_dB), exact(fit.residual_rad / kDegree_rad));
   out += numbers("frequency_Hz", fit.points, [](const auto& p) { return p.frequency_Hz; });
   out += numbers("um_per_full_scale", fit.points, [](const auto& p) { return p.m_per_full_scale * 1e6; });
-  return out + numbers("phase_deg", fit.points, [](const auto& p) { return p.phase_rad / degree; });
+  return out + numbers("phase_deg", fit.points, [](const auto& p) { return p.phase_rad / kDegree_rad; });
 }
 
 std::string delay_toml(const char* name, const std::optional<Delay>& delay) {
@@ -107,7 +105,7 @@ Calibration::Transducer read_transducer(const text::Value& table, text::Findings
     transducer.response.high_Hz = band->second * 1e3;
   }
   transducer.response.residual_dB = reader.number("residual_dB", {0, large}, 0);
-  transducer.response.residual_rad = reader.number("residual_deg", {0, large}, 0) * degree;
+  transducer.response.residual_rad = reader.number("residual_deg", {0, large}, 0) * kDegree_rad;
   const auto frequency = reader.numbers("frequency_Hz", {0, 1e6, Ends::open_low, "Hz"}, 2);
   const auto response = reader.numbers("um_per_full_scale", {0, 1e6, Ends::open_low, "um"}, 2);
   const auto phase = reader.numbers("phase_deg", {-1e6, 1e6}, 2);
@@ -115,7 +113,7 @@ Calibration::Transducer read_transducer(const text::Value& table, text::Findings
       same_length(reader, "phase_deg", phase.size(), frequency.size()))
     for (std::size_t k = 0; k < frequency.size(); ++k) {
       if (k > 0 && frequency[k] <= frequency[k - 1]) reader.problem("frequency_Hz", "the values do not rise");
-      transducer.response.points.push_back({frequency[k], response[k] * 1e-6, phase[k] * degree});
+      transducer.response.points.push_back({frequency[k], response[k] * 1e-6, phase[k] * kDegree_rad});
     }
   reader.finish();
   return transducer;

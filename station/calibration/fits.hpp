@@ -1,9 +1,13 @@
 #pragma once
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace turnpoint::calibration {
+
+/// One degree in radians: files have degrees, the program radians.
+constexpr double kDegree_rad = std::numbers::pi / 180;
 
 /// A boundary that was seen or felt: where, for which frequency; `sd_m` is its standard uncertainty (0: not
 /// known).

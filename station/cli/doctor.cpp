@@ -14,13 +14,13 @@ namespace turnpoint::cli {
 
 namespace {
 
-const char* word(app::Check::Status status) {
+const char* word(panel::Check::Status status) {
   switch (status) {
-    case app::Check::Status::ok:
+    case panel::Check::Status::ok:
       return "ok";
-    case app::Check::Status::warning:
+    case panel::Check::Status::warning:
       return "warning";
-    case app::Check::Status::failed:
+    case panel::Check::Status::failed:
       return "failed";
   }
   return "?";

@@ -15,7 +15,7 @@ namespace turnpoint::drive {
 namespace {
 
 constexpr std::size_t block = 384;
-constexpr double two_pi = 2 * std::numbers::pi;
+constexpr double kTwoPi = 2 * std::numbers::pi;
 
 // What a method fills, each in the width that it works in, so that no conversion is timed with it.
 struct Block {
@@ -63,14 +63,14 @@ Method libm(std::uint64_t increment) {
             for (std::size_t n = 0; n < block; ++n) {
               const auto phase =
                   static_cast<std::int64_t>(increment * (static_cast<std::uint64_t>(frame) + n));
-              out.wide[n] = std::sin(static_cast<double>(phase) * (0x1p-64 * two_pi));
+              out.wide[n] = std::sin(static_cast<double>(phase) * (0x1p-64 * kTwoPi));
             }
           }};
 }
 
 Method table(std::uint64_t increment, int bits) {
   std::vector<double> values;
-  for (int k = 0; k <= 1 << bits; ++k) values.push_back(std::sin(two_pi * k / (1 << bits)));
+  for (int k = 0; k <= 1 << bits; ++k) values.push_back(std::sin(kTwoPi * k / (1 << bits)));
   return {"table of " + std::to_string(1 << bits) + ", linear",
           [=, values = std::move(values)](std::int64_t frame, Block& out) {
             for (std::size_t n = 0; n < block; ++n) {
@@ -86,7 +86,7 @@ Method growing_time(double frequency_Hz, int rate_Hz) {
   return {"sin(2 pi f t), t += dt, double",
           [=, t = 0.0](std::int64_t, Block& out) mutable {
             for (std::size_t n = 0; n < block; ++n, t += 1.0 / rate_Hz)
-              out.wide[n] = std::sin(two_pi * frequency_Hz * t);
+              out.wide[n] = std::sin(kTwoPi * frequency_Hz * t);
           },
           true};
 }
@@ -94,7 +94,7 @@ Method growing_time(double frequency_Hz, int rate_Hz) {
 Method growing_float_time(double frequency_Hz, int rate_Hz) {
   return {"sin(2 pi f t), float",
           [=](std::int64_t frame, Block& out) {
-            const auto w = static_cast<float>(two_pi * frequency_Hz);
+            const auto w = static_cast<float>(kTwoPi * frequency_Hz);
             for (std::size_t n = 0; n < block; ++n) {
               const auto t =
                   static_cast<float>((static_cast<double>(frame) + static_cast<double>(n)) / rate_Hz);
@@ -105,7 +105,7 @@ Method growing_float_time(double frequency_Hz, int rate_Hz) {
 }
 
 Method rotation(std::uint64_t increment) {
-  const double angle = static_cast<double>(increment) * 0x1p-64 * two_pi;
+  const double angle = static_cast<double>(increment) * 0x1p-64 * kTwoPi;
   return {
       "rotation, free running",
       [=, z = std::complex<double>(1, 0), step = std::polar(1.0, angle)](std::int64_t, Block& out) mutable {
@@ -117,7 +117,7 @@ Method rotation(std::uint64_t increment) {
 }
 
 Method reseeded_rotation(std::uint64_t increment) {
-  const double angle = static_cast<double>(increment) * 0x1p-64 * two_pi;
+  const double angle = static_cast<double>(increment) * 0x1p-64 * kTwoPi;
   return {"rotation, reseeded each block",
           [=, step = std::polar(1.0, angle)](std::int64_t frame, Block& out) {
             const std::uint64_t phase = increment * static_cast<std::uint64_t>(frame);

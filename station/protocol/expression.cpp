@@ -216,12 +216,11 @@ std::optional<Comparison> parse_comparison(const std::string& source, const text
 
 std::optional<Linear> linear_from(const text::Value& value, const std::string& key, const text::Range& range,
                                   const std::vector<Factor>& factors, text::Findings& findings) {
-  using Kind = text::Value::Kind;
   std::optional<Linear> result;
-  if (value.kind == Kind::string) {
+  if (value.kind == text::Value::Kind::string) {
     result = parse_linear(value.string, value.place, factors, findings);
     if (!result) return std::nullopt;
-  } else if (value.kind == Kind::number || value.kind == Kind::integer) {
+  } else if (value.kind == text::Value::Kind::number || value.kind == text::Value::Kind::integer) {
     result.emplace();
     result->constant = value.number;
     result->source = text::exact(value.number);

@@ -166,7 +166,7 @@ void erase(Value& table, const std::string& key) {
 }
 
 // A base's keys with the scene's own on top; `zone` and `tolerance` are laid over key by key.
-Value overlay(Value base, const Value& own) {
+Value laid_over(Value base, const Value& own) {
   const auto states = [&](const char* key) { return own.find(key) != nullptr; };
   if (states("displacement_um")) erase(base, "friction");
   if (states("friction")) erase(base, "displacement_um");
@@ -179,7 +179,7 @@ Value overlay(Value base, const Value& own) {
         below && below->value.kind == Value::Kind::table && entry.value.kind == Value::Kind::table;
     auto merged = entry;
     if (tables && (entry.key == "zone" || entry.key == "tolerance"))
-      merged.value = overlay(below->value, entry.value);
+      merged.value = laid_over(below->value, entry.value);
     erase(base, entry.key);
     base.entries.push_back(std::move(merged));
   }
@@ -207,7 +207,7 @@ class Resolver {
       if (own.find("friction_contrast_dB") && (own.find("zone") || own.find("friction")))
         reading_.findings.add(own.find("friction_contrast_dB")->place,
                               "both a contrast to the base and a friction of its own", "one of them");
-      table = overlay(*below, own);
+      table = laid_over(*below, own);
     }
     open_.erase(name);
     read(name, table, own);

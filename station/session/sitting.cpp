@@ -1,7 +1,6 @@
 #include "station/session/sitting.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "station/session/rows.hpp"
@@ -10,7 +9,6 @@ namespace turnpoint::session {
 
 namespace {
 
-constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 // A button that was pressed before anybody can have read a page does not turn it.
 constexpr std::int64_t kReading_ns = 500'000'000;
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "station/session/rows.hpp"
@@ -9,8 +8,6 @@
 namespace turnpoint::session {
 
 namespace {
-
-constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
 /// The answer that a button chooses: the one of its name, else left is the first, right the second.
 std::optional<int> answer_of(const std::string& button, const protocol::Task& task) {

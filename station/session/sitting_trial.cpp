@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -12,7 +11,6 @@ namespace turnpoint::session {
 
 namespace {
 
-constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 constexpr int kVoidsBeforeStop = 3;
 
 bool is_over(trial::Phase phase) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,6 +29,9 @@ struct ClockFit {
   double slope_ns_per_frame = 0;
   double residual_ns = 0;
 };
+
+/// A deadline that never comes.
+constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
 /// Time, drive, amplifier and inputs of one sitting. Two exist: real (CLOCK_MONOTONIC, a person) and virtual
 /// (a simulated observer, as fast as the machine goes); the session above is the same code on both. All on

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <deque>
-#include <limits>
 #include <utility>
 
 #include "station/session/schedule.hpp"
@@ -8,8 +7,6 @@
 namespace turnpoint::session {
 
 namespace {
-
-constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
 class VirtualStage : public Stage {
  public:

@@ -61,7 +61,7 @@ class PreviewController : public QObject {
  private:
   /// A look with its pictures, as the worker makes it.
   struct Drawn {
-    app::Look look;
+    app::SceneLook look;
     QVariant surface, profile, spectrum;
   };
   struct Wanted {
@@ -78,7 +78,7 @@ class PreviewController : public QObject {
   protocol::Factors factors_;
   int scene_ = 0;
   bool busy_ = false;
-  app::Look look_;
+  app::SceneLook look_;
   QVariant surface_, profile_, spectrum_;
   std::mutex mutex_;
   std::condition_variable_any arrived_;

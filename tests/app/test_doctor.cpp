@@ -5,7 +5,7 @@
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
-using Status = app::Check::Status;
+using Status = panel::Check::Status;
 
 TEST_CASE("the doctor fails where the machine swaps, and says how to turn it off", "[app][doctor]") {
   const TemporaryFolder folder;
