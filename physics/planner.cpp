@@ -77,7 +77,7 @@ Difference compare(const Surface& surface, const PlanRequest& request, const Pro
   return d;
 }
 
-// Evaluation on one 3 GHz core, from `bench physics`.
+// Evaluation on one 3 GHz core, from `turnpoint-bench physics`.
 double cost_s(const Surface& surface, double f, Model model, int points) {
   const double kl = wavenumber_per_m(surface, f) * surface.length_m;
   const bool plate = Dispersion(surface).clamped_bending();

@@ -51,7 +51,6 @@ void add_protocols(CommandLine& app, Context& context);
 void add_report(CommandLine& app, Context& context);
 void add_figures(CommandLine& app, Context& context);
 void add_power(CommandLine& app, Context& context);
-void add_bench(CommandLine& app, Context& context);
 void add_preview(CommandLine& app, Context& context);
 void add_station(CommandLine& app, Context& context);
 void add_operator_code(CommandLine& app, Context& context);

@@ -1,4 +1,4 @@
-#include "station/benchmark/report.hpp"
+#include "tests/benchmark/report.hpp"
 
 #include <fmt/format.h>
 

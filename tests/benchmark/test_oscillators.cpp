@@ -1,9 +1,9 @@
-#include "station/drive/synth_benchmark.hpp"
+#include "tests/benchmark/oscillators.hpp"
 #include "tests/support/catch.hpp"
 
-using namespace turnpoint::drive;
+using namespace turnpoint::benchmark;
 
-TEST_CASE("the integer phase does not age, other methods do", "[drive][benchmark]") {
+TEST_CASE("the integer phase does not age, other methods do", "[benchmark]") {
   const SynthBenchmark table = benchmark_synthesis();
   REQUIRE(table.methods.size() == 9);
   const auto& ours = table.methods[0].error_dB;

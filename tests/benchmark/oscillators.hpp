@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-namespace turnpoint::drive {
+namespace turnpoint::benchmark {
 
 /// One way of making a sinusoid: its largest error against the exact sine after a time, and what it costs.
 struct SynthMethod {
@@ -24,4 +24,4 @@ struct SynthBenchmark {
 /// float. Runs for about a second.
 SynthBenchmark benchmark_synthesis(double frequency_Hz = 19600.123, int rate_Hz = 192000);
 
-}  // namespace turnpoint::drive
+}  // namespace turnpoint::benchmark

@@ -1,12 +1,12 @@
-#include "station/benchmark/procedures.hpp"
+#include "tests/benchmark/procedures.hpp"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <sstream>
 
-#include "station/benchmark/scripts.hpp"
 #include "station/procedure/posterior.hpp"
+#include "tests/benchmark/scripts.hpp"
 
 namespace turnpoint::benchmark {
 
@@ -62,43 +62,10 @@ std::vector<Cell> own(const Shape& shape) {
           static_cast<double>(posterior.memory_bytes()) / 1e6};
 }
 
-/// Python that prints "version median p99" (ms) for the same grid and answers.
-std::string questplus_program(const Shape& shape) {
-  std::ostringstream text;
-  text << "import time, numpy as np, questplus as q\n"
-       << "from importlib.metadata import version\n"
-       << "p = q.QuestPlus(stim_domain=dict(intensity=np.linspace(-40, 0, " << shape.stimuli << ")),"
-       << "param_domain=dict(threshold=np.linspace(-40, 0, " << shape.thresholds << "),"
-       << "slope=np.linspace(.5, 5, " << shape.slopes << "), lower_asymptote=[.5],"
-       << "lapse_rate=np.linspace(.005, .04, " << shape.lapses << ")),"
-       << "outcome_domain=dict(response=['Y', 'N']), func='weibull', stim_scale='dB')\n"
-       << "t = []\n"
-       << "for i in range(8):\n"
-       << "    a = time.perf_counter(); s = p.next_stim\n"
-       << "    p.update(stim=s, outcome=dict(response='N' if i % 4 == 3 else 'Y'))\n"
-       << "    t.append(1e3 * (time.perf_counter() - a))\n"
-       << "print(version('questplus'), np.median(t), max(t))\n";
-  return text.str();
-}
-
-/// JavaScript that prints the same of jsQuestPlus, which keeps a table of stimuli times parameters.
-std::string jsquestplus_program(const Shape& shape) {
-  std::ostringstream text;
-  text << "const Q = require('jsquest-plus');\n"
-       << "const grid = (a, b, n) => Array.from({length: n}, (_, i) => a + (b - a) * i / (n - 1));\n"
-       << "const no = (x, t, s, g, l) => Q.weibull(x, t, s, g, l);\n"
-       << "const q = new Q({psych_func: [no, (...a) => 1 - no(...a)],"
-       << "stim_samples: [grid(-40, 0, " << shape.stimuli << ")],"
-       << "psych_samples: [grid(-40, 0, " << shape.thresholds << "), grid(.5, 5, " << shape.slopes
-       << "), [.5], grid(.005, .04, " << shape.lapses << ")]});\n"
-       << "const t = [];\n"
-       << "for (let i = 0; i < 8; ++i) {\n"
-       << "  const a = performance.now(), s = q.getStimParams(); q.update(s, i % 4 == 3 ? 0 : 1);\n"
-       << "  t.push(performance.now() - a);\n"
-       << "}\n"
-       << "t.sort((a, b) => a - b);\n"
-       << "console.log('2', (t[3] + t[4]) / 2, t[7]);\n";
-  return text.str();
+/// The grid as both peers' scripts take it: stimuli, thresholds, slopes, lapses.
+std::vector<std::string> arguments_of(const Shape& shape) {
+  return {std::to_string(shape.stimuli), std::to_string(shape.thresholds), std::to_string(shape.slopes),
+          std::to_string(shape.lapses)};
 }
 
 /// A row for another program from its line "version median p99"; none where it is absent.
@@ -151,9 +118,9 @@ Report bench_procedures() {
                 {}};
   for (const auto& shape : kShapes) {
     report.table.rows.push_back(own(shape));
-    for (auto& row : peer("questplus", shape, run_python(questplus_program(shape))))
+    for (auto& row : peer("questplus", shape, run_peer("questplus_trial.py", arguments_of(shape))))
       report.table.rows.push_back(std::move(row));
-    for (auto& row : peer("jsQuestPlus", shape, run_node(jsquestplus_program(shape))))
+    for (auto& row : peer("jsQuestPlus", shape, run_peer("jsquestplus_trial.js", arguments_of(shape))))
       report.table.rows.push_back(std::move(row));
   }
   report.pictures.push_back(picture_of_procedures(report.table));

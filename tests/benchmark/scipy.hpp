@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "station/benchmark/solvers.hpp"
+#include "tests/benchmark/solvers.hpp"
 
 namespace turnpoint::benchmark {
 

@@ -1,4 +1,4 @@
-#include "station/benchmark/solvers.hpp"
+#include "tests/benchmark/solvers.hpp"
 
 #include <algorithm>
 #include <array>

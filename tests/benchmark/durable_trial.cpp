@@ -1,4 +1,4 @@
-#include "station/store/bench.hpp"
+#include "tests/benchmark/durable_trial.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -12,7 +12,9 @@
 #include "station/store/session_log.hpp"
 #include "station/store/sqlite.hpp"
 
-namespace turnpoint::store {
+namespace turnpoint::benchmark {
+
+using namespace store;
 
 namespace {
 
@@ -127,7 +129,7 @@ struct Folder {
 
 }  // namespace
 
-std::vector<BenchRow> bench(const std::string& directory, int trials) {
+std::vector<DurableTrial> time_durable_trials(const std::string& directory, int trials) {
   if (trials < 1) throw std::invalid_argument("bench store: at least one trial");
   const Folder folder{directory + "/turnpoint-bench-" + new_uuid()};
   std::filesystem::create_directories(folder.path);
@@ -144,7 +146,7 @@ std::vector<BenchRow> bench(const std::string& directory, int trials) {
       const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
       times_ms[way].push_back(took.count());
     }
-  std::vector<BenchRow> table;
+  std::vector<DurableTrial> table;
   for (std::size_t way = 0; way < ways.size(); ++way)
     table.push_back(
         {ways[way].first, trials, at_quantile(times_ms[way], 0.5), at_quantile(times_ms[way], 0.99), 0});
@@ -152,4 +154,4 @@ std::vector<BenchRow> bench(const std::string& directory, int trials) {
   return table;
 }
 
-}  // namespace turnpoint::store
+}  // namespace turnpoint::benchmark

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "station/benchmark/report.hpp"
+#include "tests/benchmark/report.hpp"
 
 namespace turnpoint::benchmark {
 

@@ -1,9 +1,9 @@
 #include <cmath>
 
-#include "station/benchmark/physics.hpp"
-#include "station/benchmark/scripts.hpp"
-#include "station/benchmark/report.hpp"
-#include "station/benchmark/solvers.hpp"
+#include "tests/benchmark/physics.hpp"
+#include "tests/benchmark/report.hpp"
+#include "tests/benchmark/scripts.hpp"
+#include "tests/benchmark/solvers.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::benchmark;
@@ -58,8 +58,9 @@ TEST_CASE("a table is aligned for people and quoted for programs", "[benchmark]"
   CHECK(to_text(table) == "what    time_us\na, \"b\"      1.5\nc             -\n");
 }
 
-TEST_CASE("a Python program that fails gives no lines", "[benchmark]") {
-  CHECK(run_python("import a_package_that_nobody_has\nprint(1)").empty());
+TEST_CASE("a peer that is not installed gives no lines", "[benchmark]") {
+  CHECK(run_peer("no_such_script.py", {}).empty());
+  CHECK(run_peer("questplus_trial.py", {"not", "a", "grid"}).empty());
 }
 
 TEST_CASE("the pictures have a panel for each scene", "[benchmark]") {

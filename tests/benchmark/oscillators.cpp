@@ -1,4 +1,4 @@
-#include "station/drive/synth_benchmark.hpp"
+#include "tests/benchmark/oscillators.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,10 @@
 #include "station/drive/oscillator.hpp"
 #include "station/drive/sine.hpp"
 
-namespace turnpoint::drive {
+namespace turnpoint::benchmark {
+
+using namespace drive;
+
 namespace {
 
 constexpr std::size_t block = 384;
@@ -186,4 +189,4 @@ SynthBenchmark benchmark_synthesis(double frequency_Hz, int rate_Hz) {
   return result;
 }
 
-}  // namespace turnpoint::drive
+}  // namespace turnpoint::benchmark

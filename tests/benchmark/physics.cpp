@@ -1,4 +1,4 @@
-#include "station/benchmark/physics.hpp"
+#include "tests/benchmark/physics.hpp"
 
 #include <fmt/format.h>
 
@@ -12,9 +12,9 @@
 #include "physics/centre_line.hpp"
 #include "physics/field.hpp"
 #include "physics/modal_field.hpp"
-#include "station/benchmark/scipy.hpp"
-#include "station/benchmark/solvers.hpp"
-#include "station/benchmark/stopwatch.hpp"
+#include "tests/benchmark/scipy.hpp"
+#include "tests/benchmark/solvers.hpp"
+#include "tests/benchmark/stopwatch.hpp"
 
 namespace turnpoint::benchmark {
 

@@ -2,7 +2,7 @@
 #include <string>
 #include <vector>
 
-#include "station/benchmark/report.hpp"
+#include "tests/benchmark/report.hpp"
 
 namespace turnpoint::benchmark {
 

@@ -2,10 +2,10 @@
 #include <string>
 #include <vector>
 
-namespace turnpoint::store {
+namespace turnpoint::benchmark {
 
 /// One way of writing trials, and what a trial costs with it.
-struct BenchRow {
+struct DurableTrial {
   std::string what;
   int trials = 0;
   double median_ms = 0, p99_ms = 0;  ///< `presented` and the trial with its tones and events, both durable
@@ -15,7 +15,7 @@ struct BenchRow {
 /// Writes trials into databases below `directory` (its disk is what is measured), by turns through a session
 /// log and through bare SQLite calls: the same rows, transactions, WAL and synchronous FULL, but no triggers,
 /// checks or keys. For comparison also bare SQLite without waiting for the disk (synchronous OFF), which
-/// shows how much of the cost is the disk's. The files are removed. Throws StoreError.
-std::vector<BenchRow> bench(const std::string& directory, int trials);
+/// shows how much of the cost is the disk's. The files are removed. Throws store::StoreError.
+std::vector<DurableTrial> time_durable_trials(const std::string& directory, int trials);
 
-}  // namespace turnpoint::store
+}  // namespace turnpoint::benchmark

@@ -1,6 +1,6 @@
-#include "station/benchmark/store.hpp"
+#include "tests/benchmark/store.hpp"
 
-#include "station/store/bench.hpp"
+#include "tests/benchmark/durable_trial.hpp"
 
 namespace turnpoint::benchmark {
 
@@ -35,7 +35,7 @@ Report bench_store(const std::string& directory, int trials) {
                 "A trial with its tones and events, durable before the next, on the disk of " + directory,
                 {{"way", "trials", "median_ms", "p99_ms", "ratio"}, {}},
                 {}};
-  for (const auto& row : store::bench(directory, trials))
+  for (const auto& row : time_durable_trials(directory, trials))
     report.table.rows.push_back(
         {row.what, static_cast<double>(row.trials), row.median_ms, row.p99_ms, row.ratio});
   report.pictures.push_back(picture_of_store(report.table));

@@ -1,17 +1,16 @@
-#include "station/benchmark/synth.hpp"
+#include "tests/benchmark/synth.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "station/drive/synth_benchmark.hpp"
+#include "tests/benchmark/oscillators.hpp"
 
 namespace turnpoint::benchmark {
 
 namespace {
 
-plot::Panel panel_of(const char* title, const drive::SynthBenchmark& measured, std::size_t from,
-                     std::size_t to) {
+plot::Panel panel_of(const char* title, const SynthBenchmark& measured, std::size_t from, std::size_t to) {
   plot::Panel panel;
   panel.title = title;
   for (std::size_t m = from; m < std::min(to, measured.methods.size()); ++m) {
@@ -31,7 +30,7 @@ plot::Panel panel_of(const char* title, const drive::SynthBenchmark& measured, s
 }
 
 /// Error against the time since the start; cost per tone and frame in the legend.
-Picture picture_of_synth(const drive::SynthBenchmark& measured) {
+Picture picture_of_synth(const SynthBenchmark& measured) {
   constexpr std::size_t exact = 6;  // our two first, then those of others that do not age
   plot::Figure figure;
   figure.title = "Ways of making a sinusoid";
@@ -48,7 +47,7 @@ Picture picture_of_synth(const drive::SynthBenchmark& measured) {
 }  // namespace
 
 Report bench_synth() {
-  const auto measured = drive::benchmark_synthesis();
+  const auto measured = benchmark_synthesis();
   Report report{
       "synth",
       fmt::format("A tone of {} Hz at {} Hz, our loops by {}: largest error (dB re full scale) after "

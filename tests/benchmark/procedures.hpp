@@ -1,5 +1,5 @@
 #pragma once
-#include "station/benchmark/report.hpp"
+#include "tests/benchmark/report.hpp"
 
 namespace turnpoint::benchmark {
 

@@ -1,10 +1,10 @@
-#include "station/benchmark/intervals.hpp"
+#include "tests/benchmark/intervals.hpp"
 
 #include <cmath>
 #include <string>
 
 #include "station/analysis/psychometric_posterior.hpp"
-#include "station/benchmark/stopwatch.hpp"
+#include "tests/benchmark/stopwatch.hpp"
 
 namespace turnpoint::benchmark {
 

@@ -1,32 +1,14 @@
-#include "station/benchmark/scipy.hpp"
-
-#include <fmt/format.h>
-
-#include <sstream>
-
-#include "station/benchmark/scripts.hpp"
-
-namespace turnpoint::benchmark {
-
-namespace {
-
-/// What the program begins with: the problem's numbers, exactly.
-std::string numbers(const OneModeProblem& p) {
-  return fmt::format(
-      "k2 = complex({}, {}); b = {}; c = {}; w0 = {}; slope = {}; decay = {}; length = {}; n = {}; order = "
-      "{}\n",
-      p.k_squared.real(), p.k_squared.imag(), p.b, p.c, p.w0, p.slope, p.decay_m, p.length_m, p.x_m.size(),
-      p.wedge() ? p.bessel_order() : 0.0);
-}
-
-/// Points are n equal steps from the drive edge to the end, both included. Each line that it prints is
-/// name;setting;seconds;re im re im ...
-constexpr const char* kProgram = R"(
+# The one-mode equation by SciPy. Arguments: k2 (real and imaginary part), b, c, w0, slope, decay, length, points, order
+# of the Bessel function. The points are equal steps from the driven edge to the end, both included. Each line that it
+# prints is "name;setting;seconds;re im re im ...".
+import sys
 import time, numpy as np
 from scipy.integrate import solve_ivp
 from scipy.special import jv
 from scipy import __version__ as version
-if k2.imag == 0: k2 = k2.real
+re, im, b, c, w0, slope, decay, length, points, order = map(float, sys.argv[1:])
+n = int(points)
+k2 = complex(re, im) if im else re
 x = np.linspace(0, length, n)
 W = (lambda x: w0 * np.exp(-x / decay)) if decay else (lambda x: w0 - slope * x)
 W1 = (lambda x: -W(x) / decay) if decay else (lambda x: -slope)
@@ -55,25 +37,3 @@ for name, setting, work, argument in jobs:
         a = time.perf_counter(); v = work(argument); best = min(best, time.perf_counter() - a)
     v = v.astype(complex)
     print(name, setting, best, ' '.join('%r %r' % (float(z.real), float(z.imag)) for z in v), sep=';')
-)";
-
-}  // namespace
-
-std::vector<ScipyRun> run_scipy(const OneModeProblem& problem) {
-  std::vector<ScipyRun> runs;
-  for (const auto& line : run_python(numbers(problem) + kProgram)) {
-    std::istringstream stream(line);
-    ScipyRun run;
-    std::string seconds, values;
-    if (!std::getline(stream, run.name, ';') || !std::getline(stream, run.setting, ';') ||
-        !std::getline(stream, seconds, ';') || !std::getline(stream, values))
-      continue;
-    run.seconds = std::stod(seconds);
-    std::istringstream list(values);
-    for (double re = 0, im = 0; list >> re >> im;) run.v.emplace_back(re, im);
-    if (run.v.size() == problem.x_m.size()) runs.push_back(std::move(run));
-  }
-  return runs;
-}
-
-}  // namespace turnpoint::benchmark

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <map>
 
-#include "station/benchmark/physics.hpp"
+#include "tests/benchmark/physics.hpp"
 
 namespace turnpoint::benchmark {
 
