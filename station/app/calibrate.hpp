@@ -9,7 +9,7 @@
 namespace turnpoint::app {
 
 /// Measurements become a calibration of this rig, made today. Throws text::BadInput with every problem of
-/// every file, std::invalid_argument for points that do not determine a fit, for a transducer that the rig
+/// every file, terms::UsageError for points that do not determine a fit, for a transducer that the rig
 /// does not have, or a band that is empty.
 calibration::Calibration calibrate(const rig::Rig& rig, const calibration::Measurements& measurements,
                                    int valid_days, const std::string& note);
@@ -34,7 +34,7 @@ struct SweepOptions {
   double length_s = 0.5, pause_s = 0.25;
 };
 
-/// Equal steps of frequency over each transducer's band. Throws std::invalid_argument for fewer than 5
+/// Equal steps of frequency over each transducer's band. Throws terms::UsageError for fewer than 5
 /// points, an amplitude outside 0 to 1, lengths below 0.2 s or that exceed the rig's duty.
 std::vector<SweepStep> sweep_plan(const rig::Rig& rig, const SweepOptions& options);
 

@@ -10,9 +10,9 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
-#include <stdexcept>
 #include <system_error>
 
+#include "station/terms/usage_error.hpp"
 #include "station/text/problem.hpp"
 #include "station/text/write_file.hpp"
 
@@ -62,9 +62,9 @@ text::BadInput bad_file(const std::string& file, const std::string& what) {
 OperatorCode OperatorCode::of_digits(const std::string& digits) {
   const bool only_digits = digits.find_first_not_of("0123456789") == std::string::npos;
   if (!only_digits || digits.size() < shortest || digits.size() > longest)
-    throw std::invalid_argument("an operator's code has " + std::to_string(shortest) + " to " +
-                                std::to_string(longest) + " digits; the keypad has nothing else");
-  if (digits == built_in) throw std::invalid_argument("2468 is the built-in code; choose another");
+    throw terms::UsageError("an operator's code has " + std::to_string(shortest) + " to " +
+                            std::to_string(longest) + " digits; the keypad has nothing else");
+  if (digits == built_in) throw terms::UsageError("2468 is the built-in code; choose another");
   char setting[CRYPT_GENSALT_OUTPUT_SIZE];
   if (::crypt_gensalt_rn("$y$", 0, nullptr, 0, setting, sizeof setting) == nullptr)
     fail("salt for the operator's code");
@@ -74,7 +74,7 @@ OperatorCode OperatorCode::of_digits(const std::string& digits) {
 }
 
 OperatorCode OperatorCode::of_hash(const std::string& hash) {
-  if (!is_hash(hash)) throw std::invalid_argument("holds no operator's code");
+  if (!is_hash(hash)) throw terms::UsageError("holds no operator's code");
   OperatorCode code;
   code.hash_ = hash;
   return code;
@@ -111,7 +111,7 @@ OperatorCode operator_code(const std::vector<std::string>& files) {
                               "operator's code in " + file);
     try {
       return OperatorCode::of_hash(hash);
-    } catch (const std::invalid_argument& error) {
+    } catch (const terms::UsageError& error) {
       throw bad_file(file, error.what());
     }
   }

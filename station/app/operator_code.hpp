@@ -14,10 +14,10 @@ class OperatorCode {
 
   /// The built-in code.
   OperatorCode() = default;
-  /// Hashes a new code; takes some tens of milliseconds. Throws std::invalid_argument for one that is not of
+  /// Hashes a new code; takes some tens of milliseconds. Throws terms::UsageError for one that is not of
   /// 4 to 12 digits, or the built-in one.
   static OperatorCode of_digits(const std::string& digits);
-  /// A code that was stored. Throws std::invalid_argument for a text that no hash can be.
+  /// A code that was stored. Throws terms::UsageError for a text that no hash can be.
   static OperatorCode of_hash(const std::string& hash);
 
   bool is_built_in() const { return hash_.empty(); }

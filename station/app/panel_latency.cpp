@@ -1,12 +1,12 @@
 #include "station/app/panel_latency.hpp"
 
-#include <stdexcept>
 #include <utility>
 
 #include "station/app/touch.hpp"
 #include "station/calibration/apply.hpp"
 #include "station/panel/buttons.hpp"
 #include "station/panel/touch_reader.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::app {
 
@@ -24,7 +24,7 @@ std::optional<calibration::Calibration> in_force(const rig::Rig& rig) {
 
 LatencyDevices::LatencyDevices(const rig::Rig& rig, OnEdge on_edge) {
   if (!rig.buttons_uri || *rig.buttons_uri == "sim:")
-    throw std::invalid_argument(
+    throw terms::UsageError(
         "the panel's latency is measured against a button or a photodiode, and the rig's "
         "[buttons] are " +
         rig.buttons_uri.value_or("absent") + "; allowed gpio:NAME=LINE");

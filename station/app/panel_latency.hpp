@@ -27,7 +27,7 @@ class LatencyDevices {
  public:
   using OnEdge = std::function<void(std::int64_t time_ns)>;
 
-  /// `on_edge` is called on the panel's thread. Throws std::invalid_argument for a rig without real buttons,
+  /// `on_edge` is called on the panel's thread. Throws terms::UsageError for a rig without real buttons,
   /// and as panel::open_panel, panel::TouchReader.
   LatencyDevices(const rig::Rig& rig, OnEdge on_edge);
 

@@ -14,7 +14,7 @@ struct RunRequest {
   std::string language;        ///< "" takes the protocol's first
   std::string observer;        ///< "" for a person
   std::optional<std::uint64_t> seed;
-  std::string consent_version;         ///< of the consent form, "" where none is asked for
+  std::string consent_version;  ///< of the consent form, "" where none is asked for
   bool headless = false, buttons_only = false;
   std::string calibration;  ///< file; "" takes the newest one beside the rig file, if there is one
 };
@@ -26,7 +26,7 @@ struct RunRequest {
 session::Setup prepare(const RunRequest& request);
 
 /// Puts a calibration file's text in force: rig, sound levels, and what the session's row keeps of it.
-/// Throws text::BadInput, std::invalid_argument.
+/// Throws text::BadInput, terms::UsageError.
 void take_calibration(const std::string& source, const std::string& path, session::Setup& setup);
 
 }  // namespace turnpoint::app

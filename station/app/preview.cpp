@@ -10,6 +10,7 @@
 #include "physics/edge.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/resolve.hpp"
+#include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::app {
@@ -140,7 +141,7 @@ protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vec
     if (equals == std::string::npos || found == factors.end()) {
       std::string known;
       for (const auto& [factor, value] : factors) known += (known.empty() ? "" : ", ") + factor;
-      throw std::invalid_argument(
+      throw terms::UsageError(
           fmt::format("--set {}: factor=value is allowed, with one of the factors {}", text, known));
     }
     const auto value = text.substr(equals + 1);
@@ -148,7 +149,7 @@ protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vec
     const double number = std::strtod(value.c_str(), &end);
     if (std::holds_alternative<double>(found->second)) {
       if (value.empty() || *end != '\0' || !std::isfinite(number))
-        throw std::invalid_argument(fmt::format("--set {}: {} is a number", text, name));
+        throw terms::UsageError(fmt::format("--set {}: {} is a number", text, name));
       found->second = number;
     } else {
       found->second = value;

@@ -62,7 +62,7 @@ class Preview {
 };
 
 /// Values for every factor: `set` holds "factor=value" texts, others take their first level, else the middle
-/// of their range, and are listed in `assumed`. Throws std::invalid_argument for a text that is neither.
+/// of their range, and are listed in `assumed`. Throws terms::UsageError for a text that is neither.
 protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vector<std::string>& set,
                               std::vector<std::string>& assumed);
 

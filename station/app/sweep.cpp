@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <stdexcept>
 
 #include "station/app/calibrate.hpp"
 #include "station/app/play_armed.hpp"
 #include "station/drive/engine.hpp"
 #include "station/session/stage.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::app {
 
@@ -37,15 +37,14 @@ void render(drive::SynchronousStream& stream, const std::vector<drive::Burst>& b
 }  // namespace
 
 std::vector<SweepStep> sweep_plan(const rig::Rig& rig, const SweepOptions& options) {
-  if (options.points < 5) throw std::invalid_argument("sweep: fewer than 5 points; 5 or more are allowed");
+  if (options.points < 5) throw terms::UsageError("sweep: fewer than 5 points; 5 or more are allowed");
   if (!(options.full_scale > 0 && options.full_scale <= 1))
-    throw std::invalid_argument(
+    throw terms::UsageError(
         fmt::format("sweep: amplitude {}; above 0 to 1 of full scale is allowed", options.full_scale));
   if (!(options.length_s >= 0.2 && options.pause_s >= 0.2))
-    throw std::invalid_argument("sweep: tones and pauses of 0.2 s or more are allowed");
+    throw terms::UsageError("sweep: tones and pauses of 0.2 s or more are allowed");
   if (options.length_s > rig.limits.duty * (options.length_s + options.pause_s))
-    throw std::invalid_argument(
-        fmt::format("sweep: the rig's duty of {} wants longer pauses", rig.limits.duty));
+    throw terms::UsageError(fmt::format("sweep: the rig's duty of {} wants longer pauses", rig.limits.duty));
   std::vector<SweepStep> steps;
   for (const auto& transducer : rig.transducers)
     for (int k = 0; k < options.points; ++k) {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <stdexcept>
 
+#include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::calibration {
@@ -17,7 +17,7 @@ void apply(const Calibration::Transducer& measured, rig::Rig& rig) {
   const auto found = std::find_if(rig.transducers.begin(), rig.transducers.end(),
                                   [&](const auto& t) { return t.name == measured.name; });
   if (found == rig.transducers.end())
-    throw std::invalid_argument(
+    throw terms::UsageError(
         fmt::format("the calibration has a transducer \"{}\", the rig does not", measured.name));
   found->m_per_full_scale.reset();
   found->response.clear();
@@ -26,7 +26,7 @@ void apply(const Calibration::Transducer& measured, rig::Rig& rig) {
   found->low_Hz = std::max(found->low_Hz, measured.response.low_Hz);
   found->high_Hz = std::min(found->high_Hz, measured.response.high_Hz);
   if (!(found->low_Hz < found->high_Hz))
-    throw std::invalid_argument(fmt::format(
+    throw terms::UsageError(fmt::format(
         "transducer \"{}\": the calibrated band, {} to {} kHz, is outside the rig's", measured.name,
         text::number(measured.response.low_Hz * 1e-3), text::number(measured.response.high_Hz * 1e-3)));
 }

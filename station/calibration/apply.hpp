@@ -10,7 +10,7 @@ namespace turnpoint::calibration {
 /// The rig as it was measured: each transducer's response and usable band (inside the rig's own), loss, and
 /// friction, which then counts as measured. Boundaries are not moved by their fit: the fit says how far the
 /// rig's geometry is from the truth, and the rig file is where that is put right.
-/// Throws std::invalid_argument for a transducer that the rig does not have, or that is left without a band.
+/// Throws terms::UsageError for a transducer that the rig does not have, or that is left without a band.
 rig::Rig applied(const Calibration& calibration, rig::Rig rig);
 
 /// Where the newest calibration of a rig file lies: beside it, as `RIG.calibration-YYYY-MM-DD.toml`; "" where

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "station/calibration/fits.hpp"
 #include "station/calibration/least_squares.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::calibration {
 namespace {
@@ -57,15 +57,15 @@ std::optional<double> curvature(const std::vector<BoundaryPoint>& points,
 void check(const std::vector<BoundaryPoint>& points, bool law_known) {
   const std::size_t needed = law_known ? 2 : 3;
   if (points.size() < needed)
-    throw std::invalid_argument(fmt::format("{} measured boundaries; {} or more are needed{}", points.size(),
-                                            needed, law_known ? "" : " to tell a membrane from a plate"));
+    throw terms::UsageError(fmt::format("{} measured boundaries; {} or more are needed{}", points.size(),
+                                        needed, law_known ? "" : " to tell a membrane from a plate"));
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!(points[i].frequency_Hz > 0) || !std::isfinite(points[i].boundary_m) || !(points[i].sd_m >= 0))
-      throw std::invalid_argument(fmt::format("boundary at {} m for {} Hz; allowed finite, above 0 Hz",
-                                              points[i].boundary_m, points[i].frequency_Hz));
+      throw terms::UsageError(fmt::format("boundary at {} m for {} Hz; allowed finite, above 0 Hz",
+                                          points[i].boundary_m, points[i].frequency_Hz));
     for (std::size_t j = 0; j < i; ++j)
       if (points[i].frequency_Hz == points[j].frequency_Hz && points.size() < 3)
-        throw std::invalid_argument(
+        throw terms::UsageError(
             fmt::format("two boundaries for {} Hz; the frequencies must differ", points[i].frequency_Hz));
   }
 }

@@ -6,9 +6,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <stdexcept>
 
 #include "station/rig/csv.hpp"
+#include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::calibration {
@@ -37,7 +37,7 @@ Calibration fit_measurements(const Measurements& measurements) {
   std::vector<std::vector<ResponsePoint>> sweeps;
   for (const auto& sweep : measurements.sweeps) {
     if (!(sweep.full_scale > 0 && sweep.full_scale <= 1))
-      throw std::invalid_argument(
+      throw terms::UsageError(
           fmt::format("sweep at {} of full scale; allowed above 0 to 1", sweep.full_scale));
     sweeps.emplace_back();
     for (const auto& row : table(sweep.csv, {"frequency_Hz", "displacement_um", "phase_deg"}))
@@ -69,8 +69,7 @@ Calibration fit_measurements(const Measurements& measurements) {
 int days_left(const Calibration& calibration, const std::string& today) {
   const auto made = parsed_date(calibration.made_on), now = parsed_date(today);
   if (!made || !now)
-    throw std::invalid_argument("dates '" + calibration.made_on + "' and '" + today +
-                                "'; allowed YYYY-MM-DD");
+    throw terms::UsageError("dates '" + calibration.made_on + "' and '" + today + "'; allowed YYYY-MM-DD");
   return calibration.valid_days - static_cast<int>((*now - *made).count());
 }
 

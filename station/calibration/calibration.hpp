@@ -47,7 +47,7 @@ struct Measurements {
   std::optional<BoundaryFit::Law> law;
 };
 
-/// Reads and fits. Throws text::BadInput with every problem of every file, std::invalid_argument for points
+/// Reads and fits. Throws text::BadInput with every problem of every file, terms::UsageError for points
 /// that do not determine a fit.
 Calibration fit_measurements(const Measurements& measurements);
 

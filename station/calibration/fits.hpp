@@ -34,7 +34,7 @@ struct BoundaryFit {
 };
 
 /// Least squares, weighted where all uncertainties are known. `law` says which surface it is; without it
-/// three points decide. Throws std::invalid_argument: fewer than two points (three without a law), equal
+/// three points decide. Throws terms::UsageError: fewer than two points (three without a law), equal
 /// frequencies.
 BoundaryFit fit_boundaries(const std::vector<BoundaryPoint>& points, std::optional<BoundaryFit::Law> law);
 
@@ -60,7 +60,7 @@ struct ResponseFit {
 /// Highest equalisation: a drive that needs more than this above its best frequency is outside the band.
 inline constexpr double equalisation_cap_dB = 20;
 
-/// Throws std::invalid_argument: fewer than 5 points, not rising, an amplitude that is not above 0.
+/// Throws terms::UsageError: fewer than 5 points, not rising, an amplitude that is not above 0.
 ResponseFit fit_response(const std::vector<ResponsePoint>& sweep, int window = 5);
 
 /// A resonance of the surface seen in a sweep.
@@ -87,7 +87,7 @@ struct FrictionFit {
   double residual = 0;  ///< rms
 };
 
-/// Throws std::invalid_argument: fewer than two displacements, values outside 0 to 1.5.
+/// Throws terms::UsageError: fewer than two displacements, values outside 0 to 1.5.
 FrictionFit fit_friction(std::vector<FrictionPoint> measured);
 
 }  // namespace turnpoint::calibration

@@ -1,7 +1,8 @@
 #include "station/calibration/least_squares.hpp"
 
 #include <cmath>
-#include <stdexcept>
+
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::calibration {
 namespace {
@@ -15,7 +16,7 @@ Matrix inverse(Matrix a) {
   for (std::size_t k = 0; k < n; ++k) b[k][k] = 1;
   for (std::size_t k = 0; k < n; ++k) {
     const double pivot = a[k][k];
-    if (!(pivot > 1e-13)) throw std::invalid_argument("the measured points do not determine the fit");
+    if (!(pivot > 1e-13)) throw terms::UsageError("the measured points do not determine the fit");
     for (std::size_t j = 0; j < n; ++j) {
       a[k][j] /= pivot;
       b[k][j] /= pivot;

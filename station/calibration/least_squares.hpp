@@ -11,7 +11,7 @@ struct LeastSquares {
 };
 
 /// Minimises sum w (y - row . value)^2 by the normal equations (columns scaled to unit length), for up to
-/// about five parameters. Throws std::invalid_argument where the columns are not independent.
+/// about five parameters. Throws terms::UsageError where the columns are not independent.
 LeastSquares least_squares(const std::vector<std::vector<double>>& rows, const std::vector<double>& values,
                            const std::vector<double>& weights);
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "station/cli/command_line.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::cli {
 
@@ -19,11 +20,19 @@ struct Context {
   const Screens* screens = nullptr;  ///< null in the program without a screen
 };
 
-/// Wrong usage that the option parser could not see: exit 2.
-class UsageError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+using terms::UsageError;
+
+/// Does work in which physics takes the user's numbers as they are: what it refuses is wrong usage.
+template <class Work>
+auto with_users_numbers(Work work) {
+  try {
+    return work();
+  } catch (const std::invalid_argument& error) {
+    throw UsageError(error.what());
+  } catch (const std::domain_error& error) {
+    throw UsageError(error.what());
+  }
+}
 
 /// Each adds one sub-command: its options, an example in the footer, and the callback that does it. One file
 /// each; the table in commands.cpp lists them.
@@ -58,8 +67,11 @@ void add_operator_code(CommandLine& app, Context& context);
 /// Adds `--json` to a sub-command.
 void add_json(Command& command, Context& context);
 
-/// Parses and does what the command line says. Returns the exit status: 0 done, 1 failed at run time, 2 bad
-/// input or usage. The only catch-all of the program.
+/// Does the work, explains on `err` whatever it throws, and returns the exit status: 0 done, 1 failed at run
+/// time, 2 bad input or usage, 70 a fault of the program itself. The only catch-all of the program.
+int exit_status(std::ostream& err, const std::function<int()>& work);
+
+/// Parses and does what the command line says, and returns the exit status.
 int run(int argc, char** argv, std::ostream& out, std::ostream& err, const Screens* screens = nullptr);
 
 }  // namespace turnpoint::cli

@@ -5,7 +5,6 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/escaped_output.hpp"
-#include "station/scene/planner.hpp"
 #include "station/text/problem.hpp"
 
 namespace turnpoint::cli {
@@ -18,6 +17,9 @@ constexpr Add kCommands[] = {
     add_export,        add_sessions,  add_backup,  add_merge,     add_join,    add_verify,       add_withdraw,
     add_annotate,      add_check,     add_new,     add_protocols, add_report,  add_power,        add_doctor,
     add_amplifier_off, add_calibrate, add_figures, add_preview,   add_station, add_operator_code};
+
+/// EX_SOFTWARE of sysexits.h.
+constexpr int kSoftwareFault = 70;
 
 int report(std::ostream& err, const std::exception& error, int code) {
   err << "turnpoint: " << error.what() << "\n";
@@ -36,17 +38,21 @@ int run(int argc, char** argv, std::ostream& raw_out, std::ostream& raw_err, con
   CommandLine app("Turnpoint: a psychophysics station for ultrasonic tapered friction displays", "turnpoint",
                   TURNPOINT_VERSION);
   for (const auto add : kCommands) add(app, context);
+  return exit_status(err, [&] { return app.parse(argc, argv, out, err).value_or(context.exit_code); });
+}
+
+int exit_status(std::ostream& err, const std::function<int()>& work) {
   try {
-    return app.parse(argc, argv, out, err).value_or(context.exit_code);
+    return work();
   } catch (const text::BadInput& error) {
     err << error.what() << "\n";
     return 2;
   } catch (const UsageError& error) {
     return report(err, error, 2);
-  } catch (const scene::Unreachable& error) {
-    return report(err, error, 2);
-  } catch (const std::invalid_argument& error) {
-    return report(err, error, 2);
+  } catch (const std::logic_error& error) {
+    report(err, error, kSoftwareFault);
+    err << "This is a fault of Turnpoint, not yours. Please report it with the command and the files.\n";
+    return kSoftwareFault;
   } catch (const std::exception& error) {
     return report(err, error, 1);
   }

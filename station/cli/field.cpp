@@ -140,7 +140,7 @@ void add_field(CommandLine& app, Context& context) {
   command->add_option("--normalise", options->normalise, "drive | peak | none")->capture_default_str();
   add_json(*command, context);
   command->footer("Example: turnpoint field --rig deploy/rigs/simulated.toml --tone 30000:0.5 --points 301");
-  command->callback([options, &context] { field(*options, context); });
+  command->callback([options, &context] { with_users_numbers([&] { field(*options, context); }); });
 }
 
 }  // namespace turnpoint::cli

@@ -81,7 +81,7 @@ void add_map(CommandLine& app, Context& context) {
       ->check(positive());
   add_json(*command, context);
   command->footer("Example: turnpoint map --rig deploy/rigs/simulated.toml --boundary 150 200 --edge p50");
-  command->callback([options, &context] { map(*options, context); });
+  command->callback([options, &context] { with_users_numbers([&] { map(*options, context); }); });
 }
 
 }  // namespace turnpoint::cli

@@ -136,7 +136,7 @@ void add_plan(CommandLine& app, Context& context) {
   command->add_option("--rig", options->rig, "Rig file");
   add_json(*command, context);
   command->footer("Example: turnpoint plan protocols/demo.toml --scene edge --set offset_mm=9");
-  command->callback([options, &context] { plan(*options, context); });
+  command->callback([options, &context] { with_users_numbers([&] { plan(*options, context); }); });
 }
 
 }  // namespace turnpoint::cli

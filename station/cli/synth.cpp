@@ -120,7 +120,7 @@ void add_synth(CommandLine& app, Context& context) {
   command->footer(
       "Example: turnpoint synth --rig deploy/rigs/simulated.toml --tone 30000:0.5 --seconds 2 --out "
       "wav:tone.wav");
-  command->callback([options, &context] { synth(*options, context); });
+  command->callback([options, &context] { with_users_numbers([&] { synth(*options, context); }); });
 }
 
 }  // namespace turnpoint::cli

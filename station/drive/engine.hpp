@@ -145,7 +145,7 @@ class SynchronousStream : public Stream {
   virtual void finish() = 0;
 };
 
-/// Throws as open_output, and std::invalid_argument for a format that cannot be synthesised or samples that
+/// Throws as open_output, and terms::UsageError for a format that cannot be synthesised or samples that
 /// would be missing from an output.
 std::unique_ptr<SynchronousStream> open_synchronous(const StreamConfig& config, std::int64_t origin_ns = 0);
 

@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
-
 #include "station/drive/alsa_output.hpp"
 #include "station/drive/wav_output.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::drive {
 namespace {
@@ -31,9 +30,8 @@ Format format_of(const OutputConfig& config) noexcept {
 
 std::unique_ptr<Output> open_output(const OutputConfig& config) {
   if (config.period_frames < 16 || config.period_frames > 65536 || config.periods < 2 || config.periods > 64)
-    throw std::invalid_argument(
-        fmt::format("output of {} periods of {} frames; allowed 2 to 64 of 16 to 65536", config.periods,
-                    config.period_frames));
+    throw terms::UsageError(fmt::format("output of {} periods of {} frames; allowed 2 to 64 of 16 to 65536",
+                                        config.periods, config.period_frames));
   const auto colon = config.uri.find(':');
   const std::string scheme = config.uri.substr(0, colon);
   const std::string rest = colon == std::string::npos ? "" : config.uri.substr(colon + 1);
@@ -41,7 +39,7 @@ std::unique_ptr<Output> open_output(const OutputConfig& config) {
     return std::make_unique<NullOutput>(config);
   if (scheme == "wav" && !rest.empty()) return open_wav(config, rest);
   if (scheme == "alsa" && !rest.empty()) return open_alsa(config, rest);
-  throw std::invalid_argument(fmt::format("output '{}'; allowed null:, wav:FILE, alsa:NAME", config.uri));
+  throw terms::UsageError(fmt::format("output '{}'; allowed null:, wav:FILE, alsa:NAME", config.uri));
 }
 
 }  // namespace turnpoint::drive

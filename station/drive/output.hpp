@@ -67,7 +67,7 @@ class Output {
 };
 
 /// Opens the output that the URI names; the one place that knows them all.
-/// Throws std::invalid_argument for an unknown URI, std::system_error or OutputRefused for a device that
+/// Throws terms::UsageError for an unknown URI, std::system_error or OutputRefused for a device that
 /// cannot be opened exactly as asked.
 std::unique_ptr<Output> open_output(const OutputConfig& config);
 

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <stdexcept>
 #include <system_error>
 
 #include "station/drive/engine_core.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::drive {
 namespace {
@@ -19,7 +19,7 @@ class Synchronous final : public SynchronousStream {
         block_(static_cast<std::size_t>(config.output.channels) *
                static_cast<std::size_t>(config.output.period_frames)) {
     if (config.samples == Samples::passed && config.output.uri != "null:")
-      throw std::invalid_argument(config.output.uri + " needs its samples; only null: can do without");
+      throw terms::UsageError(config.output.uri + " needs its samples; only null: can do without");
   }
 
   std::uint32_t schedule(const Burst& burst) override {

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
 
 #include "station/drive/noise.hpp"
 #include "station/drive/rights.hpp"
 #include "station/drive/voice.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::drive {
 
@@ -106,7 +106,7 @@ struct Synth::State {
 Synth::Synth(const Format& format, Precision precision, const Kernels& kernels) : state_(new State) {
   if (format.rate_Hz < 8000 || format.rate_Hz > 768000 || format.channels < 1 ||
       format.channels > max_channels || format.bits < 8 || format.bits > 32)
-    throw std::invalid_argument(fmt::format(
+    throw terms::UsageError(fmt::format(
         "stream of {} Hz, {} channels, {} bits; allowed 8000 to 768000 Hz, 1 to {} channels, 8 to 32 bits",
         format.rate_Hz, format.channels, format.bits, max_channels));
   state_->format = format;

@@ -35,7 +35,7 @@ class Synth {
   static constexpr int max_block = 512;
   static constexpr int max_voices = 4;  ///< bursts that may wait or sound at once
 
-  /// Throws std::invalid_argument for a format outside 8-768 kHz, 1-8 channels, 8-32 bits.
+  /// Throws terms::UsageError for a format outside 8-768 kHz, 1-8 channels, 8-32 bits.
   Synth(const Format& format, Precision precision, const Kernels& kernels = best_kernels());
   ~Synth();
   Synth(const Synth&) = delete;

@@ -4,10 +4,10 @@
 #include <charconv>
 #include <cmath>
 #include <map>
-#include <stdexcept>
 
 #include "station/observer/first_passage.hpp"
 #include "station/random/elementary.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::observer {
 
@@ -175,10 +175,10 @@ Setting Observer::adjust(const Adjustment& a) const {
 
 namespace {
 
-/// Throws std::invalid_argument naming what is out of range.
+/// Throws terms::UsageError naming what is out of range.
 void check(const Parameters& p) {
   const auto require = [](bool good, const char* what) {
-    if (!good) throw std::invalid_argument(std::string("--observer: ") + what);
+    if (!good) throw terms::UsageError(std::string("--observer: ") + what);
   };
   require(!p.threshold || *p.threshold != 0, "threshold must not be 0");
   require(p.slope > 0, "slope must be above 0");
@@ -213,7 +213,7 @@ Parameters parse(const std::string& text) {
       "sim, or sim: and threshold, slope, lapse, bias, criterion, bound, residual, travel, drift_sd, "
       "start_range, residual_range, anticipation with numbers, as in sim:threshold=6,slope=1.2";
   const auto colon = text.find(':');
-  if (text.substr(0, colon) != "sim") throw std::invalid_argument("--observer " + text + ": " + allowed);
+  if (text.substr(0, colon) != "sim") throw terms::UsageError("--observer " + text + ": " + allowed);
   for (std::size_t at = colon; at != std::string::npos;) {
     const auto end = text.find(',', at + 1);
     const auto part = text.substr(at + 1, end == std::string::npos ? end : end - at - 1);
@@ -224,7 +224,7 @@ Parameters parse(const std::string& text) {
     const auto [last, error] = std::from_chars(first, part.data() + part.size(), value);
     if (found == known.end() || error != std::errc{} || last != part.data() + part.size() ||
         !std::isfinite(value))
-      throw std::invalid_argument("--observer: \"" + part + "\" is not understood; allowed is " + allowed);
+      throw terms::UsageError("--observer: \"" + part + "\" is not understood; allowed is " + allowed);
     *found->second = value;
     if (found->first == "threshold") p.threshold = value;
     at = end;

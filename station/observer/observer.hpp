@@ -34,7 +34,7 @@ struct Parameters {
   double anticipation = 0;      ///< share of trials answered before anything could be felt
 };
 
-/// Reads `sim` or `sim:threshold=6,slope=1.2,lapse=0.02,bias=0,...`. Throws std::invalid_argument naming the
+/// Reads `sim` or `sim:threshold=6,slope=1.2,lapse=0.02,bias=0,...`. Throws terms::UsageError naming the
 /// part and what is allowed.
 Parameters parse(const std::string& text);
 

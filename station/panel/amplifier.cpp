@@ -5,19 +5,20 @@
 #include "station/panel/guarded_amplifier.hpp"
 #include "station/panel/simulated_lines.hpp"
 #include "station/panel/uri.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::panel {
 namespace {
 
 bool is_low(const std::string& value, const Uri& uri) {
   if (value != "low" && value != "high")
-    throw std::invalid_argument("'" + uri.text + "': '" + value + "'; allowed low, high");
+    throw terms::UsageError("'" + uri.text + "': '" + value + "'; allowed low, high");
   return value == "low";
 }
 
 bool is_on(const std::string& value, const Uri& uri) {
   if (value != "on" && value != "off")
-    throw std::invalid_argument("'" + uri.text + "': read_back=" + value + "; allowed on, off");
+    throw terms::UsageError("'" + uri.text + "': read_back=" + value + "; allowed on, off");
   return value == "on";
 }
 
@@ -31,8 +32,8 @@ Asked read(const std::string& text) {
   Uri uri = parse_uri(text);
   if (uri.scheme == "sim" && uri.name.empty() && uri.values.empty()) return {{0, 1, 2, 3}, {}};
   if (uri.scheme != "gpio" || !uri.name.empty())
-    throw std::invalid_argument("amplifier '" + text +
-                                "'; allowed sim: or gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE");
+    throw terms::UsageError("amplifier '" + text +
+                            "'; allowed sim: or gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE");
   Asked asked;
   const auto want = [&](const char* key, const char* consumer, LineUse use) {
     const std::string line = uri.take(key, "");
@@ -50,7 +51,7 @@ Asked read(const std::string& text) {
   roles.stop_active_low = is_low(uri.take("stop_active", active), uri);
   roles.read_back = is_on(uri.take("read_back", "on"), uri);
   uri.check_empty("enable, heartbeat, fault, stop, active, fault_active, stop_active, read_back");
-  if (roles.enable < 0) throw std::invalid_argument("amplifier '" + text + "' has no enable line");
+  if (roles.enable < 0) throw terms::UsageError("amplifier '" + text + "' has no enable line");
   return asked;
 }
 

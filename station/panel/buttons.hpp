@@ -80,7 +80,7 @@ class Panel {
   virtual void simulate(const Touch& touch) = 0;
 };
 
-/// What the rig has; either may be absent. Throws std::invalid_argument for a URI, LineError or
+/// What the rig has; either may be absent. Throws terms::UsageError for a URI, LineError or
 /// std::system_error for a device that is not there.
 std::unique_ptr<Panel> open_panel(const std::optional<ButtonsConfig>& buttons,
                                   const std::optional<ContactConfig>& contact, PanelHandlers handlers);

@@ -13,6 +13,7 @@
 #include "station/panel/evdev_contact.hpp"
 #include "station/panel/line_panel.hpp"
 #include "station/panel/uri.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::panel {
 namespace {
@@ -167,7 +168,7 @@ class RigPanel final : public Panel {
 bool take_low(Uri& uri) {
   const std::string active = uri.take("active", "high");
   if (active != "low" && active != "high")
-    throw std::invalid_argument("'" + uri.text + "': active=" + active + "; allowed low, high");
+    throw terms::UsageError("'" + uri.text + "': active=" + active + "; allowed low, high");
   return active == "low";
 }
 
@@ -177,8 +178,8 @@ std::int64_t take_ms(Uri& uri, const std::string& key, std::int64_t otherwise_ns
   char* end = nullptr;
   const double ms = std::strtod(text.c_str(), &end);
   if (*end != '\0' || !(ms >= 0 && ms <= highest_ms))
-    throw std::invalid_argument("'" + uri.text + "': " + key + "=" + text + "; allowed 0 to " +
-                                std::to_string(static_cast<int>(highest_ms)));
+    throw terms::UsageError("'" + uri.text + "': " + key + "=" + text + "; allowed 0 to " +
+                            std::to_string(static_cast<int>(highest_ms)));
   return static_cast<std::int64_t>(ms * 1e6);
 }
 
@@ -196,7 +197,7 @@ void plan_buttons(const std::string& text, RigPanel& panel, LinePanel& plan) {
     return;
   }
   if (uri.scheme != "gpio")
-    throw std::invalid_argument("buttons '" + text + "'; allowed sim: or gpio:left=LINE,right=LINE");
+    throw terms::UsageError("buttons '" + text + "'; allowed sim: or gpio:left=LINE,right=LINE");
   plan.buttons_low = take_low(uri);
   plan.button_rules = take_rules(uri);
   for (const auto& [name, line] : uri.values) {
@@ -204,7 +205,7 @@ void plan_buttons(const std::string& text, RigPanel& panel, LinePanel& plan) {
     plan.names.push_back(name);
     plan.requests.push_back({line, "turnpoint-button-" + name, LineUse::input});
   }
-  if (panel.names_.empty()) throw std::invalid_argument("buttons '" + text + "' name no line");
+  if (panel.names_.empty()) throw terms::UsageError("buttons '" + text + "' name no line");
 }
 
 void plan_contact(const std::string& text, RigPanel& panel, LinePanel& plan) {
@@ -217,7 +218,7 @@ void plan_contact(const std::string& text, RigPanel& panel, LinePanel& plan) {
     const std::string line = uri.take("line", "");
     plan.contact_rules = take_rules(uri);
     uri.check_empty("line, active, hold_ms, refractory_ms");
-    if (line.empty()) throw std::invalid_argument("contact '" + text + "' names no line");
+    if (line.empty()) throw terms::UsageError("contact '" + text + "' names no line");
     plan.contact = static_cast<int>(plan.requests.size());
     plan.requests.push_back({line, "turnpoint-contact", LineUse::input});
     plan.names.push_back("contact");
@@ -225,13 +226,13 @@ void plan_contact(const std::string& text, RigPanel& panel, LinePanel& plan) {
     const std::string axis = uri.take("axis", "x");
     uri.check_empty("axis");
     if (axis != "x" && axis != "y")
-      throw std::invalid_argument("'" + text + "': axis=" + axis + "; allowed x, y");
+      throw terms::UsageError("'" + text + "': axis=" + axis + "; allowed x, y");
     panel.touch_ =
         std::make_unique<DeviceWatch>(touch_opener(uri.name, axis == "x" ? ABS_X : ABS_Y, panel.handlers_),
                                       evdev_priority, panel.handlers_);
     panel.tells_position_ = true;
   } else {
-    throw std::invalid_argument("contact '" + text + "'; allowed sim:, gpio:line=LINE, evdev:NAME");
+    throw terms::UsageError("contact '" + text + "'; allowed sim:, gpio:line=LINE, evdev:NAME");
   }
 }
 

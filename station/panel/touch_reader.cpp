@@ -5,7 +5,6 @@
 #include <pthread.h>
 
 #include <cerrno>
-#include <stdexcept>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -13,6 +12,7 @@
 
 #include "station/panel/evdev_device.hpp"
 #include "station/panel/wake_up.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::panel {
 
@@ -73,8 +73,7 @@ OpenPanel open_now(const std::string& device) {
   if (auto found = EvdevDevice::find(device)) return OpenPanel(std::move(*found));
   if (device.starts_with('/'))
     throw std::system_error(errno, std::generic_category(), "touch panel: cannot open " + device);
-  throw std::invalid_argument("touch panel: no device is called \"" + device +
-                              "\"; see /proc/bus/input/devices");
+  throw terms::UsageError("touch panel: no device is called \"" + device + "\"; see /proc/bus/input/devices");
 }
 
 }  // namespace

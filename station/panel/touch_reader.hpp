@@ -18,7 +18,7 @@ class TouchReader {
   using OnState = std::function<void(TouchPanelState)>;
 
   /// `device`: a path below /dev/input, or the device's name as the kernel tells it. Throws std::system_error
-  /// where it cannot be opened or is no touch panel, std::invalid_argument for a name that no device has.
+  /// where it cannot be opened or is no touch panel, terms::UsageError for a name that no device has.
   TouchReader(const std::string& device, OnState on_state);
   ~TouchReader();
   TouchReader(const TouchReader&) = delete;

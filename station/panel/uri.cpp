@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <sstream>
-#include <stdexcept>
+
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::panel {
 
@@ -17,7 +18,7 @@ std::string Uri::take(const std::string& key, const std::string& otherwise) {
 
 void Uri::check_empty(const std::string& allowed) const {
   if (!values.empty())
-    throw std::invalid_argument("'" + text + "': unknown '" + values.front().first + "'; allowed " + allowed);
+    throw terms::UsageError("'" + text + "': unknown '" + values.front().first + "'; allowed " + allowed);
 }
 
 Uri parse_uri(const std::string& text) {
@@ -25,7 +26,7 @@ Uri parse_uri(const std::string& text) {
   uri.text = text;
   const auto colon = text.find(':');
   if (colon == std::string::npos || colon == 0)
-    throw std::invalid_argument("'" + text + "' names no device; allowed sim:, gpio:... or evdev:...");
+    throw terms::UsageError("'" + text + "' names no device; allowed sim:, gpio:... or evdev:...");
   uri.scheme = text.substr(0, colon);
   std::istringstream rest(text.substr(colon + 1));
   for (std::string part; std::getline(rest, part, ',');) {
@@ -35,7 +36,7 @@ Uri parse_uri(const std::string& text) {
       continue;
     }
     if (equals == std::string::npos || equals == 0 || equals + 1 == part.size())
-      throw std::invalid_argument("'" + text + "': '" + part + "' is not key=value");
+      throw terms::UsageError("'" + text + "': '" + part + "' is not key=value");
     uri.values.emplace_back(part.substr(0, equals), part.substr(equals + 1));
   }
   return uri;

@@ -15,12 +15,12 @@ struct Uri {
   /// The value of a key, or `otherwise`; takes it out, so that what is left over at the end was not
   /// understood.
   std::string take(const std::string& key, const std::string& otherwise);
-  /// Throws std::invalid_argument naming the first key that nobody took.
+  /// Throws terms::UsageError naming the first key that nobody took.
   void check_empty(const std::string& allowed) const;
   std::string text;  ///< as written
 };
 
-/// Throws std::invalid_argument for text without a scheme or with an empty key or value.
+/// Throws terms::UsageError for text without a scheme or with an empty key or value.
 Uri parse_uri(const std::string& text);
 
 }  // namespace turnpoint::panel

@@ -1,6 +1,5 @@
 #include "station/procedure/trace.hpp"
-
-#include <stdexcept>
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::procedure {
 
@@ -9,13 +8,11 @@ Trace trace(const Spec& spec, const Context& context, const std::string& answers
   Trace trace;
   for (const char c : answers) {
     if (c != '0' && c != '1')
-      throw std::invalid_argument("answers: \"" + std::string(1, c) +
-                                  "\" is not an answer; 1 and 0 are allowed");
+      throw terms::UsageError("answers: \"" + std::string(1, c) + "\" is not an answer; 1 and 0 are allowed");
     const auto proposal = procedure->next();
     if (!proposal)
-      throw std::invalid_argument("answers: " + std::to_string(answers.size()) +
-                                  " were given, but procedure " + spec.name + " stops after " +
-                                  std::to_string(trace.levels.size()));
+      throw terms::UsageError("answers: " + std::to_string(answers.size()) + " were given, but procedure " +
+                              spec.name + " stops after " + std::to_string(trace.levels.size()));
     trace.levels.push_back(proposal->level);
     procedure->record(c == '1' ? Answer::one : Answer::zero);
   }

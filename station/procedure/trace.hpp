@@ -17,7 +17,7 @@ struct Trace {
   std::vector<double> reversals;
 };
 
-/// Runs a procedure on answers of 1 (correct, or the tracked answer) and 0. Throws std::invalid_argument for
+/// Runs a procedure on answers of 1 (correct, or the tracked answer) and 0. Throws terms::UsageError for
 /// another character, or for answers after the procedure has stopped.
 Trace trace(const Spec& spec, const Context& context, const std::string& answers,
             const random::Key& key = {});

@@ -115,7 +115,7 @@ bool is_too_strong(scene::Scene scene, scene::Planner& planner) {
   try {
     planner.plan(scene);
     return true;
-  } catch (const std::logic_error&) {
+  } catch (const scene::Unreachable&) {
     return false;
   }
 }
@@ -147,12 +147,12 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
       if (edge_moves_with_strength(from))
         answers[i].cues_roved_down =
             planner.plan(resolve(protocol, combination.scene, combination.factors, -from.rove_dB)).cues;
-    } catch (const std::logic_error& error) {  // unreachable, or nonsense as a zone behind the strip
+    } catch (const scene::Unreachable& error) {
       answers[i].refused = error.what();
       answers[i].too_strong = is_too_strong(scene, planner);
       if (explained.insert(combination.scene).second) try {
           answers[i].allowed = reach(scene, rig, planner);
-        } catch (const std::logic_error&) {  // no boundary at all has this edge
+        } catch (const scene::Unreachable&) {  // no boundary at all has this edge
         }
     }
   }

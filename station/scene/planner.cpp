@@ -184,15 +184,9 @@ std::vector<Tone> Planner::State::zone(const Scene& scene, DrivePlan& plan) {
 }
 
 std::vector<Tone> Planner::State::tones_for(const Scene& scene, DrivePlan& plan) {
-  try {
-    if (scene.zone) return zone(scene, plan);
-    if (!scene.tones.empty()) return explicit_tones(scene);
-    return single(scene);
-  } catch (const Unreachable&) {
-    throw;
-  } catch (const std::domain_error& error) {
-    throw Unreachable(error.what());
-  }
+  if (scene.zone) return zone(scene, plan);
+  if (!scene.tones.empty()) return explicit_tones(scene);
+  return single(scene);
 }
 
 physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector<Tone>& tones) const {
@@ -297,7 +291,15 @@ DrivePlan Planner::plan(const Scene& scene) {
   if (const auto found = plans.find(key); found != plans.end()) return found->second;
   // Roving makes nearly every scene new: what is remembered must not grow with the session.
   if (plans.size() >= kRemembered) plans.clear();
-  return plans.emplace(key, make(scene)).first->second;
+  // What physics refuses is the scene's fault: an edge that this surface does not have, a zone behind the
+  // strip.
+  try {
+    return plans.emplace(key, make(scene)).first->second;
+  } catch (const std::domain_error& error) {
+    throw Unreachable(error.what());
+  } catch (const std::invalid_argument& error) {
+    throw Unreachable(error.what());
+  }
 }
 
 DrivePlan Planner::make(const Scene& scene) {

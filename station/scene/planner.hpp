@@ -14,13 +14,14 @@
 #include "station/rig/rig.hpp"
 #include "station/scene/cues.hpp"
 #include "station/scene/scene.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::scene {
 
 /// A scene that this rig cannot present; the message names what, and what could be.
-class Unreachable : public std::domain_error {
+class Unreachable : public terms::UsageError {
  public:
-  using std::domain_error::domain_error;
+  using terms::UsageError::UsageError;
 };
 
 /// One tone as the drive will play it.

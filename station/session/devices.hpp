@@ -22,7 +22,7 @@ struct Devices {
 };
 
 /// Opens what the rig names: lines by name, the amplifier disarmed and off. `sim:` has the same guard on
-/// lines that exist in memory only. Throws panel::LineError, std::system_error, std::invalid_argument.
+/// lines that exist in memory only. Throws panel::LineError, std::system_error, terms::UsageError.
 Devices open_devices(const rig::Rig& rig, Inputs& inputs);
 
 /// Presses, contacts and faults of a panel as inputs of a session, with the kernel's time; `inputs` must

@@ -31,7 +31,8 @@ store::EventRow event(std::int64_t time_ns, const char* kind, double value, int 
 
 Sitting::Flow Sitting::run_trial(const TrialSpec& spec) {
   if (prepare_trial(spec) == Flow::stop) return Flow::stop;
-  Running trial{spec, trial::Machine(trial_plan(setup_.protocol, *director_.block(), spec)),
+  Running trial{spec,
+                trial::Machine(trial_plan(setup_.protocol, *director_.block(), spec)),
                 row_of(spec, setup_.protocol, trial_index_),
                 {},
                 {}};
@@ -59,7 +60,7 @@ Sitting::Flow Sitting::prepare_trial(const TrialSpec& spec) {
     if (keep_limits(spec) == Flow::stop) return Flow::stop;
     stage_->wait_for([&] { return plans_.ready(spec); });
     check_plans(spec);
-  } catch (const std::domain_error& unreachable) {
+  } catch (const scene::Unreachable& unreachable) {
     stop_asked_ = true, stop_reason_ = unreachable.what();
   } catch (const drive::LimitExceeded& limit) {
     return end_at_limit(limit.what());

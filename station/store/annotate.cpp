@@ -5,11 +5,12 @@
 #include "station/store/identity.hpp"
 #include "station/store/open.hpp"
 #include "station/store/read.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::store {
 
 void annotate(const std::string& path, const std::string& session_id, const std::string& text) {
-  if (text.empty()) throw std::invalid_argument("annotate: the note is empty");
+  if (text.empty()) throw terms::UsageError("annotate: the note is empty");
   auto writer = open_writer(path, IfMissing::fail);
   const auto session = read_session(writer.database, session_id).session;
   Transaction transaction(writer.database);

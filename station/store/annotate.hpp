@@ -6,7 +6,7 @@
 namespace turnpoint::store {
 
 /// Adds a researcher's note to a session that is not running; rows of trials stay as they are. Throws
-/// StoreError, std::invalid_argument for an empty note.
+/// StoreError, terms::UsageError for an empty note.
 void annotate(const std::string& database, const std::string& session_id, const std::string& text);
 
 /// Closes an interrupted session that nobody shall go on with (status abandoned), with the reason. Throws

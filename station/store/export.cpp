@@ -12,6 +12,7 @@
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
 #include "station/store/sqlite.hpp"
+#include "station/terms/usage_error.hpp"
 #include "station/text/write_file.hpp"
 
 namespace turnpoint::store {
@@ -31,7 +32,7 @@ std::string folder_name(const std::string& protocol_id) {
 }
 
 void check_style(const ExportOptions& options) {
-  const auto refuse = [](const std::string& what) { throw std::invalid_argument("export: " + what); };
+  const auto refuse = [](const std::string& what) { throw terms::UsageError("export: " + what); };
   if (options.decimal != '.' && options.decimal != ',')
     refuse(fmt::format("decimal mark '{}'; '.' or ',' is allowed", options.decimal));
   if (std::string(",;\t|").find(options.separator) == std::string::npos)

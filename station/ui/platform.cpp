@@ -11,6 +11,7 @@
 
 #include "station/app/doctor.hpp"
 #include "station/app/places.hpp"
+#include "station/terms/usage_error.hpp"
 #include "station/ui/screen.hpp"
 
 namespace turnpoint::ui {
@@ -48,7 +49,7 @@ std::unique_ptr<QTemporaryFile> choose_platform() {
   }
   if (!wanted.isEmpty()) return nullptr;  // another kind of eglfs finds its screen by itself
   if (!std::filesystem::exists("/dev/fb0"))
-    throw std::invalid_argument(
+    throw terms::UsageError(
         "no screen: no DISPLAY, no WAYLAND_DISPLAY, no graphics card with a connector and no /dev/fb0; give "
         "--headless --observer sim, or --buttons-only (turnpoint preview: --out DIR)");
   qputenv("QT_QPA_PLATFORM", "linuxfb");

@@ -12,7 +12,7 @@ namespace turnpoint::ui {
 constexpr QSize kWindow{1280, 800};
 
 /// The application object, on the back end that fits: as QT_QPA_PLATFORM says, a desktop's, eglfs, else the
-/// bare frame buffer. Qt ends the process where it finds no screen; this throws std::invalid_argument before.
+/// bare frame buffer. Qt ends the process where it finds no screen; this throws terms::UsageError before.
 class Application {
  public:
   Application();

@@ -1,10 +1,10 @@
 #include "station/ui/preview_controller.hpp"
 
 #include <algorithm>
-#include <stdexcept>
 #include <utility>
 
 #include "station/app/scene_figures.hpp"
+#include "station/terms/usage_error.hpp"
 #include "station/ui/facts.hpp"
 
 namespace turnpoint::ui {
@@ -16,7 +16,7 @@ PreviewController::PreviewController(const app::PreviewRequest& request, QObject
   if (!request.scene.empty()) {
     const auto found = std::find(scenes_.begin(), scenes_.end(), request.scene);
     if (found == scenes_.end())
-      throw std::invalid_argument("--scene " + request.scene + ": the protocol has no such scene");
+      throw terms::UsageError("--scene " + request.scene + ": the protocol has no such scene");
     scene_ = static_cast<int>(found - scenes_.begin());
   }
   worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });

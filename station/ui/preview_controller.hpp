@@ -34,7 +34,7 @@ class PreviewController : public QObject {
   Q_PROPERTY(QVariant spectrum READ spectrum NOTIFY changed)
 
  public:
-  /// Throws text::BadInput, std::invalid_argument for a scene or a factor that the protocol does not have.
+  /// Throws text::BadInput, terms::UsageError for a scene or a factor that the protocol does not have.
   explicit PreviewController(const app::PreviewRequest& request, QObject* parent = nullptr);
   ~PreviewController() override;
 

@@ -2,7 +2,8 @@
 
 #include <QFont>
 #include <QGuiApplication>
-#include <stdexcept>
+
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::ui {
 
@@ -18,7 +19,7 @@ double pixels_per_mm(const QScreen& screen) {
     bool is_number = false;
     const double dpi = stated.toDouble(&is_number);
     if (!is_number || !believable(dpi)) {
-      throw std::invalid_argument("TURNPOINT_DPI: " + stated.toStdString() + " dpi; allowed: 60 to 500");
+      throw terms::UsageError("TURNPOINT_DPI: " + stated.toStdString() + " dpi; allowed: 60 to 500");
     }
     return dpi / kInch_mm;
   }

@@ -5,7 +5,7 @@ namespace turnpoint::ui {
 
 /// Pixels per millimetre of a panel, so that targets have their size in the hand and not in pixels. The
 /// environment variable TURNPOINT_DPI wins (panels that report no size, or a wrong one); a report outside
-/// 60-500 dpi is not believed, and 96 dpi stands in. Throws std::invalid_argument for a TURNPOINT_DPI that is
+/// 60-500 dpi is not believed, and 96 dpi stands in. Throws terms::UsageError for a TURNPOINT_DPI that is
 /// no number within that range.
 double pixels_per_mm(const QScreen& screen);
 

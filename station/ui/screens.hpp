@@ -10,7 +10,7 @@
 namespace turnpoint::ui {
 
 // What the program does with a screen. Each makes the application object, so one call a process; each returns
-// when its window is closed, and throws std::invalid_argument where there is no screen to open.
+// when its window is closed, and throws terms::UsageError where there is no screen to open.
 
 /// Runs one session: asks for what the request leaves open (language, consent, participant's code), shows the
 /// session's pages and takes its inputs. The session runs on a thread of its own; what it throws is shown as

@@ -6,6 +6,7 @@
 
 #include "station/app/code_back_off.hpp"
 #include "station/app/operator_code.hpp"
+#include "station/terms/usage_error.hpp"
 #include "station/text/problem.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -63,7 +64,7 @@ TEST_CASE("the hash is the one that other programs make of a password", "[code]"
 
 TEST_CASE("codes that no keypad has, that are short, or that everybody knows are refused", "[code]") {
   for (const auto* digits : {"", "739", "24b8", "7391 ", "1234567890123", "2468"})
-    CHECK_THROWS_AS(app::OperatorCode::of_digits(digits), std::invalid_argument);
+    CHECK_THROWS_AS(app::OperatorCode::of_digits(digits), terms::UsageError);
   CHECK_NOTHROW(app::OperatorCode::of_digits("123456789012"));
 }
 

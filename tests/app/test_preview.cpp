@@ -4,6 +4,7 @@
 
 #include "station/app/preview.hpp"
 #include "station/app/scene_figures.hpp"
+#include "station/terms/usage_error.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/svg_geometry.hpp"
 
@@ -87,9 +88,9 @@ TEST_CASE("what a rig cannot present is the look's problem, in words", "[preview
 
 TEST_CASE("factors that are set must exist and be numbers", "[preview]") {
   const auto preview = preview_of("demo");
-  CHECK_THROWS_AS(factors(preview, {"offset_mm"}), std::invalid_argument);
-  CHECK_THROWS_AS(factors(preview, {"offset=3"}), std::invalid_argument);
-  CHECK_THROWS_AS(factors(preview, {"offset_mm=left"}), std::invalid_argument);
+  CHECK_THROWS_AS(factors(preview, {"offset_mm"}), terms::UsageError);
+  CHECK_THROWS_AS(factors(preview, {"offset=3"}), terms::UsageError);
+  CHECK_THROWS_AS(factors(preview, {"offset_mm=left"}), terms::UsageError);
   std::vector<std::string> assumed;
   app::factors_for(preview.protocol(), {"offset_mm=3"}, assumed);
   CHECK(assumed == std::vector<std::string>{"mark_mm"});

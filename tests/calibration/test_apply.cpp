@@ -2,6 +2,7 @@
 #include <fstream>
 
 #include "station/calibration/apply.hpp"
+#include "station/terms/usage_error.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -41,11 +42,11 @@ TEST_CASE("a calibrated rig has the measured response, band, loss and friction",
 TEST_CASE("a transducer of another rig, or without a common band, is refused", "[calibration][apply]") {
   auto calibration = measured();
   calibration.transducers[0].name = "other";
-  CHECK_THROWS_AS(applied(calibration, plate()), std::invalid_argument);
+  CHECK_THROWS_AS(applied(calibration, plate()), terms::UsageError);
   calibration = measured();
   calibration.transducers[0].response.low_Hz = 70000;
   calibration.transducers[0].response.high_Hz = 80000;
-  CHECK_THROWS_AS(applied(calibration, plate()), std::invalid_argument);
+  CHECK_THROWS_AS(applied(calibration, plate()), terms::UsageError);
 }
 
 TEST_CASE("the newest calibration beside a rig is found by its date", "[calibration][apply]") {

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "station/calibration/calibration.hpp"
+#include "station/terms/usage_error.hpp"
 #include "station/text/problem.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -89,7 +90,7 @@ TEST_CASE("a calibration expires, belongs to one rig file, and says so", "[calib
         "the calibration of 2026-02-27 expired 1 days ago");
   CHECK(problems(calibration, "abd", "2026-03-01").size() == 1);
   CHECK(problems(calibration, "abc", "2026-02-01").size() == 1);
-  CHECK_THROWS_AS(days_left(calibration, "2026-02-30"), std::invalid_argument);
+  CHECK_THROWS_AS(days_left(calibration, "2026-02-30"), terms::UsageError);
 }
 
 TEST_CASE("every problem of every file is told at once, with its place", "[calibration]") {

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "station/calibration/fits.hpp"
+#include "station/terms/usage_error.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::calibration;
@@ -76,12 +77,12 @@ TEST_CASE("curvature against 1/f exposes bending, and stays quiet without it", "
 }
 
 TEST_CASE("points that determine nothing are refused", "[calibration]") {
-  CHECK_THROWS_AS(fit_boundaries(brass({20000}), Law::membrane), std::invalid_argument);
-  CHECK_THROWS_AS(fit_boundaries(brass({20000, 40000}), std::nullopt), std::invalid_argument);
-  CHECK_THROWS_AS(fit_boundaries(brass({20000, 20000}), Law::plate), std::invalid_argument);
-  CHECK_THROWS_AS(fit_boundaries(brass({20000, 20000, 20000}), Law::plate), std::invalid_argument);
-  CHECK_THROWS_AS(fit_response({{1, 1, 0}}), std::invalid_argument);
-  CHECK_THROWS_AS(fit_friction({{0, 1}}), std::invalid_argument);
+  CHECK_THROWS_AS(fit_boundaries(brass({20000}), Law::membrane), turnpoint::terms::UsageError);
+  CHECK_THROWS_AS(fit_boundaries(brass({20000, 40000}), std::nullopt), turnpoint::terms::UsageError);
+  CHECK_THROWS_AS(fit_boundaries(brass({20000, 20000}), Law::plate), turnpoint::terms::UsageError);
+  CHECK_THROWS_AS(fit_boundaries(brass({20000, 20000, 20000}), Law::plate), turnpoint::terms::UsageError);
+  CHECK_THROWS_AS(fit_response({{1, 1, 0}}), turnpoint::terms::UsageError);
+  CHECK_THROWS_AS(fit_friction({{0, 1}}), turnpoint::terms::UsageError);
 }
 
 TEST_CASE("frequency and Q of a resonance come from its width", "[calibration]") {

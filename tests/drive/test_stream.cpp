@@ -5,6 +5,7 @@
 #include <string>
 
 #include "station/drive/engine.hpp"
+#include "station/terms/usage_error.hpp"
 #include "tests/drive/bursts.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -101,7 +102,7 @@ TEST_CASE("frames that are passed by have the events of frames that are rendered
   }
   CHECK(events >= 400);
   passing.output.uri = "wav:" + scratch_file("never.wav");
-  CHECK_THROWS_AS(open_synchronous(passing), std::invalid_argument);
+  CHECK_THROWS_AS(open_synchronous(passing), turnpoint::terms::UsageError);
 }
 
 TEST_CASE("virtual time is frame over rate, exactly, at any age", "[drive][stream]") {
@@ -222,5 +223,5 @@ TEST_CASE("play renders a file with the predicted peak", "[drive][stream]") {
   config.output.uri = "wav:/nonexistent/a.wav";
   CHECK_THROWS_AS(play(config, one_tone(20000, 0.5)), std::system_error);
   config.output.uri = "mp3:x";
-  CHECK_THROWS_AS(play(config, one_tone(20000, 0.5)), std::invalid_argument);
+  CHECK_THROWS_AS(play(config, one_tone(20000, 0.5)), turnpoint::terms::UsageError);
 }

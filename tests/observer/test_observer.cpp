@@ -6,6 +6,7 @@
 #include "station/analysis/diffusion.hpp"
 #include "station/analysis/quantile.hpp"
 #include "station/random/elementary.hpp"
+#include "station/terms/usage_error.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -205,7 +206,7 @@ TEST_CASE("an observer that is not understood is refused with what is allowed", 
   for (const auto* text :
        {"human", "sim:treshold=3", "sim:threshold=x", "sim:lapse=2", "sim:threshold=0", "sim:slope",
         "sim:spread=0.25", "sim:start_range=1", "sim:drift_sd=-1", "sim:residual=0.1,residual_range=0.3"})
-    CHECK_THROWS_AS(parse(text), std::invalid_argument);
+    CHECK_THROWS_AS(parse(text), terms::UsageError);
   CHECK(parse("sim").lapse == 0.02);
   CHECK(parse("sim:criterion=-0.3,drift_sd=0.2").criterion == -0.3);
 }

@@ -4,6 +4,7 @@
 #include "station/panel/amplifier.hpp"
 #include "station/panel/guarded_amplifier.hpp"
 #include "station/panel/simulated_lines.hpp"
+#include "station/terms/usage_error.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_lines.hpp"
 
@@ -109,8 +110,8 @@ TEST_CASE("an amplifier is opened from the rig's text, with every mistake named"
                     "'gpio:enable=A,foo=B': unknown 'foo'; allowed enable, heartbeat, fault, stop, active, "
                     "fault_active, stop_active, read_back");
   CHECK_THROWS_AS(open_amplifier("gpio:enable=NO_SUCH_LINE"), LineError);
-  CHECK_THROWS_AS(open_amplifier("usb:1"), std::invalid_argument);
-  CHECK_THROWS_AS(open_amplifier("nothing"), std::invalid_argument);
+  CHECK_THROWS_AS(open_amplifier("usb:1"), terms::UsageError);
+  CHECK_THROWS_AS(open_amplifier("nothing"), terms::UsageError);
 }
 
 TEST_CASE("the simulated amplifier keeps the same order of states", "[panel][amplifier]") {

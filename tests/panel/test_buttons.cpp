@@ -8,6 +8,7 @@
 #include "station/panel/line_panel.hpp"
 #include "station/panel/simulated_lines.hpp"
 #include "station/panel/uri.hpp"
+#include "station/terms/usage_error.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/shared_lines.hpp"
 
@@ -254,11 +255,10 @@ TEST_CASE("a simulated panel hands on what is simulated, and mistakes in the tex
   CHECK_FALSE(none->has_contact());
   CHECK_THROWS_AS(open_panel(ButtonsConfig{"gpio:left=NO_SUCH_LINE"}, std::nullopt, handlers), LineError);
   CHECK_THROWS_AS(open_panel(ButtonsConfig{"gpio:left=A,refractory_ms=-1"}, std::nullopt, handlers),
-                  std::invalid_argument);
+                  terms::UsageError);
   CHECK_THROWS_AS(open_panel(ButtonsConfig{"gpio:left=A,hold_ms=11"}, std::nullopt, handlers),
-                  std::invalid_argument);
-  CHECK_THROWS_AS(open_panel(std::nullopt, ContactConfig{"evdev:none,axis=z"}, handlers),
-                  std::invalid_argument);
+                  terms::UsageError);
+  CHECK_THROWS_AS(open_panel(std::nullopt, ContactConfig{"evdev:none,axis=z"}, handlers), terms::UsageError);
   CHECK_THROWS_AS(open_panel(std::nullopt, ContactConfig{"evdev:No Such Device"}, handlers),
                   std::system_error);
 }

@@ -1,4 +1,5 @@
 #include "station/panel/touch_reader.hpp"
+#include "station/terms/usage_error.hpp"
 
 #include <optional>
 #include <vector>
@@ -79,7 +80,7 @@ TEST_CASE("a touch panel that is not there is an error that names it", "[touch]"
   try {
     TouchReader reader("No such panel", [](TouchPanelState) {});
     FAIL("opened a panel that does not exist");
-  } catch (const std::invalid_argument& error) {
+  } catch (const turnpoint::terms::UsageError& error) {
     CHECK(std::string(error.what()).find("No such panel") != std::string::npos);
   }
   CHECK_THROWS_AS(TouchReader("/dev/input/event999", [](TouchPanelState) {}), std::system_error);

@@ -4,6 +4,7 @@
 
 #include "station/store/read.hpp"
 #include "station/store/text_table.hpp"
+#include "station/terms/usage_error.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
@@ -204,9 +205,9 @@ TEST_CASE("separator and decimal mark are options, and may not be the same", "[s
   const auto lines = lines_of(sample::bytes_of(files[0].path), "\r\n");
   CHECK(sample::contains(lines[1], ";-12,5;dB;0,30000000000000004;speed;150,25;30123,4567890123;"));
   options.separator = ',';
-  CHECK_THROWS_AS(export_data(db, folder / "out", options), std::invalid_argument);
+  CHECK_THROWS_AS(export_data(db, folder / "out", options), turnpoint::terms::UsageError);
   options.decimal = 'x';
-  CHECK_THROWS_AS(export_data(db, folder / "out", options), std::invalid_argument);
+  CHECK_THROWS_AS(export_data(db, folder / "out", options), turnpoint::terms::UsageError);
 }
 
 TEST_CASE("texts are quoted by RFC 4180, and none is a formula to a spreadsheet", "[store]") {

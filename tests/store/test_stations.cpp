@@ -11,6 +11,7 @@
 #include "station/store/merge.hpp"
 #include "station/store/read.hpp"
 #include "station/store/withdraw.hpp"
+#include "station/terms/usage_error.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
@@ -352,5 +353,5 @@ TEST_CASE("an interrupted session can be closed for good, a completed one cannot
   CHECK_FALSE(interrupted_session(db));
   CHECK(read_session(db, open).session.status_reason == "too old");
   CHECK(sample::failure([&] { abandon(db, done, ""); }).first == Fault::refused);
-  CHECK_THROWS_AS(annotate(db, done, ""), std::invalid_argument);
+  CHECK_THROWS_AS(annotate(db, done, ""), turnpoint::terms::UsageError);
 }

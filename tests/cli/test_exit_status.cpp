@@ -1,0 +1,59 @@
+#include <sstream>
+#include <system_error>
+
+#include "station/cli/command.hpp"
+#include "station/scene/planner.hpp"
+#include "station/text/problem.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/child.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+const std::string kRig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
+
+struct End {
+  int status = 0;
+  std::string said;
+};
+
+template <class Error>
+End ending_with(const Error& error) {
+  std::ostringstream err;
+  const int status = cli::exit_status(err, [&]() -> int { throw error; });
+  return {status, err.str()};
+}
+
+int status_of(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), TURNPOINT);
+  Child child(arguments);
+  REQUIRE(child.ends_within(20000));
+  CAPTURE(child.said());
+  CHECK(child.said().find("please report") == std::string::npos);
+  return child.outcome();
+}
+
+}  // namespace
+
+TEST_CASE("the exit status says whose mistake it was", "[cli]") {
+  CHECK(ending_with(text::BadInput({{{"a.toml", 3, 1}, "what", "allowed"}})).status == 2);
+  CHECK(ending_with(terms::UsageError("--x 3: 1 and 2 are allowed")).status == 2);
+  CHECK(ending_with(scene::Unreachable("no frequency reaches 900 mm")).status == 2);
+  CHECK(ending_with(std::system_error(EIO, std::generic_category(), "a.sqlite")).status == 1);
+  for (const auto& end :
+       {ending_with(std::logic_error("started twice")), ending_with(std::invalid_argument("n is 0")),
+        ending_with(std::out_of_range("map::at"))}) {
+    CHECK(end.status == 70);
+    CHECK(end.said.find("Please report it") != std::string::npos);
+  }
+}
+
+TEST_CASE("numbers that physics refuses are the user's", "[cli]") {
+  CHECK(status_of({"map", "--rig", kRig, "--frequency", "30000", "--edge", "nowhere"}) == 2);
+  CHECK(status_of({"map", "--rig", kRig, "--frequency", "30000", "--model", "fem"}) == 2);
+  CHECK(status_of({"field", "--rig", kRig, "--tone", "30000", "--points", "1"}) == 2);
+  CHECK(status_of({"field", "--rig", kRig, "--tone", "-5", "--points", "10"}) == 2);
+  CHECK(status_of({"field", "--rig", kRig, "--tone", "30000", "--at", "100", "--model", "edge"}) == 2);
+  CHECK(status_of({"run", "nowhere.toml", "--rig", kRig, "--observer", "sim:threshold=many"}) != 70);
+}
