@@ -7,26 +7,16 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <system_error>
 
 #include "station/store/export_files.hpp"
 #include "station/text/number.hpp"
+#include "station/text/toml.hpp"
 
 namespace turnpoint::cli {
 
 namespace {
-
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  if (!file.is_open() || file.bad())
-    throw std::system_error(errno, std::generic_category(), "cannot read " + path + " to sign it");
-  return bytes.str();
-}
 
 /// Runs a program without a shell, on this terminal. Returns its exit status.
 int run_program(std::vector<std::string> words) {
@@ -49,7 +39,7 @@ std::vector<std::string> sign_files(const std::string& folder, const std::vector
                                     const std::string& key) {
   std::string sums;
   for (const auto& file : files)
-    sums += text::sha256(bytes_of(file)) + "  " + std::filesystem::relative(file, folder).string() + "\n";
+    sums += text::sha256(text::read_file(file)) + "  " + std::filesystem::relative(file, folder).string() + "\n";
   const auto list = (std::filesystem::path(folder) / "SHA256SUMS").string();
   const auto signature = list + ".sig";
   store::write_file(list, sums);

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
+#include <system_error>
 
 #include "station/store/open.hpp"
 #include "station/store/text_table.hpp"
+#include "station/text/toml.hpp"
 
 namespace turnpoint::store {
 
@@ -21,25 +21,26 @@ struct Exported {
 std::vector<Exported> read_export(const std::string& path) {
   const auto refuse = [&](const std::string& why) -> std::size_t {
     throw StoreError(Fault::missing,
-                     fmt::format("verify: {}: {}; name a sessions.csv that `turnpoint export` "
-                                 "wrote",
-                                 path, why));
+                     fmt::format("verify: {}; name a sessions.csv that `turnpoint export` wrote", why));
   };
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  if (!file || !bytes) refuse("it cannot be read, or is empty");
-  const auto lines = read_table(bytes.str());
+  std::string bytes;
+  try {
+    bytes = text::read_file(path);
+  } catch (const std::system_error& error) {
+    refuse(error.what());
+  }
+  const auto lines = read_table(bytes);
+  if (lines.empty()) refuse(path + ": it is empty");
   const auto column = [&](const char* name) {
     const auto& head = lines.front();
     const auto at = std::find(head.begin(), head.end(), name);
-    return at == head.end() ? refuse(fmt::format("it has no column {}", name))
+    return at == head.end() ? refuse(fmt::format("{}: it has no column {}", path, name))
                             : static_cast<std::size_t>(at - head.begin());
   };
   const auto id = column("session_id"), checksum = column("checksum");
   std::vector<Exported> sessions;
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    if (lines[i].size() != lines.front().size()) refuse(fmt::format("line {} is not whole", i + 1));
+    if (lines[i].size() != lines.front().size()) refuse(fmt::format("{}: line {} is not whole", path, i + 1));
     sessions.push_back({lines[i][id], lines[i][checksum]});
   }
   return sessions;

@@ -178,22 +178,22 @@ class OpenFile {
 
 }  // namespace
 
-std::string read_file(const std::string& path) {
-  OpenFile file(path);
-  std::string bytes;
-  for (auto part = file.read(); !part.empty(); part = file.read()) bytes += part;
-  return bytes;
-}
-
-std::string read_text_file(const std::string& path) {
+std::string read_file(const std::string& path, std::size_t most_bytes) {
   OpenFile file(path);
   std::string bytes;
   for (auto part = file.read(); !part.empty(); part = file.read()) {
     bytes += part;
-    if (bytes.size() > most_text_bytes)
-      throw BadInput({{{path, 0, 0}, "the file has more than 4 MiB", "at most 4 MiB"}});
+    if (bytes.size() > most_bytes)
+      throw std::system_error(std::make_error_code(std::errc::file_too_large), path);
   }
   return bytes;
+}
+
+std::string read_text_file(const std::string& path) try {
+  return read_file(path, most_text_bytes);
+} catch (const std::system_error& error) {
+  if (error.code() != std::errc::file_too_large) throw;
+  throw BadInput({{{path, 0, 0}, "the file has more than 4 MiB", "at most 4 MiB"}});
 }
 
 }  // namespace turnpoint::text

@@ -39,9 +39,9 @@ Value parse_toml(const std::string& source, const std::string& path);
 /// `a number`, `text`, `a table`, ...: what a value is, for messages.
 std::string describe(const Value& value);
 
-/// The bytes of a file. Throws std::system_error naming it where it cannot be opened or read to its end, and
-/// where it is no regular file (a folder, a pipe, a device).
-std::string read_file(const std::string& path);
+/// The bytes of a file. Throws std::system_error naming it where it cannot be opened or read to its end, where
+/// it is no regular file (a folder, a pipe, a device), and where it has more than `most_bytes`.
+std::string read_file(const std::string& path, std::size_t most_bytes = std::size_t{256} << 20);
 
 /// Files that people write (protocols, rigs, calibrations) have at most so many bytes.
 constexpr std::size_t most_text_bytes = 4 << 20;

@@ -1,6 +1,10 @@
+#include <sys/stat.h>
+
 #include <fstream>
 #include <iterator>
+#include <system_error>
 
+#include "station/cli/sign.hpp"
 #include "station/store/read.hpp"
 #include "station/store/sqlite.hpp"
 #include "tests/support/catch.hpp"
@@ -72,4 +76,15 @@ TEST_CASE("a signed export is verified by ssh-keygen, and a changed one is not",
   said_by({"/bin/sh", "-c", check}, 255);
   CHECK(contains(said_by({TURNPOINT, "export", "--db", db, "--out", out, "--sign", folder / "absent"}, 1),
                  "unsigned"));
+}
+
+TEST_CASE("nothing is signed where an exported file cannot be read to its end", "[cli]") {
+  const TemporaryFolder folder;
+  const auto fifo = folder / "fifo.csv";
+  REQUIRE(::mkfifo(fifo.c_str(), 0600) == 0);
+  for (const std::string& file : {folder.path, fifo, folder / "absent.csv", std::string("/proc/self/mem")}) {
+    INFO(file);
+    CHECK_THROWS_AS(turnpoint::cli::sign_files(folder.path, {file}, "key"), std::system_error);
+    CHECK_FALSE(std::filesystem::exists(folder / "SHA256SUMS"));
+  }
 }

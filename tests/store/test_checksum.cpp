@@ -1,6 +1,9 @@
 #include "station/store/checksum.hpp"
 
+#include <sys/stat.h>
+
 #include <bit>
+#include <fstream>
 #include <random>
 
 #include "station/store/annotate.hpp"
@@ -248,6 +251,19 @@ TEST_CASE("verify compares a database with a sessions.csv that was exported befo
                              verify(db, {"", folder / "absent.csv"});
                            }).second,
                            "absent.csv"));
+  }
+  SECTION("what cannot be read to its end") {
+    std::ofstream(folder / "empty.csv");
+    REQUIRE(::mkfifo((folder / "fifo.csv").c_str(), 0600) == 0);
+    const auto message = [&](const std::string& against) {
+      const auto [fault, text] = sample::failure([&] { verify(db, {"", against}); });
+      CHECK(fault == Fault::missing);
+      return text;
+    };
+    CHECK(sample::contains(message(folder / "empty.csv"), "empty.csv: it is empty"));
+    CHECK(sample::contains(message(folder / "fifo.csv"), "fifo.csv: not a file but a pipe"));
+    CHECK(sample::contains(message(folder / "out"), "out: Is a directory"));
+    CHECK(sample::contains(message("/proc/self/mem"), "mem: Input/output error"));
   }
 }
 

@@ -1,9 +1,12 @@
+#include <fstream>
 #include <limits>
+#include <system_error>
 
 #include "station/text/number.hpp"
 #include "station/text/problem.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint::text;
 
@@ -86,6 +89,13 @@ TEST_CASE("what cannot be read to its end is an error and never an empty file", 
   CHECK_THROWS_AS(read_file("/proc/self"), std::system_error);
   CHECK_THROWS_AS(read_file("/dev/zero"), std::system_error);
   CHECK_THROWS_AS(read_file("/nowhere/at/all"), std::system_error);
+}
+
+TEST_CASE("a file longer than its reader allows is an error", "[text]") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a") << "0123456789";
+  CHECK(read_file(folder / "a", 10) == "0123456789");
+  CHECK_THROWS_AS(read_file(folder / "a", 9), std::system_error);
 }
 
 TEST_CASE("keys with too many parts and lists with too many items are refused at their place", "[text]") {
