@@ -39,7 +39,8 @@ std::vector<std::string> sign_files(const std::string& folder, const std::vector
                                     const std::string& key) {
   std::string sums;
   for (const auto& file : files)
-    sums += text::sha256(text::read_file(file)) + "  " + std::filesystem::relative(file, folder).string() + "\n";
+    sums +=
+        text::sha256(text::read_file(file)) + "  " + std::filesystem::relative(file, folder).string() + "\n";
   const auto list = (std::filesystem::path(folder) / "SHA256SUMS").string();
   const auto signature = list + ".sig";
   store::write_file(list, sums);
