@@ -51,6 +51,39 @@ void validate_rate(const char* key, const Grid& grid, std::vector<Fault>& faults
       return faults.push_back({key, "a rate outside 0 to 1", "probabilities from 0 up to, but not, 1"});
 }
 
+void validate_prior(const char* key, const Prior& prior, const Grid& grid, std::vector<Fault>& faults) {
+  if (prior.weights.empty()) return;
+  const auto values = grid.values.size();
+  if (prior.weights.size() != values)
+    faults.push_back({key, std::to_string(prior.weights.size()) + " weights",
+                      "as many as \"grid\" has values: " + std::to_string(values)});
+  else if (std::none_of(prior.weights.begin(), prior.weights.end(), [](double w) { return w > 0; }))
+    faults.push_back({key, "all weights are 0", "at least one above 0"});
+}
+
+void validate_posterior(const Spec& spec, std::vector<Fault>& faults) {
+  if (spec.stimuli.values.empty()) faults.push_back({"stimuli", "missing", "the levels to choose from"});
+  if (spec.threshold.values.empty()) faults.push_back({"grid.threshold", "missing", "its values"});
+  if (spec.slope.values.empty()) faults.push_back({"grid.slope", "missing", "its values"});
+  if (!positive(spec.slope.values)) faults.push_back({"grid.slope", "a slope is not above 0", "above 0"});
+  validate_rate("grid.guess", spec.guess, faults);
+  validate_rate("grid.lapse", spec.lapse, faults);
+  validate_prior("prior.threshold", spec.prior_threshold, spec.threshold, faults);
+  validate_prior("prior.slope", spec.prior_slope, spec.slope, faults);
+  validate_prior("prior.guess", spec.prior_guess, spec.guess, faults);
+  validate_prior("prior.lapse", spec.prior_lapse, spec.lapse, faults);
+  // What one trial has to look through: some seconds on a small computer.
+  constexpr double most = 5e7;
+  double size = static_cast<double>(spec.stimuli.values.size());
+  for (const auto* grid : {&spec.threshold, &spec.slope, &spec.guess, &spec.lapse})
+    size *= static_cast<double>(std::max<std::size_t>(1, grid->values.size()));
+  if (size > most)
+    faults.push_back({"grid.threshold", "stimuli and grids have too many combinations to choose in time",
+                      "at most 50 million"});
+  if (!spec.stop.trials && !spec.stop.threshold_sd && !spec.stop.entropy_nats)
+    faults.push_back({"stop", "nothing stops it", "trials or threshold_sd"});
+}
+
 }  // namespace
 
 const char* name(Kind kind) {
@@ -87,13 +120,7 @@ std::vector<Fault> validate(const Spec& spec) {
     case Kind::quest_plus:
     case Kind::psi:
     case Kind::psi_marginal:
-      if (spec.stimuli.values.empty()) faults.push_back({"stimuli", "missing", "the levels to choose from"});
-      if (spec.threshold.values.empty()) faults.push_back({"grid.threshold", "missing", "its values"});
-      if (spec.slope.values.empty()) faults.push_back({"grid.slope", "missing", "its values"});
-      validate_rate("grid.guess", spec.guess, faults);
-      validate_rate("grid.lapse", spec.lapse, faults);
-      if (!spec.stop.trials && !spec.stop.threshold_sd && !spec.stop.entropy_nats)
-        faults.push_back({"stop", "nothing stops it", "trials or threshold_sd"});
+      validate_posterior(spec, faults);
       break;
     case Kind::adjustment:
       if (spec.values.empty()) faults.push_back({"start", "missing", "one or more levels to start from"});
@@ -107,6 +134,21 @@ std::vector<Fault> advise(const Spec& spec) {
   std::vector<Fault> advice;
   if (spec.stimuli.values.size() == 1)
     advice.push_back({"stimuli", "a grid of one point", "two or more, to have something to choose"});
+  if (spec.threshold.values.size() == 1)
+    advice.push_back({"grid.threshold", "a grid of one point: nothing is left to find", "two or more"});
+  const auto left_out = [&](const char* key) {
+    return std::find(spec.nuisance.begin(), spec.nuisance.end(), key) != spec.nuisance.end();
+  };
+  if (!spec.nuisance.empty() && spec.kind != Kind::psi_marginal)
+    advice.push_back({"nuisance", "has no effect on this kind", "kind = \"psi-marginal\""});
+  else if (left_out("threshold") && left_out("slope"))
+    advice.push_back({"nuisance", "no trial is spent on anything", "\"threshold\" or \"slope\" left out"});
+  if (spec.start && (spec.stop.threshold_sd || spec.stop.entropy_nats))
+    advice.push_back(
+        {"stop", "a staircase ends by trials and reversals alone", "\"trials\" or \"reversals\""});
+  if (!spec.stimuli.values.empty() && spec.stop.reversals)
+    advice.push_back(
+        {"stop", "there are no reversals without a staircase", "\"trials\" or \"threshold_sd\""});
   if (spec.lapse.values.size() == 1 && spec.lapse.values[0] == 0)
     advice.push_back(
         {"grid.lapse", "only 0: one slip counts as impossible", "a value above 0, such as 0.02"});

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "station/protocol/advice_list.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/sources.hpp"
@@ -12,15 +13,19 @@ namespace {
 
 using text::Findings;
 
-void check_values(const Source& source, const std::set<std::string>& needed, const Reading& reading) {
-  for (const auto& name : needed) {
-    const auto* factor = find_factor(reading.protocol.factors, name);
-    const bool drawn = factor && !factor->levels.empty();
-    if (drawn || source.sets.count(name)) continue;
+// A factor that nothing sets is said once, at the factor.
+void check_values(const std::vector<Source>& sources, const std::string& name, const Reading& reading) {
+  const auto* factor = find_factor(reading.protocol.factors, name);
+  if (factor && !factor->levels.empty()) return;
+  const auto sets = [&](const Source& source) { return source.sets.count(name) > 0; };
+  const bool set_somewhere = std::any_of(sources.begin(), sources.end(), sets);
+  for (const auto& source : sources) {
+    if (sets(source)) continue;
     reading.findings.add(
-        source.block->place,
+        factor && !set_somewhere ? factor->place : source.block->place,
         "in block \"" + source.block->name + "\", " + source.what + ", \"" + name + "\" has no value",
         "a procedure or fixed levels that set it, or \"levels\" of the factor to draw from");
+    if (!set_somewhere) return;
   }
 }
 
@@ -58,10 +63,11 @@ void check_scored(text::TableReader& file, const Reading& reading) {
   }
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
-    if (block.pass || block.feedback != Feedback::none)
-      reading.findings.add(block.place,
-                           "block \"" + block.name + "\" judges answers, and no answer is correct",
-                           "\"correct\" in [task]");
+    for (const auto* key : {"pass", "feedback"})
+      if (key == std::string("pass") ? block.pass.has_value() : block.feedback != Feedback::none)
+        reading.findings.add(reading.places.of(key_of(part, key)),
+                             "block \"" + block.name + "\" judges answers, and no answer is correct",
+                             "\"correct\" in [task]");
   }
 }
 
@@ -74,10 +80,12 @@ void check_adjustment(const Reading& reading) {
       const auto* spec = find_procedure(protocol, name);
       if (!spec) continue;
       if ((spec->kind == procedure::Kind::adjustment) != adjusting)
-        reading.findings.add(block.place, "the procedure \"" + name + "\" does not fit the kind of task",
+        reading.findings.add(reading.places.of(key_of(*spec, "kind")),
+                             "the procedure \"" + name + "\" does not fit the kind of task",
                              adjusting ? "kind = \"adjustment\"" : "any kind but \"adjustment\"");
       else if (adjusting && spec->level != protocol.task.adjusts)
-        reading.findings.add(block.place, "the procedure \"" + name + "\" sets \"" + spec->level + "\"",
+        reading.findings.add(reading.places.of(key_of(*spec, "level")),
+                             "the procedure \"" + name + "\" sets \"" + spec->level + "\"",
                              "the factor that the slider moves: \"" + protocol.task.adjusts + "\"");
     }
   }
@@ -126,15 +134,17 @@ void check_timing(text::TableReader& file, const Reading& reading) {
     if (const auto block = block_without_deadline(protocol))
       findings.add(table->place, "block \"" + *block + "\" has no deadline: [timing] has no \"deadline_s\"",
                    "\"deadline_s\" here, or in the block's [instructions.NAME]");
-  const auto check_anticipation = [&](double deadline_s) {
+  // Of the two the odd one is to blame: no deadline is as short as the usual anticipation_s of 0.15.
+  const auto check_anticipation = [&](const std::string& key, double deadline_s) {
     if (timing.anticipation_s >= deadline_s)
-      findings.add(place("anticipation_s"),
+      findings.add(deadline_s < shortest_deadline_s ? reading.places.of(key) : place("anticipation_s"),
                    "\"anticipation_s\" is not below the deadline of " + text::number(deadline_s) + " s",
                    "below it");
   };
-  if (timing.deadline_s) check_anticipation(*timing.deadline_s);
+  if (timing.deadline_s) check_anticipation("timing.deadline_s", *timing.deadline_s);
   for (const auto& [name, instruction] : protocol.instructions)
-    if (instruction.deadline_s) check_anticipation(*instruction.deadline_s);
+    if (instruction.deadline_s)
+      check_anticipation("instructions." + name + ".deadline_s", *instruction.deadline_s);
 }
 
 }  // namespace
@@ -145,7 +155,7 @@ void check_whole(text::TableReader& file, Reading& reading) {
   check_adjustment(reading);
   const auto sources = sources_of(reading.protocol);
   const auto needed = factors_used(reading.protocol);
-  for (const auto& source : sources) check_values(source, needed, reading);
+  for (const auto& name : needed) check_values(sources, name, reading);
   check_answers(sources, reading);
 }
 

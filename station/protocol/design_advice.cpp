@@ -4,9 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "station/protocol/advice_list.hpp"
 #include "station/protocol/expression.hpp"
-#include "station/protocol/key_places.hpp"
-#include "station/protocol/sources.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
@@ -14,7 +13,6 @@ namespace turnpoint::protocol {
 namespace {
 
 using procedure::Kind;
-using procedure::Spec;
 using text::number;
 using text::Problem;
 
@@ -26,254 +24,231 @@ std::string trimmed(const std::string& text) {
   return from == std::string::npos ? "" : text.substr(from, text.find_last_not_of(" \t\n\r") - from + 1);
 }
 
-class Advice {
- public:
-  explicit Advice(const Protocol& protocol) : protocol_(protocol), places_(protocol.source, protocol.path) {}
-
-  std::vector<Problem> all() {
-    for (const auto& spec : protocol_.procedures) {
-      level_without_scene(spec);
-      steps(spec);
-      rates(spec);
-      grids(spec);
+void check_words(AdviceList& advice) {
+  const auto& task = advice.protocol.task;
+  for (const auto& language : advice.protocol.languages) {
+    std::set<std::string> seen;
+    for (std::size_t i = 0; i < task.choices.size(); ++i) {
+      const auto& choice = task.choices[i];
+      const auto found = choice.label.find(language);
+      const auto label = found == choice.label.end() ? "" : trimmed(found->second);
+      const auto key = "task.choices." + std::to_string(i) + ".label." + language;
+      if (label.empty())
+        advice.add(key, "the label of \"" + choice.id + "\" is blank",
+                   "what the participant reads on the button");
+      else if (!seen.insert(label).second)
+        advice.add(key, "two answers have the label \"" + label + "\"", "labels that differ");
     }
-    answers();
-    words();
-    ramps();
-    strengths();
-    blocks();
-    instructions();
-    return std::move(found_);
+    const auto question = task.question.find(language);
+    if (question != task.question.end() && trimmed(question->second).empty())
+      advice.add("task.question." + language, "the question is blank", "what the participant is asked");
   }
+}
 
- private:
-  void add(const std::string& key, const std::string& what, const std::string& allowed) {
-    found_.push_back({places_.of(key), what, allowed});
+void check_ramps(AdviceList& advice) {
+  const auto& protocol = advice.protocol;
+  const bool several = protocol.task.duration_s.has_value();
+  const double longest_s = protocol.task.duration_s.value_or(protocol.timing.explore_s.value_or(0));
+  for (const auto& name : scenes_used(protocol)) {
+    const double ramp_ms = protocol.scenes.at(name).ramp_ms;
+    if (longest_s <= 0 || 2e-3 * ramp_ms < longest_s) continue;
+    const bool stated = advice.places.has("scene." + name + ".ramp_ms") && ramp_ms > 500;
+    return advice.add(
+        stated    ? "scene." + name + ".ramp_ms"
+        : several ? "task.duration_s"
+                  : "timing.explore_s",
+        "the ramps of scene \"" + name + "\" take as long as its tones, " + number(longest_s) + " s",
+        "tones that last longer than both ramps");
   }
-  static std::string key_of(const Spec& spec, const std::string& key) {
-    return "procedure." + spec.name + "." + key;
-  }
+}
 
-  void level_without_scene(const Spec& spec) {
-    for (const auto& name : scenes_used(protocol_))
-      for (const auto* expression : expressions_of(protocol_.scenes.at(name))) {
-        double sum = 0;
-        for (const auto& [factor, coefficient] : expression->terms)
-          if (factor == spec.level) sum += coefficient;
-        if (sum != 0) return;
+bool same(const std::optional<Linear>& a, const std::optional<Linear>& b) {
+  return a && b && a->constant == b->constant && a->terms == b->terms && a->absolute == b->absolute;
+}
+
+void check_scenes(AdviceList& advice) {
+  for (const auto& name : scenes_used(advice.protocol)) {
+    const auto& scene = advice.protocol.scenes.at(name);
+    const auto key = "scene." + name + ".";
+    if (scene.displacement_um &&
+        bounds(*scene.displacement_um, advice.protocol.factors).second < least_displacement_um)
+      advice.add(key + "displacement_um",
+                 "nobody feels a displacement of " + scene.displacement_um->source + " um",
+                 "about 0.2 to 3 um");
+    for (std::size_t i = 0; i < scene.tones.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const auto &a = scene.tones[i], &b = scene.tones[j];
+        if (same(a.frequency_Hz, b.frequency_Hz) ||
+            (same(a.boundary_mm, b.boundary_mm) && a.edge.name == b.edge.name &&
+             a.edge.friction == b.edge.friction))
+          advice.add(key + "tones." + std::to_string(i), "this tone is the same as another of the scene",
+                     "one stronger tone, or another place");
       }
-    add(key_of(spec, "level"), "no scene of the task depends on \"" + spec.level + "\": all trials are alike",
-        "a scene with \"" + spec.level + "\" in its arithmetic");
   }
+}
 
-  void steps(const Spec& spec) {
-    const auto& down = spec.step.empty() ? spec.step_down : spec.step;
-    const std::string key = spec.step.empty() ? "step_down" : "step";
-    if (down.empty() || spec.scale != procedure::Scale::linear) return;
-    if (spec.min && spec.max && down.front() >= *spec.max - *spec.min)
-      add(key_of(spec, key), "a step of " + number(down.front()) + " is as large as the whole range",
-          "steps well below " + number(*spec.max - *spec.min));
-    if (!std::is_sorted(down.rbegin(), down.rend()))
-      add(key_of(spec, key), "the steps grow from reversal to reversal",
-          "steps that become smaller, [4.0, 2.0, 1.0]");
+void check_task(AdviceList& advice) {
+  const auto& protocol = advice.protocol;
+  const auto& task = protocol.task;
+  for (const auto& interval : task.intervals)
+    if (interval.size() == 2 && interval[0] == interval[1])
+      advice.add("task.intervals", "the scene \"" + interval[0] + "\" follows itself: nothing changes",
+                 "two different scenes");
+  const auto* slider = find_factor(protocol.factors, task.adjusts);
+  if (slider && slider->range && task.step && *task.step >= slider->range->second - slider->range->first)
+    advice.add("task.step", "a step of " + number(*task.step) + " is as large as the slider's whole range",
+               "steps well below " + number(slider->range->second - slider->range->first));
+  const auto& plan = protocol.plan;
+  for (const auto& part : plan)
+    if (task.kind == TaskKind::adjustment && block_of(part).feedback != Feedback::none)
+      advice.add(key_of(part, "feedback"), "a setting of the slider is neither right nor wrong",
+                 "feedback = \"none\"");
+}
+
+/// At most so many trials, catch trials included; none where answers alone end the block.
+std::optional<double> most_trials(const Protocol& protocol, const Block& block) {
+  if (block.trials) return *block.trials;
+  double trials = static_cast<double>(block.levels.size());
+  for (const auto& name : block.procedures) {
+    const auto* spec = find_procedure(protocol, name);
+    if (!spec) return std::nullopt;
+    if (!spec->values.empty())
+      trials += static_cast<double>(spec->values.size()) * spec->repeats;
+    else if (spec->stop.trials && spec->stop.rule == procedure::StopRule::any)
+      trials += *spec->stop.trials;
+    else
+      return std::nullopt;
   }
+  return block.catch_trials ? trials / (1 - block.catch_trials->rate) : trials;
+}
 
-  double chance() const { return 1.0 / static_cast<double>(protocol_.task.choices.size()); }
+void check_counts(AdviceList& advice, const std::variant<Block, Sequence>& part) {
+  const auto& block = block_of(part);
+  std::size_t levels = block.levels.size();
+  const procedure::Spec* constant = nullptr;
+  for (const auto& name : block.procedures)
+    if (const auto* spec = find_procedure(advice.protocol, name);
+        spec && spec->kind == Kind::constant_stimuli)
+      levels += spec->values.size(), constant = spec;
+  const auto trials = static_cast<std::size_t>(block.trials.value_or(0));
+  if (block.trials && trials < levels)
+    advice.add(key_of(part, "trials"),
+               "of " + std::to_string(levels) + " levels " + std::to_string(trials) +
+                   " are presented: the others never are",
+               "at least " + std::to_string(levels) + " trials");
+  else if (block.trials && constant && block.procedures.size() == 1 && !block.practice &&
+           !block.catch_trials && trials < levels * static_cast<std::size_t>(constant->repeats) &&
+           trials % levels != 0)
+    advice.add(key_of(part, "trials"),
+               std::to_string(trials) + " trials are not the same number of each of " +
+                   std::to_string(levels) + " levels",
+               "a multiple of " + std::to_string(levels) + ", or no \"trials\"");
+  const auto most = most_trials(advice.protocol, block);
+  if (block.break_after && most && block.break_after->trials >= *most)
+    advice.add(key_of(part, "break_after"),
+               "the break never comes: the block has " + number(std::floor(*most)) + " trials",
+               "after fewer trials");
+}
 
-  void rates(const Spec& spec) {
-    const bool scored = spec.tracks.empty();
-    for (const double guess : spec.guess.values)
-      if (scored && std::fabs(guess - chance()) > 0.1) {
-        add(key_of(spec, "grid.guess"),
-            "a guess rate of " + number(guess, 3) + ", where guessing gets " + number(chance(), 3) + " right",
-            number(chance(), 3) + ", or values near it");
-        break;
-      }
-    for (const double lapse : spec.lapse.values)
-      if (lapse >= 0.5 && lapse < 1) {
-        add(key_of(spec, "grid.lapse"),
-            "a lapse rate of " + number(lapse, 3) + ": most answers would be slips",
-            "small values, such as 0.01 to 0.1");
-        break;
-      }
-    if (spec.kind == Kind::weighted_up_down && scored && spec.target && *spec.target <= chance() + 1e-9)
-      add(key_of(spec, "target"), "a target of " + number(*spec.target, 3) + " is not above guessing",
-          "between " + number(chance(), 3) + " and 1");
+void check_blocks(AdviceList& advice) {
+  const auto& protocol = advice.protocol;
+  double practice = 0, rest = 0;
+  std::string practice_key;
+  for (const auto& part : protocol.plan) {
+    const auto& block = block_of(part);
+    check_counts(advice, part);
+    if (advice.places.has(key_of(part, "interleave")) && block.procedures.size() < 2)
+      advice.add(key_of(part, "interleave"), "\"interleave\" with one procedure", "two procedures or more");
+    const auto* sequence = std::get_if<Sequence>(&part);
+    if (sequence && sequence->mirror && sequence->cycles < 2)
+      advice.add("sequence." + sequence->name + ".mirror", "\"mirror\" with one cycle mirrors nothing",
+                 "cycles = 2 or more");
+    for (const auto& name : block.procedures)
+      if (const auto* spec = find_procedure(protocol, name);
+          sequence && spec &&
+          std::find(spec->balance.begin(), spec->balance.end(), sequence->over) != spec->balance.end())
+        advice.add(key_of(*spec, "balance"),
+                   "the sequence \"" + sequence->name + "\" holds \"" + sequence->over +
+                       "\" constant in each block, and \"balance\" changes it",
+                   "one of the two");
+    const double trials = most_trials(protocol, block).value_or(1e9);
+    (block.practice ? practice : rest) += trials;
+    if (block.practice)
+      practice_key = key_of(part, advice.places.has(key_of(part, "trials")) ? "trials" : "practice");
   }
+  if (practice > 0 && rest == 0)
+    advice.add(key_of(protocol.plan.back(), "practice"), "all blocks are practice: nothing is measured",
+               "a block without \"practice\"");
+  else if (practice > rest)
+    advice.add(practice_key, "there is more practice than the blocks that it prepares for", "less practice");
+}
 
-  void grids(const Spec& spec) {
-    const auto& stimuli = spec.stimuli.values;
-    const auto& threshold = spec.threshold.values;
-    if (stimuli.empty() || threshold.empty()) return;
-    const auto [low, high] = std::minmax_element(stimuli.begin(), stimuli.end());
-    const auto [from, to] = std::minmax_element(threshold.begin(), threshold.end());
-    if (*to < *low || *from > *high)
-      add(key_of(spec, "grid.threshold"), "no threshold of the grid lies among the stimuli",
-          number(*low) + " to " + number(*high));
-    const auto& prior = spec.prior_threshold.normal;
-    if (prior && (prior->first < *from - 3 * prior->second || prior->first > *to + 3 * prior->second))
-      add(key_of(spec, "prior.threshold"),
-          "the prior's mean of " + number(prior->first) + " is far outside the grid",
-          number(*from) + " to " + number(*to));
-    if (spec.stop.min_trials && spec.stop.trials && *spec.stop.min_trials > *spec.stop.trials)
-      add(key_of(spec, "stop"), "\"min_trials\" is above \"trials\"",
-          "at most " + std::to_string(*spec.stop.trials));
+void check_instructions(AdviceList& advice) {
+  const auto blocks = all_blocks(advice.protocol);
+  for (const auto& [name, instruction] : advice.protocol.instructions) {
+    const auto shows = [&, wanted = FactorValue(name)](const Block& block) {
+      const auto fixed = block.fixed.find("instruction");
+      return fixed != block.fixed.end() && fixed->second == wanted;
+    };
+    if (std::none_of(blocks.begin(), blocks.end(), shows))
+      advice.add(
+          "instructions." + name, "nothing shows the instruction \"" + name + "\"",
+          "instruction = \"" + name + "\" in a block, or a sequence over a factor named \"instruction\"");
+    const auto& target = instruction.target_accuracy;
+    if (target && target->second <= chance(advice.protocol))
+      advice.add("instructions." + name + ".target_accuracy", "guessing is as accurate as that",
+                 "between " + number(chance(advice.protocol), 3) + " and 1");
   }
+}
 
-  // Every value that a factor of the comparisons can take with this source, the
-  // others as they come first.
-  std::vector<Factors> cases_of(const Source& source) const {
-    std::vector<Factors> cases;
-    for (const double level : source.levels) {
-      cases.push_back(any_factors(protocol_));
-      cases.back()[source.level] = level;
-    }
-    return cases;
-  }
-
-  void answers() {
-    const auto& correct = protocol_.task.correct_answer;
-    if (correct.empty()) return;
-    std::vector<int> right(correct.size(), 0);
-    int all = 0;
-    for (const auto& source : sources_of(protocol_)) {
-      int scored = 0;
-      for (const auto& factors : cases_of(source)) {
-        ++all;
-        for (std::size_t i = 0; i < correct.size(); ++i)
-          if (holds(correct[i].second, factors)) ++right[i], ++scored;
-      }
-      if (scored == 0 && source.spec && source.spec->kind == Kind::constant_stimuli)
-        add(key_of(*source.spec, "values"), "no answer is right at any of these levels",
-            "levels for which \"correct\" names an answer");
-    }
-    for (std::size_t i = 0; i < correct.size(); ++i) {
-      if (depends_on_drawn(correct[i].second)) continue;
-      const std::string key = "task.correct." + correct[i].first;
-      if (right[i] == 0)
-        add(key, "the answer \"" + correct[i].first + "\" is never right",
-            "a comparison that some level fulfils");
-      else if (right[i] == all)
-        add(key, "the answer \"" + correct[i].first + "\" is always right",
-            "a comparison that some level does not fulfil");
-    }
-  }
-
-  bool depends_on_drawn(const Comparison& comparison) const {
-    for (const auto* side : {&comparison.left, &comparison.right})
-      for (const auto& [name, coefficient] : side->terms)
-        if (const auto* factor = find_factor(protocol_.factors, name); factor && factor->levels.size() > 1)
-          return true;
-    return false;
-  }
-
-  void words() {
-    const auto& choices = protocol_.task.choices;
-    for (const auto& language : protocol_.languages) {
-      std::set<std::string> seen;
-      for (std::size_t i = 0; i < choices.size(); ++i) {
-        const auto found = choices[i].label.find(language);
-        const auto label = found == choices[i].label.end() ? "" : trimmed(found->second);
-        const auto key = "task.choices." + std::to_string(i) + ".label." + language;
-        if (label.empty())
-          add(key, "the label of \"" + choices[i].id + "\" is blank",
-              "what the participant reads on the button");
-        else if (!seen.insert(label).second)
-          add(key, "two answers have the label \"" + label + "\"", "labels that differ");
-      }
-      const auto question = protocol_.task.question.find(language);
-      if (question != protocol_.task.question.end() && trimmed(question->second).empty())
-        add("task.question." + language, "the question is blank", "what the participant is asked");
-    }
-  }
-
-  void ramps() {
-    const auto& task = protocol_.task;
-    const bool several = task.duration_s.has_value();
-    const double longest_s = task.duration_s.value_or(protocol_.timing.explore_s.value_or(0));
-    for (const auto& name : scenes_used(protocol_)) {
-      if (longest_s <= 0 || 2e-3 * protocol_.scenes.at(name).ramp_ms < longest_s) continue;
-      const bool stated =
-          places_.has("scene." + name + ".ramp_ms") && protocol_.scenes.at(name).ramp_ms > 500;
-      add(stated    ? "scene." + name + ".ramp_ms"
-          : several ? "task.duration_s"
-                    : "timing.explore_s",
-          "the ramps of scene \"" + name + "\" take as long as its tones, " + number(longest_s) + " s",
-          "tones that last longer than both ramps");
-      return;
-    }
-  }
-
-  void strengths() {
-    for (const auto& name : scenes_used(protocol_)) {
-      const auto& displacement = protocol_.scenes.at(name).displacement_um;
-      if (displacement && bounds(*displacement, protocol_.factors).second < least_displacement_um)
-        add("scene." + name + ".displacement_um",
-            "nobody feels a displacement of " + displacement->source + " um", "about 0.2 to 3 um");
-    }
-  }
-
-  void blocks() {
-    for (const auto& part : protocol_.plan) {
-      const auto& block = block_of(part);
-      const auto* sequence = std::get_if<Sequence>(&part);
-      const auto table = sequence ? "sequence." + sequence->name + ".block" : "block." + block.name;
-      std::size_t levels = block.levels.size();
-      for (const auto& name : block.procedures)
-        if (const auto* spec = find_procedure(protocol_, name); spec && spec->kind == Kind::constant_stimuli)
-          levels += spec->values.size();
-      if (block.trials && static_cast<std::size_t>(*block.trials) < levels)
-        add(table + ".trials",
-            "of " + std::to_string(levels) + " levels " + std::to_string(*block.trials) +
-                " are presented: the others never are",
-            "at least " + std::to_string(levels) + " trials");
-      if (places_.has(table + ".interleave") && block.procedures.size() < 2)
-        add(table + ".interleave", "\"interleave\" with one procedure", "two procedures or more");
-      if (sequence && sequence->mirror && sequence->cycles < 2)
-        add("sequence." + sequence->name + ".mirror", "\"mirror\" with one cycle mirrors nothing",
-            "cycles = 2 or more");
-    }
-  }
-
-  void instructions() {
-    for (const auto& [name, instruction] : protocol_.instructions) {
-      bool shown = false;
-      for (const auto& block : all_blocks(protocol_)) {
-        const auto fixed = block.fixed.find("instruction");
-        shown = shown || (fixed != block.fixed.end() && fixed->second == FactorValue(name));
-      }
-      if (!shown)
-        add("instructions." + name, "nothing shows the instruction \"" + name + "\"",
-            "instruction = \"" + name +
-                "\" in a block, or a sequence over a factor named "
-                "\"instruction\"");
-    }
-  }
-
-  const Protocol& protocol_;
-  KeyPlaces places_;
-  std::vector<Problem> found_;
-};
+void check_analysis(AdviceList& advice) {
+  const auto& analysis = advice.protocol.analysis;
+  const auto moves = [](const auto& term) { return term.second != 0; };
+  if (analysis.difficulty &&
+      std::none_of(analysis.difficulty->terms.begin(), analysis.difficulty->terms.end(), moves))
+    advice.add("analysis.difficulty", "the difficulty is the same in all trials", "arithmetic with a factor");
+  std::set<std::string> seen;
+  for (const auto& word : analysis.show.value_or(std::vector<std::string>{}))
+    if (!seen.insert(word).second)
+      advice.add("analysis.show", "\"" + word + "\" stands twice in \"show\"", "each once");
+}
 
 }  // namespace
 
-std::vector<Problem> design_advice(const Protocol& protocol) { return Advice(protocol).all(); }
+void advise_on_plan(AdviceList& advice) {
+  check_words(advice);
+  check_ramps(advice);
+  check_scenes(advice);
+  check_task(advice);
+  check_blocks(advice);
+  check_instructions(advice);
+  check_analysis(advice);
+}
 
 std::vector<Problem> notes(const Protocol& protocol) {
-  const KeyPlaces places(protocol.source, protocol.path);
-  std::vector<Problem> notes;
-  for (const auto& spec : protocol.procedures)
+  AdviceList notes(protocol);
+  for (const auto& spec : protocol.procedures) {
     for (const auto& name : spec.balance) {
       const auto* factor = find_factor(protocol.factors, name);
       const int levels = factor ? static_cast<int>(factor->levels.size()) : 0;
       if (levels == 0 || spec.repeats % levels == 0) continue;
       const int least = spec.repeats / levels;
-      notes.push_back({places.of("procedure." + spec.name + ".balance"),
-                       "each level meets each of the " + std::to_string(levels) + " values of \"" + name +
-                           "\" " + std::to_string(least) + " or " + std::to_string(least + 1) + " times",
-                       "equally often with repeats = " + std::to_string((least + 1) * levels)});
+      notes.add(key_of(spec, "balance"),
+                "each level meets each of the " + std::to_string(levels) + " values of \"" + name + "\" " +
+                    std::to_string(least) + " or " + std::to_string(least + 1) + " times",
+                "equally often with repeats = " + std::to_string((least + 1) * levels));
     }
-  return notes;
+    std::set<double> seen;
+    for (const double value : spec.values)
+      if (!seen.insert(value).second)
+        notes.add(levels_key(spec), "the level " + number(value) + " stands twice, and comes twice as often",
+                  "");
+  }
+  if (protocol.timing.iti_s.high == 0) notes.add("timing.iti_s", "no pause between trials", "");
+  if (protocol.task.gap_s == 0.0) notes.add("task.gap_s", "no pause between the intervals of a trial", "");
+  if (protocol.task.foreperiod_s && protocol.task.foreperiod_s->high == 0)
+    notes.add("task.foreperiod_s", "the second scene begins at once", "");
+  return std::move(notes.found);
 }
 
 }  // namespace turnpoint::protocol

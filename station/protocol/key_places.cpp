@@ -11,9 +11,12 @@ std::string name_of(const text::Value& table, std::size_t index) {
 
 }  // namespace
 
-KeyPlaces::KeyPlaces(const std::string& source, const std::string& path) {
+KeyPlaces::KeyPlaces(const std::string& source, const std::string& path)
+    : KeyPlaces(text::parse_toml(source, path), path) {}
+
+KeyPlaces::KeyPlaces(const text::Value& document, const std::string& path) {
   places_[""] = {path, 0, 0};
-  for (const auto& entry : text::parse_toml(source, path).entries) add(entry.key, entry.place, entry.value);
+  for (const auto& entry : document.entries) add(entry.key, entry.place, entry.value);
 }
 
 void KeyPlaces::add(const std::string& key, const text::Place& place, const text::Value& value) {

@@ -12,6 +12,7 @@ namespace turnpoint::protocol {
 class KeyPlaces {
  public:
   KeyPlaces(const std::string& source, const std::string& path);
+  KeyPlaces(const text::Value& document, const std::string& path);
 
   /// The place of the key or, where the file leaves it out, of the table that would hold it.
   text::Place of(std::string key) const;

@@ -9,7 +9,8 @@ Protocol parse(const std::string& source, const std::string& path) {
   text::Findings findings;
   Protocol protocol;
   protocol.path = path, protocol.source = source, protocol.sha256 = text::sha256(source);
-  Reading reading{protocol, findings, {}};
+  const KeyPlaces places(document, path);
+  Reading reading{protocol, findings, places, {}};
   text::TableReader file(document, "", findings);
   read_header(file, reading);
   read_factors(file, reading);

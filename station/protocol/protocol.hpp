@@ -134,7 +134,6 @@ struct Timing {
   Place response_zero_place;
   std::optional<double> explore_s;   ///< single interval: the tones last at most this long
   std::optional<double> deadline_s;  ///< from response_zero; absent where instructions state it
-  Place place;                       ///< of [timing]
   Distribution iti_s;
   double anticipation_s = 0;
 };
@@ -218,7 +217,6 @@ struct Protocol {
   Task task;
   Timing timing;
   std::vector<procedure::Spec> procedures;
-  std::map<std::string, Place> procedure_places;
   std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences, in file order
   std::map<std::string, Instruction> instructions;
   Analysis analysis;

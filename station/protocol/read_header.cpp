@@ -69,13 +69,13 @@ void read_level(const text::Value& item, Factor& factor, text::Findings& finding
 Factor read_factor(const text::Value& table, Reading& reading) {
   TableReader reader(table, titled("factor", table), reading.findings);
   Factor factor;
-  factor.place = table.place;
+  factor.place = reader.place("name");
   factor.name = reader.string("name", "a name: \"offset_mm\"");
   check_factor_name(reader, factor.name);
   factor.range = reader.maybe_interval("range", {-1e6, 1e6});
   const auto* levels = reader.take("levels");
   if (!reader.has("range") && !levels)
-    reading.findings.add(table.place, "the factor \"" + factor.name + "\" has no values",
+    reading.findings.add(factor.place, "the factor \"" + factor.name + "\" has no values",
                          "\"range\" = [low, high] or \"levels\" = [...]");
   if (levels && (levels->kind != Kind::array || levels->items.empty()))
     reader.problem("levels",
@@ -118,7 +118,7 @@ void read_factors(TableReader& file, Reading& reading) {
   for (const auto* table : tables) {
     auto factor = read_factor(*table, reading);
     if (find_factor(factors, factor.name))
-      reading.findings.add(table->place, "a second factor named \"" + factor.name + "\"",
+      reading.findings.add(factor.place, "a second factor named \"" + factor.name + "\"",
                            "names must differ");
     else
       factors.push_back(std::move(factor));

@@ -16,7 +16,7 @@ using Kind = Value::Kind;
 namespace {
 
 void read_what(TableReader& reader, Block& block, const Reading& reading) {
-  block.procedures = reader.maybe_strings("procedures");
+  if (reader.has("procedures")) block.procedures = reader.strings("procedures", "at least one procedure");
   std::vector<std::string> known;
   for (const auto& spec : reading.protocol.procedures) known.push_back(spec.name);
   std::set<std::string> seen;
@@ -194,7 +194,7 @@ void read_plan(TableReader& file, Reading& reading) {
       reading.protocol.plan.emplace_back(std::move(block));
     }
     if (!name.empty() && !seen.insert(name).second)
-      reading.findings.add(table->place, "a second block named \"" + name + "\"",
+      reading.findings.add(table->find("name")->place, "a second block named \"" + name + "\"",
                            "names of blocks and sequences must differ");
   }
   if (tables.empty() && !file.has("block") && !file.has("sequence"))

@@ -129,7 +129,7 @@ void read_steps(TableReader& reader, Spec& spec) {
   spec.step_up = reader.maybe_numbers("step_up", step);
   if (reader.has("step") == reader.has("step_down"))
     reader.findings().add(
-        reader.place(),
+        reader.has("step") ? reader.place("step_down") : reader.place("step_up"),
         reader.title() + (reader.has("step") ? " has both \"step\" and \"step_down\"" : " has no steps"),
         "\"step\" (up and down alike) or \"step_down\"");
 }
@@ -305,10 +305,10 @@ void read_procedures(TableReader& file, Reading& reading) {
     auto& defaults = reading.findings.defaults_used;
     defaults.insert(defaults.end(), found.defaults_used.begin(), found.defaults_used.end());
     if (!name.empty() && !above.emplace(name, whole).second)
-      reading.findings.add(table->place, "a second procedure named \"" + name + "\"", "names must differ");
+      reading.findings.add(table->find("name")->place, "a second procedure named \"" + name + "\"",
+                           "names must differ");
     else if (!name.empty())
-      spec.name = name, reading.protocol.procedure_places[name] = table->place,
-      reading.protocol.procedures.push_back(std::move(spec));
+      spec.name = name, reading.protocol.procedures.push_back(std::move(spec));
   }
 }
 

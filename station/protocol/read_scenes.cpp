@@ -18,7 +18,8 @@ using Ends = Range::Ends;
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-const Range position_mm{0, 1e5, Ends::open_low, "mm"};
+// Less than a millimetre is a place in metres.
+const Range position_mm{1, 1e5, Ends::closed, "mm"};
 const Range displacement_um{0, 1000, Ends::open_low, "um"};
 const Range relative_friction{0, 1, Ends::open};
 const std::vector<std::string> edge_names{"turning", "peak", "p70", "p50", "p25", "p10"};

@@ -103,8 +103,9 @@ void read_choices(TableReader& reader, Task& task, const Reading& reading) {
   const std::size_t needed = task.kind == TaskKind::oddity ? 3 : task.kind == TaskKind::adjustment ? 1 : 2;
   const auto* list = reader.take("choices");
   if (list && list->kind == Kind::array && list->items.size() != needed)
-    reader.problem("choices", "\"choices\" has " + std::to_string(list->items.size()),
-                   std::to_string(needed) + " for this kind of task");
+    reading.findings.add(list->items.size() > needed ? list->items[needed].place : list->place,
+                         "\"choices\" has " + std::to_string(list->items.size()),
+                         std::to_string(needed) + " for this kind of task");
   if (task.kind == TaskKind::same_different && task.choices.size() == 2 &&
       seen != std::set<std::string>{"same", "different"})
     reader.problem("choices", "the answers of a same-different task have other ids",
@@ -119,7 +120,7 @@ void read_correct_scene(TableReader& reader, Task& task, const Reading& reading)
     return std::find(interval.begin(), interval.end(), task.correct_scene) != interval.end();
   };
   if (task.intervals.size() == 2 && in(task.intervals[0]) == in(task.intervals[1]))
-    reader.problem("correct",
+    reader.problem(task.intervals[0] == task.intervals[1] ? "intervals" : "correct",
                    "\"" + task.correct_scene + "\" is in " +
                        (in(task.intervals[0]) ? "both intervals" : "neither interval"),
                    "a scene that only one of the two intervals holds");
@@ -206,7 +207,6 @@ void read_timing(TableReader& file, Reading& reading) {
   auto& timing = reading.protocol.timing;
   const std::vector<std::string> zeros{"go_cue", "change", "interval_off", "first_contact", "lift_off"};
   const auto zero = reader.word("response_zero", zeros);
-  timing.place = table->place;
   timing.response_zero_place = reader.place("response_zero");
   timing.response_zero =
       static_cast<ResponseZero>(std::find(zeros.begin(), zeros.end(), zero) - zeros.begin());

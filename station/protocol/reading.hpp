@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "station/protocol/key_places.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/text/reader.hpp"
 
@@ -13,6 +14,7 @@ namespace turnpoint::protocol {
 struct Reading {
   Protocol& protocol;
   text::Findings& findings;
+  const KeyPlaces& places;
   std::vector<std::string> declared_scenes;  ///< all of the file, those with problems of their own too
 };
 

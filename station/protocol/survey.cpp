@@ -9,7 +9,7 @@
 
 #include "physics/boundary_map.hpp"
 #include "station/protocol/combinations.hpp"
-#include "station/protocol/design_advice.hpp"
+#include "station/protocol/key_places.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/scene/planner.hpp"
 #include "station/scene/transducer.hpp"
@@ -102,22 +102,35 @@ std::vector<Combination> planned(const Protocol& protocol, const std::vector<Com
 // What the rig makes of one combination: a plan, or why there is none and what
 // there could be.
 struct Answer {
-  bool too_strong = false;  ///< a weaker one could be had
   std::optional<scene::DrivePlan> plan;
   std::optional<scene::Cues> cues_roved_down;
   std::string refused, allowed;
+  Place place;  ///< of what the rig cannot do
 };
 
 // Whether the same scene could be had with a thousandth of its strength: then
 // the strength is to blame.
-bool is_too_strong(scene::Scene scene, scene::Planner& planner) {
-  scene.rove_dB -= 60;
+bool can_plan(const scene::Scene& scene, scene::Planner& planner) {
   try {
     planner.plan(scene);
     return true;
   } catch (const scene::Unreachable&) {
     return false;
   }
+}
+
+bool is_too_strong(scene::Scene scene, scene::Planner& planner) {
+  scene.rove_dB -= 60;
+  return can_plan(scene, planner);
+}
+
+// The place of a key of a scene, or of the base that states it.
+Place place_of(const Protocol& protocol, const KeyPlaces& places, const Scene& scene,
+               const std::string& key) {
+  const auto* at = &scene;
+  while (!places.has("scene." + at->name + "." + key) && protocol.scenes.count(at->base))
+    at = &protocol.scenes.at(at->base);
+  return places.of("scene." + at->name + "." + key);
 }
 
 // Where the file says how strong the scene is.
@@ -132,10 +145,29 @@ Place strength_place(const Scene& scene) {
   return strongest ? strongest->displacement_um.place : scene.place;
 }
 
+// What of a scene cannot be had: its strength, one of its tones, the edge or the beginning of its zone, else
+// its boundary.
+Place blamed_place(const Protocol& protocol, const KeyPlaces& places, const Scene& from,
+                   const scene::Scene& scene, scene::Planner& planner) {
+  if (is_too_strong(scene, planner)) return strength_place(from);
+  for (std::size_t i = 0; i < scene.tones.size(); ++i) {
+    auto alone = scene;
+    alone.tones = {scene.tones[i]};
+    const auto& place = from.tones[i].boundary_mm ? from.tones[i].boundary_mm : from.tones[i].frequency_Hz;
+    if (!can_plan(alone, planner)) return place->place;
+  }
+  const auto at = [&](const char* key) { return place_of(protocol, places, from, key); };
+  if (scene.zone && from.edge.friction && *from.edge.friction <= scene.zone->friction) return at("edge");
+  const bool on_surface = scene.boundary_m && *scene.boundary_m < planner.surface().length_m;
+  if (scene.zone && on_surface && scene.zone->from_m >= *scene.boundary_m) return at("zone");
+  return from.boundary_mm ? from.boundary_mm->place : from.place;
+}
+
 void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector<Combination>& combinations,
                 std::size_t begin, std::size_t end, scene::Planner& planner, std::vector<Answer>& answers,
                 const std::stop_token& stop) {
   std::set<std::string> explained;
+  const KeyPlaces places(protocol.source, protocol.path);
   for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
     const auto& combination = combinations[i];
     const auto& from = protocol.scenes.at(combination.scene);
@@ -149,8 +181,9 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
             planner.plan(resolve(protocol, combination.scene, combination.factors, -from.rove_dB)).cues;
     } catch (const scene::Unreachable& error) {
       answers[i].refused = error.what();
-      answers[i].too_strong = is_too_strong(scene, planner);
+      answers[i].place = from.place;
       if (explained.insert(combination.scene).second) try {
+          answers[i].place = blamed_place(protocol, places, from, scene, planner);
           answers[i].allowed = reach(scene, rig, planner);
         } catch (const scene::Unreachable&) {  // no boundary at all has this edge
         }
@@ -188,10 +221,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
     if (!answers[i].plan) {
       auto& trouble = unreachable[combination.scene];
       if (trouble.cases++ == 0)
-        trouble = {in_case(combination) + ": " + answers[i].refused, answers[i].allowed,
-                   answers[i].too_strong ? strength_place(protocol.scenes.at(combination.scene))
-                                         : protocol.scenes.at(combination.scene).place,
-                   1};
+        trouble = {in_case(combination) + ": " + answers[i].refused, answers[i].allowed, answers[i].place, 1};
       continue;
     }
     const auto& plan = *answers[i].plan;
@@ -247,7 +277,9 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
       protocol.task.duration_s ? *protocol.task.duration_s : protocol.timing.explore_s.value_or(0);
   if (longest_s > rig.limits.continuous_s)
     survey.problems.push_back(
-        {protocol.timing.place, "tones last up to " + text::number(longest_s) + " s without a pause",
+        {KeyPlaces(protocol.source, protocol.path)
+             .of(protocol.task.duration_s ? "task.duration_s" : "timing.explore_s"),
+         "tones last up to " + text::number(longest_s) + " s without a pause",
          "at most the rig's continuous_s = " + text::number(rig.limits.continuous_s) + " s"});
 }
 
@@ -259,7 +291,6 @@ Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_tok
   check_limits(protocol, rig, survey);
   plan_scenes(protocol, rig, stop, survey);
   for (auto& warning : advice(protocol)) survey.warnings.push_back(std::move(warning));
-  for (auto& warning : design_advice(protocol)) survey.warnings.push_back(std::move(warning));
   return survey;
 }
 

@@ -49,9 +49,9 @@ class Abandoned : public std::runtime_error {
 /// at hand).
 Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop = {});
 
-/// What is probably not meant, whatever the rig: targets that the steps miss, one-point grids, levels below
-/// four times the tolerance or all above what everybody feels, practice that one key passes, parts never
-/// used.
+/// What is probably not meant, whatever the rig, each at the line of its key: levels that the tolerance hides
+/// or everybody feels, answers that are never right, practice that one key passes, steps and rates that do
+/// not fit the task, times in other units, breaks that never come, parts that nothing uses.
 std::vector<text::Problem> advice(const Protocol& protocol);
 
 }  // namespace turnpoint::protocol

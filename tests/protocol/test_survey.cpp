@@ -87,7 +87,7 @@ TEST_CASE("a survey plans each combination of level and mark once, with its boun
 TEST_CASE("a boundary that the rig cannot reach is refused with what it can reach", "[protocol]") {
   auto text = replaced(source("demo.toml"), "levels = [150.0, 160.0]", "levels = [250.0, 260.0]");
   const auto found = problems(text, quick());
-  CHECK(contains(found, "p.toml:24:1: scene \"edge\" in block \"main\" at mark_mm = 250, offset_mm = "));
+  CHECK(contains(found, "p.toml:25:15: scene \"edge\" in block \"main\" at mark_mm = 250, offset_mm = "));
   CHECK(contains(found, "more cases"));
   CHECK(contains(found, "with this edge the rig reaches"));
 }

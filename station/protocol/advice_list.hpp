@@ -1,0 +1,48 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "station/protocol/key_places.hpp"
+#include "station/protocol/protocol.hpp"
+#include "station/protocol/sources.hpp"
+
+// Inside of advice(): one function a subject.
+namespace turnpoint::protocol {
+
+/// Advice on a protocol, each piece at the line of its key.
+struct AdviceList {
+  explicit AdviceList(const Protocol& of) : protocol(of), places(of.source, of.path) {}
+
+  void add(const std::string& key, const std::string& what, const std::string& allowed) {
+    found.push_back({places.of(key), what, allowed});
+  }
+
+  const Protocol& protocol;
+  const KeyPlaces places;
+  std::vector<text::Problem> found;
+};
+
+/// Nobody answers faster: the fastest answers to a touch take about 0.15 s.
+constexpr double shortest_deadline_s = 0.2;
+
+/// `procedure.levels.start`: a key of a procedure for KeyPlaces.
+inline std::string key_of(const procedure::Spec& spec, const std::string& key) {
+  return "procedure." + spec.name + "." + key;
+}
+
+/// `block.main.trials` or `sequence.main.block.trials`.
+std::string key_of(const std::variant<Block, Sequence>& part, const std::string& key);
+
+/// The key that states the levels of a procedure.
+std::string levels_key(const procedure::Spec& spec);
+
+/// The share of right answers of somebody who guesses.
+double chance(const Protocol& protocol);
+
+void advise_on_levels(AdviceList& advice);   ///< against tolerances, steps and limits; what nothing uses
+void advise_on_answers(AdviceList& advice);  ///< which are right, and how often; practice and catch trials
+void advise_on_times(AdviceList& advice);    ///< units mixed up, deadlines, what comes too late
+void advise_on_grids(AdviceList& advice);    ///< rates, thresholds and rules that end a procedure
+void advise_on_plan(AdviceList& advice);     ///< blocks, instructions, words, the analysis
+
+}  // namespace turnpoint::protocol

@@ -1,0 +1,205 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "station/protocol/advice_list.hpp"
+#include "station/protocol/answers.hpp"
+#include "station/protocol/expression.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+using procedure::Spec;
+using text::number;
+
+/// In how many cases each answer is right, and in how many one is; of how many.
+struct Right {
+  std::map<std::string, int> times;
+  int scored = 0, all = 0;
+};
+
+// Every level, with every level of the factors that the comparisons need and the procedure does not set. A
+// design with more cases than this is not looked through.
+constexpr std::size_t most_cases = 20000;
+
+std::vector<Factors> cases_of(const Protocol& protocol, const std::string& level,
+                              const std::vector<double>& levels) {
+  const auto any = any_factors(protocol);
+  Factors needed;
+  for (const auto& [id, comparison] : protocol.task.correct_answer)
+    for (const auto* side : {&comparison.left, &comparison.right})
+      for (const auto& [name, coefficient] : side->terms) needed[name] = any.at(name);
+  std::vector<Factors> cases(levels.size(), needed);
+  for (std::size_t i = 0; i < levels.size(); ++i) cases[i][level] = levels[i];
+  for (const auto& factor : protocol.factors) {
+    if (!needed.count(factor.name) || factor.name == level || factor.levels.size() < 2) continue;
+    if (cases.size() * factor.levels.size() > most_cases) return {};
+    std::vector<Factors> next;
+    for (const auto& one : cases)
+      for (const auto& value : factor.levels) next.push_back(one), next.back()[factor.name] = value;
+    cases = std::move(next);
+  }
+  return cases;
+}
+
+Right right_at(const Protocol& protocol, const std::string& level, const std::vector<double>& levels) {
+  Right right;
+  for (const auto& factors : cases_of(protocol, level, levels)) {
+    ++right.all;
+    bool scored = false;
+    for (const auto& [id, comparison] : protocol.task.correct_answer)
+      if (holds(comparison, factors)) ++right.times[id], scored = true;
+    right.scored += scored;
+  }
+  return right;
+}
+
+Right& operator+=(Right& sum, const Right& other) {
+  for (const auto& [id, times] : other.times) sum.times[id] += times;
+  sum.scored += other.scored, sum.all += other.all;
+  return sum;
+}
+
+// An answer that is never right, or always, makes scoring pointless.
+void check_each_answer(AdviceList& advice) {
+  const auto& protocol = advice.protocol;
+  Right right;
+  for (const auto& source : sources_of(protocol)) right += right_at(protocol, source.level, source.levels);
+  if (right.all == 0) return;
+  for (const auto& [id, comparison] : protocol.task.correct_answer) {
+    const int times = right.times[id];
+    if (times == 0)
+      advice.add("task.correct." + id, "the answer \"" + id + "\" is never right",
+                 "a comparison that some level fulfils");
+    else if (times == right.all)
+      advice.add("task.correct." + id, "the answer \"" + id + "\" is always right",
+                 "a comparison that some level does not fulfil");
+  }
+}
+
+// Where one answer is right throughout a block, whoever always gives it is perfect.
+void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) {
+  const auto& protocol = advice.protocol;
+  const auto& block = block_of(part);
+  Right right;
+  std::string key;
+  const auto count = [&](const std::string& at, const std::string& level, const std::vector<double>& levels) {
+    const auto here = right_at(protocol, level, levels);
+    if (here.all > 0 && here.scored == 0)
+      advice.add(at, "no answer is right at any of these levels",
+                 "levels for which \"correct\" names an answer");
+    if (key.empty()) key = at;
+    right += here;
+  };
+  for (const auto& name : block.procedures) {
+    const auto* spec = find_procedure(protocol, name);
+    if (spec && spec->tracks.empty() && !spec->values.empty())
+      count(levels_key(*spec), spec->level, spec->values);
+    else
+      return;  // an adaptive procedure goes where the answers lead it
+  }
+  if (!block.level.empty()) count(key_of(part, "levels"), block.level, block.levels);
+  if (right.scored > 0 && right.times.size() == 1 && !block.pass)
+    advice.add(key, "\"" + right.times.begin()->first + "\" is right at all of these levels",
+               "levels with each answer right equally often");
+}
+
+// A staircase or a posterior goes by one direction only: easier is always up, or always down.
+void check_followed(AdviceList& advice, const Source& source) {
+  const auto* spec = source.spec;
+  if (!spec || !spec->tracks.empty() || !spec->values.empty()) return;
+  const auto& levels = source.levels;
+  if (levels.empty() || levels.front() >= 0 || levels.back() <= 0) return;
+  if (answer_rule(advice.protocol, spec->level).kind == AnswerKind::side)
+    advice.add(key_of(*spec, "level"),
+               "\"" + spec->name + "\" follows right answers through zero, on both sides of which it is easy",
+               "\"tracks\" = the answer that it follows, or levels on one side");
+}
+
+// Runs are broken by trials with another right answer.
+void check_runs(AdviceList& advice, const Spec& spec) {
+  if (!spec.max_run || spec.values.empty()) return;
+  const auto right = right_at(advice.protocol, spec.level, spec.values);
+  for (const auto& [id, times] : right.times)
+    if (times > *spec.max_run * (right.all - times))
+      return advice.add(key_of(spec, "order.max_run"),
+                        "\"" + id + "\" is right in " + std::to_string(times) + " of " +
+                            std::to_string(right.all) + " trials: longer runs cannot be avoided",
+                        "a larger \"max_run\", or levels with each answer right equally often");
+}
+
+// The share of practice trials that one key, always pressed, gets right.
+double one_key_share(const Protocol& protocol, const Block& block) {
+  const auto& task = protocol.task;
+  if (task.kind != TaskKind::single_interval || block.levels.empty()) return chance(protocol);
+  const auto right = right_at(protocol, block.level, block.levels);
+  int most = 0;
+  for (const auto& [id, times] : right.times) most = std::max(most, times);
+  return right.all > 0 ? static_cast<double>(most) / right.all : chance(protocol);
+}
+
+void check_pass(AdviceList& advice, const std::variant<Block, Sequence>& part) {
+  const auto& block = block_of(part);
+  if (!block.pass) return;
+  const double share = one_key_share(advice.protocol, block);
+  if (share >= block.pass->accuracy)
+    advice.add(key_of(part, "pass"),
+               "practice \"" + block.name + "\" is passed by one key, always pressed (" +
+                   number(100 * share, 3) + " % right)",
+               "levels with each answer right equally often, and an accuracy above that");
+}
+
+// The ends of the factor's range, which are its easiest levels.
+std::string easy_on_both_sides(const Protocol& protocol, const std::string& name) {
+  const auto* factor = find_factor(protocol.factors, name);
+  if (!factor || !factor->range) return "easy levels for each answer";
+  return "easy levels for each answer, such as " + name + " = [" + number(factor->range->first) + ", " +
+         number(factor->range->second) + "]";
+}
+
+void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) {
+  const auto& protocol = advice.protocol;
+  const auto& trials = block_of(part).catch_trials;
+  if (!trials) return;
+  if (protocol.task.kind == TaskKind::single_interval) {
+    const auto right = right_at(protocol, trials->factor, trials->levels);
+    if (right.all > 0 && right.times.size() < 2)
+      return advice.add(key_of(part, "catch"),
+                        "the catch trials of \"" + block_of(part).name + "\" have " +
+                            (right.times.empty() ? "no right answer" : "one right answer only"),
+                        easy_on_both_sides(protocol, trials->factor));
+    if (answer_rule(protocol, trials->factor).kind == AnswerKind::presence) return;  // nothing is easy too
+  }
+  // Larger is easier: with its sign in dB, else by its size.
+  const bool decibel = trials->factor.ends_with("_dB");
+  const auto sources = sources_of(protocol);
+  const auto sets = [&](const Source& source) { return source.spec && source.level == trials->factor; };
+  if (std::none_of(sources.begin(), sources.end(), sets)) return;
+  const double middle = middle_level(protocol, trials->factor);
+  for (const double level : trials->levels)
+    if ((decibel ? level : std::fabs(level)) < middle)
+      return advice.add(key_of(part, "catch"),
+                        "catch trials at " + number(level) + " are harder than most trials",
+                        "easy levels, well beyond " + number(middle));
+}
+
+}  // namespace
+
+void advise_on_answers(AdviceList& advice) {
+  const auto& protocol = advice.protocol;
+  const bool compared = !protocol.task.correct_answer.empty();
+  if (compared) check_each_answer(advice);
+  if (compared)
+    for (const auto& source : sources_of(protocol)) check_followed(advice, source);
+  if (compared)
+    for (const auto& spec : protocol.procedures) check_runs(advice, spec);
+  for (const auto& part : protocol.plan) {
+    if (compared) check_block(advice, part);
+    check_pass(advice, part);
+    if (compared || protocol.task.kind != TaskKind::single_interval) check_catch(advice, part);
+  }
+}
+
+}  // namespace turnpoint::protocol

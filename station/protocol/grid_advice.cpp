@@ -1,0 +1,150 @@
+#include <algorithm>
+#include <cmath>
+
+#include "station/protocol/advice_list.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+using procedure::Kind;
+using procedure::Spec;
+using text::number;
+
+bool depends_on(const Protocol& protocol, const std::string& level) {
+  for (const auto& name : scenes_used(protocol))
+    for (const auto* expression : expressions_of(protocol.scenes.at(name))) {
+      double sum = 0;
+      for (const auto& [factor, coefficient] : expression->terms)
+        if (factor == level) sum += coefficient;
+      if (sum != 0) return true;
+    }
+  return false;
+}
+
+void check_level(AdviceList& advice, const Spec& spec) {
+  if (depends_on(advice.protocol, spec.level)) return;
+  const bool slider = spec.level == advice.protocol.task.adjusts;
+  advice.add(slider ? "task.adjusts" : key_of(spec, "level"),
+             "no scene of the task depends on \"" + spec.level + "\": all trials are alike",
+             "a scene with \"" + spec.level + "\" in its arithmetic");
+}
+
+// Levels that differ by no more than rounding are one level that was meant.
+void check_values(AdviceList& advice, const Spec& spec) {
+  auto values = spec.values;
+  std::sort(values.begin(), values.end());
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    const double apart = values[i] - values[i - 1];
+    if (apart > 0 && apart < 1e-6 * (values.back() - values.front()))
+      return advice.add(levels_key(spec), "two levels differ by " + number(apart) + " only",
+                        "each level once, or clearly apart");
+  }
+}
+
+void check_steps(AdviceList& advice, const Spec& spec) {
+  const auto& down = spec.step.empty() ? spec.step_down : spec.step;
+  const auto key = key_of(spec, spec.step.empty() ? "step_down" : "step");
+  if (down.empty() || spec.scale != procedure::Scale::linear) return;
+  if (spec.min && spec.max && down.front() >= *spec.max - *spec.min)
+    advice.add(key, "a step of " + number(down.front()) + " is as large as the whole range",
+               "steps well below " + number(*spec.max - *spec.min));
+  if (!std::is_sorted(down.rbegin(), down.rend()))
+    advice.add(key, "the steps grow from reversal to reversal", "steps that become smaller, [4.0, 2.0, 1.0]");
+}
+
+// As many wrong answers as right ones move a staircase to where half of the answers are right, or below.
+void check_target(AdviceList& advice, const Spec& spec) {
+  const double guessing = chance(advice.protocol);
+  if (spec.kind == Kind::weighted_up_down && spec.target && *spec.target <= guessing + 1e-9)
+    advice.add(key_of(spec, "target"), "a target of " + number(*spec.target, 3) + " is not above guessing",
+               "between " + number(guessing, 3) + " and 1");
+  const bool larger_up = !spec.step_up.empty() && spec.step_up.back() > spec.step_down.back();
+  if (spec.kind == Kind::up_down && guessing > 0.4 && spec.n_down <= spec.n_up && !larger_up)
+    advice.add(key_of(spec, spec.n_up > 1 ? "n_up" : "n_down"),
+               "the staircase settles where at most half of the answers are right, as by guessing",
+               "\"n_down\" above \"n_up\"");
+}
+
+void check_rates(AdviceList& advice, const Spec& spec) {
+  const double guessing = chance(advice.protocol);
+  if (spec.tracks.empty()) {
+    check_target(advice, spec);
+    for (const double guess : spec.guess.values)
+      if (std::fabs(guess - guessing) > 0.1) {
+        advice.add(
+            key_of(spec, "grid.guess"),
+            "a guess rate of " + number(guess, 3) + ", where guessing gets " + number(guessing, 3) + " right",
+            number(guessing, 3) + ", or values near it");
+        break;
+      }
+  }
+  for (const double lapse : spec.lapse.values)
+    if (lapse >= 0.5 && lapse < 1) {
+      advice.add(key_of(spec, "grid.lapse"),
+                 "a lapse rate of " + number(lapse, 3) + ": most answers would be slips",
+                 "small values, such as 0.01 to 0.1");
+      break;
+    }
+}
+
+void check_grids(AdviceList& advice, const Spec& spec) {
+  const auto& stimuli = spec.stimuli.values;
+  const auto& threshold = spec.threshold.values;
+  if (stimuli.empty() || threshold.empty()) return;
+  const auto [low, high] = std::minmax_element(stimuli.begin(), stimuli.end());
+  const auto [from, to] = std::minmax_element(threshold.begin(), threshold.end());
+  if (*to < *low || *from > *high)
+    advice.add(key_of(spec, "grid.threshold"), "no threshold of the grid lies among the stimuli",
+               number(*low) + " to " + number(*high));
+  const auto& prior = spec.prior_threshold.normal;
+  if (prior && (prior->first < *from - 3 * prior->second || prior->first > *to + 3 * prior->second))
+    advice.add(key_of(spec, "prior.threshold"),
+               "the prior's mean of " + number(prior->first) + " is far outside the grid",
+               number(*from) + " to " + number(*to));
+  // Whatever lies between two values of a grid has at least the standard deviation of an even spread.
+  const double finest = threshold.size() < 2 ? 0 : (*to - *from) / static_cast<double>(threshold.size() - 1);
+  const double least_sd = finest / std::sqrt(12.0);
+  if (spec.stop.threshold_sd && spec.scale == procedure::Scale::linear && *spec.stop.threshold_sd < least_sd)
+    advice.add(key_of(spec, "stop.threshold_sd"),
+               "a \"threshold_sd\" of " + number(*spec.stop.threshold_sd) +
+                   " is finer than the grid, whose values are " + number(finest) + " apart",
+               number(least_sd, 2) + " or more, or a finer \"grid.threshold\"");
+}
+
+void check_stop(AdviceList& advice, const Spec& spec) {
+  const auto& stop = spec.stop;
+  if (stop.min_trials && stop.trials && *stop.min_trials > *stop.trials)
+    advice.add(key_of(spec, "stop"), "\"min_trials\" is above \"trials\"",
+               "at most " + std::to_string(*stop.trials));
+  if (stop.reversals && stop.trials && *stop.reversals >= *stop.trials)
+    advice.add(key_of(spec, "stop"),
+               std::to_string(*stop.reversals) + " reversals need more than " + std::to_string(*stop.trials) +
+                   " trials: one of the two rules has no effect",
+               "fewer reversals than trials");
+}
+
+}  // namespace
+
+std::string levels_key(const Spec& spec) {
+  const bool slider = spec.kind == Kind::adjustment;
+  return key_of(spec, slider || spec.start ? "start" : !spec.stimuli.values.empty() ? "stimuli" : "values");
+}
+
+double chance(const Protocol& protocol) {
+  return protocol.task.choices.empty() ? 0 : 1.0 / static_cast<double>(protocol.task.choices.size());
+}
+
+void advise_on_grids(AdviceList& advice) {
+  for (const auto& spec : advice.protocol.procedures) {
+    check_level(advice, spec);
+    check_values(advice, spec);
+    check_steps(advice, spec);
+    check_rates(advice, spec);
+    check_grids(advice, spec);
+    check_stop(advice, spec);
+  }
+}
+
+}  // namespace turnpoint::protocol

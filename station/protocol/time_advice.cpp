@@ -1,0 +1,63 @@
+#include <algorithm>
+
+#include "station/protocol/advice_list.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+using text::number;
+
+// No part of a trial takes minutes: such a number was meant in milliseconds.
+constexpr double longest_s = 120;
+
+void check_length(AdviceList& advice, const std::string& key, double seconds) {
+  if (seconds > longest_s)
+    advice.add(key, number(seconds) + " s are " + number(seconds / 60, 3) + " minutes",
+               "seconds: 800 ms are 0.8");
+}
+
+void check_deadline(AdviceList& advice, const std::string& key, double seconds) {
+  check_length(advice, key, seconds);
+  if (seconds < shortest_deadline_s)
+    advice.add(key, "nobody answers within " + number(seconds) + " s",
+               number(shortest_deadline_s) + " s or more");
+  const double below_s = advice.protocol.analysis.exclude_below_s;
+  if (below_s >= seconds)
+    advice.add("analysis.response_time_exclude.below_s",
+               "\"below_s\" excludes all answers up to " + number(below_s) + " s, and the deadline is " +
+                   number(seconds) + " s",
+               "well below every deadline");
+}
+
+// The second scene of an interval begins after the foreperiod.
+void check_change(AdviceList& advice) {
+  const auto& task = advice.protocol.task;
+  if (!task.foreperiod_s) return;
+  const double whole_s = task.duration_s.value_or(advice.protocol.timing.explore_s.value_or(0));
+  const double latest_s = task.foreperiod_s->high + 1e-3 * task.transition_ms.value_or(0);
+  if (whole_s > 0 && latest_s >= whole_s)
+    advice.add("task.foreperiod_s",
+               "the change can end " + number(latest_s) + " s after the tones begin, which last " +
+                   number(whole_s) + " s",
+               "a foreperiod and a transition well below " + number(whole_s) + " s");
+}
+
+}  // namespace
+
+void advise_on_times(AdviceList& advice) {
+  const auto& task = advice.protocol.task;
+  const auto& timing = advice.protocol.timing;
+  if (timing.deadline_s) check_deadline(advice, "timing.deadline_s", *timing.deadline_s);
+  for (const auto& [name, instruction] : advice.protocol.instructions)
+    if (instruction.deadline_s)
+      check_deadline(advice, "instructions." + name + ".deadline_s", *instruction.deadline_s);
+  check_length(advice, "timing.iti_s", timing.iti_s.high);
+  check_length(advice, "timing.explore_s", timing.explore_s.value_or(0));
+  check_length(advice, "task.duration_s", task.duration_s.value_or(0));
+  check_length(advice, "task.foreperiod_s", task.foreperiod_s.value_or(Distribution{}).high);
+  check_change(advice);
+}
+
+}  // namespace turnpoint::protocol
