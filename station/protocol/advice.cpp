@@ -86,7 +86,7 @@ void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
 // Where both staircase steps are stated, a run settles where p(down) times the
 // step down equals p(up) times the step up (Kaernbach 1991, generalised by
 // Garcia-Perez 1998).
-void check_steps(AdviceList& advice, const procedure::Spec& spec) {
+void check_unequal_steps(AdviceList& advice, const procedure::Spec& spec) {
   if (spec.kind != procedure::Kind::up_down || spec.step_down.empty() || spec.step_up.empty()) return;
   const double down = spec.step_down.back(), up = spec.step_up.back();
   if (down == up) return;
@@ -131,7 +131,7 @@ void advise_on_levels(AdviceList& advice) {
   for (const auto& spec : advice.protocol.procedures) {
     check_fineness(advice, spec);
     check_coarseness(advice, spec);
-    check_steps(advice, spec);
+    check_unequal_steps(advice, spec);
   }
   check_unused(advice);
 }
