@@ -9,16 +9,21 @@
 
 namespace turnpoint::cli {
 
-void add_station(CommandLine& app, Context& context) {
+std::shared_ptr<app::StationRequest> add_station_options(Command& command) {
   auto request = std::make_shared<app::StationRequest>();
-  auto* command = app.add_subcommand("station", "The operator's start page: choose, check, run, resume");
-  command->add_option("--protocols", request->protocols,
-                      "Folder with protocol files; otherwise the shipped ones");
-  command->add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
-  command->add_option("--db", request->database, "Database; otherwise one in the user's data folder");
-  command->add_flag(
+  command.add_option("--protocols", request->protocols,
+                     "Folder with protocol files; otherwise the shipped ones");
+  command.add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
+  command.add_option("--db", request->database, "Database; otherwise one in the user's data folder");
+  command.add_flag(
       "--locked", request->locked,
       "Ask for the operator's code before the first page too: where a participant may stand at the screen");
+  return request;
+}
+
+void add_station(CommandLine& app, Context& context) {
+  auto* command = app.add_subcommand("station", "The operator's start page: choose, check, run, resume");
+  auto request = add_station_options(*command);
   command->footer("Example: turnpoint station --db lab.sqlite");
   command->callback([request, &context] {
     if (request->locked && app::operator_code().is_built_in())

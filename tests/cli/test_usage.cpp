@@ -51,6 +51,16 @@ TEST_CASE("the doctor warns of a simulated panel beside a real converter", "[cli
   }
 }
 
+TEST_CASE("amplifier-off takes the options of the station that it comes after, and its rig", "[cli]") {
+  const TemporaryFolder folder;
+  Child child({TURNPOINT, "amplifier-off", "--locked", "--protocols", folder / "protocols", "--db",
+               folder / "lab.sqlite", "--rig", kRig});
+  REQUIRE(child.ends_within(kPatience_ms));
+  CAPTURE(child.said());
+  CHECK(child.outcome() == 0);
+  CHECK(child.said().find("amplifier off: sim:, of " + kRig) != std::string::npos);
+}
+
 TEST_CASE("the doctor takes the rig that the other commands take", "[cli]") {
   const TemporaryFolder folder;
   Child child({TURNPOINT, "doctor"}, {"XDG_DATA_HOME=" + (folder / "data")});
