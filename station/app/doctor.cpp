@@ -14,6 +14,7 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 
 #include "station/app/places.hpp"
 #include "station/drive/alsa_mixer.hpp"
@@ -46,6 +47,13 @@ panel::Check measured_clock(drive::Stream& stream) {
           "another device or kernel driver"};
 }
 
+// What amixer calls the card of alsa:hw:CARD=NAME,DEV=0, or of alsa:hw:NAME,0.
+std::string card_of(std::string_view uri) {
+  uri.remove_prefix(std::string_view("alsa:hw:").size());
+  if (uri.starts_with("CARD=")) uri.remove_prefix(5);
+  return std::string(uri.substr(0, uri.find(',')));
+}
+
 // A PCM512x mutes its analogue side after 1024 frames of zeros, 5 ms (TI, PCM512x data sheet, zero data
 // detection), and unmutes it at each onset. The stream of a session is zeros between stimuli.
 void converter_mute(const rig::Rig& rig, std::vector<panel::Check>& checks) {
@@ -55,7 +63,9 @@ void converter_mute(const rig::Rig& rig, std::vector<panel::Check>& checks) {
       {"converter mute", *on ? Status::failed : Status::ok,
        *on ? "Auto Mute is on: the converter mutes itself between stimuli, and each onset unmutes it"
            : "Auto Mute is off",
-       *on ? "amixer -c CARD sset 'Auto Mute' off, then sudo alsactl store" : ""});
+       *on ? fmt::format("amixer -c {} sset 'Auto Mute' off, then sudo alsactl store",
+                         card_of(rig.output.uri))
+           : ""});
 }
 
 void converter(const rig::Rig& rig, std::vector<panel::Check>& checks) {
