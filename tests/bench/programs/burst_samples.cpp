@@ -1,0 +1,46 @@
+// burst_samples ONSET SECONDS HZ:AMPLITUDE:CHANNEL...: what `turnpoint synth` makes of these tones at 192 kHz
+// and 24 bits when the first frame is ONSET, which the dither depends on: raw S32_LE stereo on standard
+// output.
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <numbers>
+#include <vector>
+
+#include "station/drive/synth.hpp"
+
+using namespace turnpoint::drive;
+
+namespace {
+
+std::vector<std::int32_t> samples_of(const Burst& burst) {
+  const Format format;
+  const auto prepared = prepare(burst, format, {});
+  Synth synth(format, Precision::exact);
+  std::vector<std::int32_t> samples(static_cast<std::size_t>(burst.length_frames * format.channels));
+  if (!synth.start(prepared)) std::abort();
+  synth.render(burst.start_frame, samples);
+  return samples;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 4) return std::fprintf(stderr, "burst_samples ONSET SECONDS HZ:AMPLITUDE:CHANNEL...\n"), 2;
+  try {
+    Burst burst;
+    burst.start_frame = std::atoll(argv[1]);
+    burst.length_frames = std::llround(std::atof(argv[2]) * 192000);
+    for (int i = 3; i < argc; ++i) {
+      auto& tone = burst.tones.tones[static_cast<std::size_t>(burst.tones.count++)];
+      tone.phase_rad = std::numbers::pi / 2;
+      if (std::sscanf(argv[i], "%lf:%lf:%d", &tone.frequency_Hz, &tone.amplitude, &tone.channel) != 3)
+        return 2;
+    }
+    const auto samples = samples_of(burst);
+    return std::fwrite(samples.data(), sizeof samples[0], samples.size(), stdout) == samples.size() ? 0 : 1;
+  } catch (const std::exception& error) {
+    return std::fprintf(stderr, "%s\n", error.what()), 1;
+  }
+}

@@ -1,0 +1,105 @@
+# proves: samples reach a card bit by bit, as S32_LE in its 2 channels and as S24_3LE in 2 of its 6; a card of another layout is refused with what it takes; the doctor sees a converter that mutes itself, and its advice ends that
+# timeout: 900
+loopback
+# Both channels drive something, so that channels that change places show.
+second='[[transducer]]\nname = "second"\nchannel = 1\nband_kHz = [60, 80]\num_per_full_scale = 4.0\n'
+rig() {  # RIG BITS [DEVICE_CHANNELS]
+  sed -e "s/^rate_Hz.*/&\nbits = $2\nperiod_frames = 1920\nperiods = 40${3:+\ndevice_channels = $3}/" -e "s/^\[output\]/$second\n&/" \
+    -e 's/"null:"/"alsa:hw:CARD=Loopback,DEV=0"/' "$SOURCE/deploy/rigs/simulated.toml" >"$1"
+}
+rig two.toml 24
+rig six.toml 24 6
+rig deep.toml 32
+synth() { turnpoint synth --rig "$1" --tone 30000:1 --tone 70000:2 --seconds 0.5 --out "$2" --json >report.json; }
+onset() { sed -n 's/.*"onset_frame": \([0-9]*\).*/\1/p' report.json; }
+# expected: what the last report's burst is made of
+expected() { burst_samples "$(onset)" 0.5 30000:0.25:0 70000:0.5:1 >expected.raw; }
+# card FORMAT CHANNELS: the card's other side takes these, so that this one takes nothing else.
+card() {
+  arecord -q -D hw:Loopback,1 -t raw -f "$1" -c "$2" -r 192000 --period-size=9600 --buffer-size=76800 heard.raw & recorder=$!
+  eventually 10 grep -q RUNNING /proc/asound/Loopback/pcm1c/sub0/status
+}
+no_card() { kill $recorder; wait $recorder || true; }
+# same_bits FILE BYTES CHANNELS: it holds the expected burst, whole, in samples of so many bytes, and zeros besides.
+same_bits() {
+  python3 - "$@" <<'PYTHON'
+import sys
+name, width, channels = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+heard, stereo = open(name, "rb").read(), open("expected.raw", "rb").read()
+cut = [stereo[n + 4 - width:n + 4] for n in range(0, len(stereo), 4)]
+if any(stereo[n:n + 4 - width].strip(b"\0") for n in range(0, len(stereo), 4)): sys.exit("# more bits than the card takes")
+spare = bytes((channels - 2) * width)
+wanted = b"".join(left + right + spare for left, right in zip(cut[::2], cut[1::2]))
+first = lambda data: (len(data) - len(data.lstrip(b"\0"))) // (channels * width) * channels * width
+begin = first(heard) - first(wanted)
+same = begin >= 0 and heard[begin:begin + len(wanted)] == wanted and not heard[begin + len(wanted):].strip(b"\0")
+print(f"# {name}: {len(wanted) // (channels * width)} frames {'are the same' if same else 'differ'}")
+sys.exit(not same)
+PYTHON
+}
+
+# What is expected is what the same command writes to a file.
+synth two.toml wav:tone.wav
+expected
+tail -c +69 tone.wav >tone.raw
+same_bits tone.raw 4 2 || fail "burst_samples and turnpoint synth differ"
+
+plays() {  # RIG FORMAT BYTES CHANNELS
+  card "$2" "$4"
+  synth "$1" alsa:hw:Loopback,0
+  sed -n '/^format\|^channels/p' </proc/asound/Loopback/pcm1c/sub0/hw_params
+  sleep 0.7   # what is on its way
+  no_card
+  has report.json '"underruns": 0' || return 1   # a host that stalls
+  expected
+  same_bits heard.raw "$3" "$4" || fail "$2 in $4 channels: other samples than expected"
+}
+bits() { plays "$@" || plays "$@" || plays "$@" || fail "an underrun each time"; }
+bits two.toml S32_LE 4 2
+bits six.toml S24_3LE 3 6
+# The comparison sees a bit that is wrong, a frame that is missing, and something in a channel that is not used.
+spoilt() {  # WHAT POSITION BYTES FLIP: so many bytes are changed by FLIP, or taken out where that is 0
+  python3 - "$@" <<'PYTHON'
+import sys
+data = bytearray(open("heard.raw", "rb").read())
+at = (len(data) - len(data.lstrip(b"\0"))) // 18 * 18 + int(sys.argv[2])
+data[at:at + int(sys.argv[3])] = bytes(data[at + n] ^ int(sys.argv[4]) for n in range(int(sys.argv[3]))) if int(sys.argv[4]) else b""
+open("spoilt.raw", "wb").write(data)
+PYTHON
+  ! same_bits spoilt.raw 3 6 || fail "$1 was not noticed"
+}
+spoilt "a wrong bit" $((18 * 48000)) 1 1
+spoilt "a missing frame" $((18 * 48000)) 18 0
+spoilt "a sound in an unused channel" $((18 * 48000 + 6)) 1 1
+
+refused() { fails 1 synth "$1" alsa:hw:Loopback,0; has refusal.txt "$2" || fail "the message does not say \"$2\""; }
+card S32_LE 6
+refused two.toml "does not take 2 channels; it takes 6 (the rig's device_channels)"
+synth six.toml alsa:hw:Loopback,0
+no_card
+card S24_3LE 2
+refused deep.toml "takes samples of 24 bits, the rig says 32"
+refused six.toml "does not take 6 channels; it takes 2 (the rig's device_channels)"
+synth two.toml alsa:hw:Loopback,0
+no_card
+card S16_LE 2
+refused two.toml "takes neither 32-bit samples (S32_LE) nor 24-bit ones (S24_3LE)"
+no_card
+
+# A card without the switch has no such line.
+doctor() {
+  status=0
+  turnpoint doctor --rig two.toml --data . >doctor.txt 2>&1 || status=$?
+  sed -n '/^converter/,/^amplifier/p' doctor.txt
+}
+doctor
+! has doctor.txt "^converter mute" || fail "a switch that the card does not have"
+add_switch hw:Loopback "Auto Mute Switch"
+doctor
+has doctor.txt "^converter mute *failed *Auto Mute is on" || fail "Auto Mute was not seen"
+[ $status = 1 ] || fail "the doctor ended with $status"
+advice=$(sed -n 's/.*-> \(amixer .*\), then sudo alsactl store/\1/p' doctor.txt)
+say "$advice"
+eval "$advice"
+doctor
+has doctor.txt "^converter mute *ok *Auto Mute is off" || fail "the advice did not switch it off"
