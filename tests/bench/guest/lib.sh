@@ -49,6 +49,8 @@ line_of() {
 pull_file() { echo "$(line_of "$1")/pull"; }
 pull() { echo "pull-$2" >"$(pull_file "$1")"; }
 level() { cat "$(line_of "$1")/value"; }
+# keep_outputs Y|N: whether an output stays as it was driven when its holder is gone, as on most chips; N without it.
+keep_outputs() { echo "$1" >/sys/module/gpio_sim_bench/parameters/keep_outputs; }
 
 # rig_with DEVICE=URI... <RIG >RIG: a rig file with these devices; sound gets buffers that outlast a stalled host.
 rig_with() {
