@@ -1,9 +1,12 @@
+#include <ctime>
 #include <filesystem>
+#include <fstream>
 #include <system_error>
 
 #include "station/protocol/protocol.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
 namespace fs = std::filesystem;
@@ -187,4 +190,37 @@ TEST_CASE("the defaults that stood in are named", "[protocol]") {
 
 TEST_CASE("a protocol file that is not there is a system error", "[protocol]") {
   CHECK_THROWS_AS(protocol::load("no/such/protocol.toml"), std::system_error);
+}
+
+TEST_CASE("a file with far too much of something is refused, and within a second", "[protocol]") {
+  const auto demo = text::read_file(shipped + "demo.toml");
+  std::string factors, values, keys;
+  for (int i = 0; i < 100'000; ++i)
+    factors += "[[factor]]\nname=\"f" + std::to_string(i) + "\"\nlevels=[1]\n";
+  for (int i = 0; i < 1'000'000; ++i) values += "1,";
+  for (int i = 0; i < 50'000; ++i) keys += "a.";
+  const auto refused = [](const std::string& source) -> std::string {
+    const auto begin = std::clock();
+    std::string said;
+    try {
+      protocol::parse(source, "p.toml");
+    } catch (const text::BadInput& bad) {
+      said = format(bad.problems().front());
+    }
+#if defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+    CHECK(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < 1);
+#endif
+    return said;
+  };
+  const auto says = [&](const std::string& source, const char* part) {
+    const auto said = refused(source);
+    INFO(said);
+    CHECK(said.find(part) != std::string::npos);
+  };
+  says(demo + factors, "at most 100");
+  says(demo + "[more]\nx = [" + values + "1]\n", "at most 10000");
+  says(demo + "[more]\n" + keys + "a = 1\n", "parts");
+  const TemporaryFolder folder;
+  std::ofstream(folder / "p.toml") << demo << "# " << std::string(text::most_text_bytes, '#') << "\n";
+  CHECK_THROWS_AS(protocol::load(folder / "p.toml"), text::BadInput);
 }
