@@ -10,7 +10,6 @@
 namespace turnpoint::physics {
 namespace {
 
-constexpr double audible_limit_Hz = 22400;  // lower end of the 25 kHz third-octave band
 constexpr double finger_width_m = 14e-3;
 constexpr double high_gain = 10;
 constexpr double finger_impedance_Ns_per_m = 55;  // published magnitude; see finger.hpp

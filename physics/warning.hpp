@@ -19,6 +19,9 @@ struct Warning {
 // Tension above the material's yield strength; bending that matters while it is off.
 std::vector<Warning> surface_warnings(const Surface& surface);
 
+// Below, a tone may be heard: the lower end of the third-octave band around 25 kHz.
+inline constexpr double audible_limit_Hz = 22400;
+
 // What one tone does on this surface: below 22.4 kHz, turning point outside the surface, strip narrower than
 // a fingertip (14 mm) at the turning point, last-lobe gain above 10, a finger heavier than the strip. Codes
 // are not repeated per tone.

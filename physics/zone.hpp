@@ -15,7 +15,7 @@ namespace turnpoint::physics {
 
 // Frequencies that may be used, and how far apart tones must be so that their beats are not felt.
 struct ToneBand {
-  double low_Hz = 22400;
+  double low_Hz = audible_limit_Hz;
   double high_Hz = 45000;
   double spacing_Hz = 1000;
 };

@@ -1,9 +1,11 @@
 #pragma once
 #include <optional>
 
+#include "station/terms/psychometric.hpp"
+
 namespace turnpoint::analysis {
 
-enum class Function { weibull, normal, logistic };
+using terms::Function;
 /// Whether a function works on the level itself or on its base-10 logarithm (levels positive). A Weibull on
 /// the linear scale takes its level in dB.
 enum class Scale { linear, log10 };

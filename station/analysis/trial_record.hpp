@@ -3,10 +3,12 @@
 #include <string>
 #include <vector>
 
+#include "station/terms/trial.hpp"
+
 namespace turnpoint::analysis {
 
-enum class TrialType { experimental, catch_trial, practice, warmup };
-enum class Outcome { answered, timeout, anticipation, aborted, fault };
+using terms::Outcome;
+using terms::TrialType;
 
 /// One presented trial as an analysis sees it; times in seconds. What was not there is std::nullopt: a
 /// timeout has neither response nor response time nor score.

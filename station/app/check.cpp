@@ -60,7 +60,7 @@ void run_block(session::Director& director, const Protocol& protocol, const obse
       since_break = 0;
     }
     session::TrialEnd end;
-    end.outcome = answered ? store::TrialOutcome::answered : store::TrialOutcome::timeout;
+    end.outcome = answered ? terms::Outcome::answered : terms::Outcome::timeout;
     if (answered) end.response = reply.choice;
     if (answered && trial->correct) end.correct = reply.choice == trial->correct;
     director.record(end);

@@ -28,7 +28,7 @@ double median(std::vector<double> values) {
   return 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
-int count(const std::vector<LiveTrial>& trials, store::TrialOutcome outcome) {
+int count(const std::vector<LiveTrial>& trials, terms::Outcome outcome) {
   return static_cast<int>(std::count_if(trials.begin(), trials.end(),
                                         [&](const LiveTrial& trial) { return trial.outcome == outcome; }));
 }
@@ -65,15 +65,15 @@ double stimulus_s(const store::TrialRow& row, int rate_Hz) {
 }  // namespace
 
 Facts course_of(const std::vector<LiveTrial>& trials) {
-  using store::TrialOutcome;
+  using terms::Outcome;
   std::vector<double> times;
   int scored = 0, right = 0, catches = 0, caught = 0, xruns = 0, extra = 0;
   for (const auto& trial : trials) {
     xruns += trial.xruns, extra += trial.extra_touches;
     if (trial.response_time_s) times.push_back(*trial.response_time_s);
     if (!trial.correct) continue;
-    if (trial.type == store::TrialType::catch_trial) ++catches, caught += *trial.correct ? 1 : 0;
-    if (trial.type == store::TrialType::experimental) ++scored, right += *trial.correct ? 1 : 0;
+    if (trial.type == terms::TrialType::catch_trial) ++catches, caught += *trial.correct ? 1 : 0;
+    if (trial.type == terms::TrialType::experimental) ++scored, right += *trial.correct ? 1 : 0;
   }
   Facts facts{{"Trials", std::to_string(trials.size())}};
   facts.emplace_back("Right", scored > 0 ? fmt::format("{} of {} ({})", right, scored,
@@ -83,10 +83,9 @@ Facts course_of(const std::vector<LiveTrial>& trials) {
   facts.emplace_back("Response time", times.empty() ? "none yet"
                                                     : "median " + number(median(times), 3) + " s, last " +
                                                           number(times.back(), 3) + " s");
-  facts.emplace_back("Too late, too early", fmt::format("{}, {}", count(trials, TrialOutcome::timeout),
-                                                        count(trials, TrialOutcome::anticipation)));
-  facts.emplace_back(
-      "Void", std::to_string(count(trials, TrialOutcome::fault) + count(trials, TrialOutcome::aborted)));
+  facts.emplace_back("Too late, too early", fmt::format("{}, {}", count(trials, Outcome::timeout),
+                                                        count(trials, Outcome::anticipation)));
+  facts.emplace_back("Void", std::to_string(count(trials, Outcome::fault) + count(trials, Outcome::aborted)));
   facts.emplace_back("Xruns", std::to_string(xruns));
   facts.emplace_back("Touches that no answer claimed", std::to_string(extra));
   return facts;

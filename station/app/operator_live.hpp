@@ -31,8 +31,8 @@ struct LiveTrial {
   std::optional<double> level;
   std::optional<bool> correct;
   std::optional<double> response_time_s, threshold_est, threshold_sd;
-  store::TrialOutcome outcome = store::TrialOutcome::answered;
-  store::TrialType type = store::TrialType::experimental;
+  terms::Outcome outcome = terms::Outcome::answered;
+  terms::TrialType type = terms::TrialType::experimental;
   double onset_s = 0, ended_s = 0;  ///< of the session
   double stimulus_s = 0;            ///< on the surface
   int xruns = 0, extra_touches = 0;

@@ -60,7 +60,7 @@ void add_fits(const report::Summary& summary, ReportPages& pages) {
     };
     line(in_unit(two_sided ? "PSE" : "threshold"), p.threshold, named.intervals.threshold);
     if (report::slope_estimated(named))
-      line(named.fit.options.function == analysis::Function::normal ? in_unit("spread") : "slope", p.slope,
+      line(named.fit.options.function == terms::Function::normal ? in_unit("spread") : "slope", p.slope,
            named.intervals.slope);
     line("lapse rate", p.lapse, named.intervals.lapse);
     pages.statements.push_back(prefix + report::describe_intervals(named, summary.data));

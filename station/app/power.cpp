@@ -55,16 +55,16 @@ void add_estimates(const Rehearsal& rehearsal, const std::string& unit, std::vec
 bool heavy_tailed(const std::string& parameter) { return parameter == "slope" || parameter == "spread"; }
 
 const char* spread_name(const analysis::FitOptions& options) {
-  return options.function == analysis::Function::normal ? "spread" : "slope";
+  return options.function == terms::Function::normal ? "spread" : "slope";
 }
 
 std::string slope_unit(const analysis::FitOptions& options, const std::string& level_unit) {
   switch (options.function) {
-    case analysis::Function::normal:
+    case terms::Function::normal:
       return level_unit;
-    case analysis::Function::logistic:
+    case terms::Function::logistic:
       return level_unit.empty() ? "" : "1/" + level_unit;
-    case analysis::Function::weibull:
+    case terms::Function::weibull:
       break;
   }
   return "exponent";
@@ -129,7 +129,7 @@ Outcome simulate(const protocol::Protocol& protocol, const PowerOptions& options
   outcome.presented = rehearsal.trials;
   outcome.duration_s = rehearsal.duration_s;
   for (const auto& trial : data.trials)
-    if (trial.type == analysis::TrialType::experimental && trial.correct)
+    if (trial.type == terms::TrialType::experimental && trial.correct)
       ++outcome.scored, outcome.right += *trial.correct ? 1 : 0;
   return outcome;
 }

@@ -104,13 +104,13 @@ std::optional<double> settled_level(const protocol::Protocol& protocol, const pr
     case Kind::psi_marginal:
       break;
   }
-  const double way = spec.function == procedure::Function::weibull ? 1 - std::exp(-1.0) : 0.5;
+  const double way = spec.function == terms::Function::weibull ? 1 - std::exp(-1.0) : 0.5;
   return crosses(share(low) + way * (share(high) - share(low)));
 }
 
 void GeneratingValues::add(const protocol::Protocol& protocol, const session::TrialSpec& trial,
                            const observer::Question& question, const observer::Observer& observer) {
-  if (trial.type != store::TrialType::experimental || !trial.level) return;
+  if (trial.type != terms::TrialType::experimental || !trial.level) return;
   std::string instruction;
   if (const auto found = trial.factors.find("instruction"); found != trial.factors.end())
     if (const auto* text = std::get_if<std::string>(&found->second)) instruction = *text;
@@ -180,10 +180,10 @@ FitTruth GeneratingValues::fit(const std::string& condition, const analysis::Fit
   const bool own_function =
       observer.bound(question.deadline_s) == p.bound && p.drift_sd == 0 && p.start_range == 0;
   if (own_function && decides == observer::Decides::right_answer &&
-      options.function == analysis::Function::weibull)
+      options.function == terms::Function::weibull)
     truth.slope = p.slope;
   if (own_function && decides == observer::Decides::side && p.slope == 1 &&
-      options.function == analysis::Function::normal && options.scale == analysis::Scale::linear)
+      options.function == terms::Function::normal && options.scale == analysis::Scale::linear)
     truth.slope = std::fabs(threshold) / analysis::normal_quantile(0.75);
   return truth;
 }

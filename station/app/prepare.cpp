@@ -134,9 +134,9 @@ session::Setup prepare(const RunRequest& request) {
   setup.observer = request.observer;
   setup.seed = request.seed;
   setup.consent_version = request.consent_version;
-  setup.run_mode = !request.observer.empty() ? store::RunMode::simulated
-                   : request.mode == "live"  ? store::RunMode::live
-                                             : store::RunMode::pilot;
+  setup.run_mode = !request.observer.empty() ? terms::RunMode::simulated
+                   : request.mode == "live"  ? terms::RunMode::live
+                                             : terms::RunMode::pilot;
   return setup;
 }
 

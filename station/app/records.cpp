@@ -15,36 +15,6 @@ namespace turnpoint::app {
 
 namespace {
 
-analysis::TrialType type_of(store::TrialType type) {
-  switch (type) {
-    case store::TrialType::experimental:
-      return analysis::TrialType::experimental;
-    case store::TrialType::catch_trial:
-      return analysis::TrialType::catch_trial;
-    case store::TrialType::practice:
-      return analysis::TrialType::practice;
-    case store::TrialType::warmup:
-      break;
-  }
-  return analysis::TrialType::warmup;
-}
-
-analysis::Outcome outcome_of(store::TrialOutcome outcome) {
-  switch (outcome) {
-    case store::TrialOutcome::answered:
-      return analysis::Outcome::answered;
-    case store::TrialOutcome::timeout:
-      return analysis::Outcome::timeout;
-    case store::TrialOutcome::anticipation:
-      return analysis::Outcome::anticipation;
-    case store::TrialOutcome::aborted:
-      return analysis::Outcome::aborted;
-    case store::TrialOutcome::fault:
-      break;
-  }
-  return analysis::Outcome::fault;
-}
-
 std::optional<int> index_of(const std::optional<std::string>& id, const protocol::Protocol& protocol) {
   if (!id) return std::nullopt;
   const auto& choices = protocol.task.choices;
@@ -74,7 +44,7 @@ analysis::TrialRecord record_of(const store::TrialRow& row, const store::BlockSt
   record.trial_index = row.trial_index;
   record.block_index = block.block_index;
   record.block = block.name;
-  record.type = block.practice ? analysis::TrialType::practice : type_of(row.type);
+  record.type = block.practice ? terms::TrialType::practice : row.type;
   record.procedure = row.procedure;
   record.level = row.level;
   record.right_choice = index_of(row.correct_response, protocol);
@@ -82,7 +52,7 @@ analysis::TrialRecord record_of(const store::TrialRow& row, const store::BlockSt
   record.correct = row.correct;
   if (row.response && protocol.task.kind == protocol::TaskKind::adjustment)
     record.setting = setting_of(*row.response);
-  record.outcome = outcome_of(row.outcome);
+  record.outcome = row.outcome;
   record.response_time_s = row.response_time_s;
   const auto factors = factors_of(row);
   record.instruction = condition_of(protocol, factors, block.instruction);
@@ -125,16 +95,14 @@ void choose_function(const protocol::Protocol& protocol, report::SessionData& da
     return !trial.level || *trial.level > 0 || (detection && trial.right_choice != data.positive);
   });
   const bool rises = data.design == report::Design::forced_choice || detection;
-  data.function = analysis::Function::normal;
-  if (rises && (decibel || positive)) data.function = analysis::Function::weibull;
+  data.function = terms::Function::normal;
+  if (rises && (decibel || positive)) data.function = terms::Function::weibull;
   data.scale = rises && positive && !decibel ? analysis::Scale::log10 : analysis::Scale::linear;
   for (const auto& spec : protocol.procedures) {
     using procedure::Kind;
     if (spec.kind != Kind::quest_plus && spec.kind != Kind::psi && spec.kind != Kind::psi_marginal) continue;
-    if (spec.function == procedure::Function::logistic) data.function = analysis::Function::logistic;
-    if (spec.function == procedure::Function::normal) data.function = analysis::Function::normal;
-    if (spec.function == procedure::Function::weibull && (decibel || positive))
-      data.function = analysis::Function::weibull;
+    // A Weibull function needs levels above 0, or in dB.
+    if (spec.function != terms::Function::weibull || decibel || positive) data.function = spec.function;
     return;
   }
 }
@@ -169,16 +137,7 @@ constexpr double kLowestRatio = 1e-3;
 /// Whether the slopes of a procedure's grid mean what those of the fit mean.
 bool same_function(const procedure::Spec& spec, const report::SessionData& data) {
   const bool linear = spec.scale == procedure::Scale::linear;
-  if (linear != (data.scale == analysis::Scale::linear)) return false;
-  switch (spec.function) {
-    case procedure::Function::weibull:
-      return data.function == analysis::Function::weibull;
-    case procedure::Function::normal:
-      return data.function == analysis::Function::normal;
-    case procedure::Function::logistic:
-      break;
-  }
-  return data.function == analysis::Function::logistic;
+  return linear == (data.scale == analysis::Scale::linear) && spec.function == data.function;
 }
 
 /// From what the protocol can present, never from what was answered; none where no procedure is adaptive.
@@ -227,8 +186,8 @@ void add_staircases(const std::vector<const store::BlockRecord*>& blocks, const 
       if (block->start.practice) continue;
       const auto stairs = procedure::make_procedure(spec, {}, {});
       for (const auto& row : block->trials) {
-        if (row.procedure != spec.name || row.type != store::TrialType::experimental ||
-            row.outcome != store::TrialOutcome::answered)
+        if (row.procedure != spec.name || row.type != terms::TrialType::experimental ||
+            row.outcome != terms::Outcome::answered)
           continue;
         const bool one = spec.tracks.empty() ? row.correct.value_or(false) : row.response == spec.tracks;
         stairs->record(one ? procedure::Answer::one : procedure::Answer::zero);

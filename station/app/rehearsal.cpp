@@ -27,9 +27,9 @@ std::int64_t ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
 std::int64_t zero_after_onset_ns(const protocol::Protocol& protocol, const TrialSpec& spec) {
   const auto last = session::interval_times(protocol, spec).back();
   switch (protocol.timing.response_zero) {
-    case protocol::ResponseZero::interval_off:
+    case terms::ResponseZero::interval_off:
       return ns(last.length_s);
-    case protocol::ResponseZero::change:
+    case terms::ResponseZero::change:
       return ns(last.starts_s.front());
     default:
       return 0;

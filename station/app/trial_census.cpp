@@ -30,7 +30,7 @@ void count_session(const protocol::Protocol& protocol, std::uint64_t seed, Trial
       const auto reply = participant.answer(session::question_of(*trial, protocol, seed));
       const bool answered = reply.choice && reply.response_time_s <= trial->deadline_s;
       session::TrialEnd end;
-      end.outcome = answered ? store::TrialOutcome::answered : store::TrialOutcome::timeout;
+      end.outcome = answered ? terms::Outcome::answered : terms::Outcome::timeout;
       if (answered) end.response = reply.choice;
       if (answered && trial->correct) end.correct = reply.choice == trial->correct;
       if (block->practice) end.correct = true;  // who does not pass practice never sees the other blocks
@@ -53,7 +53,7 @@ TrialCensus::TrialCensus(const protocol::Protocol& protocol) : protocol_(&protoc
 bool TrialCensus::is_drawn(const protocol::Factor& factor, const protocol::Block& block,
                            const session::TrialSpec& trial) const {
   if (factor.levels.empty() || block.fixed.count(factor.name)) return false;
-  if (trial.type == store::TrialType::catch_trial) return factor.name != block.catch_trials->factor;
+  if (trial.type == terms::TrialType::catch_trial) return factor.name != block.catch_trials->factor;
   const auto* spec = protocol::find_procedure(*protocol_, trial.procedure);
   if (spec == nullptr) return factor.name != block.level;
   const auto& balance = spec->balance;
@@ -62,7 +62,7 @@ bool TrialCensus::is_drawn(const protocol::Factor& factor, const protocol::Block
 }
 
 void TrialCensus::add(const protocol::Block& block, const session::TrialSpec& trial) {
-  if (block.practice || trial.type == store::TrialType::practice || trial.type == store::TrialType::warmup)
+  if (block.practice || trial.type == terms::TrialType::practice || trial.type == terms::TrialType::warmup)
     return;
   protocol::Factors known;
   for (const auto* factor : relevant_) {

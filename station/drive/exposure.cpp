@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/terms/limits.hpp"
+
 namespace turnpoint::drive {
 
 Exposure::Exposure(const ExposureLimits& limits, double session_start_s, const std::vector<Exposed>& history)
@@ -94,7 +96,8 @@ double Exposure::earliest_start_s(double wanted_s, std::span<const Exposed> tria
 }
 
 std::string sound_problem(double frequency_Hz, double amplitude, const std::vector<SoundLevel>& measured) {
-  constexpr double lowest_Hz = 22400, ultrasonic_Hz = 25000, audible_dB = 75, ultrasonic_dB = 110;
+  constexpr double lowest_Hz = terms::kAudible_Hz, ultrasonic_Hz = 25000, audible_dB = 75,
+                   ultrasonic_dB = 110;
   if (!(amplitude > 0)) return "";
   const auto above = std::find_if(measured.begin(), measured.end(), [=](const SoundLevel& level) {
     return level.frequency_Hz >= frequency_Hz;

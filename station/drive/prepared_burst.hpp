@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "station/drive/burst.hpp"
+#include "station/terms/limits.hpp"
 
 namespace turnpoint::drive {
 
@@ -19,8 +20,8 @@ struct Format {
 
 /// What a burst must stay inside to be accepted.
 struct SynthLimits {
-  double peak = 1.0 - 0x1p-20;        ///< of any channel, full scale; leaves room for dither
-  double highest_relative_Hz = 0.45;  ///< of the sampling rate: the pass band of common converters
+  double peak = 1.0 - 0x1p-20;  ///< of any channel, full scale; leaves room for dither
+  double highest_relative_Hz = terms::kHighestShareOfRate;
   std::int64_t longest_frames = 192000LL * 3600;
   std::int64_t longest_rendered_frames =
       192000LL * 60;  ///< longer bursts are judged by the sum of amplitudes alone

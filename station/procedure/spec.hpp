@@ -5,10 +5,12 @@
 #include <utility>
 #include <vector>
 
+#include "station/terms/psychometric.hpp"
+
 namespace turnpoint::procedure {
 
 enum class Kind { constant_stimuli, up_down, weighted_up_down, quest_plus, psi, psi_marginal, adjustment };
-enum class Function { weibull, normal, logistic };
+using terms::Function;
 enum class Scale { linear, log10, dB };
 enum class Shuffle { within_repeat, within_block, none };
 enum class StopRule { any, all };  ///< "or", "and"

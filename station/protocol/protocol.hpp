@@ -9,6 +9,7 @@
 
 #include "station/procedure/spec.hpp"
 #include "station/rig/rig.hpp"
+#include "station/terms/trial.hpp"
 #include "station/text/problem.hpp"
 
 namespace turnpoint::protocol {
@@ -127,7 +128,7 @@ struct Task {
   std::optional<double> step;
 };
 
-enum class ResponseZero { go_cue, change, interval_off, first_contact, lift_off };
+using terms::ResponseZero;
 
 struct Timing {
   ResponseZero response_zero = ResponseZero::go_cue;

@@ -181,9 +181,9 @@ void read_posterior(TableReader& reader, Spec& spec, const Reading& reading) {
   read_tracks(reader, spec, reading);
   read_scale(reader, spec);
   const auto function = reader.word("function", {"weibull", "normal", "logistic"});
-  spec.function = function == "normal"     ? procedure::Function::normal
-                  : function == "logistic" ? procedure::Function::logistic
-                                           : procedure::Function::weibull;
+  spec.function = function == "normal"     ? terms::Function::normal
+                  : function == "logistic" ? terms::Function::logistic
+                                           : terms::Function::weibull;
   if (const auto* stimuli = reader.require("stimuli", "the levels to choose from: { from, to, step }"))
     spec.stimuli = read_grid(*stimuli, reader.path("stimuli"), Axis::stimuli, reader.findings());
   read_axes(reader, spec);

@@ -205,11 +205,12 @@ void read_timing(TableReader& file, Reading& reading) {
   if (!table) return;
   TableReader reader(*table, "timing", reading.findings);
   auto& timing = reading.protocol.timing;
-  const std::vector<std::string> zeros{"go_cue", "change", "interval_off", "first_contact", "lift_off"};
+  std::vector<std::string> zeros;
+  for (const auto zero : terms::response_zeros) zeros.emplace_back(name(zero));
   const auto zero = reader.word("response_zero", zeros);
   timing.response_zero_place = reader.place("response_zero");
-  timing.response_zero =
-      static_cast<ResponseZero>(std::find(zeros.begin(), zeros.end(), zero) - zeros.begin());
+  for (const auto known : terms::response_zeros)
+    if (zero == name(known)) timing.response_zero = known;
   timing.explore_s = reader.maybe_number("explore_s", {0, 600, Range::Ends::open_low, "s"});
   timing.deadline_s = reader.maybe_number("deadline_s", {0, 3600, Range::Ends::open_low, "s"});
   reader.require("iti_s", "the pause between trials in seconds: a number or { uniform = [0.8, 1.2] }");

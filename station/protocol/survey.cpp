@@ -13,6 +13,7 @@
 #include "station/protocol/resolve.hpp"
 #include "station/scene/planner.hpp"
 #include "station/scene/transducer.hpp"
+#include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
@@ -34,7 +35,7 @@ std::string reach(const scene::Scene& scene, const rig::Rig& rig, const scene::P
                                                 rig.friction.fingertip_m};
   const physics::BoundaryMap map(planner.surface(), options);
   const double low_Hz = scene::lowest_frequency(rig, 0),
-               high_Hz = scene::highest_frequency(rig, 0.45 * rig.output.rate_Hz);
+               high_Hz = scene::highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz);
   std::optional<double> nearest, furthest;
   constexpr int steps = 400;
   for (int i = 0; i <= steps; ++i)

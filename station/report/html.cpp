@@ -85,11 +85,11 @@ std::string in_unit(const std::string& name, const SessionData& data) {
 
 std::string slope_name(const NamedFit& named, const SessionData& data) {
   switch (named.fit.options.function) {
-    case analysis::Function::normal:
+    case terms::Function::normal:
       return in_unit("Spread, standard deviation", data);
-    case analysis::Function::logistic:
+    case terms::Function::logistic:
       return data.level_unit.empty() ? "Slope (no unit)" : "Slope (1/" + data.level_unit + ")";
-    case analysis::Function::weibull:
+    case terms::Function::weibull:
       break;
   }
   return "Slope (exponent, no unit)";

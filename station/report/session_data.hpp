@@ -41,7 +41,7 @@ struct SessionData {
   std::vector<Fact> health;  ///< xruns, calibration age, restarts, ...
   Design design = Design::forced_choice;
   int alternatives = 2;
-  analysis::Function function = analysis::Function::weibull;
+  terms::Function function = terms::Function::weibull;
   analysis::Scale scale = analysis::Scale::linear;
   std::string level_label;              ///< with the unit, for an axis: "Contrast (dB)"
   std::string level_unit;               ///< "" for a level without one

@@ -159,7 +159,7 @@ std::string describe_intervals(const NamedFit& named, const SessionData& data) {
       (options.scale == analysis::Scale::log10 ? " in its logarithm" : "") + " from " +
       range(prior.threshold_low, prior.threshold_high);
   if (!data.level_unit.empty()) text += " " + data.level_unit;
-  text += std::string(options.function == analysis::Function::normal ? "; spread" : "; slope") +
+  text += std::string(options.function == terms::Function::normal ? "; spread" : "; slope") +
           " uniform in its logarithm from " + range(prior.slope_low, prior.slope_high);
   text += "; lapse rate uniform from " + range(options.lapse_low, options.lapse_high);
   if (options.guess == analysis::Guess::fitted)

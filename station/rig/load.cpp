@@ -8,6 +8,7 @@
 #include "station/rig/rig.hpp"
 #include "station/rig/spare_channels.hpp"
 #include "station/rig/surface.hpp"
+#include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::rig {
@@ -124,7 +125,7 @@ void check_device_channels(TableReader& file, const Rig& rig) {
 void check_bands(TableReader& file, const Rig& rig) {
   if (rig.output.rate_Hz <= 0) return;
   // Above 0.45 of the rate a converter's filter, not the rig, decides the level.
-  const double limit_Hz = 0.45 * rig.output.rate_Hz;
+  const double limit_Hz = terms::kHighestShareOfRate * rig.output.rate_Hz;
   for (const auto* table : file.tables("transducer")) {
     const auto* band = table->find("band_kHz");
     if (!band || band->value.items.size() != 2 || band->value.items[1].number * 1e3 <= limit_Hz) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::rig {
@@ -18,7 +19,7 @@ void check_spare(TableReader& reader, int channel, const Rig& rig) {
                      "a channel without a transducer");
 }
 
-double highest_Hz(const Rig& rig) { return 0.45 * std::max(rig.output.rate_Hz, 8000); }
+double highest_Hz(const Rig& rig) { return terms::kHighestShareOfRate * std::max(rig.output.rate_Hz, 8000); }
 
 Marker read_marker(const text::Value& table, const Rig& rig, text::Findings& findings) {
   TableReader reader(table, "marker", findings);

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::scene {
 
 namespace {
 
-constexpr double kAudible_Hz = 22400;
 constexpr double kWideEnd_m = 0.030;
 
 /// Mean and rms deviation of friction, fingertip averaged, over the zone of the scene.
@@ -64,7 +64,7 @@ Cues cues_of(const physics::Surface& surface, const std::vector<physics::Tone>& 
   for (const auto& tone : tones) {
     if (tone.amplitude_m > tones[strongest].amplitude_m)
       strongest = static_cast<std::size_t>(&tone - tones.data());
-    if (tone.frequency_Hz >= kAudible_Hz) continue;
+    if (tone.frequency_Hz >= terms::kAudible_Hz) continue;
     cues.pitch_Hz = cues.pitch_Hz == 0 ? tone.frequency_Hz : std::min(cues.pitch_Hz, tone.frequency_Hz);
     squares += tone.amplitude_m * tone.amplitude_m;
   }

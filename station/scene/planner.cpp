@@ -11,9 +11,11 @@
 #include "physics/centre_line.hpp"
 #include "physics/field.hpp"
 #include "physics/planner.hpp"
+#include "physics/warning.hpp"
 #include "physics/zone.hpp"
 #include "station/scene/measures.hpp"
 #include "station/scene/transducer.hpp"
+#include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::scene {
@@ -24,8 +26,7 @@ using text::number;
 
 namespace {
 
-constexpr double kInaudible_Hz = 22400;
-constexpr double kHighestShareOfRate = 0.45;
+static_assert(terms::kAudible_Hz == physics::audible_limit_Hz);
 
 constexpr std::size_t kRemembered = 512, kSolutions = 128;
 
@@ -105,7 +106,7 @@ const physics::BoundaryMap& Planner::State::map_for(const physics::Edge& edge) {
     physics::MapOptions options;
     options.edge = edge;
     options.band = {lowest_frequency(rig, 0),
-                    highest_frequency(rig, kHighestShareOfRate * rig.output.rate_Hz)};
+                    highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz)};
     found = maps.emplace(key, std::make_shared<const physics::BoundaryMap>(surface, options)).first;
   }
   return *found->second;
@@ -170,8 +171,8 @@ std::vector<Tone> Planner::State::zone(const Scene& scene, DrivePlan& plan) {
     request.friction = designed_for;
     request.tones = wanted.tones;
     request.fingertip_m = rig.friction.fingertip_m;
-    request.band.low_Hz = lowest_frequency(rig, kInaudible_Hz);
-    request.band.high_Hz = highest_frequency(rig, kHighestShareOfRate * rig.output.rate_Hz);
+    request.band.low_Hz = lowest_frequency(rig, terms::kAudible_Hz);
+    request.band.high_Hz = highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz);
     found = designs.emplace(key, physics::design_zone(surface, friction, request)).first;
   }
   auto tones = found->second.tones;
@@ -255,10 +256,10 @@ void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones, cons
     driven.gain = info.gain;
     driven.displacement_m = info.gain * tone.amplitude_m;
     assign_transducer(rig, driven);
-    if (driven.frequency_Hz >= kHighestShareOfRate * rig.output.rate_Hz)
+    if (driven.frequency_Hz >= terms::kHighestShareOfRate * rig.output.rate_Hz)
       throw Unreachable(fmt::format("{} Hz is too high for a converter at {} Hz; tones stay below {} Hz",
                                     number(driven.frequency_Hz), rig.output.rate_Hz,
-                                    number(kHighestShareOfRate * rig.output.rate_Hz)));
+                                    number(terms::kHighestShareOfRate * rig.output.rate_Hz)));
     plan.tones.push_back(driven);
   }
   std::stable_sort(plan.tones.begin(), plan.tones.end(),

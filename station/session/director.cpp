@@ -60,10 +60,10 @@ void Director::State::learn(const TrialEnd& end) {
   if (current_procedure == no_procedure) return;
   const auto index = static_cast<std::size_t>(current_procedure);
   if (specs[index]->kind == procedure::Kind::adjustment && end.setting &&
-      end.outcome == store::TrialOutcome::answered)
+      end.outcome == terms::Outcome::answered)
     return procedures[index]->record_setting(*end.setting);
   auto answer = procedure::Answer::none;
-  if (end.outcome == store::TrialOutcome::answered && end.response) {
+  if (end.outcome == terms::Outcome::answered && end.response) {
     const auto& tracks = specs[index]->tracks;
     const auto& choice = protocol.task.choices[static_cast<std::size_t>(*end.response)];
     const bool one = tracks.empty() ? end.correct.value_or(false) : choice.id == tracks;
@@ -104,16 +104,16 @@ std::optional<TrialSpec> Director::next() {
 void Director::record(const TrialEnd& end) {
   auto& s = *state_;
   if (!s.current) throw std::logic_error("director: nothing was given that could have ended");
-  if (end.outcome == store::TrialOutcome::fault || end.outcome == store::TrialOutcome::aborted) return;
+  if (end.outcome == terms::Outcome::fault || end.outcome == terms::Outcome::aborted) return;
   const auto type = s.current->type;
   s.current.reset();
-  if (type == store::TrialType::warmup) {
+  if (type == terms::TrialType::warmup) {
     --s.warmups, ++s.warmups_given;
     return;
   }
   s.learn(end);
   ++s.trial, ++s.done;
-  if (type != store::TrialType::catch_trial) ++s.shown;
+  if (type != terms::TrialType::catch_trial) ++s.shown;
   if (end.correct.value_or(false)) ++s.right;
 }
 

@@ -15,7 +15,7 @@ namespace turnpoint::session {
 struct TrialSpec {
   int block_index = 0, attempt = 0;
   int trial_in_block = 0;  ///< the key of its draws; a repeated (void) trial has the same
-  store::TrialType type = store::TrialType::experimental;
+  terms::TrialType type = terms::TrialType::experimental;
   std::string procedure;  ///< "" outside procedures
   std::optional<double> level;
   protocol::Factors factors;
@@ -30,7 +30,7 @@ struct TrialSpec {
 
 /// What came of it, as far as the next trial depends on it.
 struct TrialEnd {
-  store::TrialOutcome outcome = store::TrialOutcome::answered;
+  terms::Outcome outcome = terms::Outcome::answered;
   std::optional<int> response;
   std::optional<bool> correct;
   std::optional<double> setting = {};  ///< of an adjustment that was answered

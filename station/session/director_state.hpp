@@ -53,7 +53,7 @@ struct Director::State {
   protocol::Factors drawn_factors() const;
   std::optional<int> pick_procedure() const;
   bool catch_due() const;
-  TrialSpec blank(store::TrialType type) const;
+  TrialSpec blank(terms::TrialType type) const;
   void complete(TrialSpec& spec) const;
   std::optional<SliderSpan> slider(int key) const;
   TrialSpec warmup_trial() const;

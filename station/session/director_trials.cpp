@@ -63,12 +63,12 @@ bool Director::State::catch_due() const {
   return now()->catch_trials && draws(Stream::catch_trial, trial).uniform() < now()->catch_trials->rate;
 }
 
-TrialSpec Director::State::blank(store::TrialType type) const {
+TrialSpec Director::State::blank(terms::TrialType type) const {
   TrialSpec spec;
   spec.block_index = static_cast<int>(block);
   spec.attempt = attempt;
   spec.trial_in_block = trial;
-  spec.type = now()->practice ? store::TrialType::practice : type;
+  spec.type = now()->practice ? terms::TrialType::practice : type;
   spec.factors = drawn_factors();
   spec.deadline_s = deadline();
   spec.timeouts_are_data = timeouts_are_data();
@@ -77,9 +77,9 @@ TrialSpec Director::State::blank(store::TrialType type) const {
 
 /// Everything that follows once level and factors stand: order of intervals, right answer, roving, times.
 void Director::State::complete(TrialSpec& spec) const {
-  const int key = spec.type == store::TrialType::warmup ? -1 - warmups_given : trial;
+  const int key = spec.type == terms::TrialType::warmup ? -1 - warmups_given : trial;
   const auto order = order_for(protocol.task, seed, static_cast<int>(block), attempt,
-                               spec.type == store::TrialType::warmup ? warmups_given : trial);
+                               spec.type == terms::TrialType::warmup ? warmups_given : trial);
   spec.intervals = order.intervals;
   spec.correct = order.correct ? order.correct : correct_choice(protocol.task, spec.factors);
   spec.slider = slider(key);
@@ -112,8 +112,8 @@ std::optional<SliderSpan> Director::State::slider(int key) const {
 }
 
 TrialSpec Director::State::warmup_trial() const {
-  auto spec = blank(store::TrialType::warmup);
-  spec.type = store::TrialType::warmup;
+  auto spec = blank(terms::TrialType::warmup);
+  spec.type = terms::TrialType::warmup;
   std::vector<double> levels = practice_levels;
   std::string factor = now()->level;
   if (!specs.empty()) {
@@ -132,7 +132,7 @@ TrialSpec Director::State::warmup_trial() const {
 }
 
 TrialSpec Director::State::catch_trial() const {
-  auto spec = blank(store::TrialType::catch_trial);
+  auto spec = blank(terms::TrialType::catch_trial);
   const auto& wanted = *now()->catch_trials;
   auto draw = draws(Stream::catch_trial, trial);
   draw.uniform();  // the one that decided that this is a catch trial
@@ -144,7 +144,7 @@ TrialSpec Director::State::catch_trial() const {
 
 std::optional<TrialSpec> Director::State::practice_trial() const {
   if (static_cast<std::size_t>(trial) >= practice_levels.size()) return std::nullopt;
-  auto spec = blank(store::TrialType::experimental);
+  auto spec = blank(terms::TrialType::experimental);
   spec.level = practice_levels[static_cast<std::size_t>(trial)];
   spec.factors[now()->level] = *spec.level;
   complete(spec);
@@ -154,7 +154,7 @@ std::optional<TrialSpec> Director::State::practice_trial() const {
 TrialSpec Director::State::procedure_trial(int index) const {
   const auto& from = *specs[static_cast<std::size_t>(index)];
   const auto proposal = procedures[static_cast<std::size_t>(index)]->next();
-  auto spec = blank(store::TrialType::experimental);
+  auto spec = blank(terms::TrialType::experimental);
   spec.procedure = from.name;
   spec.level = proposal->level;
   spec.factors[from.level] = proposal->level;

@@ -48,8 +48,8 @@ void gather(const store::StoredSession& session, double longest_s, std::vector<d
 
 }  // namespace
 
-drive::ExposureLimits limits_of(const rig::Rig& rig, store::RunMode mode) {
-  const bool person = mode != store::RunMode::simulated;
+drive::ExposureLimits limits_of(const rig::Rig& rig, terms::RunMode mode) {
+  const bool person = mode != terms::RunMode::simulated;
   return {rig.limits.displacement_m, rig.limits.continuous_s, rig.limits.duty,
           person ? 60 * rig.limits.session_minutes : kUnlimited_s};
 }
@@ -80,7 +80,7 @@ FingerHistory read_finger_history(const std::string& database, const std::string
   if (std::filesystem::exists(database, ignored))
     for (const auto& session : store::list_sessions(database, {"", participant, ""})) {
       const double idle_s = now_s - 1e-9 * static_cast<double>(session.last_activity_realtime_ns);
-      if (session.start.run_mode != store::RunMode::simulated && idle_s < 3600 + kNewSitting_s)
+      if (session.start.run_mode != terms::RunMode::simulated && idle_s < 3600 + kNewSitting_s)
         recent.push_back(store::read_session(database, session.session_id));
     }
   return finger_history(recent, now_s, longest_s);

@@ -12,7 +12,7 @@
 namespace turnpoint::session {
 
 /// The rig's limits as the drive keeps them; a simulated finger's session may last any time.
-drive::ExposureLimits limits_of(const rig::Rig& rig, store::RunMode mode);
+drive::ExposureLimits limits_of(const rig::Rig& rig, terms::RunMode mode);
 
 /// What a participant's earlier segments put on the finger, from the database: stimuli in order of time and
 /// the start of the sitting, on the wall clock (s since 1970). A pause of half an hour begins a new sitting;

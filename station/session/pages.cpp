@@ -100,7 +100,7 @@ Page Pages::of_phase(Phase phase, int interval, const TrialSpec& spec, const pro
     page.text = result.correct ? word(*result.correct ? Word::right : Word::wrong, setup_.language) : "";
   }
   if (phase == Phase::late) {
-    const bool early = result.outcome == trial::Outcome::anticipation;
+    const bool early = result.outcome == terms::Outcome::anticipation;
     page.text = word(early ? Word::too_early : Word::too_late, setup_.language);
     const auto found = setup_.protocol.instructions.find(page.instruction);
     if (!early && found != setup_.protocol.instructions.end() && !found->second.late_message.empty())

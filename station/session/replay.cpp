@@ -30,7 +30,7 @@ void enter_stored(Director& director, const store::BlockStart& block) {
 void check_observer(const Setup& setup, const store::StoredSession& stored, const TrialSpec& spec,
                     const store::TrialRow& trial) {
   constexpr double tolerance_s = 1e-3;
-  if (trial.outcome != store::TrialOutcome::answered || !trial.response_time_s || spec.slider) return;
+  if (trial.outcome != terms::Outcome::answered || !trial.response_time_s || spec.slider) return;
   const observer::Observer observer(observer::parse(setup.observer));
   const auto reply = observer.answer(question_of(spec, setup.protocol, stored.session.start.seed));
   const auto& choices = setup.protocol.task.choices;
@@ -50,7 +50,7 @@ Director replayed(const Setup& setup, const store::StoredSession& stored) {
   for (const auto& block : stored.blocks) {
     enter_stored(director, block.start);
     for (const auto& trial : block.trials)
-      if (trial.type != store::TrialType::warmup) {
+      if (trial.type != terms::TrialType::warmup) {
         const auto spec = director.next();
         replay(director, trial, setup.protocol);
         if (spec && !setup.observer.empty()) check_observer(setup, stored, *spec, trial);

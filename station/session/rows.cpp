@@ -23,38 +23,6 @@ std::string level_factor(const TrialSpec& spec, const protocol::Protocol& protoc
   return sources.empty() ? "" : sources.front().level;
 }
 
-const char* name_of(protocol::ResponseZero zero) {
-  switch (zero) {
-    case protocol::ResponseZero::go_cue:
-      return "go_cue";
-    case protocol::ResponseZero::change:
-      return "change";
-    case protocol::ResponseZero::interval_off:
-      return "interval_off";
-    case protocol::ResponseZero::first_contact:
-      return "first_contact";
-    case protocol::ResponseZero::lift_off:
-      return "lift_off";
-  }
-  return "";
-}
-
-store::TrialOutcome outcome_of(trial::Outcome outcome) {
-  switch (outcome) {
-    case trial::Outcome::answered:
-      return store::TrialOutcome::answered;
-    case trial::Outcome::timeout:
-      return store::TrialOutcome::timeout;
-    case trial::Outcome::anticipation:
-      return store::TrialOutcome::anticipation;
-    case trial::Outcome::aborted:
-      return store::TrialOutcome::aborted;
-    case trial::Outcome::fault:
-      return store::TrialOutcome::fault;
-  }
-  return store::TrialOutcome::aborted;
-}
-
 std::optional<double> seconds(const std::optional<std::int64_t>& ns) {
   return ns ? std::optional(static_cast<double>(*ns) * 1e-9) : std::nullopt;
 }
@@ -179,7 +147,7 @@ store::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protocol
   for (const auto& [name, value] : spec.factors)
     std::visit([&row, &name = name](const auto& v) { row.factors[name] = v; }, value);
   if (spec.correct) row.correct_response = choice_id(protocol, *spec.correct);
-  row.response_zero = name_of(protocol.timing.response_zero);
+  row.response_zero = name(protocol.timing.response_zero);
   row.response_time_quality = "n/a";
   row.deadline_s = spec.deadline_s;
   return row;
@@ -206,7 +174,7 @@ void set_scene(store::TrialRow& row, const scene::DrivePlan& scene, std::int64_t
 
 void fill_result(store::TrialRow& row, const trial::Result& result, const TrialSpec& spec,
                  const protocol::Protocol& protocol, std::int64_t origin_ns) {
-  row.outcome = outcome_of(result.outcome);
+  row.outcome = result.outcome;
   if (result.response) row.response = choice_id(protocol, *result.response);
   row.correct = result.correct;
   row.onset_ns = result.zero_ns.value_or(result.started_ns);

@@ -25,7 +25,7 @@ struct Setup {
   protocol::Protocol protocol;
   std::string participant;
   std::string database;
-  store::RunMode run_mode = store::RunMode::pilot;
+  terms::RunMode run_mode = terms::RunMode::pilot;
   std::string language;
   std::string observer;  ///< "" for a person; else the text after `sim` ("sim", "sim:threshold=...")
   std::optional<std::uint64_t> seed;

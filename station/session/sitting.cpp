@@ -38,7 +38,7 @@ Sitting::Sitting(const Setup& setup, Director director, store::SessionLog log, s
 Summary Sitting::run() {
   started_ns_ = stage_->now_ns();
   // A pilot without an amplifier has nothing that an operator could arm.
-  if (setup_.run_mode != store::RunMode::live && setup_.rig.amplifier_uri == "sim:")
+  if (setup_.run_mode != terms::RunMode::live && setup_.rig.amplifier_uri == "sim:")
     static_cast<void>(stage_->arm());  // a refusal shows below: it is not armed
   if (until_armed({FaultKind::disarmed, ""}) == Flow::go_on)
     while (director_.block() != nullptr)

@@ -104,7 +104,7 @@ void Sitting::check_plans(const TrialSpec& spec) {
   for (std::size_t i = 0; i < plans.size(); ++i)
     for (const auto& plan : plans[i]) {
       account_.check(plan.peak_displacement_m, times[i].length_s);
-      if (setup_.run_mode != store::RunMode::live) continue;
+      if (setup_.run_mode != terms::RunMode::live) continue;
       for (const auto& tone : plan.tones)
         if (const auto problem = drive::sound_problem(tone.frequency_Hz, tone.full_scale, setup_.sound);
             !problem.empty())
@@ -115,7 +115,7 @@ void Sitting::check_plans(const TrialSpec& spec) {
 Sitting::Flow Sitting::after_trial(const store::TrialRow& row) {
   if (stop_asked_) return Flow::stop;
   const bool paused = std::exchange(pause_asked_, false);
-  const bool is_void = row.outcome == store::TrialOutcome::fault;
+  const bool is_void = row.outcome == terms::Outcome::fault;
   voids_in_a_row_ = is_void ? voids_in_a_row_ + 1 : 0;
   if (voids_in_a_row_ >= kVoidsBeforeStop) {
     stop_asked_ = true;
@@ -207,9 +207,8 @@ void Sitting::ask_observer(const Running& trial, std::int64_t onset_ns) {
   const auto last = interval_times(setup_.protocol, trial.spec).back();
   const auto ns = [](double s) { return static_cast<std::int64_t>(s * 1e9); };
   auto zero_ns = onset_ns;
-  if (setup_.protocol.timing.response_zero == protocol::ResponseZero::interval_off)
-    zero_ns += ns(last.length_s);
-  if (setup_.protocol.timing.response_zero == protocol::ResponseZero::change)
+  if (setup_.protocol.timing.response_zero == terms::ResponseZero::interval_off) zero_ns += ns(last.length_s);
+  if (setup_.protocol.timing.response_zero == terms::ResponseZero::change)
     zero_ns += ns(last.starts_s.front());
   if (trial.slider)
     stage_->adjustment(adjustment_of(trial.spec, summary_.seed), zero_ns);
@@ -260,21 +259,21 @@ void Sitting::count(const TrialSpec& spec, const store::TrialRow& row) {
   ++summary_.trials;
   summary_.xruns += row.xruns;
   switch (row.outcome) {
-    case store::TrialOutcome::answered:
+    case terms::Outcome::answered:
       ++summary_.answered;
       break;
-    case store::TrialOutcome::timeout:
+    case terms::Outcome::timeout:
       ++summary_.timeouts;
       break;
-    case store::TrialOutcome::anticipation:
+    case terms::Outcome::anticipation:
       ++summary_.anticipations;
       break;
-    case store::TrialOutcome::aborted:
-    case store::TrialOutcome::fault:
+    case terms::Outcome::aborted:
+    case terms::Outcome::fault:
       ++summary_.voided;
       break;
   }
-  if (spec.type == store::TrialType::experimental && row.correct) ++scored_, right_ += *row.correct ? 1 : 0;
+  if (spec.type == terms::TrialType::experimental && row.correct) ++scored_, right_ += *row.correct ? 1 : 0;
 }
 
 }  // namespace turnpoint::session

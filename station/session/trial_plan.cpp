@@ -2,27 +2,13 @@
 
 #include <cmath>
 
+#include "station/terms/limits.hpp"
+
 namespace turnpoint::session {
 
 namespace {
 
 std::int64_t ns(double s) { return std::llround(s * 1e9); }
-
-trial::ResponseZero zero_of(protocol::ResponseZero zero) {
-  switch (zero) {
-    case protocol::ResponseZero::go_cue:
-      return trial::ResponseZero::go_cue;
-    case protocol::ResponseZero::change:
-      return trial::ResponseZero::change;
-    case protocol::ResponseZero::interval_off:
-      return trial::ResponseZero::interval_off;
-    case protocol::ResponseZero::first_contact:
-      return trial::ResponseZero::first_contact;
-    case protocol::ResponseZero::lift_off:
-      return trial::ResponseZero::lift_off;
-  }
-  return trial::ResponseZero::go_cue;
-}
 
 bool explored(const protocol::Task& task) {
   return task.kind == protocol::TaskKind::single_interval || task.kind == protocol::TaskKind::adjustment;
@@ -53,7 +39,7 @@ trial::Plan trial_plan(const protocol::Protocol& protocol, const protocol::Block
                        const TrialSpec& spec) {
   trial::Plan plan;
   plan.cue_ns = ns(kCue_s);
-  plan.watermark_ns = ns(kWatermark_s);
+  plan.watermark_ns = terms::kWatermark_ns;
   for (const auto& interval : interval_times(protocol, spec)) {
     trial::IntervalPlan timed{ns(interval.length_s), {}};
     for (const double start : interval.starts_s) timed.scene_starts_ns.push_back(ns(start));
@@ -61,7 +47,7 @@ trial::Plan trial_plan(const protocol::Protocol& protocol, const protocol::Block
   }
   plan.gap_ns = ns(protocol.task.gap_s.value_or(0));
   plan.answer_ends_stimulus = explored(protocol.task);
-  plan.response_zero = zero_of(protocol.timing.response_zero);
+  plan.response_zero = protocol.timing.response_zero;
   plan.deadline_ns = ns(spec.deadline_s);
   plan.anticipation_ns = ns(protocol.timing.anticipation_s);
   plan.feedback_ns = block.feedback == protocol::Feedback::trial ? ns(kFeedback_s) : 0;

@@ -8,10 +8,6 @@ namespace turnpoint::session {
 /// How long the get-ready cue, the feedback and the message of a late answer stand.
 inline constexpr double kCue_s = 0.8, kFeedback_s = 0.8, kLate_s = 1.0;
 
-/// How long a touch may take from its time stamp to the session: the screen waits up to 60 ms for the
-/// kernel's stamp.
-inline constexpr double kWatermark_s = 0.08;
-
 /// The trial machine's plan for a trial of this protocol in this block.
 trial::Plan trial_plan(const protocol::Protocol& protocol, const protocol::Block& block,
                        const TrialSpec& spec);

@@ -8,7 +8,7 @@ namespace {
 
 void parse(const std::string& word, RunMode& mode) { mode = run_mode_named(word); }
 void parse(const std::string& word, SessionStatus& status) { status = session_status_named(word); }
-void parse(const std::string& word, TrialOutcome& outcome) { outcome = trial_outcome_named(word); }
+void parse(const std::string& word, Outcome& outcome) { outcome = trial_outcome_named(word); }
 void parse(const std::string& word, TrialType& type) { type = trial_type_named(word); }
 
 template <class Value>

@@ -6,21 +6,21 @@
 #include <variant>
 #include <vector>
 
+#include "station/terms/trial.hpp"
+
 namespace turnpoint::store {
 
-enum class RunMode { live, pilot, simulated };
+using terms::name;
+using terms::Outcome;
+using terms::RunMode;
+using terms::TrialType;
+
 enum class SessionStatus { running, completed, interrupted, stopped, abandoned };
 /// The words that opening a database writes for a session whose process died.
 inline constexpr const char* kLostReason = "the process ended without a word";
 inline constexpr const char* kAbandonedReason = "no trial was made";
 
-enum class TrialOutcome { answered, timeout, anticipation, aborted, fault };
-enum class TrialType { experimental, catch_trial, practice, warmup };
-
-const char* name(RunMode mode);
 const char* name(SessionStatus status);
-const char* name(TrialOutcome outcome);
-const char* name(TrialType type);  ///< "experimental", "catch", "practice", "warmup"
 
 /// A factor's value in a trial, for its column.
 using FactorValue = std::variant<double, std::string>;
@@ -85,7 +85,7 @@ struct TrialRow {
   std::optional<double> boundary_mm, frequency_Hz, amplitude;
   std::optional<std::string> correct_response, response;
   std::optional<bool> correct;
-  TrialOutcome outcome = TrialOutcome::answered;
+  Outcome outcome = Outcome::answered;
   std::int64_t onset_ns = 0;  ///< CLOCK_MONOTONIC (or virtual) at response_zero
   double onset_s = 0;         ///< the same from the start of the segment
   double duration_s = 0;

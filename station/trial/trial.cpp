@@ -290,20 +290,4 @@ const char* name(Phase phase) {
   return "";
 }
 
-const char* name(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::answered:
-      return "answered";
-    case Outcome::timeout:
-      return "timeout";
-    case Outcome::anticipation:
-      return "anticipation";
-    case Outcome::aborted:
-      return "aborted";
-    case Outcome::fault:
-      return "fault";
-  }
-  return "";
-}
-
 }  // namespace turnpoint::trial

@@ -4,10 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "station/terms/trial.hpp"
+
 namespace turnpoint::trial {
 
 /// From which moment a response time counts; the moments are those of the protocol file.
-enum class ResponseZero { go_cue, change, interval_off, first_contact, lift_off };
+using terms::ResponseZero;
 
 enum class Phase {
   idle,      ///< not started
@@ -21,7 +23,7 @@ enum class Phase {
   done,
 };
 
-enum class Outcome { answered, timeout, anticipation, aborted, fault };
+using terms::Outcome;
 
 /// One interval: how long it lasts, and when its second and later scenes begin, from its onset.
 struct IntervalPlan {
@@ -149,6 +151,5 @@ class Machine {
 };
 
 const char* name(Phase phase);
-const char* name(Outcome outcome);
 
 }  // namespace turnpoint::trial

@@ -6,17 +6,14 @@
 #include <algorithm>
 #include <utility>
 
-namespace turnpoint::ui {
+#include "station/terms/limits.hpp"
 
-namespace {
-/// How long a touch may wait to become an answer: the touch field's settling time and its timer's slack.
-constexpr std::int64_t kClaim_ns = 60'000'000;
-}  // namespace
+namespace turnpoint::ui {
 
 SessionBridge::SessionBridge(Clock clock, Sink sink, QObject* parent)
     : QObject(parent), clock_(std::move(clock)), sink_(std::move(sink)), page_(this) {
   flush_.setSingleShot(true);
-  flush_.setInterval(static_cast<int>(kClaim_ns / 1'000'000) + 1);
+  flush_.setInterval(static_cast<int>(terms::kTouchToAnswer_ns / 1'000'000) + 1);
   connect(&flush_, &QTimer::timeout, this, &SessionBridge::flush);
 }
 
@@ -57,7 +54,7 @@ void SessionBridge::note_touch(int id, QPointF position, const QObject* window) 
 }
 
 void SessionBridge::flush() {
-  const auto due_ns = clock_() - kClaim_ns;
+  const auto due_ns = clock_() - terms::kTouchToAnswer_ns;
   for (const auto& touch : pending_)
     if (touch.time_ns <= due_ns) push_touch(session::InputKind::touch_down, 0, touch);
   std::erase_if(pending_, [&](const Pending& p) { return p.time_ns <= due_ns; });

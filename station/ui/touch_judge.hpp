@@ -2,6 +2,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "station/terms/limits.hpp"
+
 namespace turnpoint::ui {
 
 /// A finger that came down on the panel. Times are CLOCK_MONOTONIC.
@@ -21,8 +23,8 @@ struct Touch {
 class TouchJudge {
  public:
   struct Rules {
-    std::int64_t settle_ns = 40'000'000;  ///< fingers of one hand land within some 30 ms of each other
-    double palm_mm = 24;                  ///< a thumb pressed flat makes about 18 mm, a palm 30 or more
+    std::int64_t settle_ns = terms::kOneTouch_ns;
+    double palm_mm = 24;  ///< a thumb pressed flat makes about 18 mm, a palm 30 or more
   };
   struct Answer {
     int target = 0;

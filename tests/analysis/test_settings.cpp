@@ -54,9 +54,9 @@ TEST_CASE("Settings that follow where the slider started are said to", "[analysi
 
 TEST_CASE("Too few settings, equal ones and void trials give statements and no number", "[analysis]") {
   auto timeout = set_to(9);
-  timeout.outcome = analysis::Outcome::timeout;
+  timeout.outcome = terms::Outcome::timeout;
   auto practice = set_to(9);
-  practice.type = analysis::TrialType::practice;
+  practice.type = terms::TrialType::practice;
   const auto two = analysis::settings({set_to(1), set_to(2), timeout, practice}).front();
   CHECK(two.values.size() == 2);
   CHECK_FALSE(two.mean);

@@ -185,7 +185,7 @@ void run_session(const protocol::Protocol& protocol, std::uint64_t seed,
     while (const auto trial = director.next()) {
       session::TrialEnd end;
       end.response = answer(*trial);
-      end.outcome = end.response ? store::TrialOutcome::answered : store::TrialOutcome::timeout;
+      end.outcome = end.response ? terms::Outcome::answered : terms::Outcome::timeout;
       if (trial->correct && end.response) end.correct = *trial->correct == *end.response;
       director.record(end);
     }
@@ -202,7 +202,7 @@ std::vector<Seen> watch(const protocol::Protocol& protocol, World& world) {
   const std::size_t wanted = !fixed ? watched_trials : enough_trials;
   for (std::uint64_t seed = 5000; seen.size() < wanted && seed < 5000 + watched_sessions; ++seed)
     run_session(protocol, seed, [&](const TrialSpec& trial) -> std::optional<int> {
-      if (trial.type != store::TrialType::practice && trial.correct)
+      if (trial.type != terms::TrialType::practice && trial.correct)
         seen.push_back({world.look(trial), *trial.correct});
       const auto reply = participant.answer(session::question_of(trial, protocol, seed));
       return reply.response_time_s <= trial.deadline_s ? reply.choice : std::nullopt;

@@ -89,9 +89,9 @@ TEST_CASE("the course of a session counts what was scored, and timeouts give no 
   auto late = answered(false, 0);
   late.correct.reset();
   late.response_time_s.reset();
-  late.outcome = store::TrialOutcome::timeout;
+  late.outcome = terms::Outcome::timeout;
   auto caught = answered(true, 3);
-  caught.type = store::TrialType::catch_trial;
+  caught.type = terms::TrialType::catch_trial;
   const auto facts =
       app::course_of({answered(true, 1), answered(false, 2), answered(true, 1.5), late, caught});
   CHECK(value_of(facts, "Trials") == "5");

@@ -85,7 +85,7 @@ std::vector<store::TrialRow> trials_of(const std::string& database) {
   std::vector<store::TrialRow> trials;
   for (const auto& block : store::read_session(database, only_session(database).session_id).blocks)
     for (const auto& trial : block.trials)
-      if (trial.type != store::TrialType::warmup) trials.push_back(trial);
+      if (trial.type != terms::TrialType::warmup) trials.push_back(trial);
   return trials;
 }
 
@@ -117,7 +117,7 @@ TEST_CASE("a signal to end amid a stimulus stops a session by buttons as the ope
   check_stopped(child, signal, only_session(database));
   const auto trials = trials_of(database);
   REQUIRE(trials.size() == 1);
-  CHECK(trials[0].outcome == store::TrialOutcome::aborted);
+  CHECK(trials[0].outcome == terms::Outcome::aborted);
   // The stimulus went through its ramp: its end is known.
   const auto stored = store::read_session(database, only_session(database).session_id);
   int stimuli = 0;

@@ -79,7 +79,7 @@ struct Run {
   bool doubtful = false;
 
   bool both_heard() const { return heard.size() == 2; }
-  bool answered() const { return result.outcome == trial::Outcome::answered; }
+  bool answered() const { return result.outcome == terms::Outcome::answered; }
 };
 
 constexpr std::int64_t kLengths[] = {3000, 2500}, kAnswerAfter = 400;
@@ -90,7 +90,7 @@ trial::Plan trial_plan() {
   trial::Plan plan;
   plan.intervals = {{ns_of(kLengths[0]), {}}, {ns_of(kLengths[1]), {}}};
   plan.gap_ns = ns_of(kPause);
-  plan.response_zero = trial::ResponseZero::interval_off;
+  plan.response_zero = terms::ResponseZero::interval_off;
   plan.deadline_ns = 1'000'000'000;
   plan.iti_ns = ns_of(2000);
   return plan;
@@ -216,7 +216,7 @@ class Bench {
           break;
       }
       run.restarted |= event->retimed || event->kind == EventKind::device_lost;
-      run.told_after_answer |= had_answer && machine.result().outcome == trial::Outcome::fault;
+      run.told_after_answer |= had_answer && machine.result().outcome == terms::Outcome::fault;
     }
   }
 

@@ -37,7 +37,7 @@ session::Setup prepare(const std::string& protocol, const std::string& database,
 /// The same as a live session: an operator arms, and the finger's limits count.
 session::Setup as_live(session::Setup setup) {
   setup.observer.clear();
-  setup.run_mode = store::RunMode::live;
+  setup.run_mode = terms::RunMode::live;
   setup.sound = {{1000, 60}, {80000, 60}};
   return setup;
 }
@@ -79,7 +79,7 @@ struct Acknowledgements : session::Monitor {
     if (dead) return;  // said by a process that is no more
     world.trials.acknowledged(session_id, row);
     const auto answered_ns = row.onset_ns + static_cast<std::int64_t>(row.response_time_s.value_or(0) * 1e9);
-    world.amplifier.trial_ended(room.world_ns(), row.outcome == store::TrialOutcome::answered,
+    world.amplifier.trial_ended(room.world_ns(), row.outcome == terms::Outcome::answered,
                                 room.world_ns() - room.age_ns() + answered_ns);
   }
 };

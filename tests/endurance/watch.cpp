@@ -127,8 +127,8 @@ std::vector<std::string> that_count(const store::StoredSession& session) {
   std::vector<std::string> trials;
   for (const auto& block : session.blocks)
     for (const auto& trial : block.trials)
-      if (trial.type != store::TrialType::warmup && trial.outcome != store::TrialOutcome::fault &&
-          trial.outcome != store::TrialOutcome::aborted)
+      if (trial.type != terms::TrialType::warmup && trial.outcome != terms::Outcome::fault &&
+          trial.outcome != terms::Outcome::aborted)
         trials.push_back(fingerprint(trial, false));
   return trials;
 }

@@ -50,7 +50,7 @@ TEST_CASE("a rehearsed session has the trials, answers and times of one that ran
   setup.protocol = shipped(protocol);
   setup.participant = "P01";
   setup.database = (folder / "a.sqlite").string();
-  setup.run_mode = store::RunMode::simulated;
+  setup.run_mode = terms::RunMode::simulated;
   setup.language = setup.protocol.languages.front();
   setup.observer = "sim";
   setup.seed = 7;

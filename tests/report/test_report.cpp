@@ -31,7 +31,7 @@ SessionData head() {
 SessionData speed_accuracy(int per_level) {
   auto data = head();
   data.design = Design::two_sided;
-  data.function = analysis::Function::normal;
+  data.function = terms::Function::normal;
   random::Draws draws({3, random::Stream::observer, 0, 0, 0});
   for (const auto& [name, boundary] : {std::pair{"speed", 0.08}, {"accuracy", 0.14}})
     for (int i = 0; i < per_level; ++i)
@@ -128,7 +128,7 @@ TEST_CASE("Degenerate sessions give statements instead of numbers", "[report]") 
   }
   SECTION("timeouts only") {
     data.trials.resize(30);
-    for (auto& trial : data.trials) trial.outcome = analysis::Outcome::timeout;
+    for (auto& trial : data.trials) trial.outcome = terms::Outcome::timeout;
   }
   const auto summary = summarise(data);
   REQUIRE(summary.fits.size() == 1);

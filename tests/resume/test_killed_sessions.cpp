@@ -66,7 +66,7 @@ std::vector<store::TrialRow> trials_of(const std::string& db, const std::string&
   std::vector<store::TrialRow> trials;
   for (const auto& block : store::read_session(db, id).blocks)
     for (const auto& trial : block.trials)
-      if (trial.type != store::TrialType::warmup) trials.push_back(trial);
+      if (trial.type != terms::TrialType::warmup) trials.push_back(trial);
   return trials;
 }
 

@@ -118,7 +118,7 @@ inline session::Setup live_setup(const std::string& database, const std::string&
   setup.protocol = protocol::parse(protocol_text(device), "live.toml");
   setup.participant = "P01";
   setup.database = database;
-  setup.run_mode = store::RunMode::live;
+  setup.run_mode = terms::RunMode::live;
   setup.language = "en";
   return setup;
 }

@@ -88,7 +88,7 @@ TEST_CASE("settings come from their file into rows, with what the surface did", 
   REQUIRE(trials.size() == 18);
   double sum = 0;
   for (const auto& trial : trials) {
-    CHECK(trial.outcome == store::TrialOutcome::answered);
+    CHECK(trial.outcome == terms::Outcome::answered);
     REQUIRE(trial.response);
     const double setting = std::stod(*trial.response);
     sum += setting;

@@ -31,8 +31,8 @@ Count run_through(Director& director, bool right = true) {
   while (director.block() != nullptr) {
     while (const auto spec = director.next()) {
       ++count.trials;
-      count.catches += spec->type == store::TrialType::catch_trial ? 1 : 0;
-      count.practice += spec->type == store::TrialType::practice ? 1 : 0;
+      count.catches += spec->type == terms::TrialType::catch_trial ? 1 : 0;
+      count.practice += spec->type == terms::TrialType::practice ? 1 : 0;
       director.record(answered(*spec, right));
     }
     director.finish_block();
@@ -51,7 +51,7 @@ TEST_CASE("a void trial is presented again as it was and shifts nothing after it
       auto spec = disturbed.next();
       REQUIRE(spec.has_value());
       if (trial % 5 == 2) {
-        disturbed.record({store::TrialOutcome::fault, {}, {}, {}});
+        disturbed.record({terms::Outcome::fault, {}, {}, {}});
         spec = disturbed.next();
       }
       CHECK(spec->level == expected->level);

@@ -83,7 +83,7 @@ struct Mishap {
     CHECK(summary.status == store::SessionStatus::completed);
     const auto trials = trials_of(setup.database, summary);
     REQUIRE(trials.size() == 3);
-    CHECK(trials[0].outcome == store::TrialOutcome::fault);
+    CHECK(trials[0].outcome == terms::Outcome::fault);
     CHECK(trials[1].level == trials[0].level);
     REQUIRE_FALSE(faults.empty());
     CHECK(low_when_shown == static_cast<int>(faults.size()));

@@ -32,7 +32,7 @@ TEST_CASE("a live session goes from the operator's arming to answers by buttons,
   REQUIRE(trials.size() == 2);
   for (const auto& trial : trials) {
     CHECK(trial.response == "left");
-    CHECK(trial.outcome == store::TrialOutcome::answered);
+    CHECK(trial.outcome == terms::Outcome::answered);
     CHECK(trial.clock_slope_ns_per_frame.has_value());
   }
   // Enabled once for each trial, in silence before its stimulus; off once that is over.
@@ -99,10 +99,10 @@ TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the
   CHECK(summary.status == store::SessionStatus::completed);
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == store::TrialOutcome::fault);
+  CHECK(trials[0].outcome == terms::Outcome::fault);
   CHECK(trials[1].level == trials[0].level);
   CHECK(trials[1].trial_in_block == trials[0].trial_in_block);
-  CHECK(trials[1].outcome == store::TrialOutcome::answered);
+  CHECK(trials[1].outcome == terms::Outcome::answered);
   const auto enables = room.enables();
   REQUIRE(enables.size() == 6);
   CHECK(enables[1].level == 0);
@@ -133,7 +133,7 @@ TEST_CASE(
   CHECK(refused >= 2);
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == store::TrialOutcome::fault);
+  CHECK(trials[0].outcome == terms::Outcome::fault);
   CHECK(trials[1].level == trials[0].level);
   CHECK(events_of(setup.database, summary, "arm").back().value == "armed");
   CHECK_FALSE(room.lines->level(SharedLines::enable));
@@ -195,8 +195,8 @@ TEST_CASE("who goes on before the buttons are back is told what is missing", "[s
   CHECK(told >= 3);
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == store::TrialOutcome::fault);
-  CHECK(trials[1].outcome == store::TrialOutcome::answered);
+  CHECK(trials[0].outcome == terms::Outcome::fault);
+  CHECK(trials[1].outcome == terms::Outcome::answered);
   CHECK(trials[1].response == trials[2].response);
   CHECK(events_of(setup.database, summary, "notice").back().value == "panel: what had gone is back");
   const auto glitches = events_of(setup.database, summary, "glitch");
@@ -323,7 +323,7 @@ TEST_CASE("what a session is allowed to resample nowhere plays through alsa-lib'
   auto setup = live_setup(folder / "a.sqlite");
   setup.rig.output.uri = "alsa:to_file";
   setup.rig.output.allow_plugin = {"null", "file"};
-  setup.run_mode = store::RunMode::simulated;
+  setup.run_mode = terms::RunMode::simulated;
   setup.observer = "sim";
   session::Inputs inputs;
   const auto summary = session::run(setup, nullptr, inputs);

@@ -82,7 +82,7 @@ TEST_CASE("the demo runs from its file to rows in SQLite", "[session]") {
   const auto trials = trials_of(folder / "a.sqlite", summary.session_id);
   REQUIRE(static_cast<int>(trials.size()) == summary.trials);
   for (const auto& trial : trials) {
-    CHECK(trial.outcome == store::TrialOutcome::answered);
+    CHECK(trial.outcome == terms::Outcome::answered);
     CHECK(*trial.response_time_s > 0);
     CHECK(trial.response_time_quality == "simulated");
     CHECK(trial.frequency_Hz.has_value());
@@ -91,7 +91,7 @@ TEST_CASE("the demo runs from its file to rows in SQLite", "[session]") {
   }
   const auto sessions = store::list_sessions(folder / "a.sqlite");
   REQUIRE(sessions.size() == 1);
-  CHECK(sessions[0].start.run_mode == store::RunMode::simulated);
+  CHECK(sessions[0].start.run_mode == terms::RunMode::simulated);
 }
 
 void runs_to_its_end(const std::string& protocol) {

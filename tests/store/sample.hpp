@@ -96,7 +96,7 @@ inline TrialRow answered(int index, int tones = 2) {
 
 inline TrialRow timeout(int index) {
   auto t = answered(index);
-  t.outcome = TrialOutcome::timeout;
+  t.outcome = Outcome::timeout;
   t.response.reset();
   t.correct.reset();
   t.response_time_s.reset();

@@ -34,8 +34,7 @@ TEST_CASE("a trial that was not answered has no answer, no score and no response
   const auto db = folder / "a.sqlite";
   auto log = SessionLog::begin(db, sample::start(), sample::segment());
   log.begin_block(sample::block());
-  const auto outcome =
-      GENERATE(TrialOutcome::timeout, TrialOutcome::anticipation, TrialOutcome::aborted, TrialOutcome::fault);
+  const auto outcome = GENERATE(Outcome::timeout, Outcome::anticipation, Outcome::aborted, Outcome::fault);
   auto trial = sample::timeout(0);
   trial.outcome = outcome;
   SECTION("an answer is refused") { trial.response = "first"; }
@@ -53,8 +52,7 @@ TEST_CASE("each outcome without an answer is accepted: the negative control", "[
   auto log = SessionLog::begin(folder / "a.sqlite", sample::start(), sample::segment());
   log.begin_block(sample::block());
   int index = 0;
-  for (const auto outcome :
-       {TrialOutcome::timeout, TrialOutcome::anticipation, TrialOutcome::aborted, TrialOutcome::fault}) {
+  for (const auto outcome : {Outcome::timeout, Outcome::anticipation, Outcome::aborted, Outcome::fault}) {
     auto trial = sample::timeout(index++);
     trial.outcome = outcome;
     log.append(trial);

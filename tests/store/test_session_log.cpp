@@ -31,7 +31,7 @@ TEST_CASE("what a session log was told is what stands in the database", "[store]
   REQUIRE(trial.tones.size() == 4);
   CHECK(trial.tones[3].frequency_Hz == expected.tones[3].frequency_Hz);
   CHECK(trial.tones[3].interval_index == 1);
-  CHECK(stored.blocks[0].trials[4].outcome == TrialOutcome::timeout);
+  CHECK(stored.blocks[0].trials[4].outcome == Outcome::timeout);
   CHECK(stored.events.size() == 12);
   CHECK(stored.events[0].kind == "presented");
   CHECK(stored.events[1].kind == "answer");

@@ -28,7 +28,7 @@ struct PilotSession {
     text.replace(text.find("explore_s = 2.0"), 15, "explore_s = 20.0");
     text.replace(text.find("deadline_s = 3.0"), 16, "deadline_s = 25.0");
     setup.protocol = protocol::parse(text, "pilot.toml");
-    setup.run_mode = store::RunMode::pilot;
+    setup.run_mode = terms::RunMode::pilot;
     runner.begin(std::move(setup));
   }
 

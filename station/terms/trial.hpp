@@ -1,0 +1,35 @@
+#pragma once
+#include <array>
+#include <string_view>
+
+namespace turnpoint::terms {
+
+/// How a trial ended.
+enum class Outcome { answered, timeout, anticipation, aborted, fault };
+
+/// What a trial is for. Only experimental trials are fitted; catch trials have an answer that is plain to
+/// feel.
+enum class TrialType { experimental, catch_trial, practice, warmup };
+
+/// From when on response times count.
+enum class ResponseZero { go_cue, change, interval_off, first_contact, lift_off };
+
+/// live: a person, and data that count. pilot: a person, but not for the study. simulated: an observer.
+enum class RunMode { live, pilot, simulated };
+
+inline constexpr std::array outcomes{Outcome::answered, Outcome::timeout, Outcome::anticipation,
+                                     Outcome::aborted, Outcome::fault};
+inline constexpr std::array trial_types{TrialType::experimental, TrialType::catch_trial, TrialType::practice,
+                                        TrialType::warmup};
+inline constexpr std::array response_zeros{ResponseZero::go_cue, ResponseZero::change,
+                                           ResponseZero::interval_off, ResponseZero::first_contact,
+                                           ResponseZero::lift_off};
+inline constexpr std::array run_modes{RunMode::live, RunMode::pilot, RunMode::simulated};
+
+/// The words of protocols, databases and exports: "answered", "catch", "go_cue", "live", ...
+const char* name(Outcome outcome);
+const char* name(TrialType type);
+const char* name(ResponseZero zero);
+const char* name(RunMode mode);
+
+}  // namespace turnpoint::terms
