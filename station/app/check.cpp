@@ -44,11 +44,10 @@ double stimulus_s(const Protocol& protocol, const session::TrialSpec& trial) {
 }
 
 void run_block(session::Director& director, const Protocol& protocol, const observer::Observer& observer,
-               std::uint64_t seed, Sitting& sitting, TrialCensus& census) {
+               std::uint64_t seed, Sitting& sitting) {
   const auto& block = *director.block();
   int since_break = 0;
   while (const auto trial = director.next()) {
-    census.add(block, *trial);
     const auto reply = observer.answer(session::question_of(*trial, protocol, seed));
     const double answer_s = std::clamp(reply.response_time_s, 0.0, std::max(trial->deadline_s, 0.0));
     const bool answered = reply.choice && reply.response_time_s <= trial->deadline_s;
@@ -69,7 +68,7 @@ void run_block(session::Director& director, const Protocol& protocol, const obse
   }
 }
 
-Sitting simulate(const Protocol& protocol, int index, std::uint64_t seed, TrialCensus& census) {
+Sitting simulate(const Protocol& protocol, int index, std::uint64_t seed) {
   Sitting sitting;
   session::Director director(protocol, index, seed);
   const observer::Observer observer{observer::Parameters{}};
@@ -84,7 +83,7 @@ Sitting simulate(const Protocol& protocol, int index, std::uint64_t seed, TrialC
     sitting.trials.push_back(std::exchange(repeated, 0));
     sitting.duration_s += instruction_s;
     const int here = director.block_index();
-    run_block(director, protocol, observer, seed, sitting, census);
+    run_block(director, protocol, observer, seed, sitting);
     if (sitting.trials.back() > 20000) return sitting;
     director.finish_block();
     const bool again = director.block() && director.block_index() == here;
@@ -106,21 +105,18 @@ Spread spread_of(std::vector<double> values) {
   return {at(0.05), at(0.5), at(0.95)};
 }
 
-void estimate(const Protocol& protocol, int sessions, const std::stop_token& stop, Check& check,
-              TrialCensus& census) {
+void estimate(const Protocol& protocol, int sessions, const std::stop_token& stop, Check& check) {
   std::vector<double> durations, trials;
   std::vector<std::vector<double>> by_block;
   std::vector<Sitting> sittings(static_cast<std::size_t>(sessions));
-  std::vector<TrialCensus> counted(sittings.size(), TrialCensus(protocol));
   in_parallel(sessions, processors(), {}, [&](int i) {
     if (stop.stop_requested()) throw protocol::Abandoned();
     const auto at = static_cast<std::size_t>(i);
     // Sequence index 0 throughout: the blocks of all rows are the same, in another order.
-    sittings[at] = simulate(protocol, 0, static_cast<std::uint64_t>(i), counted[at]);
+    sittings[at] = simulate(protocol, 0, static_cast<std::uint64_t>(i));
   });
   for (int i = 0; i < sessions; ++i) {
     const auto& sitting = sittings[static_cast<std::size_t>(i)];
-    census.add(counted[static_cast<std::size_t>(i)]);
     if (i == 0) {
       by_block.resize(sitting.names.size());
       for (std::size_t b = 0; b < sitting.names.size(); ++b)
@@ -165,11 +161,9 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   check.warnings = check.survey.warnings;
   check.notes = protocol::notes(*protocol);
   try {
-    TrialCensus census(*protocol);
-    estimate(*protocol, options.sessions, stop, check, census);
+    estimate(*protocol, options.sessions, stop, check);
     if (stop.stop_requested()) throw protocol::Abandoned();
-    census.settle(options.sessions);
-    if (check.problems.empty()) check.cues = cue_guard(*protocol, *rig, check.survey, census);
+    if (check.problems.empty()) check.cues = cue_guard(*protocol, *rig, check.survey, stop);
   } catch (const protocol::Abandoned&) {
     throw;
   } catch (const std::exception& error) {

@@ -2,37 +2,57 @@
 
 #include <algorithm>
 
-#include "station/app/parallel.hpp"
-#include "station/observer/observer.hpp"
 #include "station/protocol/sources.hpp"
-#include "station/session/rows.hpp"
 
 namespace turnpoint::app {
 
 namespace {
 
-constexpr int most_trials_of_a_block = 20'000, batch = 21, most_sessions = 630;
+using protocol::Block;
+using protocol::Protocol;
+using session::TrialSpec;
 
-bool is_known_to(double standard_error, const std::vector<double>& values) {
-  const double n = static_cast<double>(values.size());
-  double sum = 0, squares = 0;
-  for (const double value : values) sum += value, squares += value * value;
-  return squares / n - sum / n * sum / n <= standard_error * standard_error * n;
+constexpr int most_trials_of_a_block = 20'000, enough_trials = 40'000;
+
+bool follows_answers(const procedure::Spec& spec) {
+  return spec.kind != procedure::Kind::constant_stimuli && spec.kind != procedure::Kind::adjustment;
 }
 
-void count_session(const protocol::Protocol& protocol, std::uint64_t seed, TrialCensus& census) {
-  const observer::Observer participant{observer::Parameters{}};
+double trials_of(const procedure::Spec& spec) {
+  if (!follows_answers(spec)) return static_cast<double>(spec.values.size()) * spec.repeats;
+  return spec.stop.trials.value_or(spec.stop.reversals ? 6 * *spec.stop.reversals : 60);
+}
+
+double trials_of(const Protocol& protocol, const Block& block) {
+  double trials = 0;
+  for (const auto& name : block.procedures)
+    if (const auto* spec = protocol::find_procedure(protocol, name)) trials += trials_of(*spec);
+  return trials;
+}
+
+// Of a shuffled list any part has the same trials on average; of these the first ones differ from the rest.
+bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
+  if (block.practice || !block.trials || *block.trials >= trials_of(protocol, block)) return false;
+  bool unlike = block.procedures.size() > 1;
+  for (const auto& name : block.procedures) {
+    const auto* spec = protocol::find_procedure(protocol, name);
+    if (!spec || follows_answers(*spec)) return false;
+    unlike = unlike || spec->shuffle == procedure::Shuffle::none || spec->max_run;
+  }
+  return unlike;
+}
+
+// Calls count(block, trial) for each trial of a session.
+template <typename Count>
+void run_session(const Protocol& protocol, std::uint64_t seed, const Answers& answers, Count&& count) {
   session::Director director(protocol, 0, seed);
   while (const auto* block = director.block()) {
     int trials = 0;
     while (const auto trial = director.next()) {
-      census.add(*block, *trial);
-      const auto reply = participant.answer(session::question_of(*trial, protocol, seed));
-      const bool answered = reply.choice && reply.response_time_s <= trial->deadline_s;
+      count(*block, *trial);
       session::TrialEnd end;
-      end.outcome = answered ? terms::Outcome::answered : terms::Outcome::timeout;
-      if (answered) end.response = reply.choice;
-      if (answered && trial->correct) end.correct = reply.choice == trial->correct;
+      end.response = answers(*trial);
+      if (trial->correct) end.correct = end.response == trial->correct;
       if (block->practice) end.correct = true;  // who does not pass practice never sees the other blocks
       director.record(end);
       if (++trials > most_trials_of_a_block) return;
@@ -43,98 +63,101 @@ void count_session(const protocol::Protocol& protocol, std::uint64_t seed, Trial
 
 }  // namespace
 
-TrialCensus::TrialCensus(const protocol::Protocol& protocol) : protocol_(&protocol) {
+TrialCensus::TrialCensus(const Protocol& protocol) : protocol_(&protocol) {
   const auto used = protocol::factors_used(protocol);
   for (const auto& factor : protocol.factors)
     if (used.count(factor.name)) relevant_.push_back(&factor);
 }
 
-// The director draws what neither the block, nor the level, nor the procedure's balance sets.
-bool TrialCensus::is_drawn(const protocol::Factor& factor, const protocol::Block& block,
-                           const session::TrialSpec& trial) const {
-  if (factor.levels.empty() || block.fixed.count(factor.name)) return false;
-  if (trial.type == terms::TrialType::catch_trial) return factor.name != block.catch_trials->factor;
-  const auto* spec = protocol::find_procedure(*protocol_, trial.procedure);
-  if (spec == nullptr) return factor.name != block.level;
-  const auto& balance = spec->balance;
-  return factor.name != spec->level &&
-         std::find(balance.begin(), balance.end(), factor.name) == balance.end();
+void TrialCensus::add(const Block& block, const procedure::Spec* spec, const std::vector<double>& levels,
+                      double trials) {
+  protocol::Factors fixed;
+  for (const auto* factor : relevant_)
+    if (const auto found = block.fixed.find(factor->name); found != block.fixed.end()) fixed.insert(*found);
+  const auto count = [&](const std::string& name, const std::vector<double>& values, double of_these) {
+    const bool matters =
+        std::any_of(relevant_.begin(), relevant_.end(), [&](const auto* f) { return f->name == name; });
+    auto cell = fixed;
+    for (const double value : values) {
+      if (matters) cell[name] = value;
+      cells_[cell] += of_these / static_cast<double>(values.size());
+    }
+  };
+  count(spec ? spec->level : block.level, levels, trials);
+  // Before each trial of a procedure there are as many catch trials as draws for them succeed in turn.
+  if (const auto& caught = block.catch_trials; caught && spec)
+    count(caught->factor, caught->levels, trials * caught->rate / (1 - caught->rate));
 }
 
-void TrialCensus::add(const protocol::Block& block, const session::TrialSpec& trial) {
-  if (block.practice || trial.type == terms::TrialType::practice || trial.type == terms::TrialType::warmup)
-    return;
-  protocol::Factors known;
-  for (const auto* factor : relevant_) {
-    const auto found = trial.factors.find(factor->name);
-    if (found != trial.factors.end() && !is_drawn(*factor, block, trial)) known.insert(*found);
-  }
-  counts_[std::move(known)] += 1;
-  if (trial.correct) scored_ += 1, first_right_ += *trial.correct == 0 ? 1 : 0;
-  if (const auto share = share_of_range(trial)) levels_ += *share;
-  total_ += 1;
+void TrialCensus::add(const Block& block, const TrialSpec& trial) {
+  if (block.practice || trial.type != terms::TrialType::experimental) return;
+  add(block, protocol::find_procedure(*protocol_, trial.procedure), {trial.level.value_or(0)}, 1);
 }
 
 void TrialCensus::add(const TrialCensus& other) {
-  for (const auto& [known, count] : other.counts_) counts_[known] += count;
-  total_ += other.total_;
-  first_shares_.insert(first_shares_.end(), other.first_shares_.begin(), other.first_shares_.end());
-  mean_levels_.insert(mean_levels_.end(), other.mean_levels_.begin(), other.mean_levels_.end());
-  if (other.scored_ > 0) first_shares_.push_back(other.first_right_ / other.scored_);
-  if (other.total_ > 0) mean_levels_.push_back(other.levels_ / other.total_);
+  for (const auto& [cell, trials] : other.cells_) cells_[cell] += trials;
 }
 
-// Where the level follows the answers: how far up its range it lies.
-std::optional<double> TrialCensus::share_of_range(const session::TrialSpec& trial) const {
-  const auto* spec = protocol::find_procedure(*protocol_, trial.procedure);
-  if (!spec || spec->kind == procedure::Kind::constant_stimuli || !trial.level) return std::nullopt;
-  for (const auto& factor : protocol_->factors)
-    if (factor.name == spec->level && factor.range)
-      return (*trial.level - factor.range->first) / (factor.range->second - factor.range->first);
-  return std::nullopt;
-}
-
-bool TrialCensus::is_settled() const {
-  return is_known_to(0.006, first_shares_) && is_known_to(0.008, mean_levels_);
-}
-
-void TrialCensus::settle(int sessions_added) {
-  int sessions = sessions_added;
-  while ((total_ == 0 && sessions <= sessions_added) ||
-         (sessions < most_sessions && !first_shares_.empty() && !is_settled())) {
-    std::vector<TrialCensus> more(batch, TrialCensus(*protocol_));
-    in_parallel(batch, processors(), {}, [&](int i) {
-      count_session(*protocol_, static_cast<std::uint64_t>(sessions + i), more[static_cast<std::size_t>(i)]);
-    });
-    for (const auto& census : more) add(census);
-    sessions += batch;
+std::vector<protocol::Factors> TrialCensus::combinations(const protocol::Factors& cell) const {
+  std::vector<protocol::Factors> all{cell};
+  for (const auto* factor : relevant_) {
+    if (cell.count(factor->name) || factor->levels.empty()) continue;
+    std::vector<protocol::Factors> next;
+    for (const auto& factors : all)
+      for (const auto& level : factor->levels) {
+        next.push_back(factors);
+        next.back()[factor->name] = level;
+      }
+    all = std::move(next);
   }
+  return all;
 }
 
-std::vector<TrialKind> TrialCensus::kinds() const {
-  std::map<protocol::Factors, double> shares;
-  for (const auto& [known, count] : counts_) {
-    std::vector<TrialKind> product{{known, count / total_}};
-    for (const auto* factor : relevant_) {
-      if (known.count(factor->name)) continue;
-      std::vector<TrialKind> next;
-      for (const auto& kind : product)
-        for (const auto& level : factor->levels) {
-          next.push_back({kind.factors, kind.share / static_cast<double>(factor->levels.size())});
-          next.back().factors[factor->name] = level;
-        }
-      product = std::move(next);
-    }
-    for (auto& kind : product) shares[std::move(kind.factors)] += kind.share;
-  }
-  std::vector<TrialKind> kinds;
-  for (const auto& [factors, share] : shares) kinds.push_back({factors, share});
-  return kinds;
+bool levels_follow_right_answers(const Protocol& protocol) {
+  for (const auto& source : protocol::sources_of(protocol))
+    if (source.spec && !source.block->practice && follows_answers(*source.spec) &&
+        source.spec->tracks.empty())
+      return true;
+  return false;
 }
 
-TrialCensus census_of(const protocol::Protocol& protocol) {
+TrialCensus census_of_session(const Protocol& protocol, std::uint64_t seed, const Answers& answers) {
   TrialCensus census(protocol);
-  census.settle(0);
+  run_session(protocol, seed, answers,
+              [&](const Block& block, const TrialSpec& trial) { census.add(block, trial); });
+  return census;
+}
+
+TrialCensus census_of(const Protocol& protocol) {
+  TrialCensus census(protocol);
+  const auto blocks = protocol::block_order(protocol, 0);
+  const bool sampled = std::any_of(blocks.begin(), blocks.end(), [&](const Block& block) {
+    return begins_unlike_it_goes_on(protocol, block);
+  });
+  int trials = 0;
+  const auto count = [&](const Block& block, const TrialSpec& trial) {
+    census.add(block, trial);
+    trials += block.practice ? 0 : 1;
+  };
+  for (std::uint64_t seed = 0; sampled && trials < enough_trials && seed < enough_trials; ++seed)
+    run_session(
+        protocol, seed, [](const TrialSpec&) { return 0; }, count);
+  if (sampled) return census;
+  std::map<const procedure::Spec*, std::vector<double>> levels;
+  for (const auto& source : protocol::sources_of(protocol))
+    if (source.spec)
+      levels[source.spec] = follows_answers(*source.spec) ? source.levels : source.spec->values;
+  for (const auto& block : blocks) {
+    if (block.practice) continue;
+    const double all = trials_of(protocol, block);
+    for (const auto& name : block.procedures)
+      if (const auto* spec = protocol::find_procedure(protocol, name))
+        census.add(block, spec, levels[spec],
+                   trials_of(*spec) * (block.trials ? std::min(1.0, *block.trials / all) : 1.0));
+    const auto fixed = block.trials.value_or(static_cast<int>(block.levels.size()));
+    for (int i = 0; i < fixed && !block.levels.empty(); ++i)
+      census.add(block, nullptr, {block.levels[static_cast<std::size_t>(i) % block.levels.size()]}, 1);
+  }
   return census;
 }
 

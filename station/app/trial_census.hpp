@@ -1,6 +1,6 @@
 #pragma once
+#include <functional>
 #include <map>
-#include <optional>
 #include <vector>
 
 #include "station/protocol/protocol.hpp"
@@ -8,43 +8,43 @@
 
 namespace turnpoint::app {
 
-/// Trials with the same factors, and the share of all counted trials that they are.
-struct TrialKind {
-  protocol::Factors factors;  ///< all on which the task's scenes and its right answers depend
-  double share = 0;
-};
+/// Answers a trial of a simulated session with the index of a choice.
+using Answers = std::function<int(const session::TrialSpec&)>;
 
-/// Counts which trials a session contains. Practice and warm-up are left out; catch trials are in. A factor
-/// that the director draws afresh in each trial is not counted by what was drawn: kinds() takes each of its
-/// levels as equally likely, which is exact.
+/// Counts which trials a session contains. Practice and warm-up are left out. What chance alone decides is
+/// not counted as it was drawn but has its exact probability: factors that are drawn or balanced, and catch
+/// trials.
 class TrialCensus {
  public:
   explicit TrialCensus(const protocol::Protocol& protocol);
 
   void add(const protocol::Block& block, const session::TrialSpec& trial);
+  /// So many trials of a procedure (or of the block's fixed levels) with each of these levels equally often.
+  void add(const protocol::Block& block, const procedure::Spec* spec, const std::vector<double>& levels,
+           double trials);
   void add(const TrialCensus& other);
-  /// Simulates more sessions, after so many that were added, until the share of trials with the first answer
-  /// right is known to 0.6 %, and the mean level to 0.8 % of its range where levels follow the answers; at most
-  /// 630 sessions in all.
-  void settle(int sessions_added);
-  /// Shares sum to 1. Empty where nothing was counted.
-  std::vector<TrialKind> kinds() const;
+
+  /// How many trials there are of each kind, by the factors that block, procedure or catch trial set.
+  const std::map<protocol::Factors, double>& cells() const { return cells_; }
+  /// All factors that the trials of a cell can have, each equally likely.
+  std::vector<protocol::Factors> combinations(const protocol::Factors& cell) const;
 
  private:
-  bool is_settled() const;
-  std::optional<double> share_of_range(const session::TrialSpec& trial) const;
-  bool is_drawn(const protocol::Factor& factor, const protocol::Block& block,
-                const session::TrialSpec& trial) const;
-
   const protocol::Protocol* protocol_;
-  std::vector<const protocol::Factor*> relevant_;
-  std::map<protocol::Factors, double> counts_;  ///< by the factors that were not drawn
-  double total_ = 0;
-  double first_right_ = 0, scored_ = 0, levels_ = 0;  ///< of the session that is being counted
-  std::vector<double> first_shares_, mean_levels_;    ///< of the sessions before it
+  std::vector<const protocol::Factor*> relevant_;  ///< on which the task's scenes and right answers depend
+  std::map<protocol::Factors, double> cells_;
 };
 
-/// The trials of sessions of the simulated participant with default parameters, settled.
+/// Whether outside practice a procedure chooses levels by whether answers are right.
+bool levels_follow_right_answers(const protocol::Protocol& protocol);
+
+/// One session whose practice is passed.
+TrialCensus census_of_session(const protocol::Protocol& protocol, std::uint64_t seed, const Answers& answers);
+
+/// What a session contains on average, exactly, from the protocol alone. A procedure that follows the answers
+/// counts with each level that it can present equally often. Only where a block shows fewer trials than its
+/// procedures have, and not any of them alike (several procedures, no shuffling, `max_run`), sessions with
+/// 40 000 trials are counted: any share of the trials is then known to 0.25 % (one standard error).
 TrialCensus census_of(const protocol::Protocol& protocol);
 
 }  // namespace turnpoint::app

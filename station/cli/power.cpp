@@ -133,7 +133,7 @@ void power(const Options& options, Context& context) {
   const auto rig = rig::load(app::rig_or_default(options.rig, context.err));
   const auto survey = protocol::survey(protocol, rig);
   if (!survey.problems.empty()) throw text::BadInput(survey.problems);
-  const auto cues = app::cue_guard(protocol, rig, survey, app::census_of(protocol)).reports;
+  const auto cues = app::cue_guard(protocol, rig, survey).reports;
   app::PowerOptions wanted;
   wanted.observers = options.observers;
   wanted.interval_sessions = options.intervals;

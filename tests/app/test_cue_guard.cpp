@@ -39,7 +39,7 @@ rig::Rig quick() {
 
 app::CueGuard guard_of(const std::string& text) {
   const auto protocol = protocol::parse(text, "p.toml");
-  return app::cue_guard(protocol, quick(), protocol::survey(protocol, quick()), app::census_of(protocol));
+  return app::cue_guard(protocol, quick(), protocol::survey(protocol, quick()));
 }
 
 const app::CueReport& report(const app::CueGuard& guard, const std::string& cue) {
@@ -55,22 +55,37 @@ double accuracy(const std::string& text, const std::string& cue) {
 
 struct Compared {
   std::string text, faults;
+  double worst = 0, error = 0;
 };
 
 Compared compare(unsigned seed, std::map<std::string, int>& features) {
-  Compared compared;
+  Compared compared{};
   compared.text = tests::random_protocol(seed, features);
   const auto protocol = protocol::parse(compared.text, "random.toml");
   const auto survey = protocol::survey(protocol, quick());
-  if (!survey.problems.empty()) return {compared.text, "cannot run: " + format(survey.problems.front())};
-  const auto guard = app::cue_guard(protocol, quick(), survey, app::census_of(protocol));
+  if (!survey.problems.empty())
+    return {compared.text, "cannot run: " + format(survey.problems.front()), 0, 0};
+  const auto guard = app::cue_guard(protocol, quick(), survey);
   if (guard.reports.empty())
-    return {compared.text, "no reports: " + guard.not_compared + guard.nothing_to_tell};
+    return {compared.text, "no reports: " + guard.not_compared + guard.nothing_to_tell, 0, 0};
   for (const auto& expected : tests::cue_brute_force(protocol, quick())) {
-    const double stated = report(guard, expected.cue).accuracy;
-    if (std::fabs(stated - expected.accuracy) > 0.02)
-      compared.faults += expected.cue + ": stated " + std::to_string(stated) + ", found " +
-                         std::to_string(expected.accuracy) + "\n";
+    const auto& stated = report(guard, expected.cue);
+    const auto note = [&](const std::string& what, double said, double found, double error) {
+      compared.worst = std::max(compared.worst, std::fabs(said - found));
+      compared.error = std::max(compared.error, error);
+      if (std::fabs(said - found) > 0.02)
+        compared.faults += expected.cue + ", " + what + ": stated " + std::to_string(said) + ", found " +
+                           std::to_string(found) + " +- " + std::to_string(error) + "\n";
+    };
+    const double gain = stated.accuracy - stated.chance, every_level = expected.accuracy - expected.chance;
+    note("gain", gain, std::max(every_level, expected.own_gain.value_or(every_level)), expected.error);
+    if (stated.cue != "always the same key" &&
+        expected.own_gain.has_value() != stated.whole_sessions.has_value())
+      compared.faults += stated.cue + ": sessions of its own, on one side only\n";
+    if (const auto& own = stated.whole_sessions)
+      note("own sessions", own->accuracy - own->chance, *expected.own_gain, expected.own_error);
+    else
+      note("accuracy", stated.accuracy, expected.accuracy, expected.error);
   }
   return compared;
 }
@@ -224,7 +239,46 @@ TEST_CASE("trials are weighted by how often they come, catch trials too", "[app]
   const std::string block = "procedures = [\"levels\"]";
   const auto caught = replaced(text, block, block + "\ncatch = { rate = 0.5, offset_mm = -28.0 }");
   // Half as many catch trials as there are trials: P(right) = 0.5 x 0.75.
-  CHECK(accuracy(caught, "always the same key") == Approx(0.625).margin(0.02));
+  CHECK(accuracy(caught, "always the same key") == Approx(0.625));
+  // Twelve of 40 trials, by chance any of them.
+  const auto cut = replaced(text, block, block + "\ntrials = 12");
+  CHECK(accuracy(cut, "always the same key") == Approx(0.75));
+}
+
+TEST_CASE("of a list that is not shuffled and cut short only the first levels count", "[app][cues]") {
+  const auto text =
+      replaced(pair_text, "values = [4.0, 8.0, 16.0]", "shuffle = \"none\"\nvalues = [4.0, 8.0, 0.0]");
+  const auto cut = replaced(text, "procedures = [\"p\"]", "procedures = [\"p\"]\ntrials = 2");
+  CHECK(accuracy(text, "strip width") == Approx(5.0 / 6));
+  CHECK(accuracy(cut, "strip width") == Approx(1));
+}
+
+TEST_CASE("a cue that helps only with the easiest levels is found in sessions that it leads itself",
+          "[app][cues]") {
+  // Loudness that is roved by far more than all but the largest levels change it.
+  auto text = replaced(pair_text, "kind = \"constant-stimuli\"", "kind = \"up-down\"");
+  text =
+      replaced(text, "values = [4.0, 8.0, 16.0]\nrepeats = 8",
+               "start = 12.0\nmin = 0.5\nmax = 20.0\nn_down = 2\nstep = [4.0, 2.0]\nstop = { trials = 60 }");
+  const std::string target = "boundary_mm = \"mark_mm + level_mm\"\nedge = \"p50\"\ndisplacement_um = 1.0";
+  text = replaced(text, target,
+                  "boundary_mm = \"mark_mm\"\nedge = \"p50\"\ndisplacement_um = \"1 + 0.03 * level_mm\"\n"
+                  "rove_dB = 3.0");
+  text = replaced(text, "boundary_mm = \"mark_mm\"\nedge = \"p50\"\ndisplacement_um = 1.0",
+                  "boundary_mm = \"mark_mm\"\nedge = \"p50\"\ndisplacement_um = 1.0\nrove_dB = 3.0");
+  const auto guard = guard_of(text);
+  const auto& amplitude = report(guard, "amplitude at the wide end");
+  REQUIRE(amplitude.whole_sessions);
+  // The staircase converges on 71 %.
+  CHECK(amplitude.whole_sessions->accuracy == Approx(0.72).margin(0.03));
+  CHECK(amplitude.accuracy >= amplitude.whole_sessions->accuracy);
+  CHECK(report(guard, "duration").accuracy == Approx(0.5));
+}
+
+TEST_CASE("a procedure that tracks an answer is judged with every level equally often", "[app][cues]") {
+  const auto guard = guard_of(source("boundary-adaptive.toml"));
+  for (const auto& one : guard.reports) CHECK_FALSE(one.whole_sessions);
+  CHECK(report(guard, "strip width").accuracy > 0.9);
 }
 
 TEST_CASE("the cues of a scene are those of the planner, whatever strength is drawn", "[app][cues]") {
@@ -268,14 +322,13 @@ TEST_CASE("between the plans of a zone cues are interpolated", "[app][cues]") {
 TEST_CASE("where trials cannot be compared the guard says which, and states no accuracy", "[app][cues]") {
   const auto protocol = protocol::parse(source("friction-2ifc.toml"), "p.toml");
   auto survey = protocol::survey(protocol, quick());
-  const auto census = app::census_of(protocol);
-  CHECK(app::cue_guard(protocol, quick(), survey, census).not_compared.empty());
+  CHECK(app::cue_guard(protocol, quick(), survey).not_compared.empty());
   const auto missing = [](const protocol::Sight& sight) {
     return sight.scene == "comparison" && std::get<double>(sight.factors.at("contrast_dB")) < -20;
   };
   survey.sights.erase(std::remove_if(survey.sights.begin(), survey.sights.end(), missing),
                       survey.sights.end());
-  const auto guard = app::cue_guard(protocol, quick(), survey, census);
+  const auto guard = app::cue_guard(protocol, quick(), survey);
   CHECK(guard.reports.empty());
   CHECK(guard.not_compared.find("scene \"comparison\" at contrast_dB = ") == 0);
 }
