@@ -246,8 +246,8 @@ TEST_CASE("trials are weighted by how often they come, catch trials too", "[app]
 }
 
 TEST_CASE("of a list that is not shuffled and cut short only the first levels count", "[app][cues]") {
-  const auto text =
-      replaced(pair_text, "values = [4.0, 8.0, 16.0]", "shuffle = \"none\"\nvalues = [4.0, 8.0, 0.0]");
+  const auto text = replaced(pair_text, "values = [4.0, 8.0, 16.0]",
+                             "order = { shuffle = \"none\" }\nvalues = [4.0, 8.0, 0.0]");
   const auto cut = replaced(text, "procedures = [\"p\"]", "procedures = [\"p\"]\ntrials = 2");
   CHECK(accuracy(text, "strip width") == Approx(5.0 / 6));
   CHECK(accuracy(cut, "strip width") == Approx(1));
