@@ -106,7 +106,7 @@ void find_calibration(const RunRequest& request, session::Setup& setup, std::vec
 
 }  // namespace
 
-session::Setup prepare(const RunRequest& request) {
+session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
   session::Setup setup;
   std::vector<Problem> problems;
   const auto gather = [&problems](auto&& load) {
@@ -123,7 +123,7 @@ session::Setup prepare(const RunRequest& request) {
 
   setup.language = choose_language(request.language, setup.protocol, problems);
   gather([&] { find_calibration(request, setup, problems); });
-  const auto survey = protocol::survey(setup.protocol, setup.rig);
+  const auto survey = protocol::survey(setup.protocol, setup.rig, stop);
   problems.insert(problems.end(), survey.problems.begin(), survey.problems.end());
   if (request.observer.empty() && request.mode == "live") check_live(setup, survey, problems);
   if (request.observer.empty() && request.buttons_only) check_buttons_only(setup, problems);

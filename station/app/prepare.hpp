@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include "station/session/session.hpp"
@@ -22,8 +23,8 @@ struct RunRequest {
 /// Loads and checks everything that a sitting needs. Throws text::BadInput with all problems of both files,
 /// of the protocol on this rig, of participant code, language and mode. A calibration is applied to the rig;
 /// one that has expired or belongs to another rig is refused where it was named or the session is live, and
-/// left out otherwise.
-session::Setup prepare(const RunRequest& request);
+/// left out otherwise. Throws protocol::Abandoned soon after `stop` asks it to.
+session::Setup prepare(const RunRequest& request, const std::stop_token& stop = {});
 
 /// Puts a calibration file's text in force: rig, sound levels, and what the session's row keeps of it.
 /// Throws text::BadInput, terms::UsageError.

@@ -167,8 +167,8 @@ void OperatorController::begin() {
   refused_.clear();
   emit changed();
   work(
-      [this, request, ask_code, ask_language, arm = armed_](const std::stop_token&) -> Then {
-        ChosenSession session{app::prepare(request), ask_language, ask_code, arm};
+      [this, request, ask_code, ask_language, arm = armed_](const std::stop_token& stop) -> Then {
+        ChosenSession session{app::prepare(request, stop), ask_language, ask_code, arm};
         return [this, session] {
           preparing_ = false;
           emit changed();
