@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -56,8 +55,5 @@ class Amplifier {
   /// From the kernel's stamp of the last fault or stop edge until the line was low; -1 before there was one.
   virtual std::int64_t reaction_ns() const noexcept = 0;
 };
-
-/// An amplifier without hardware: the same states, no lines. Product code for `sim:`.
-std::unique_ptr<Amplifier> simulated_amplifier();
 
 }  // namespace turnpoint::drive

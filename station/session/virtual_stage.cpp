@@ -2,6 +2,7 @@
 #include <deque>
 #include <utility>
 
+#include "station/panel/guard.hpp"
 #include "station/session/schedule.hpp"
 
 namespace turnpoint::session {
@@ -12,7 +13,7 @@ class VirtualStage : public Stage {
  public:
   VirtualStage(const drive::StreamConfig& config, observer::Observer observer, Inputs& inputs)
       : stream_(drive::open_synchronous(config)), observer_(std::move(observer)), inputs_(inputs) {
-    static_cast<void>(amplifier_->arm());  // nothing can be wrong with it
+    static_cast<void>(arm());  // nothing can be wrong with it
   }
 
   std::int64_t now_ns() override { return now_ns_; }
@@ -75,12 +76,12 @@ class VirtualStage : public Stage {
     return ramp_down(*stream_, presented_, now_ns_);
   }
 
-  Refusal arm() override { return amplifier_->arm(); }
-  void disarm() override { amplifier_->disarm(); }
-  Refusal clear() override { return amplifier_->clear(); }
-  drive::AmplifierState amplifier() const override { return amplifier_->state(); }
-  Refusal open_amplifier() override { return amplifier_->enable(); }
-  void close_amplifier() override { amplifier_->disable(); }
+  Refusal arm() override { return refusal(alive().arm(now_ns_)); }
+  void disarm() override { guard_.disarm(); }
+  Refusal clear() override { return refusal(guard_.clear()); }
+  drive::AmplifierState amplifier() const override { return guard_.state(); }
+  Refusal open_amplifier() override { return refusal(alive().enable(now_ns_)); }
+  void close_amplifier() override { guard_.disable(); }
 
   const std::vector<std::string>& buttons() const override { return no_buttons_; }
   std::string missing() const override { return ""; }
@@ -113,7 +114,7 @@ class VirtualStage : public Stage {
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override { return describe(stream_->rights()); }
   void finish() override {
-    amplifier_->disarm();
+    guard_.disarm();
     stream_->finish();
   }
 
@@ -143,8 +144,18 @@ class VirtualStage : public Stage {
     }
   }
 
+  /// The guard's rules without lines. On this clock nobody can hang.
+  panel::Guard& alive() {
+    guard_.audio_alive(now_ns_);
+    guard_.session_alive(now_ns_);
+    return guard_;
+  }
+  static Refusal refusal(const std::optional<panel::Guard::Refusal>& why) {
+    return why ? Refusal(Fault{why->kind, ""}) : std::nullopt;
+  }
+
   const std::vector<std::string> no_buttons_;
-  std::unique_ptr<drive::Amplifier> amplifier_ = drive::simulated_amplifier();
+  panel::Guard guard_;
   std::unique_ptr<drive::SynchronousStream> stream_;
   observer::Observer observer_;
   Inputs& inputs_;
