@@ -250,12 +250,18 @@ std::unique_ptr<Panel> watch_lines(OpenLines open, const LinePanel& plan, PanelH
 
 std::unique_ptr<Panel> open_panel(const std::optional<ButtonsConfig>& buttons,
                                   const std::optional<ContactConfig>& contact, PanelHandlers handlers) {
+  return open_panel(buttons, contact, std::move(handlers), open_gpio_lines);
+}
+
+std::unique_ptr<Panel> open_panel(const std::optional<ButtonsConfig>& buttons,
+                                  const std::optional<ContactConfig>& contact, PanelHandlers handlers,
+                                  const RequestLines& request) {
   auto panel = std::make_unique<RigPanel>(std::move(handlers));
   LinePanel plan;
   if (buttons) plan_buttons(buttons->uri, *panel, plan);
   if (contact) plan_contact(contact->uri, *panel, plan);
   plan.lines = static_cast<int>(plan.requests.size());
-  const auto open = [requests = plan.requests] { return open_gpio_lines(requests); };
+  const auto open = [request, requests = plan.requests] { return request(requests); };
   if (plan.lines > 0)
     panel->lines_ = std::make_unique<DeviceWatch>(line_opener(open, plan, panel->handlers_), panel_priority,
                                                   panel->handlers_);

@@ -262,3 +262,24 @@ TEST_CASE("a simulated panel hands on what is simulated, and mistakes in the tex
   CHECK_THROWS_AS(open_panel(std::nullopt, ContactConfig{"evdev:No Such Device"}, handlers),
                   std::system_error);
 }
+
+TEST_CASE("a rig's hold_ms decides which level of its buttons is a press", "[panel][buttons][threads]") {
+  for (const auto& [hold, is_press] : {std::pair{"hold_ms=1", true}, std::pair{"hold_ms=4", false}}) {
+    INFO(hold);
+    const auto lines = std::make_shared<SimulatedLines>(2);
+    std::atomic<int> presses{0}, glitches{0};
+    PanelHandlers handlers;
+    handlers.press = [&](const Press& press) { presses += press.button == 1 ? 1 : 0; };
+    handlers.glitch = [&](const Glitch& glitch) { glitches += glitch.line == "right" ? 1 : 0; };
+    const auto panel = open_panel(ButtonsConfig{std::string("gpio:left=A,right=B,") + hold}, std::nullopt,
+                                  handlers, [&](const std::vector<LineRequest>& requests) {
+                                    REQUIRE(requests.size() == 2);
+                                    return std::make_unique<SharedLines>(lines);
+                                  });
+    lines->pulse(1, drive::monotonic_ns(), 2 * ms);
+    const auto until_ns = drive::monotonic_ns() + 10'000 * ms;
+    while (presses + glitches == 0 && drive::monotonic_ns() < until_ns) std::this_thread::yield();
+    CHECK(presses == (is_press ? 1 : 0));
+    CHECK(glitches == (is_press ? 0 : 1));
+  }
+}
