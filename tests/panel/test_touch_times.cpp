@@ -1,10 +1,16 @@
 #include "station/panel/touch_reader.hpp"
 #include "station/terms/usage_error.hpp"
 
+#include <atomic>
+#include <chrono>
+#include <memory>
 #include <optional>
+#include <thread>
 #include <vector>
 
 #include "tests/support/catch.hpp"
+#include "tests/support/fake_evdev.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint::panel;
 
@@ -13,6 +19,26 @@ namespace {
 constexpr std::int64_t ms = 1'000'000;
 
 TouchDecoder decoder() { return {{0, 799}, {0, 479}}; }
+
+/// Ten seconds are a failure, not a measurement.
+template <typename Condition>
+bool comes(Condition condition) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(10);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > until) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+/// A finger comes down on the left, at half the height.
+void touch(FakeEvdev& panel, long time_us) {
+  panel.send(time_us, EV_ABS, ABS_MT_SLOT, 0);
+  panel.send(time_us, EV_ABS, ABS_MT_TRACKING_ID, 5);
+  panel.send(time_us, EV_ABS, ABS_MT_POSITION_X, 80);
+  panel.send(time_us, EV_ABS, ABS_MT_POSITION_Y, 240);
+  panel.send(time_us, EV_SYN, SYN_REPORT, 0);
+}
 
 }  // namespace
 
@@ -84,4 +110,25 @@ TEST_CASE("a touch panel that is not there is an error that names it", "[touch]"
     CHECK(std::string(error.what()).find("No such panel") != std::string::npos);
   }
   CHECK_THROWS_AS(TouchReader("/dev/input/event999", [](TouchPanelState) {}), std::system_error);
+}
+
+TEST_CASE("a touch panel that is unplugged is told once, and is read again once it is back",
+          "[touch][threads]") {
+  const TemporaryFolder folder;
+  const auto path = folder / "event-panel";
+  auto panel = std::make_unique<FakeEvdev>(2, path);
+  std::atomic<int> lost{0}, back{0};
+  TouchReader reader(path, [&](TouchPanelState state) { ++(state == TouchPanelState::lost ? lost : back); });
+  touch(*panel, 1'000'000);
+  CHECK(comes([&] { return reader.claim(0.1, 0.5, 1020 * ms) == 1000 * ms; }));
+  CHECK(lost == 0);
+  panel->unplug();
+  CHECK(comes([&] { return lost == 1; }));
+  CHECK(back == 0);
+  panel.reset();
+  panel = std::make_unique<FakeEvdev>(2, path);
+  CHECK(comes([&] { return back == 1; }));
+  touch(*panel, 5'000'000);
+  CHECK(comes([&] { return reader.claim(0.1, 0.5, 5020 * ms) == 5000 * ms; }));
+  CHECK(lost == 1);
 }

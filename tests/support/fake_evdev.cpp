@@ -3,18 +3,22 @@
 #include <fcntl.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <cstdarg>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 namespace {
 
-FakeEvdev* the_device = nullptr;
+std::atomic<FakeEvdev*> the_device = nullptr;
 
 using Bits = std::vector<int>;
 
@@ -31,18 +35,53 @@ int put_bits(const Bits& bits, void* argument, std::size_t size) {
 FakeEvdev::FakeEvdev(int slot_count) {
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends_) != 0)
     throw std::runtime_error("socketpair");
+  set_axes(slot_count);
+  the_device = this;
+}
+
+FakeEvdev::FakeEvdev(int slot_count, const std::string& path) : path_(path) {
+  if (::mkfifo(path.c_str(), 0600) != 0) throw std::runtime_error("mkfifo " + path);
+  ends_[1] = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  if (ends_[1] < 0) throw std::runtime_error("open " + path);
+  set_axes(slot_count);
+  the_device = this;
+}
+
+void FakeEvdev::set_axes(int slot_count) {
   axes = {{ABS_X, 0}, {ABS_Y, 0}};
   if (slot_count > 0)
     for (const int axis : {ABS_MT_SLOT, ABS_MT_TRACKING_ID, ABS_MT_POSITION_X, ABS_MT_POSITION_Y})
       axes[axis] = 0;
   slots.assign(static_cast<std::size_t>(slot_count),
                {{ABS_MT_TRACKING_ID, -1}, {ABS_MT_POSITION_X, 0}, {ABS_MT_POSITION_Y, 0}});
-  the_device = this;
 }
 
 FakeEvdev::~FakeEvdev() {
+  unplug();
   the_device = nullptr;
-  ::close(ends_[1]);
+  if (ends_[1] >= 0) ::close(ends_[1]);
+}
+
+// Whoever has opened the path then holds something that cannot be read, and wakes up to find out. Not by
+// dup3(), since a sanitizer would take the exchange for a mistake of the reader's.
+void FakeEvdev::unplug() {
+  if (path_.empty() || ends_[1] < 0) return;
+  const int unreadable = ::open("/", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd")) {
+    const int descriptor = std::stoi(entry.path().filename());
+    if (descriptor != ends_[1] && is(descriptor)) ::syscall(SYS_dup3, unreadable, descriptor, O_CLOEXEC);
+  }
+  ::close(unreadable);
+  std::filesystem::remove(path_);
+  ::close(std::exchange(ends_[1], -1));
+}
+
+bool FakeEvdev::is(int descriptor) const {
+  struct stat mine {
+  }, found{};
+  if (path_.empty()) return descriptor == ends_[0];
+  return ::fstat(ends_[1], &mine) == 0 && ::fstat(descriptor, &found) == 0 && found.st_dev == mine.st_dev &&
+         found.st_ino == mine.st_ino;
 }
 
 void FakeEvdev::send(long time_us, int type, int code, int value) {
@@ -91,13 +130,14 @@ int FakeEvdev::answer(unsigned long request, void* argument) const {
   return 0;
 }
 
-// Everything but the fake device's descriptor goes on to the kernel.
+// All but what is asked of the fake device goes on to the kernel.
 extern "C" int ioctl(int descriptor, unsigned long request, ...) {
   va_list arguments;
   va_start(arguments, request);
   void* argument = va_arg(arguments, void*);
   va_end(arguments);
-  if (the_device != nullptr && descriptor == the_device->descriptor())
-    return the_device->answer(request, argument);
+  const auto* device = the_device.load();
+  if (device != nullptr && _IOC_TYPE(request) == 'E' && device->is(descriptor))
+    return device->answer(request, argument);
   return static_cast<int>(::syscall(SYS_ioctl, descriptor, request, argument));
 }

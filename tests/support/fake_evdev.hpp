@@ -12,12 +12,16 @@ class FakeEvdev {
  public:
   /// A panel of 800 x 480 with so many slots for fingers; 0: one that does not tell fingers apart.
   explicit FakeEvdev(int slots);
+  /// The same, for programs that open it by this path.
+  FakeEvdev(int slots, const std::string& path);
   FakeEvdev(const FakeEvdev&) = delete;
   FakeEvdev& operator=(const FakeEvdev&) = delete;
   ~FakeEvdev();
 
-  /// Who takes this over closes it.
+  /// Who takes this over closes it. None for a device with a path.
   int descriptor() const { return ends_[0]; }
+  /// A device with a path goes, and who reads it gets an error.
+  void unplug();
   /// An event waits to be read; time in microseconds.
   void send(long time_us, int type, int code, int value);
 
@@ -27,7 +31,11 @@ class FakeEvdev {
   std::vector<std::map<int, int>> slots;  ///< ABS_MT_... of each slot
 
   int answer(unsigned long request, void* argument) const;
+  bool is(int descriptor) const;
 
  private:
+  void set_axes(int slots);
+
   int ends_[2] = {-1, -1};
+  std::string path_;
 };

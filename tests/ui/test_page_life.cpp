@@ -1,12 +1,14 @@
-// The amplifier's guard counts on the participant's page: when the thread that draws it hangs, the amplifier
-// goes off, and once the thread turns again the page says so.
+// What the screen's own hardware and program do to a session: the amplifier's guard counts on the
+// participant's page, and a touch panel can be unplugged.
 #include <QCoreApplication>
 #include <chrono>
+#include <memory>
 #include <thread>
 
 #include "station/ui/session_runner.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/fake_evdev.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
@@ -22,13 +24,15 @@ struct PilotSession {
   TemporaryFolder folder;
   ui::SessionRunner runner;
 
-  PilotSession() {
+  /// On a rig with this touch panel.
+  explicit PilotSession(const std::string& touch_uri = "sim:") {
     auto setup = live_room::live_setup(folder / "a.sqlite", "touch");
     auto text = live_room::protocol_text("touch");
     text.replace(text.find("explore_s = 2.0"), 15, "explore_s = 20.0");
     text.replace(text.find("deadline_s = 3.0"), 16, "deadline_s = 25.0");
     setup.protocol = protocol::parse(text, "pilot.toml");
     setup.run_mode = terms::RunMode::pilot;
+    setup.rig.touch_uri = touch_uri;
     runner.begin(std::move(setup));
   }
 
@@ -65,4 +69,26 @@ TEST_CASE("a page whose thread hangs switches the amplifier off, and then says s
   const auto summary = session.runner.finish();
   REQUIRE(summary);
   CHECK(summary->voided == 1);
+}
+
+TEST_CASE("a touch panel that is unplugged makes the trial void and has its page, and the trial comes again",
+          "[page]") {
+  const TemporaryFolder devices;
+  const auto path = devices / "event-panel";
+  auto panel = std::make_unique<FakeEvdev>(2, path);
+  PilotSession session("evdev:" + path);
+  REQUIRE(session.shows(session::PageKind::stimulus));
+  panel->unplug();
+  REQUIRE(session.shows(session::PageKind::fault));
+  CHECK(session.page().fault == terms::FaultKind::touch_gone);
+  CHECK(session.page().detail == "the touch panel is gone");
+  CHECK(session.page().amplifier.empty());  // armed still: Continue is enough
+  panel.reset();
+  panel = std::make_unique<FakeEvdev>(2, path);
+  session.runner.bridge().next();
+  REQUIRE(session.shows(session::PageKind::stimulus));
+  session.runner.ask_to_stop();
+  const auto summary = session.runner.finish();
+  REQUIRE(summary);
+  CHECK(summary->voided == 2);  // the second by the stop
 }
