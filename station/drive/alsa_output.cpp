@@ -57,6 +57,10 @@ class AlsaOutput final : public Output {
     return Position{frames_ - queued, std::int64_t{1'000'000'000} * stamp.tv_sec + stamp.tv_nsec};
   }
 
+  std::vector<MemoryRange> memory() const override { return {range_of(*this), range_of(packed_)}; }
+  // Its structures are opaque: nobody but the library knows where they are.
+  std::string memory_left_out() const override { return "alsa-lib's own objects"; }
+
   void finish() override {
     if (!device_.pcm) return;
     snd_pcm_nonblock(pcm(), 0);

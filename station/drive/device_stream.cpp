@@ -21,6 +21,8 @@ std::int64_t DeviceStream::delay_ns() const noexcept { return std::llround(confi
 std::vector<MemoryRange> DeviceStream::memory() const {
   auto ranges = core_.memory();
   ranges.insert(ranges.end(), {range_of(block_), range_of(*positions_), range_of(*rates_)});
+  const auto output = output_->memory();
+  ranges.insert(ranges.end(), output.begin(), output.end());
   return ranges;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "station/drive/engine.hpp"
@@ -24,8 +25,9 @@ class DeviceStream : public Stream {
   /// frames the block is not played later instead: the next step renders the frames whose time it then is.
   void step() noexcept;
 
-  /// What the audio side uses beside this object itself, but for what the sound library keeps for itself.
+  /// What the audio side uses beside this object itself, and what of it is not in the list, in words.
   std::vector<MemoryRange> memory() const;
+  std::string memory_left_out() const { return output_->memory_left_out(); }
 
   std::uint32_t schedule(const Burst& burst) override {
     return core_.schedule(burst, [this] { return earliest_frame(); });

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "station/drive/memory_range.hpp"
 #include "station/drive/prepared_burst.hpp"
 
 namespace turnpoint::drive {
@@ -59,6 +60,10 @@ class Output {
   virtual WriteResult write(std::span<const std::int32_t> interleaved) noexcept = 0;
   /// The newest known position, if the device tells; frames count from the first one written.
   virtual std::optional<Position> position() noexcept = 0;
+  /// What write() and position() use, to be locked into memory, and what they use beside it, in words. Empty
+  /// for files and null.
+  virtual std::vector<MemoryRange> memory() const { return {}; }
+  virtual std::string memory_left_out() const { return ""; }
   /// Plays what is buffered and closes; throws std::system_error where a file cannot be completed. The
   /// destructor closes as well, silently.
   virtual void finish() = 0;

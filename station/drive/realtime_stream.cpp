@@ -16,7 +16,7 @@ class Realtime final : public DeviceStream {
   explicit Realtime(const StreamConfig& config) : DeviceStream(config) {
     auto used = memory();
     used.push_back(range_of(*this));
-    rights_ = lock_memory(used);
+    rights_ = lock_memory(used, memory_left_out());
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
     started_.wait();
     if (const int error = stack_denied_.load(); error != 0 && rights_.memory_locked) {

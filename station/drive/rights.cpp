@@ -46,7 +46,7 @@ std::optional<MemoryRange> lockable(const std::string& line) {
 
 }  // namespace
 
-Rights lock_memory(const std::vector<MemoryRange>& ranges) {
+Rights lock_memory(const std::vector<MemoryRange>& ranges, const std::string& left_out) {
   std::vector<MemoryRange> wanted = ranges;
   std::ifstream maps("/proc/self/maps");
   for (std::string line; std::getline(maps, line);)
@@ -60,6 +60,7 @@ Rights lock_memory(const std::vector<MemoryRange>& ranges) {
     rights.note = fmt::format("mlock: {} (raise LimitMEMLOCK)", std::strerror(errno));
     return rights;
   }
+  if (!left_out.empty()) rights.note = "not locked: " + left_out;
   return rights;
 }
 

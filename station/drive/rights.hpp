@@ -1,31 +1,18 @@
 #pragma once
-#include <cstddef>
+#include <string>
 #include <vector>
 
 #include "station/drive/engine.hpp"
+#include "station/drive/memory_range.hpp"
 
 namespace turnpoint::drive {
 
-/// A piece of memory that a real-time thread uses.
-struct MemoryRange {
-  const void* start = nullptr;
-  std::size_t length = 0;
-};
-template <typename T>
-MemoryRange range_of(const T& object) noexcept {
-  return {&object, sizeof object};
-}
-template <typename T>
-MemoryRange range_of(const std::vector<T>& elements) noexcept {
-  return {elements.data(), elements.capacity() * sizeof(T)};
-}
-
 /// Locks into memory, before the audio thread starts, the program, its libraries, the heap as far as it has
 /// grown, and the ranges given: objects made by a thread other than the first lie in anonymous memory of
-/// their own. The note says why not. Not mlockall: it also pins the pages that a garbage collector gives
-/// back, madvise(MADV_DONTNEED) then fails, and Qt's JavaScript engine, which relies on getting zeroed pages
-/// again, crashes.
-Rights lock_memory(const std::vector<MemoryRange>& ranges);
+/// their own. The note says why not, or else names `left_out`: what the audio thread uses and is in no range.
+/// Not mlockall: it also pins the pages that a garbage collector gives back, madvise(MADV_DONTNEED) then
+/// fails, and Qt's JavaScript engine, which relies on getting zeroed pages again, crashes.
+Rights lock_memory(const std::vector<MemoryRange>& ranges, const std::string& left_out = "");
 
 /// Locks the part of the calling thread's stack that a real-time thread uses. Returns 0 or an errno.
 int lock_stack() noexcept;

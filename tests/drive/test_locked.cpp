@@ -1,14 +1,16 @@
 // "memory locked" is recorded only where it is so: looked up in /proc/self/smaps, for the audio thread's
-// stack and for all that the engine allocates, on a thread whose memory is not the program's heap.
+// stack and for all that engine and output allocate, on a thread whose memory is not the program's heap.
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
 #include <sstream>
 #include <thread>
 #include <vector>
 
+#include "station/drive/device_stream.hpp"
 #include "station/drive/engine.hpp"
 #include "tests/drive/watch.hpp"
 #include "tests/support/catch.hpp"
@@ -101,5 +103,35 @@ TEST_CASE("what is recorded as locked is locked: the audio thread's stack, its b
     CHECK(left_out <= 32'768);
     std::vector<char> other(1 << 20);  // the negative control: nobody has locked this
     CHECK(unlocked(all, reinterpret_cast<std::uintptr_t>(other.data()), other.size()) > 0);
+  }).join();
+}
+
+TEST_CASE("the buffer that a device is started and written from is locked, and what is not is named",
+          "[drive][realtime][alsa]") {
+  ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
+  std::thread([] {
+    StreamConfig config;
+    config.output.uri = "alsa:straight";
+    config.output.allow_plugin = {"null"};
+    config.output.period_frames = 4096;
+    config.output.periods = 8;
+    begin_record();
+    const DeviceStream stream(config);
+    const auto allocations = end_record();
+    const auto rights = lock_memory(stream.memory(), stream.memory_left_out());
+    if (!rights.memory_locked) {
+      WARN("not allowed to lock memory here: " << rights.note);
+      return;
+    }
+    CHECK(rights.note == "not locked: alsa-lib's own objects");
+    const std::size_t buffer = 2 * sizeof(std::int32_t) * 4096 * 8;
+    const auto all = mappings();
+    int buffers = 0;
+    for (const auto& allocation : allocations) {
+      if (allocation.size != buffer) continue;
+      ++buffers;
+      CHECK(unlocked(all, reinterpret_cast<std::uintptr_t>(allocation.start), allocation.size) == 0);
+    }
+    CHECK(buffers == 1);
   }).join();
 }
