@@ -187,6 +187,23 @@ TEST_CASE(
   CHECK(stream->largest_sample() < 1);
 }
 
+TEST_CASE("a burst that a live change made louder leaves that much less room beside it", "[drive][stream]") {
+  const auto stream = open_synchronous({});
+  Burst first = one_tone(20000, 0.2);
+  first.length_frames = 400'000;
+  const auto id = stream->schedule(first);
+  stream->advance(20'000);
+  stream->change(id, Change{30'000, 9600, one_tone(20000, 0.7).tones});
+  Burst second = one_tone(20500, 0.45);
+  second.start_frame = 60'000;
+  CHECK_THROWS_AS(stream->schedule(second), BurstRefused);  // there was room for it beside 0.2
+  second.tones.tones[0].amplitude = 0.29;
+  stream->schedule(second);
+  stream->advance(400'000);
+  CHECK(stream->counters().saturated == 0);
+  CHECK(stream->largest_sample() < 1);
+}
+
 TEST_CASE("bursts that are scheduled together keep their distances, or none is taken", "[drive][stream]") {
   const auto stream = open_synchronous({});
   stream->advance(5000);
