@@ -47,6 +47,7 @@ class RealStage : public Stage {
     // Reports of stimuli still under way belong to the trial that is over; the next trial must not see them.
     presented_.clear();
     unheard_ = 0;
+    lost_ns_.reset();
     const auto gathered = inputs_.drain();
     return {gathered.begin(), gathered.end()};
   }
@@ -60,13 +61,16 @@ class RealStage : public Stage {
 
   std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
                              std::int64_t earliest_ns) override {
+    // A trial that was aborted may still be ramping down, and takes up room until it is silent.
+    wait_for([&] { return now_ns() >= quiet_ns_; });
     const auto until_ns = now_ns() + kFirstPosition_ns;
     wait_for([&] { return stream_->clock().pairs > 0 || now_ns() > until_ns; });
     auto onsets = schedule(*stream_, intervals, std::max(earliest_ns, opened_ns_ + kSettle_ns), presented_);
     if (onsets.empty())
       push_fault(now_ns(), FaultKind::stimulus_missed, "the converter does not say what it is playing");
     else
-      quiet_ns_ = std::max(quiet_ns_, end_ns(onsets.back(), intervals.back().length_frames));
+      quiet_ns_ = std::max(quiet_ns_, later(onsets.back(), intervals.back().length_frames));
+    if (!onsets.empty()) first_onset_ = onsets.front();
     unheard_ = onsets.size();
     return onsets;
   }
@@ -79,7 +83,8 @@ class RealStage : public Stage {
     // What has not begun is cancelled, and nobody waits for it.
     const auto from = stream_->earliest_frame();
     if (!presented_.empty() && presented_.back().start_frame >= from) unheard_ = 0;
-    return quiet_ns_ = ramp_down(*stream_, presented_, now_ns());
+    const auto silent_ns = ramp_down(*stream_, presented_, now_ns());
+    return quiet_ns_ = lost_ns_.value_or(silent_ns);
   }
 
   Refusal arm() override {
@@ -168,8 +173,9 @@ class RealStage : public Stage {
     saturated_ = saturated;
   }
 
-  std::int64_t end_ns(const Onset& onset, std::int64_t length_frames) const {
-    return onset.time_ns + length_frames * 1'000'000'000 / stream_->config().output.rate_Hz;
+  /// So many frames after an onset.
+  std::int64_t later(const Onset& onset, std::int64_t frames) const {
+    return onset.time_ns + frames * 1'000'000'000 / stream_->config().output.rate_Hz;
   }
 
   void hear(const drive::Event& event, std::int64_t now) {
@@ -186,6 +192,8 @@ class RealStage : public Stage {
       case drive::EventKind::burst_missed:
         return push_fault(now, FaultKind::stimulus_missed, "a stimulus came too late to be played");
       case drive::EventKind::device_lost:
+        unheard_ = 0;  // the trial is void
+        if (!presented_.empty()) lost_ns_ = later(first_onset_, event.frame - first_onset_.frame);
         amplifier_().trip(FaultKind::converter_gone,
                           event.error == 0 ? "" : std::strerror(std::abs(event.error)));
         return;  // attend() tells what is latched
@@ -242,7 +250,10 @@ class RealStage : public Stage {
   Inputs& inputs_;
   std::unique_ptr<drive::Stream> stream_;
   std::vector<Presented> presented_;
+  Onset first_onset_;        ///< of them
   std::size_t unheard_ = 0;  ///< intervals that are still to be heard
+  std::optional<std::int64_t>
+      lost_ns_;  ///< when the converter was lost amid them: the surface is silent since
   drive::UnderrunLimit underruns_;
   ClockWatch clocks_;
   std::int64_t clocks_due_ns_ = 0;

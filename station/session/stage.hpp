@@ -65,7 +65,8 @@ class Stage {
   virtual std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) = 0;
 
   /// Ramps whatever sounds down, now, and cancels what has not begun. Returns when the surface will be
-  /// silent, or is sure to be where the converter does not tell.
+  /// silent, or is sure to be where the converter does not tell; when it fell silent where the converter is
+  /// gone.
   virtual std::int64_t silence() = 0;
 
   /// Why the amplifier does not do what was asked; none when it was done.

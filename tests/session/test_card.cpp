@@ -1,4 +1,8 @@
+#include <algorithm>
 #include <cmath>
+#include <deque>
+#include <stdexcept>
+#include <utility>
 
 #include "station/drive/device_stream.hpp"
 #include "station/protocol/protocol.hpp"
@@ -6,10 +10,14 @@
 #include "station/session/plan_ahead.hpp"
 #include "station/session/schedule.hpp"
 #include "tests/drive/fake_pcm.hpp"
+#include "tests/session/live_room.hpp"
+#include "tests/session/many_tones.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 // What a session schedules, on the station's real stream and output and a sound card in memory: when
-// intervals are really played, as the marker on the second channel shows.
+// intervals are really played, as the marker on the second channel shows; and whole sessions on the card's
+// time.
 
 using namespace turnpoint;
 using drive::fake_pcm;
@@ -18,12 +26,21 @@ namespace {
 
 const std::string source = TURNPOINT_SOURCE_DIR;
 
+struct Buffer {
+  int period_frames, periods;
+};
+constexpr Buffer kBuffers[] = {{64, 2}, {384, 4}, {1920, 4}, {4096, 16}};
+
+void use_card(rig::Rig& rig, const Buffer& buffer) {
+  rig.output.uri = "alsa:fake";
+  rig.output.period_frames = buffer.period_frames;
+  rig.output.periods = buffer.periods;
+  rig.marker = rig::Marker{};
+}
+
 rig::Rig marked_rig(int period_frames, int periods) {
   auto rig = rig::load(source + "/deploy/rigs/simulated.toml");
-  rig.output.uri = "alsa:fake";
-  rig.output.period_frames = period_frames;
-  rig.output.periods = periods;
-  rig.marker = rig::Marker{};
+  use_card(rig, {period_frames, periods});
   return rig;
 }
 
@@ -54,11 +71,8 @@ struct Trial {
 TEST_CASE(
     "intervals are played when they were predicted, at the protocol's distances, whatever buffer and scene",
     "[session][card]") {
-  struct {
-    int period_frames, periods;
-  } const buffers[] = {{64, 2}, {384, 4}, {1920, 4}, {4096, 16}};
   for (const auto* name : {"friction-2ifc", "two-spots-oddity"})
-    for (const auto& buffer : buffers) {
+    for (const auto& buffer : kBuffers) {
       INFO(name << ", " << buffer.periods << " periods of " << buffer.period_frames);
       drive::reset_fake_pcm();
       fake_pcm().recorded_channel = 1;
@@ -81,6 +95,35 @@ TEST_CASE(
         if (i > 0) CHECK(played[i] - played[i - 1] == std::llround(apart_s * rig.output.rate_Hz));
       }
     }
+}
+
+TEST_CASE(
+    "a scene of twenty tones, whose peak has to be rendered, is played at its distance from one of one tone",
+    "[session][card]") {
+  for (const auto& buffer : kBuffers) {
+    INFO(buffer.periods << " periods of " << buffer.period_frames);
+    drive::reset_fake_pcm();
+    fake_pcm().recorded_channel = 1;
+    auto rig = rig::parse(many_tones::rig_text(), "rig.toml");
+    use_card(rig, buffer);
+    const auto protocol = protocol::parse(many_tones::protocol_text(), "many.toml");
+    Trial trial(rig, protocol);
+    drive::DeviceStream stream(session::stream_of(rig));
+    steps(stream, 4);
+    const auto& bursts = trial.plans.take(trial.spec).bursts;
+    REQUIRE(bursts.size() == 2);
+    CHECK(std::max(bursts[0].tone_count, bursts[1].tone_count) == many_tones::kTones);
+    CHECK(std::min(bursts[0].tone_count, bursts[1].tone_count) == 1);
+    for (const auto& burst : bursts) CHECK(many_tones::peak_was_rendered(burst));
+    std::vector<session::Presented> presented;
+    const auto onsets = session::schedule(stream, bursts, fake_pcm().now_ns() + 123'456'789, presented);
+    REQUIRE(onsets.size() == 2);
+    while (stream.counters().heard < presented.back().end_frame) stream.step();
+    const auto played = pulses();
+    REQUIRE(played.size() == 2);
+    CHECK(played[1] - played[0] ==
+          std::llround((many_tones::kDuration_s + many_tones::kGap_s) * rig.output.rate_Hz));
+  }
 }
 
 TEST_CASE("a stop between two intervals cancels the second, and nothing of it is played", "[session][card]") {
@@ -122,4 +165,212 @@ TEST_CASE("on a converter that is gone nothing is scheduled, and silence is no e
   CHECK(silent_ns < now_ns + 100'000'000);
   CHECK(session::schedule(stream, bursts, now_ns, presented).empty());
   CHECK_FALSE(session::fit_of(stream));
+}
+
+namespace {
+
+using session::InputKind;
+using session::PageKind;
+using terms::FaultKind;
+
+constexpr std::int64_t kRate_Hz = 192000;
+
+/// The real stream, stepped whenever the session listens, so that a session lasts as long as the card plays.
+struct SteppedStream : drive::DeviceStream {
+  SteppedStream(const drive::StreamConfig& config, const bool& holds, const std::function<void()>& then)
+      : DeviceStream(config), holding(holds), after_step(then) {}
+
+  std::optional<drive::Event> poll() override {
+    step();
+    after_step();
+    if (fake_pcm().now > 300 * kRate_Hz) throw std::runtime_error("the session waits for ever");
+    auto event = DeviceStream::poll();
+    if (event && event->kind == drive::EventKind::burst_heard) {
+      held.push_back(*event);
+      event.reset();
+    }
+    if (event || holding || held.empty()) return event;
+    event = held.front();
+    held.pop_front();
+    return event;
+  }
+
+  const bool& holding;  ///< what was heard is reported later
+  const std::function<void()> after_step;
+  std::deque<drive::Event> held;
+};
+
+/// The guard's rules without a thread: its time is the card's as well.
+struct RuledAmplifier : drive::Amplifier {
+  using Answer = std::optional<panel::Guard::Refusal>;
+  static Refusal refusal(const Answer& why) {
+    return why ? Refusal(terms::Fault{why->kind, ""}) : std::nullopt;
+  }
+  Refusal arm() override { return refusal(guard.arm(drive::monotonic_ns())); }
+  void disarm() noexcept override { guard.disarm(); }
+  Refusal enable() override { return refusal(guard.enable(drive::monotonic_ns())); }
+  void disable() noexcept override { guard.disable(); }
+  void trip(FaultKind kind, std::string_view) noexcept override { guard.trip(drive::monotonic_ns(), kind); }
+  Refusal clear() override { return refusal(guard.clear()); }
+  void audio_alive() noexcept override { guard.audio_alive(drive::monotonic_ns()); }
+  void session_alive() noexcept override { guard.session_alive(drive::monotonic_ns()); }
+  void page_alive(std::int64_t time_ns) noexcept override { guard.page_alive(time_ns); }
+  drive::AmplifierState state() const noexcept override { return guard.state(); }
+  drive::AmplifierFault fault() const override {
+    return {{guard.fault().kind, guard.fault().detail}, guard.fault().time_ns};
+  }
+  std::int64_t reaction_ns() const noexcept override { return -1; }
+  panel::Guard guard;
+};
+
+/// A live session of two trials on the card, with a participant who answers 0.3 s after an onset.
+struct CardSession {
+  TemporaryFolder folder;
+  session::Setup setup = live_room::live_setup(folder / "a.sqlite", "touch");
+  live_room::Room room;
+  bool holding = false;
+  bool first_answered = true;  ///< the first stimulus, like the others
+  double repair_s = 0;         ///< how long the operator takes to deal with a fault
+  std::vector<std::pair<std::int64_t, std::function<void()>>> agenda;
+  std::function<void(const session::Page&)> reacts = [](const auto&) {};
+  std::vector<FaultKind> faults;
+  std::vector<std::string> details;
+  session::Summary summary;
+
+  CardSession() {
+    drive::reset_fake_pcm();
+    use_card(setup.rig, {384, 4});
+  }
+
+  void later(double s, std::function<void()> happens) {
+    agenda.emplace_back(drive::monotonic_ns() + static_cast<std::int64_t>(1e9 * s), std::move(happens));
+  }
+
+  std::vector<store::TrialRow> runs() {
+    session::Devices devices;
+    devices.amplifier = std::make_unique<RuledAmplifier>();
+    devices.clocks = [] {
+      const auto now_ns = drive::monotonic_ns();
+      return session::Clocks{now_ns, now_ns, now_ns};
+    };
+    devices.open_stream = [this](const drive::StreamConfig& config) {
+      return std::make_unique<SteppedStream>(config, holding, [this] {
+        const auto due = std::find_if(agenda.begin(), agenda.end(),
+                                      [](const auto& entry) { return entry.first <= drive::monotonic_ns(); });
+        if (due == agenda.end()) return;
+        const auto happens = due->second;
+        agenda.erase(due);
+        happens();
+      });
+    };
+    room.reacts = [this](const session::Page& page) {
+      reacts(page);
+      if (page.kind == PageKind::fault) faults.push_back(page.fault), details.push_back(page.detail);
+      if (page.kind == PageKind::stimulus && (first_answered || room.stimuli > 1))
+        later(0.3, [this] { room.push(InputKind::answer); });
+      if (page.kind == PageKind::fault) return later(repair_s, [this, page] { room.cooperate(page); });
+      if (page.kind != PageKind::stimulus) room.cooperate(page);
+    };
+    summary = session::run(setup, &room, room.inputs, std::move(devices));
+    CHECK(summary.status == store::SessionStatus::completed);
+    return live_room::trials_of(setup.database, summary);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("of a converter that is lost amid a stimulus, what was played until then is booked, and no more",
+          "[session][card][fault]") {
+  CardSession card;
+  card.first_answered = false;
+  card.repair_s = 2.5;
+  std::int64_t lost_at = 0;
+  const auto after = GENERATE(9'000, 100'000, 250'001);
+  card.reacts = [&](const session::Page& page) {
+    if (page.kind == PageKind::stimulus && card.room.stimuli == 1)
+      fake_pcm().before_call = [&, due = fake_pcm().now + after] {
+        if (lost_at > 0 || fake_pcm().now < due) return;
+        lost_at = fake_pcm().now;
+        fake_pcm().fail(drive::FakePcm::State::gone);
+        fake_pcm().present = false;
+        card.later(2, [] { fake_pcm().present = true; });
+      };
+  };
+  const auto trials = card.runs();
+  REQUIRE(trials.size() == 3);
+  CHECK(trials[0].outcome == store::TrialOutcome::fault);
+  const auto stimuli = live_room::events_of(card.setup.database, card.summary, "stimulus");
+  REQUIRE(stimuli.size() == 3);
+  // Booked from the onset on, in frames; and what the card really played in that time.
+  const auto onset = (stimuli[0].time_ns - 1'000'000'000) * kRate_Hz / 1'000'000'000;
+  const auto booked = std::stod(stimuli[0].value) * static_cast<double>(kRate_Hz);
+  const auto& heard = fake_pcm().heard;
+  const auto end = heard.begin() + static_cast<std::ptrdiff_t>(lost_at);
+  const auto sounds = [](std::int32_t sample) { return sample != 0; };
+  const auto first = std::find_if(heard.begin(), end, sounds) - heard.begin();
+  CHECK(std::abs(first - onset) <= 4);  // the ramp begins with zeros
+  const auto played = static_cast<double>(lost_at - onset);
+  CHECK(std::any_of(end - 20, end, sounds));
+  CHECK(std::abs(booked - played) <= 384);  // the converter is asked for its position once a period
+  // One page before the first arming, and one for the one cause, however long it takes.
+  REQUIRE(card.faults.size() >= 2);
+  CHECK(card.faults.front() == FaultKind::disarmed);
+  CHECK(std::count(card.faults.begin() + 1, card.faults.end(), FaultKind::converter_gone) ==
+        static_cast<std::ptrdiff_t>(card.faults.size()) - 1);
+}
+
+TEST_CASE("a trial is void a second after a converter should have said that it was played",
+          "[session][card][fault]") {
+  CardSession card;
+  card.reacts = [&](const session::Page& page) {
+    if (page.kind == PageKind::stimulus && card.room.stimuli == 2) fake_pcm().stamps = false;
+    if (page.kind == PageKind::fault) fake_pcm().stamps = true;
+  };
+  const auto trials = card.runs();
+  REQUIRE(trials.size() == 3);
+  CHECK(trials[0].outcome == store::TrialOutcome::answered);
+  CHECK(trials[1].outcome == store::TrialOutcome::fault);
+  CHECK(trials[2].level == trials[1].level);
+  CHECK(card.details.back() == "the converter does not say whether a stimulus was played");
+  const auto stimuli = live_room::events_of(card.setup.database, card.summary, "stimulus");
+  const auto faults = live_room::events_of(card.setup.database, card.summary, "fault");
+  REQUIRE(stimuli.size() == 3);
+  REQUIRE(faults.size() == 1);
+  const auto silent_ns = stimuli[1].time_ns + static_cast<std::int64_t>(1e9 * std::stod(stimuli[1].value));
+  CHECK(faults[0].time_ns - silent_ns == Approx(1e9).margin(2e7));
+}
+
+TEST_CASE("a converter that does not say where it is gets no stimulus", "[session][card][fault]") {
+  CardSession card;
+  card.reacts = [&](const session::Page& page) {
+    if (page.kind == PageKind::instructions) fake_pcm().fail(drive::FakePcm::State::xrun);  // a new relation
+    if (page.kind == PageKind::instructions) fake_pcm().stamps = false;
+    if (page.kind == PageKind::fault) fake_pcm().stamps = true;
+  };
+  const auto trials = card.runs();
+  REQUIRE(trials.size() == 3);
+  CHECK(trials[0].outcome == store::TrialOutcome::fault);
+  CHECK(card.details.back() == "the converter does not say what it is playing");
+  CHECK(live_room::events_of(card.setup.database, card.summary, "stimulus").size() == 2);
+}
+
+TEST_CASE("what is reported late of a repeated trial says nothing about the next one",
+          "[session][card][fault]") {
+  CardSession card;
+  card.first_answered = false;
+  card.reacts = [&](const session::Page& page) {
+    if (page.kind == PageKind::stimulus && card.room.stimuli == 1) {
+      card.holding = true;
+      card.room.push(InputKind::repeat);
+    }
+    if (page.kind == PageKind::cue && card.room.stimuli == 1) card.holding = false;
+    // The converter never says that the second one was played.
+    if (page.kind == PageKind::stimulus && card.room.stimuli == 2) fake_pcm().stamps = false;
+    if (page.kind == PageKind::fault) fake_pcm().stamps = true;
+  };
+  const auto trials = card.runs();
+  REQUIRE(trials.size() == 4);
+  CHECK(trials[0].outcome == store::TrialOutcome::aborted);
+  CHECK(trials[1].outcome == store::TrialOutcome::fault);
+  CHECK(trials[2].outcome == store::TrialOutcome::answered);
 }

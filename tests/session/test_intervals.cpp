@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 
 #include "station/app/prepare.hpp"
 #include "station/session/session.hpp"
 #include "station/store/read.hpp"
+#include "tests/session/many_tones.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -18,11 +21,17 @@ struct Buffer {
 };
 constexpr Buffer kBuffers[] = {{64, 2}, {384, 4}, {1920, 4}, {4096, 16}};
 
-std::vector<store::TrialRow> session_of(const std::string& protocol, const Buffer& buffer, double delay_s) {
+std::string shipped(const std::string& protocol) {
+  return std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol + ".toml";
+}
+
+std::vector<store::TrialRow> session_of(const std::string& protocol, const Buffer& buffer, double delay_s,
+                                        const std::string& rig = std::string(TURNPOINT_SOURCE_DIR) +
+                                                                 "/deploy/rigs/simulated.toml") {
   const TemporaryFolder folder;
   app::RunRequest request;
-  request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol + ".toml";
-  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
+  request.protocol = protocol;
+  request.rig = rig;
   request.participant = "P01";
   request.database = folder / "a.sqlite";
   request.observer = "sim";
@@ -57,7 +66,7 @@ TEST_CASE("the pause between intervals is the protocol's to the frame, whatever 
          {std::pair{"friction-2ifc", 2.5}, std::pair{"two-spots-oddity", 2.5}}) {
       INFO(name << ", " << buffer.periods << " periods of " << buffer.period_frames);
       int pauses = 0;
-      for (const auto& trial : session_of(name, buffer, 0)) {
+      for (const auto& trial : session_of(shipped(name), buffer, 0)) {
         const auto first = onsets(trial);
         for (std::size_t i = 1; i < first.size(); ++i, ++pauses)
           CHECK(first.at(static_cast<int>(i)) - first.at(static_cast<int>(i) - 1) ==
@@ -67,11 +76,33 @@ TEST_CASE("the pause between intervals is the protocol's to the frame, whatever 
     }
 }
 
+TEST_CASE("a scene of twenty tones, whose peak has to be rendered, does not stretch the pause",
+          "[session][intervals]") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "many.toml") << many_tones::protocol_text();
+  std::ofstream(folder / "rig.toml") << many_tones::rig_text();
+  for (const auto& buffer : kBuffers) {
+    INFO(buffer.periods << " periods of " << buffer.period_frames);
+    int many_first = 0, many_second = 0;
+    for (const auto& trial : session_of(folder / "many.toml", buffer, 0, folder / "rig.toml")) {
+      const auto first = onsets(trial);
+      REQUIRE(first.size() == 2);
+      CHECK(first.at(1) - first.at(0) ==
+            std::llround((many_tones::kDuration_s + many_tones::kGap_s) * 192000));
+      const auto in_first = std::count_if(trial.tones.begin(), trial.tones.end(),
+                                          [](const auto& tone) { return tone.interval_index == 0; });
+      ++(in_first == many_tones::kTones ? many_first : many_second);
+    }
+    CHECK(many_first > 0);
+    CHECK(many_second > 0);
+  }
+}
+
 TEST_CASE("the converter's delay is part of every stored onset", "[session][intervals]") {
   const double delay_s = 7e-3;
   for (const auto& [delay, wanted_ns] : {std::pair{0.0, 0.0}, std::pair{delay_s, delay_s * 1e9}}) {
     int seen = 0;
-    for (const auto& trial : session_of("demo", kBuffers[1], delay)) {
+    for (const auto& trial : session_of(shipped("demo"), kBuffers[1], delay)) {
       REQUIRE(trial.response_zero == "go_cue");
       const auto frame_ns = static_cast<double>(onsets(trial).at(0)) * 1e9 / 192000;
       CHECK(static_cast<double>(trial.onset_ns) - frame_ns == Approx(wanted_ns).margin(2));
@@ -84,8 +115,8 @@ TEST_CASE("the converter's delay is part of every stored onset", "[session][inte
 TEST_CASE("simulated sessions have the latency of the rig's buffer", "[session][intervals]") {
   // A slider's move reaches the surface a buffer after it was made, so the last setting's onset is that much
   // later.
-  const auto short_ = session_of("boundary-adjustment", kBuffers[0], 0),
-             long_ = session_of("boundary-adjustment", kBuffers[2], 0);
+  const auto short_ = session_of(shipped("boundary-adjustment"), kBuffers[0], 0),
+             long_ = session_of(shipped("boundary-adjustment"), kBuffers[2], 0);
   REQUIRE(short_.size() == long_.size());
   int later = 0;
   for (std::size_t i = 0; i < short_.size(); ++i) {
