@@ -19,6 +19,9 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 /// Of limits: how much of the last 60 s had a stimulus.
 constexpr double kWindow_s = 60;
 
+/// How long a setting stands before the next one is shown: long enough to be read.
+constexpr std::chrono::milliseconds kSettingEvery{200};
+
 std::string percent(double share) { return number(std::round(1000 * share) / 10, 4) + " %"; }
 
 double median(std::vector<double> values) {
@@ -168,6 +171,7 @@ std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials) {
 LiveView::LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state)
     : on_state_(std::move(on_state)),
       level_(protocol.procedures.empty() ? "Level" : protocol.procedures.front().level),
+      adjusted_(protocol.task.adjusts),
       rig_(rig),
       planner_(rig_),
       thread_([this](const std::stop_token& stop) { work(stop); }) {}
@@ -176,7 +180,11 @@ LiveView::~LiveView() = default;
 
 void LiveView::trial_begins(const session::TrialSpec& spec, const protocol::Block& block,
                             const session::PlanAhead::Plans& plans) {
-  push({Begun{spec, block.name, plans}, std::nullopt});
+  push({Begun{spec, block.name, plans}, {}, {}});
+}
+
+void LiveView::surface_follows(const session::TrialSpec& spec, const scene::DrivePlan& plan) {
+  push({{}, Setting{spec.factors, plan}, {}});
 }
 
 void LiveView::trial_ended(const session::TrialSpec& spec, const store::TrialRow& row) {
@@ -194,12 +202,14 @@ void LiveView::trial_ended(const session::TrialSpec& spec, const store::TrialRow
   trial.stimulus_s = stimulus_s(row, rig_.output.rate_Hz);
   trial.xruns = row.xruns;
   trial.extra_touches = row.extra_touches;
-  push({std::nullopt, trial});
+  push({{}, {}, trial});
 }
 
 void LiveView::push(News news) {
   {
     const std::lock_guard lock(mutex_);
+    if (news.setting && !queue_.empty() && queue_.back().setting)
+      queue_.pop_back();  // only the newest counts
     queue_.push_back(std::move(news));
   }
   arrived_.notify_one();
@@ -211,6 +221,8 @@ void LiveView::work(const std::stop_token& stop) {
     {
       std::unique_lock lock(mutex_);
       if (!arrived_.wait(lock, stop, [this] { return !queue_.empty(); })) return;
+      arrived_.wait_until(lock, stop, next_setting_,
+                          [this] { return !queue_.front().setting || queue_.size() > 1; });
       news = std::move(queue_.front());
       queue_.pop_front();
     }
@@ -220,7 +232,18 @@ void LiveView::work(const std::stop_token& stop) {
 }
 
 void LiveView::take(const News& news) {
-  if (news.begun) show(*news.begun);
+  if (news.begun) {
+    trial_ = *news.begun;
+    setting_.reset();
+    show();
+  }
+  if (news.setting) {
+    next_setting_ = std::chrono::steady_clock::now() + kSettingEvery;
+    trial_.spec.factors = news.setting->factors;
+    trial_.plans.front().back() = news.setting->plan;
+    setting_ = std::get<double>(trial_.spec.factors.at(adjusted_));
+    show();
+  }
   if (!news.ended) return;
   trials_.push_back(*news.ended);
   const auto trace = live_trace(trials_, level_);
@@ -229,15 +252,16 @@ void LiveView::take(const News& news) {
   state_.times = times ? drawing_of(*times) : Drawing();
 }
 
-void LiveView::show(const Begun& begun) {
-  const auto& spec = begun.spec;
-  state_.heading = fmt::format("Block {}, trial {}{}: {}", begun.block, spec.trial_in_block + 1,
-                               spec.level ? ", level " + number(*spec.level, 4) : "", in_words(spec));
+void LiveView::show() {
+  const auto& spec = trial_.spec;
+  state_.heading = fmt::format("Block {}, trial {}{}{}: {}", trial_.block, spec.trial_in_block + 1,
+                               spec.level ? ", level " + number(*spec.level, 4) : "",
+                               setting_ ? ", now " + number(*setting_, 4) : "", in_words(spec));
   state_.scene.clear();
   state_.surfaces.clear();
   peak_displacement_m_.reset();
   std::vector<SceneLook> looks;
-  for (const auto& interval : begun.plans)
+  for (const auto& interval : trial_.plans)
     for (const auto& plan : interval) looks.push_back(look_at(plan, spec.factors, planner_));
   for (const auto& look : looks) {
     if (looks.size() > 1)

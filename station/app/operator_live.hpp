@@ -1,4 +1,5 @@
 #pragma once
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -52,7 +53,8 @@ std::optional<plot::Figure> live_trace(const std::vector<LiveTrial>& trials, con
 std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials);
 
 /// Follows a session on a thread of its own, which describes and draws the session's own plans, and hands on
-/// a state whenever there is something new. An adjustment is shown as it begins.
+/// a state whenever there is something new. While a slider moves it shows the newest setting, five times a
+/// second.
 class LiveView : public session::Monitor {
  public:
   /// `on_state` is called on the view's own thread.
@@ -62,6 +64,7 @@ class LiveView : public session::Monitor {
 
   void trial_begins(const session::TrialSpec& spec, const protocol::Block& block,
                     const session::PlanAhead::Plans& plans) override;
+  void surface_follows(const session::TrialSpec& spec, const scene::DrivePlan& plan) override;
   void trial_ended(const session::TrialSpec& spec, const store::TrialRow& row) override;
 
  private:
@@ -70,20 +73,30 @@ class LiveView : public session::Monitor {
     std::string block;
     session::PlanAhead::Plans plans;
   };
+  struct Setting {
+    protocol::Factors factors;
+    scene::DrivePlan plan;
+  };
   struct News {
     std::optional<Begun> begun;
+    std::optional<Setting> setting;
     std::optional<LiveTrial> ended;
   };
   void push(News news);
   void work(const std::stop_token& stop);
   void take(const News& news);
-  void show(const Begun& begun);
+  void show();
   void tell();
 
   OnState on_state_;
-  std::string level_;  ///< what the protocol calls it
+  std::string level_;     ///< what the protocol calls it
+  std::string adjusted_;  ///< the factor that a slider sets; "" where none does
   rig::Rig rig_;
-  scene::Planner planner_;  // worker thread only
+  // Worker thread only.
+  scene::Planner planner_;
+  Begun trial_;                    ///< with what is on the surface now
+  std::optional<double> setting_;  ///< of the slider, once it has moved
+  std::chrono::steady_clock::time_point next_setting_;
   std::vector<LiveTrial> trials_;
   std::optional<double> peak_displacement_m_;
   LiveState state_;

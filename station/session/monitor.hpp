@@ -9,8 +9,8 @@
 
 namespace turnpoint::session {
 
-/// Looks over the session's shoulder, for the operator. Both are called on the session thread, between
-/// stimuli; they copy what they need and return at once. Nothing that a monitor does reaches the participant.
+/// Looks over the session's shoulder, for the operator. Called on the session thread; copies what it needs
+/// and returns at once. Nothing that a monitor does reaches the participant.
 class Monitor {
  public:
   virtual ~Monitor() = default;
@@ -19,6 +19,10 @@ class Monitor {
   /// for each interval those of its scenes; they are valid during the call only.
   virtual void trial_begins(const TrialSpec& spec, const protocol::Block& block,
                             const PlanAhead::Plans& plans) = 0;
+
+  /// The surface follows the slider of an adjustment: `plan` is what it glides to from now on, and `spec` has
+  /// the setting among its factors. At most once every kGlideEvery_s.
+  virtual void surface_follows(const TrialSpec& /*spec*/, const scene::DrivePlan& /*plan*/) {}
 
   /// A trial has ended and is stored.
   virtual void trial_ended(const TrialSpec& spec, const store::TrialRow& row) = 0;

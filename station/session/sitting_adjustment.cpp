@@ -39,6 +39,7 @@ void Sitting::glide(Running& trial) {
   if (!at_frame) return;
   trial.slider->followed();
   set_scene(trial.row, plan, *at_frame);
+  if (monitor_ != nullptr) monitor_->surface_follows(spec, plan);
 }
 
 }  // namespace turnpoint::session

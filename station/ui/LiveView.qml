@@ -2,7 +2,8 @@ import QtQuick
 import Turnpoint
 
 // A running session for the operator: what is on the surface, how the procedure goes, what the limits still allow,
-// and what can be done about it. English, like the command line. The model holds news back while a stimulus runs.
+// and what can be done about it. English, like the command line. The model holds news back while a stimulus runs;
+// in an adjustment only the words follow.
 Rectangle {
     id: root
     required property LiveModel live
@@ -207,6 +208,15 @@ Rectangle {
                 id: facts
                 width: scroll.width
                 spacing: 0.9 * look.unit
+                PlainText {
+                    objectName: "picturesLater"
+                    visible: root.bridge.page.kind === PageModel.Adjust
+                    width: parent.width
+                    text: "The words follow the slider. The pictures follow after the trial."
+                    color: look.ink
+                    font.pixelSize: look.textSmall
+                    wrapMode: Text.Wrap
+                }
                 FactTable { width: parent.width; theme: look; heading: "Course"; facts: root.live.course }
                 FactTable { width: parent.width; theme: look; heading: "Limits used"; facts: root.live.limits }
                 FactTable { width: parent.width; theme: look; heading: "On the surface"; facts: root.live.scene; labelWidth: 0.3 * width }

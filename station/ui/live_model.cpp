@@ -28,10 +28,16 @@ void LiveModel::hold_or_show() {
     held_ = hold;
     emit heldChanged();
   }
-  if (held_ || !waiting_) return;
+  if (!waiting_ || (held_ && kind != PageModel::Kind::Adjust)) return;
+  state_.heading = waiting_->heading;
+  state_.scene = waiting_->scene;
+  state_.course = waiting_->course;
+  state_.limits = waiting_->limits;
+  emit wordsChanged();
+  if (held_) return;
   state_ = std::move(*waiting_);
   waiting_.reset();
-  emit changed();
+  emit picturesChanged();
 }
 
 QVariantList LiveModel::scene() const { return to_list(state_.scene); }

@@ -11,18 +11,19 @@ namespace turnpoint::ui {
 
 /// The operator's view of a running session, and what the operator may do to it. What is new is held back
 /// while a stimulus runs or answers are open, so that drawing it can never delay the participant's screen.
+/// Only in an adjustment, which lasts many seconds, the words follow the slider; pictures wait there as well.
 class LiveModel : public QObject {
   Q_OBJECT
   QML_ELEMENT
   QML_UNCREATABLE("made by the program")
-  Q_PROPERTY(QString heading READ heading NOTIFY changed)
-  Q_PROPERTY(QVariantList scene READ scene NOTIFY changed)
-  Q_PROPERTY(QVariantList course READ course NOTIFY changed)
-  Q_PROPERTY(QVariantList limits READ limits NOTIFY changed)
-  Q_PROPERTY(QVariantList surfaces READ surfaces NOTIFY changed)
-  Q_PROPERTY(QVariant profile READ profile NOTIFY changed)
-  Q_PROPERTY(QVariant trace READ trace NOTIFY changed)
-  Q_PROPERTY(QVariant times READ times NOTIFY changed)
+  Q_PROPERTY(QString heading READ heading NOTIFY wordsChanged)
+  Q_PROPERTY(QVariantList scene READ scene NOTIFY wordsChanged)
+  Q_PROPERTY(QVariantList course READ course NOTIFY wordsChanged)
+  Q_PROPERTY(QVariantList limits READ limits NOTIFY wordsChanged)
+  Q_PROPERTY(QVariantList surfaces READ surfaces NOTIFY picturesChanged)
+  Q_PROPERTY(QVariant profile READ profile NOTIFY picturesChanged)
+  Q_PROPERTY(QVariant trace READ trace NOTIFY picturesChanged)
+  Q_PROPERTY(QVariant times READ times NOTIFY picturesChanged)
   Q_PROPERTY(bool held READ held NOTIFY heldChanged)
 
  public:
@@ -39,7 +40,7 @@ class LiveModel : public QObject {
   QVariant profile() const { return to_variant(state_.profile); }
   QVariant trace() const { return to_variant(state_.trace); }
   QVariant times() const { return to_variant(state_.times); }
-  /// A stimulus runs or answers are open: nothing new is shown.
+  /// A stimulus runs or answers are open: no new picture is shown.
   bool held() const { return held_; }
 
   Q_INVOKABLE void pause() { bridge_.pause(); }
@@ -50,7 +51,8 @@ class LiveModel : public QObject {
   Q_INVOKABLE void annotate(const QString& text) { bridge_.annotate(text); }
 
  signals:
-  void changed();
+  void wordsChanged();
+  void picturesChanged();
   void heldChanged();
 
  private:

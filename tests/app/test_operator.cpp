@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <condition_variable>
 #include <filesystem>
 #include <fstream>
@@ -186,6 +187,41 @@ TEST_CASE("the live view shows what is played: each scene of each interval, with
   CHECK((roved > 0 || scenes > 1));  // otherwise the first look at a scene's plan would have been enough
 }
 
+TEST_CASE("a slider that moves fast is shown a few times a second, and in the end where it stands",
+          "[operator]") {
+  const Folder folder;
+  auto request = demo_in(folder);
+  request.protocol = kSource + "/protocols/boundary-adjustment.toml";
+  const auto setup = app::prepare(request);
+  session::Director director(setup.protocol, 0, 3);
+  session::PlanAhead plans(setup.rig, setup.protocol, 3);
+  auto spec = *director.next();
+  std::mutex mutex;
+  std::condition_variable told;
+  std::vector<app::LiveState> states;
+  app::LiveView view(setup.protocol, setup.rig, [&](app::LiveState state) {
+    const std::lock_guard lock(mutex);
+    states.push_back(std::move(state));
+    told.notify_one();
+  });
+  const auto from = std::chrono::steady_clock::now();
+  view.trial_begins(spec, *director.block(), plans.take(spec).plans);
+  for (double offset_mm = -25; offset_mm < 25; offset_mm += 0.5) {
+    spec.factors["offset_mm"] = offset_mm;
+    view.surface_follows(spec, plans.take(spec).plans.front().back());
+  }
+  std::unique_lock lock(mutex);
+  CHECK(told.wait_for(lock, std::chrono::seconds(20), [&] {
+    return !states.empty() && states.back().heading.find(", now 24.5:") != std::string::npos;
+  }));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - from;
+  CHECK(states.size() <= 2 + took / std::chrono::milliseconds(200));  // the beginning, and settings
+  const auto plan = plans.take(spec).plans.front().back();
+  CHECK(drives_shown(states.back()) ==
+        std::vector<std::string>{text::number(1e6 * plan.tones.front().amplitude_m, 3) + " \u00b5m on"});
+  CHECK(states.back().surfaces.size() == 1);
+}
+
 TEST_CASE("the report on the screen has the trade's numbers and pictures", "[operator]") {
   const Folder folder;
   session::Inputs inputs;
@@ -270,6 +306,15 @@ TEST_CASE("a check that is no longer wanted is abandoned before it plans anythin
   CHECK(check().problems.empty());
   stop.request_stop();
   CHECK_THROWS_AS(check(), protocol::Abandoned);
+}
+
+TEST_CASE("preparing a session that is no longer wanted is abandoned before it plans anything",
+          "[operator]") {
+  const Folder folder;
+  std::stop_source stop;
+  CHECK(app::prepare(demo_in(folder), stop.get_token()).participant == "P09");
+  stop.request_stop();
+  CHECK_THROWS_AS(app::prepare(demo_in(folder), stop.get_token()), protocol::Abandoned);
 }
 
 TEST_CASE("ages are said as people say them", "[operator]") {

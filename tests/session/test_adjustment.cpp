@@ -1,19 +1,28 @@
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <mutex>
 #include <set>
 #include <sstream>
 #include <stdexcept>
 
+#include "station/app/operator_live.hpp"
 #include "station/app/prepare.hpp"
 #include "station/app/resume.hpp"
 #include "station/procedure/adjustment.hpp"
 #include "station/session/session.hpp"
 #include "station/session/slider.hpp"
 #include "station/store/read.hpp"
+#include "station/text/number.hpp"
+#include "tests/session/faulty_stream.hpp"
+#include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
 namespace fs = std::filesystem;
@@ -139,6 +148,129 @@ TEST_CASE("an adjustment that was interrupted goes on with the same settings", "
   const auto summary = session::run(*resumed, nullptr, inputs);
   CHECK(summary.status == store::SessionStatus::completed);
   REQUIRE(summary.estimates.size() == 1);
+}
+
+namespace {
+
+/// A real stream that keeps the tones that it was asked to glide to.
+struct KeptStream : FaultyStream {
+  KeptStream(std::unique_ptr<Stream> real, Misfortunes& misfortunes, std::vector<drive::ToneSet>& kept)
+      : FaultyStream(std::move(real), misfortunes), glides(kept) {}
+  void change(std::uint32_t burst, const drive::Change& change) override {
+    glides.push_back(change.to);
+    FaultyStream::change(burst, change);
+  }
+  std::vector<drive::ToneSet>& glides;
+};
+
+/// A tone, as it is played or as the operator reads it.
+struct Tone {
+  double frequency_Hz = 0, full_scale = 0;
+};
+
+Tone read_tone(const app::LiveState& state) {
+  for (const auto& [label, value] : state.scene)
+    if (label == "Tone")
+      return {1e3 * std::strtod(value.c_str(), nullptr),
+              0.01 * std::strtod(value.c_str() + value.find('(') + 1, nullptr)};
+  return {};
+}
+
+/// The operator, who looks at the live view whenever the session says something to it.
+struct Operator : session::Monitor {
+  explicit Operator(const session::Setup& setup)
+      : view(setup.protocol, setup.rig, [this](app::LiveState state) {
+          const std::lock_guard lock(mutex);
+          newest = std::move(state);
+          ++told;
+          changed.notify_one();
+        }) {}
+
+  void trial_begins(const session::TrialSpec& spec, const protocol::Block& block,
+                    const session::PlanAhead::Plans& plans) override {
+    look([&] { view.trial_begins(spec, block, plans); });
+    begun.push_back(read_tone(newest));
+  }
+  void surface_follows(const session::TrialSpec& spec, const scene::DrivePlan& plan) override {
+    look([&] { view.surface_follows(spec, plan); });
+    followed.push_back(read_tone(newest));
+    headings.push_back(newest.heading);
+    next_move();
+  }
+  void trial_ended(const session::TrialSpec&, const store::TrialRow&) override {}
+
+  /// Ten seconds are a failure, not a measurement.
+  void look(const std::function<void()>& tell) {
+    std::unique_lock lock(mutex);
+    const auto before = told;
+    lock.unlock();
+    tell();
+    lock.lock();
+    if (!changed.wait_for(lock, std::chrono::seconds(10), [&] { return told > before; }))
+      throw std::runtime_error("the view shows nothing new");
+  }
+
+  std::function<void()> next_move;
+  std::vector<Tone> begun, followed;
+  std::vector<std::string> headings;
+  std::mutex mutex;
+  std::condition_variable changed;
+  app::LiveState newest;
+  int told = 0;
+  app::LiveView view;  // last: its thread ends before what it writes to goes
+};
+
+}  // namespace
+
+TEST_CASE("while the slider moves, the operator sees the tone that is played", "[session][live]") {
+  const TemporaryFolder folder;
+  auto setup = live_room::live_setup(folder / "a.sqlite", "touch");
+  setup.protocol = protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/ui/adjust.toml");
+  live_room::Room room;
+  Operator sees(setup);
+  const std::vector<double> moves{-15, -3.5, 8, 20, 2};
+  std::size_t moved = 0;
+  const auto move = [&] {
+    session::Input input;
+    input.time_ns = drive::monotonic_ns();
+    const bool done = moved % (moves.size() + 1) == moves.size();
+    input.kind = done ? session::InputKind::next : session::InputKind::slider;
+    if (!done) input.number = moves[moved % (moves.size() + 1)];
+    ++moved;
+    room.inputs.push(input);
+  };
+  sees.next_move = move;
+  room.reacts = [&](const session::Page& page) {
+    if (page.kind == session::PageKind::adjust && !page.answers_open) return move();
+    room.cooperate(page);
+  };
+  std::vector<drive::ToneSet> played;
+  Misfortunes none;
+  auto devices = room.devices();
+  devices.open_stream = [&](const drive::StreamConfig& config) {
+    return std::make_unique<KeptStream>(drive::open_realtime(config), none, played);
+  };
+  const auto summary = session::run(setup, &room, room.inputs, std::move(devices), &sees);
+  CHECK(summary.status == store::SessionStatus::completed);
+  const auto trials = live_room::trials_of(setup.database, summary);
+  REQUIRE(trials.size() == 2);
+  REQUIRE(sees.begun.size() == 2);
+  REQUIRE(played.size() == 2 * moves.size());
+  REQUIRE(sees.followed.size() == played.size());
+  std::set<double> frequencies;
+  for (std::size_t k = 0; k < played.size(); ++k) {
+    REQUIRE(played[k].count == 1);
+    CHECK(sees.followed[k].frequency_Hz == Approx(played[k].tones[0].frequency_Hz).epsilon(1e-5));
+    CHECK(sees.followed[k].full_scale == Approx(played[k].tones[0].amplitude).epsilon(5e-3));
+    frequencies.insert(sees.followed[k].frequency_Hz);
+    CHECK(sees.headings[k].find("now " + text::number(moves[k % moves.size()])) != std::string::npos);
+  }
+  CHECK(frequencies.size() == moves.size());
+  for (std::size_t i = 0; i < 2; ++i) {
+    REQUIRE(trials[i].tones.size() == 2);
+    CHECK(sees.begun[i].frequency_Hz == Approx(trials[i].tones[0].frequency_Hz).epsilon(1e-5));
+    CHECK(trials[i].response == "2");
+  }
 }
 
 TEST_CASE("the mean of settings estimates the point of equality, their scatter its SD", "[procedure]") {

@@ -174,6 +174,26 @@ Item {
             tryVerify(() => desk.live.heading.includes("level 7"), 2000)
         }
 
+        function test_in_an_adjustment_the_words_follow_and_the_pictures_wait() {
+            liveView.visible = true
+            script.show("between-trials", "en")
+            tryCompare(desk.live, "held", false)
+            script.show("adjust", "en")
+            tryCompare(desk.live, "held", true)
+            const drawn = pictures.count
+            for (const setting of ["now 3.5", "now 4", "now -12"]) {
+                desk.tellLive(setting)
+                tryVerify(() => desk.live.heading.includes(setting), 2000)
+            }
+            compare(pictures.count, drawn)
+            verify(find(liveView, "picturesLater") !== null)
+            script.show("between-trials", "en")
+            tryCompare(pictures, "count", drawn + 1)
+            compare(find(liveView, "picturesLater"), null)
+            liveView.visible = false
+        }
+
         SignalSpy { id: spy; target: script.bridge; signalName: "shown" }
+        SignalSpy { id: pictures; target: desk.live; signalName: "picturesChanged" }
     }
 }
