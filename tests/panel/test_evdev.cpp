@@ -74,8 +74,8 @@ TEST_CASE("after dropped events fingers are in the slots that the kernel says, a
   REQUIRE(device.next() == News::report);
   CHECK(device.slot(0, ABS_MT_TRACKING_ID) == 5);
   // Unseen: that finger goes, another comes down in the other slot, which is then the current one.
-  fake.slots[0][ABS_MT_TRACKING_ID] = -1;
-  fake.slots[1] = {{ABS_MT_TRACKING_ID, 6}, {ABS_MT_POSITION_X, 720}, {ABS_MT_POSITION_Y, 432}};
+  fake.slot_values[0][ABS_MT_TRACKING_ID] = -1;
+  fake.slot_values[1] = {{ABS_MT_TRACKING_ID, 6}, {ABS_MT_POSITION_X, 720}, {ABS_MT_POSITION_Y, 432}};
   fake.axes[ABS_MT_SLOT] = 1;
   fake.touched = true;
   fake.send(20, EV_SYN, SYN_DROPPED, 0);

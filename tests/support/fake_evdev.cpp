@@ -52,8 +52,8 @@ void FakeEvdev::set_axes(int slot_count) {
   if (slot_count > 0)
     for (const int axis : {ABS_MT_SLOT, ABS_MT_TRACKING_ID, ABS_MT_POSITION_X, ABS_MT_POSITION_Y})
       axes[axis] = 0;
-  slots.assign(static_cast<std::size_t>(slot_count),
-               {{ABS_MT_TRACKING_ID, -1}, {ABS_MT_POSITION_X, 0}, {ABS_MT_POSITION_Y, 0}});
+  slot_values.assign(static_cast<std::size_t>(slot_count),
+                     {{ABS_MT_TRACKING_ID, -1}, {ABS_MT_POSITION_X, 0}, {ABS_MT_POSITION_Y, 0}});
 }
 
 FakeEvdev::~FakeEvdev() {
@@ -113,7 +113,7 @@ int FakeEvdev::answer(unsigned long request, void* argument) const {
     const bool along_y = axis == ABS_Y || axis == ABS_MT_POSITION_Y;
     input_absinfo info{};
     info.value = axes.at(axis);
-    info.maximum = axis == ABS_MT_SLOT          ? static_cast<int>(slots.size()) - 1
+    info.maximum = axis == ABS_MT_SLOT          ? static_cast<int>(slot_values.size()) - 1
                    : axis == ABS_MT_TRACKING_ID ? 65535
                    : along_y                    ? 479
                                                 : 799;
@@ -122,8 +122,8 @@ int FakeEvdev::answer(unsigned long request, void* argument) const {
   }
   if (number == _IOC_NR(EVIOCGMTSLOTS(0))) {
     auto* values = static_cast<int*>(argument);
-    for (std::size_t k = 0; k < slots.size() && (k + 2) * sizeof(int) <= size; ++k)
-      values[k + 1] = slots[k].count(values[0]) ? slots[k].at(values[0]) : 0;
+    for (std::size_t k = 0; k < slot_values.size() && (k + 2) * sizeof(int) <= size; ++k)
+      values[k + 1] = slot_values[k].count(values[0]) ? slot_values[k].at(values[0]) : 0;
     return 0;
   }
   std::memset(argument, 0, number == _IOC_NR(EVIOCSCLOCKID) ? 0 : size);

@@ -11,9 +11,9 @@
 class FakeEvdev {
  public:
   /// A panel of 800 x 480 with so many slots for fingers; 0: one that does not tell fingers apart.
-  explicit FakeEvdev(int slots);
+  explicit FakeEvdev(int slot_count);
   /// The same, for programs that open it by this path.
-  FakeEvdev(int slots, const std::string& path);
+  FakeEvdev(int slot_count, const std::string& path);
   FakeEvdev(const FakeEvdev&) = delete;
   FakeEvdev& operator=(const FakeEvdev&) = delete;
   ~FakeEvdev();
@@ -27,14 +27,14 @@ class FakeEvdev {
 
   /// What the kernel knows now, whether or not it told.
   bool touched = false;
-  std::map<int, int> axes;                ///< value of each axis
-  std::vector<std::map<int, int>> slots;  ///< ABS_MT_... of each slot
+  std::map<int, int> axes;                      ///< value of each axis
+  std::vector<std::map<int, int>> slot_values;  ///< ABS_MT_... of each slot
 
   int answer(unsigned long request, void* argument) const;
   bool is(int descriptor) const;
 
  private:
-  void set_axes(int slots);
+  void set_axes(int slot_count);
 
   int ends_[2] = {-1, -1};
   std::string path_;
