@@ -298,7 +298,7 @@ TEST_CASE("of a converter that is lost amid a stimulus, what was played until th
   };
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == store::TrialOutcome::fault);
+  CHECK(trials[0].outcome == terms::Outcome::fault);
   const auto stimuli = live_room::events_of(card.setup.database, card.summary, "stimulus");
   REQUIRE(stimuli.size() == 3);
   // Booked from the onset on, in frames; and what the card really played in that time.
@@ -328,8 +328,8 @@ TEST_CASE("a trial is void a second after a converter should have said that it w
   };
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == store::TrialOutcome::answered);
-  CHECK(trials[1].outcome == store::TrialOutcome::fault);
+  CHECK(trials[0].outcome == terms::Outcome::answered);
+  CHECK(trials[1].outcome == terms::Outcome::fault);
   CHECK(trials[2].level == trials[1].level);
   CHECK(card.details.back() == "the converter does not say whether a stimulus was played");
   const auto stimuli = live_room::events_of(card.setup.database, card.summary, "stimulus");
@@ -349,7 +349,7 @@ TEST_CASE("a converter that does not say where it is gets no stimulus", "[sessio
   };
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
-  CHECK(trials[0].outcome == store::TrialOutcome::fault);
+  CHECK(trials[0].outcome == terms::Outcome::fault);
   CHECK(card.details.back() == "the converter does not say what it is playing");
   CHECK(live_room::events_of(card.setup.database, card.summary, "stimulus").size() == 2);
 }
@@ -370,7 +370,7 @@ TEST_CASE("what is reported late of a repeated trial says nothing about the next
   };
   const auto trials = card.runs();
   REQUIRE(trials.size() == 4);
-  CHECK(trials[0].outcome == store::TrialOutcome::aborted);
-  CHECK(trials[1].outcome == store::TrialOutcome::fault);
-  CHECK(trials[2].outcome == store::TrialOutcome::answered);
+  CHECK(trials[0].outcome == terms::Outcome::aborted);
+  CHECK(trials[1].outcome == terms::Outcome::fault);
+  CHECK(trials[2].outcome == terms::Outcome::answered);
 }
