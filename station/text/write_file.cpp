@@ -31,67 +31,56 @@ std::string destination(const std::string& path) {
   return fs::weakly_canonical(path).string();
 }
 
-void write_all(int descriptor, std::string_view bytes, const std::string& path) {
-  while (!bytes.empty()) {
-    const auto written = ::write(descriptor, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(path, errno);
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-}
-
-/// An open file that goes again, unless it was kept.
-class Draft {
- public:
-  Draft(const std::string& path, mode_t mode) : path_(path) {
-    ::unlink(path.c_str());  // of a writer that was killed, or somebody's link
-    descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
-    if (descriptor_ < 0) fail(path, errno);
-  }
-  Draft(const Draft&) = delete;
-  Draft& operator=(const Draft&) = delete;
-  ~Draft() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (!path_.empty()) ::unlink(path_.c_str());
-  }
-
-  void write(std::string_view bytes) {
-    write_all(descriptor_, bytes, path_);
-    if (::fsync(descriptor_) != 0) fail(path_, errno);
-    if (::close(std::exchange(descriptor_, -1)) != 0) fail(path_, errno);
-  }
-  void keep_as(const std::string& path) {
-    if (::rename(path_.c_str(), path.c_str()) != 0) fail(path, errno);
-    path_.clear();
-  }
-
- private:
-  std::string path_;
-  int descriptor_ = -1;
-};
-
-void write_through(const std::string& path, std::string_view bytes) {
-  const int descriptor = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
-  if (descriptor < 0) fail(path, errno);
-  try {
-    write_all(descriptor, bytes, path);
-  } catch (...) {
-    ::close(descriptor);
-    throw;
-  }
-  ::close(descriptor);
+bool is_device(const std::string& path) {
+  std::error_code missing;
+  const auto status = fs::status(path, missing);
+  return fs::is_character_file(status) || fs::is_fifo(status);
 }
 
 }  // namespace
 
+FileWriter::FileWriter(const std::string& path, mode_t mode) : path_(destination(path)) {
+  if (is_device(path)) {
+    descriptor_ = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0) fail(path, errno);
+    return;
+  }
+  draft_ = path_ + ".new";
+  ::unlink(draft_.c_str());  // of a writer that was killed, or somebody's link
+  descriptor_ = ::open(draft_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+  if (descriptor_ < 0) fail(std::exchange(draft_, ""), errno);
+}
+
+FileWriter::FileWriter(FileWriter&& other) noexcept
+    : path_(std::move(other.path_)),
+      draft_(std::exchange(other.draft_, "")),
+      descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+FileWriter::~FileWriter() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!draft_.empty()) ::unlink(draft_.c_str());
+}
+
+void FileWriter::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const auto written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(draft_.empty() ? path_ : draft_, errno);
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void FileWriter::commit() {
+  if (!draft_.empty() && ::fsync(descriptor_) != 0) fail(draft_, errno);
+  if (::close(std::exchange(descriptor_, -1)) != 0 && !draft_.empty()) fail(draft_, errno);
+  if (!draft_.empty() && ::rename(draft_.c_str(), path_.c_str()) != 0) fail(path_, errno);
+  draft_.clear();
+}
+
 void write_file(const std::string& path, std::string_view bytes, mode_t mode) {
-  const auto place = destination(path);
-  std::error_code missing;
-  const auto status = fs::status(path, missing);
-  if (fs::is_character_file(status) || fs::is_fifo(status)) return write_through(path, bytes);
-  Draft draft(place + ".new", mode);
-  draft.write(bytes);
-  draft.keep_as(place);
+  FileWriter file(path, mode);
+  file.write(bytes);
+  file.commit();
 }
 
 }  // namespace turnpoint::text

@@ -4,6 +4,7 @@
 
 #include "station/text/number.hpp"
 #include "station/text/problem.hpp"
+#include "station/text/sha256.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -17,6 +18,19 @@ TEST_CASE("SHA-256 gives the published digests at every padding length", "[text]
         "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
   CHECK(sha256(std::string(1000000, 'a')) ==
         "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST_CASE("SHA-256 of pieces is that of the whole, wherever it is cut", "[text]") {
+  std::string bytes;
+  for (int i = 0; i < 200; ++i) bytes += static_cast<char>(i * 37);
+  for (std::size_t first = 0; first <= bytes.size(); first += 9)
+    for (std::size_t second = first; second <= bytes.size(); second += 13) {
+      Sha256 hash;
+      for (const auto& piece :
+           {bytes.substr(0, first), bytes.substr(first, second - first), bytes.substr(second)})
+        hash.add(piece);
+      REQUIRE(hash.hex() == sha256(bytes));
+    }
 }
 
 TEST_CASE("a number is written for people without noise", "[text]") {

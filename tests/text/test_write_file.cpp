@@ -32,6 +32,21 @@ TEST_CASE("a file is written whole in the place of what was there", "[write]") {
   CHECK_THROWS_AS(text::write_file(folder / "no/a.csv", "x"), std::system_error);
 }
 
+TEST_CASE("a file written in pieces appears whole, or not at all", "[write]") {
+  const TemporaryFolder folder;
+  const auto path = folder / "a.csv";
+  text::write_file(path, "old\n");
+  for (const bool committed : {false, true}) {
+    text::FileWriter file(path);
+    file.write("one\n");
+    file.write("two\n");
+    CHECK(content(path) == "old\n");
+    if (committed) file.commit();
+  }
+  CHECK(content(path) == "one\ntwo\n");
+  CHECK_FALSE(fs::exists(path + ".new"));
+}
+
 TEST_CASE("a link that lies where a draft goes is not followed", "[write]") {
   const TemporaryFolder folder;
   const auto path = folder / "a.csv", victim = folder / "victim";
