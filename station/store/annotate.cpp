@@ -12,7 +12,7 @@ namespace turnpoint::store {
 void annotate(const std::string& path, const std::string& session_id, const std::string& text) {
   if (text.empty()) throw terms::UsageError("annotate: the note is empty");
   auto writer = open_writer(path, IfMissing::fail);
-  const auto session = read_session(writer.database, session_id).session;
+  const auto session = session_record(writer.database, session_id);
   Transaction transaction(writer.database);
   Statement(writer.database, "INSERT INTO annotation VALUES (?,?,?,?)")
       .bind(new_uuid(), session.session_id, realtime_ns(), text)
@@ -22,7 +22,7 @@ void annotate(const std::string& path, const std::string& session_id, const std:
 
 void abandon(const std::string& path, const std::string& session_id, const std::string& reason) {
   auto writer = open_writer(path, IfMissing::fail);
-  const auto session = read_session(writer.database, session_id).session;
+  const auto session = session_record(writer.database, session_id);
   if (session.status != SessionStatus::interrupted)
     throw StoreError(Fault::refused,
                      fmt::format("database {}: session {} is {}; only an interrupted one is abandoned", path,

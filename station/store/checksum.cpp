@@ -3,17 +3,21 @@
 #include <fmt/format.h>
 
 #include <bit>
+#include <map>
+#include <optional>
+#include <set>
 #include <utility>
 
 #include "station/store/fields.hpp"
-#include "station/text/number.hpp"
+#include "station/text/sha256.hpp"
 
 namespace turnpoint::store {
 
 namespace {
 
 /// Each value with its kind and length, so that no two different rows look the same.
-void add_row(std::string& bytes, const Statement& row) {
+void add_row(text::Sha256& hash, const Statement& row) {
+  std::string bytes;
   for (int i = 0; i < row.columns(); ++i) {
     const auto text = row.is_null(i)   ? std::string()
                       : row.is_real(i) ? std::to_string(std::bit_cast<std::int64_t>(row.real(i)))
@@ -25,21 +29,22 @@ void add_row(std::string& bytes, const Statement& row) {
     bytes += text;
   }
   bytes += '\n';
+  hash.add(bytes);
 }
 
-/// The rows of one session as bytes, in one of the encodings.
+}  // namespace
+
+/// The rows of one session as the bytes that are hashed, in one of the encodings. Statements are prepared
+/// once, since a session has two links a trial.
 class Encoder {
  public:
   Encoder(Database& database, std::string schema, std::string session_id, std::int64_t encoding = kEncoding)
       : database_(database), schema_(std::move(schema)), id_(std::move(session_id)), encoding_(encoding) {}
 
-  Encoder in(std::int64_t encoding) const { return {database_, schema_, id_, encoding}; }
-
   /// What the session was begun with. Its status changes later: the links cover that.
-  std::string provenance() const {
+  void add_provenance(text::Sha256& hash) const {
     auto session = session_table();
     session.fields.resize(session.fields.size() - 2);
-    std::string bytes;
     Statement row(database_,
                   fmt::format("SELECT {1}, {2}, {3}, {4} FROM {0}.session s LEFT JOIN {0}.protocol p"
                               " USING (protocol_key) LEFT JOIN {0}.rig r USING (rig_key)"
@@ -49,35 +54,35 @@ class Encoder {
                               column_list(covered(rig_table(), encoding_), "r."),
                               column_list(covered(calibration_table(), encoding_), "c.")));
     row.bind(id_);
-    while (row.step()) add_row(bytes, row);
-    return bytes;
+    while (row.step()) add_row(hash, row);
   }
 
   /// The rows after `from` up to `to`, table by table.
-  std::string rows(const Extent& from, const Extent& to) const {
-    std::string bytes;
-    add(bytes, segment_table(), "segment_index", "segment_index", from.segment, to.segment);
-    add(bytes, block_table(), "run_order", "run_order", from.block, to.block);
-    add(bytes, trial_table(), "trial_index", "trial_index", from.trial, to.trial);
-    add(bytes, tone_table(), "trial_index", "trial_index, interval_index, scene_index, tone_index",
+  void add_rows(text::Sha256& hash, const Extent& from, const Extent& to) {
+    add(hash, segment_, segment_table(), "segment_index", "segment_index", from.segment, to.segment);
+    add(hash, block_, block_table(), "run_order", "run_order", from.block, to.block);
+    add(hash, trial_, trial_table(), "trial_index", "trial_index", from.trial, to.trial);
+    add(hash, tone_, tone_table(), "trial_index", "trial_index, interval_index, scene_index, tone_index",
         from.trial, to.trial);
-    add(bytes, event_table(), "event_index", "event_index", from.event, to.event);
-    return bytes;
+    add(hash, event_, event_table(), "event_index", "event_index", from.event, to.event);
   }
 
-  Extent extent() const {
+  Extent extent() {
     Extent last;
-    Statement row(database_,
-                  fmt::format("SELECT (SELECT max(segment_index) FROM {0}.segment WHERE session_id = ?1),"
-                              " (SELECT max(run_order) FROM {0}.block WHERE session_id = ?1),"
-                              " (SELECT max(trial_index) FROM {0}.trial WHERE session_id = ?1),"
-                              " (SELECT max(event_index) FROM {0}.event WHERE session_id = ?1)",
-                              schema_));
+    if (!extent_)
+      extent_.emplace(database_,
+                      fmt::format("SELECT (SELECT max(segment_index) FROM {0}.segment WHERE session_id = ?1),"
+                                  " (SELECT max(run_order) FROM {0}.block WHERE session_id = ?1),"
+                                  " (SELECT max(trial_index) FROM {0}.trial WHERE session_id = ?1),"
+                                  " (SELECT max(event_index) FROM {0}.event WHERE session_id = ?1)",
+                                  schema_));
+    auto& row = *extent_;
     row.bind(id_).step();
     last.segment = row.maybe_integer(0).value_or(last.segment);
     last.block = row.maybe_integer(1).value_or(last.block);
     last.trial = row.maybe_integer(2).value_or(last.trial);
     last.event = row.maybe_integer(3).value_or(last.event);
+    row.reset();
     return last;
   }
 
@@ -91,29 +96,35 @@ class Encoder {
 
  private:
   template <class Record>
-  void add(std::string& bytes, const Table<Record>& table, const std::string& key, const std::string& order,
-           std::int64_t from, std::int64_t to) const {
+  void add(text::Sha256& hash, std::optional<Statement>& rows, const Table<Record>& table,
+           const std::string& key, const std::string& order, std::int64_t from, std::int64_t to) {
     if (from == to) return;
-    bytes += table.name;
-    bytes += '\n';
-    Statement rows(database_,
+    if (!rows)
+      rows.emplace(database_,
                    fmt::format("SELECT {} FROM {}.{} WHERE session_id = ? AND {} > ? AND {} <= ?"
                                " ORDER BY {}",
                                column_list(covered(table, encoding_)), schema_, table.name, key, key, order));
-    rows.bind(id_, from, to);
-    while (rows.step()) add_row(bytes, rows);
+    hash.add(std::string(table.name) + '\n');
+    rows->bind(id_, from, to);
+    while (rows->step()) add_row(hash, *rows);
+    rows->reset();
   }
 
   Database& database_;
   std::string schema_, id_;
   std::int64_t encoding_;
+  std::optional<Statement> segment_, block_, trial_, tone_, event_, extent_;
 };
 
-std::string checksum_of(const Encoder& encoder, const Link& previous, const Link& link) {
-  auto bytes = fmt::format("turnpoint/{} {} {}\n{}\n{}:{}\n", link.encoding, link.index, previous.sha256,
-                           link.status, link.status_reason.size(), link.status_reason);
-  if (link.index == 0) bytes += encoder.provenance();
-  return text::sha256(bytes + encoder.rows(previous.last, link.last));
+namespace {
+
+std::string checksum_of(Encoder& encoder, const Link& previous, const Link& link) {
+  text::Sha256 hash;
+  hash.add(fmt::format("turnpoint/{} {} {}\n{}\n{}:{}\n", link.encoding, link.index, previous.sha256,
+                       link.status, link.status_reason.size(), link.status_reason));
+  if (link.index == 0) encoder.add_provenance(hash);
+  encoder.add_rows(hash, previous.last, link.last);
+  return hash.hex();
 }
 
 constexpr const char* kLinkColumns =
@@ -128,15 +139,6 @@ Link link_from(const Statement& row) {
   link.status_reason = row.text(7);
   link.sha256 = row.text(8);
   return link;
-}
-
-std::vector<Link> links_of(Database& database, const std::string& schema, const std::string& session_id) {
-  std::vector<Link> links;
-  Statement rows(database, fmt::format("SELECT {} FROM {}.link WHERE session_id = ? ORDER BY link_index",
-                                       kLinkColumns, schema));
-  rows.bind(session_id);
-  while (rows.step()) links.push_back(link_from(rows));
-  return links;
 }
 
 /// What opening a database does to sessions whose process died needs no link: these words and no others.
@@ -163,55 +165,75 @@ std::string place(const Link& previous, const Link& link) {
   return rows.empty() ? "the session's status" : rows;
 }
 
-void check_links(const Encoder& encoder, const std::vector<Link>& links, std::vector<std::string>& problems) {
+/// Checks each link against its rows, and counts them. Returns the last.
+Link check_links(Database& database, const std::string& schema, VerifiedSession& verified) {
+  std::map<std::int64_t, Encoder> encoders;
+  Statement rows(database, fmt::format("SELECT {} FROM {}.link WHERE session_id = ? ORDER BY link_index",
+                                       kLinkColumns, schema));
+  rows.bind(verified.session_id);
   Link previous;
-  for (const auto& link : links) {
+  for (; rows.step(); ++verified.links) {
+    auto link = link_from(rows);
+    const auto encoder = [&]() -> Encoder& {
+      return encoders.try_emplace(link.encoding, database, schema, verified.session_id, link.encoding)
+          .first->second;
+    };
     if (link.encoding < 1 || link.encoding > kEncoding)
-      problems.push_back(fmt::format("link {} has encoding {}, which this release does not know", link.index,
-                                     link.encoding));
+      verified.problems.push_back(fmt::format("link {} has encoding {}, which this release does not know",
+                                              link.index, link.encoding));
     else if (link.index != previous.index + 1)
-      problems.push_back(fmt::format("link {} is missing", previous.index + 1));
-    else if (checksum_of(encoder.in(link.encoding), previous, link) != link.sha256)
-      problems.push_back(
+      verified.problems.push_back(fmt::format("link {} is missing", previous.index + 1));
+    else if (checksum_of(encoder(), previous, link) != link.sha256)
+      verified.problems.push_back(
           fmt::format("{} is not as it was recorded (link {})", place(previous, link), link.index));
-    previous = link;
+    previous = std::move(link);
   }
+  return previous;
 }
 
-/// Whether the participant's place in the counterbalancing is the session's. It was given by the station of
-/// one of the participant's sessions, unless that session has been withdrawn.
-bool is_enrolled(Database& database, const std::string& schema, const std::string& session_id) {
-  Statement row(
+/// The sessions, or the one of `session_id`, whose place in the counterbalancing is their participant's. It
+/// was given by the station of one of the participant's sessions, unless that session has been withdrawn. One
+/// query for all: asked session by session it would read all sessions for each of them.
+std::set<std::string> enrolled(Database& database, const std::string& schema,
+                               const std::string& session_id = "") {
+  std::set<std::string> ids;
+  Statement rows(
       database,
-      fmt::format("SELECT 1 FROM {0}.session s JOIN {0}.protocol p USING (protocol_key)"
-                  " JOIN {0}.enrolment e ON e.participant = s.participant AND e.protocol_id = p.protocol_id"
-                  "  AND e.sequence_index = s.sequence_index"
-                  " WHERE s.session_id = ? AND (EXISTS (SELECT 1 FROM {0}.tombstone) OR EXISTS"
-                  "  (SELECT 1 FROM {0}.session x WHERE x.participant = s.participant"
-                  "   AND x.station_id = e.station_id))",
-                  schema));
-  row.bind(session_id);
-  return row.step();
+      fmt::format("SELECT s.session_id FROM {0}.session s JOIN {0}.protocol p USING (protocol_key)"
+                  " WHERE {1} AND (s.participant, p.protocol_id, s.sequence_index) IN"
+                  "  (SELECT e.participant, e.protocol_id, e.sequence_index FROM {0}.enrolment e"
+                  "   WHERE EXISTS (SELECT 1 FROM {0}.tombstone) OR (e.participant, e.station_id) IN"
+                  "    (SELECT x.participant, x.station_id FROM {0}.session x))",
+                  schema, session_id.empty() ? "?1 = ''" : "s.session_id = ?1"));
+  rows.bind(session_id);
+  while (rows.step()) ids.insert(rows.text(0));
+  return ids;
 }
 
 }  // namespace
 
 Chain::Chain(Database& database, std::string session_id)
-    : database_(&database), session_id_(std::move(session_id)) {
-  auto links = links_of(database, "main", session_id_);
-  if (!links.empty()) last_ = std::move(links.back());
+    : database_(&database),
+      session_id_(std::move(session_id)),
+      encoder_(std::make_unique<Encoder>(database, "main", session_id_)) {
+  Statement row(
+      database,
+      fmt::format("SELECT {} FROM link WHERE session_id = ? ORDER BY link_index DESC LIMIT 1", kLinkColumns));
+  row.bind(session_id_);
+  if (row.step()) last_ = link_from(row);
 }
 
+Chain::~Chain() = default;
+
 Link Chain::add() {
-  const Encoder encoder(*database_, "main", session_id_);
   Link link;
   link.index = last_.index + 1;
-  link.last = encoder.extent();
+  link.last = encoder_->extent();
   Statement status(*database_, "SELECT status, status_reason FROM session WHERE session_id = ?");
   status.bind(session_id_).step();
   link.status = status.text(0);
   link.status_reason = status.text(1);
-  link.sha256 = checksum_of(encoder, last_, link);
+  link.sha256 = checksum_of(*encoder_, last_, link);
   Statement(*database_,
             fmt::format("INSERT INTO link (session_id, {}) VALUES (?,?,?,?,?,?,?,?,?,?)", kLinkColumns))
       .bind(session_id_, link.index, link.encoding, link.last.segment, link.last.block, link.last.trial,
@@ -220,7 +242,10 @@ Link Chain::add() {
   return link;
 }
 
-VerifiedSession verify_session(Database& database, const std::string& session_id, const std::string& schema) {
+namespace {
+
+VerifiedSession verify_one(Database& database, const std::string& session_id, const std::string& schema,
+                           const std::set<std::string>& enrolled_ids) {
   VerifiedSession verified;
   verified.session_id = session_id;
   Statement row(
@@ -237,24 +262,28 @@ VerifiedSession verify_session(Database& database, const std::string& session_id
   verified.participant = row.text(0);
   verified.protocol_id = row.text(1);
   verified.trials = row.integer(4);
-  if (!is_enrolled(database, schema, session_id))
+  if (enrolled_ids.count(session_id) == 0)
     verified.problems.push_back("the participant's place in the counterbalancing is not the session's");
-  const Encoder encoder(database, schema, session_id);
-  const auto links = links_of(database, schema, session_id);
-  if (links.empty()) {
+  const auto last = check_links(database, schema, verified);
+  if (verified.links == 0) {
     Statement earlier(database, "SELECT 1 FROM " + schema + ".unsealed WHERE session_id = ?");
     earlier.bind(session_id);
     if (!earlier.step()) verified.problems.push_back("its checksums are missing");
     return verified;
   }
-  verified.links = static_cast<std::int64_t>(links.size());
-  verified.last_sha256 = links.back().sha256;
-  check_links(encoder, links, verified.problems);
-  if (!(encoder.extent() == links.back().last) || encoder.tone_beyond(links.back().last.trial))
+  verified.last_sha256 = last.sha256;
+  Encoder encoder(database, schema, session_id);
+  if (!(encoder.extent() == last.last) || encoder.tone_beyond(last.last.trial))
     verified.problems.push_back("rows at the end are missing, or were added, since the last link");
-  if (!follows(links.back(), row.text(2), row.text(3)))
+  if (!follows(last, row.text(2), row.text(3)))
     verified.problems.push_back("the status is not as it was recorded");
   return verified;
+}
+
+}  // namespace
+
+VerifiedSession verify_session(Database& database, const std::string& session_id, const std::string& schema) {
+  return verify_one(database, session_id, schema, enrolled(database, schema, session_id));
 }
 
 bool holds_link(Database& database, const std::string& session_id, const std::string& sha256) {
@@ -273,19 +302,22 @@ std::vector<VerifiedSession> verify_database(Database& database, const std::stri
   std::vector<std::string> ids;
   Statement rows(database, "SELECT session_id FROM " + schema + ".session ORDER BY participant, session_id");
   while (rows.step()) ids.push_back(rows.text(0));
+  const auto enrolled_ids = enrolled(database, schema);
   std::vector<VerifiedSession> verified;
-  for (const auto& id : ids) verified.push_back(verify_session(database, id, schema));
+  for (const auto& id : ids) verified.push_back(verify_one(database, id, schema, enrolled_ids));
   return verified;
 }
 
 std::string session_checksum(Database& database, const std::string& schema, const std::string& session_id) {
-  const Encoder encoder(database, schema, session_id);
-  auto bytes = encoder.provenance() + encoder.rows({}, encoder.extent());
+  text::Sha256 hash;
+  Encoder encoder(database, schema, session_id);
+  encoder.add_provenance(hash);
+  encoder.add_rows(hash, {}, encoder.extent());
   Statement notes(database,
                   "SELECT * FROM " + schema + ".annotation WHERE session_id = ? ORDER BY annotation_id");
   notes.bind(session_id);
-  while (notes.step()) add_row(bytes, notes);
-  return text::sha256(bytes);
+  while (notes.step()) add_row(hash, notes);
+  return hash.hex();
 }
 
 }  // namespace turnpoint::store

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,11 +35,14 @@ struct Link {
   std::string sha256;                 ///< hexadecimal; "" for the empty chain
 };
 
+class Encoder;
+
 /// Extends the chain of one session. Every transaction that writes rows of the session adds one link.
 class Chain {
  public:
   /// Goes on after the last link that the database holds.
   Chain(Database& database, std::string session_id);
+  ~Chain();
   /// Inside the caller's transaction: writes a link over everything that was written since the last one.
   Link add();
   /// The transaction that wrote this link has been committed.
@@ -48,6 +52,7 @@ class Chain {
  private:
   Database* database_;
   std::string session_id_;
+  std::unique_ptr<Encoder> encoder_;
   Link last_;
 };
 
@@ -65,7 +70,7 @@ struct VerifiedSession {
 VerifiedSession verify_session(Database& database, const std::string& session_id,
                                const std::string& schema = "main");
 
-/// The same for every session. Rows that belong to no session are found by check_pages (open.hpp).
+/// The same for every session. Rows that belong to no session are found by check_pages (whole_file.hpp).
 std::vector<VerifiedSession> verify_database(Database& database, const std::string& schema = "main");
 
 /// True where the chain of the session holds a link with that checksum.

@@ -12,6 +12,7 @@
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
 #include "station/store/sqlite.hpp"
+#include "station/store/whole_file.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/write_file.hpp"
 
@@ -77,10 +78,16 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
 
 }  // namespace
 
-void write_file(const std::string& path, const std::string& bytes) {
+namespace {
+
+/// Text that a table gathers before it is written.
+constexpr std::size_t kPieceBytes = 1U << 18U;
+
+/// What `write` fails with, in the words of an export.
+template <class Write>
+auto writing(const std::string& path, Write write) {
   try {
-    fs::create_directories(fs::path(path).parent_path());
-    text::write_file(path, bytes);
+    return write();
   } catch (const std::system_error& error) {
     const bool full = error.code() == std::errc::no_space_on_device;
     throw StoreError(
@@ -90,21 +97,46 @@ void write_file(const std::string& path, const std::string& bytes) {
   }
 }
 
-void write_table(const std::string& path, const TextTable& table, std::vector<ExportedFile>& files) {
-  write_file(path, table.text());
-  files.push_back({path, table.rows()});
+}  // namespace
+
+void write_file(const std::string& path, const std::string& bytes) {
+  writing(path, [&] {
+    fs::create_directories(fs::path(path).parent_path());
+    text::write_file(path, bytes);
+  });
+}
+
+TableFile::TableFile(const std::string& path, const TableStyle& style,
+                     const std::vector<std::string>& columns)
+    : path_(path), table_(style, columns), file_(writing(path, [&] {
+        fs::create_directories(fs::path(path).parent_path());
+        return text::FileWriter(path);
+      })) {}
+
+void TableFile::row(const std::vector<Cell>& cells) {
+  table_.row(cells);
+  if (table_.text().size() >= kPieceBytes) writing(path_, [&] { file_.write(table_.take()); });
+}
+
+void TableFile::finish(std::vector<ExportedFile>& files) {
+  writing(path_, [&] {
+    file_.write(table_.take());
+    file_.commit();
+  });
+  files.push_back({path_, table_.rows()});
 }
 
 void export_csv(Database& database, const ProtocolSelection& selection, const TableStyle& style,
                 std::vector<ExportedFile>& files) {
   const auto trial_row = trial_columns(selection.factors);
   const auto interval_row = interval_columns(), event_row = event_columns(), session_row = session_columns();
-  TextTable trials(style, names_of(trial_row));
-  TextTable intervals(style, names_of(interval_row));
-  TextTable events(style, names_of(event_row));
-  TextTable sessions(style, names_of(session_row));
+  const auto table = [&](const char* name, const ExportColumns& columns) {
+    return TableFile(selection.folder + "/" + name, style, names_of(columns));
+  };
+  auto trials = table("trials.csv", trial_row), intervals = table("intervals.csv", interval_row),
+       events = table("events.csv", event_row), sessions = table("sessions.csv", session_row);
   for (const auto& session : selection.sessions) {
-    const auto stored = read_session(database, session.session_id);
+    const auto stored = read_session(database, session);
     const auto spans = stimulus_spans(stored);
     sessions.row(cells_of(session_row, {&stored.session}));
     for (const auto& block : stored.blocks)
@@ -123,10 +155,7 @@ void export_csv(Database& database, const ProtocolSelection& selection, const Ta
           cells_of(event_row, {&stored.session, nullptr, nullptr, nullptr, &event, segment.monotonic_ns}));
     }
   }
-  write_table(selection.folder + "/trials.csv", trials, files);
-  write_table(selection.folder + "/intervals.csv", intervals, files);
-  write_table(selection.folder + "/events.csv", events, files);
-  write_table(selection.folder + "/sessions.csv", sessions, files);
+  for (auto* file : {&trials, &intervals, &events, &sessions}) file->finish(files);
   write_file(selection.folder + "/codebook.json", codebook_json(selection.protocol_id, selection.factors));
   files.push_back({selection.folder + "/codebook.json", 0});
 }
@@ -135,6 +164,7 @@ std::vector<ExportedFile> export_data(const std::string& path, const std::string
                                       const ExportOptions& options) {
   check_style(options);
   auto database = open_reader(path);
+  check_pages(database);
   // One snapshot for all files, whatever a running session adds meanwhile.
   database.execute("BEGIN");
   const auto selections = select(database, directory, options);

@@ -100,11 +100,12 @@ class BidsWriter {
     refuse_leftovers(selection_.folder, labels_);
     plain("dataset_description.json", bids_description(selection_));
     plain("README", bids_readme(selection_));
+    const auto newest = session_record(database, selection_.sessions.back().session_id);
     plain(fmt::format("task-{}_beh.json", task_),
-          bids_sidecar(selection_, explanations(bids_trial_columns(selection_.factors))));
-    plain(fmt::format("task-{}_events.json", task_), bids_sidecar(selection_, bids_event_columns()));
+          bids_sidecar(newest.start, explanations(bids_trial_columns(selection_.factors))));
+    plain(fmt::format("task-{}_events.json", task_), bids_sidecar(newest.start, bids_event_columns()));
     participants();
-    for (const auto& session : selection_.sessions) runs(read_session(database, session.session_id));
+    for (const auto& session : selection_.sessions) runs(read_session(database, session));
   }
 
  private:
@@ -114,7 +115,7 @@ class BidsWriter {
   }
 
   void participants() {
-    TextTable table(kBids, names_of(bids_participant_columns()));
+    TableFile table(selection_.folder + "/participants.tsv", kBids, names_of(bids_participant_columns()));
     std::map<std::string, std::vector<const SessionRecord*>> sessions;
     for (const auto& session : selection_.sessions) sessions[session.person].push_back(&session);
     for (const auto& [person, list] : sessions) {
@@ -124,7 +125,7 @@ class BidsWriter {
       table.row({cell("sub-" + labels_.participants.at(person)), cell(joined(codes)),
                  cell(static_cast<int>(list.size())), cell(joined(stations))});
     }
-    write_table(selection_.folder + "/participants.tsv", table, files_);
+    table.finish(files_);
     plain("participants.json", columns_json(bids_participant_columns()));
   }
 
@@ -138,7 +139,7 @@ class BidsWriter {
       const auto base = fmt::format("{0}/{1}/{2}/beh/{1}_{2}_task-{3}_run-{4:02}", selection_.folder, subject,
                                     session, task_, segment);
       const auto columns = bids_trial_columns(selection_.factors);
-      TextTable trials(kBids, names_of(columns));
+      TableFile trials(base + "_beh.tsv", kBids, names_of(columns));
       for (const auto& block : stored.blocks)
         for (const auto& trial : block.trials)
           if (trial.segment_index == segment) {
@@ -146,12 +147,12 @@ class BidsWriter {
             row.span = span_of(spans, trial);
             trials.row(cells_of(columns, row));
           }
-      write_table(base + "_beh.tsv", trials, files_);
-      TextTable events(kBids, names_of(bids_event_columns()));
+      trials.finish(files_);
+      TableFile events(base + "_events.tsv", kBids, names_of(bids_event_columns()));
       for (const auto& event : all_events)
         if (event.segment_index == segment)
           events.row(bids_event_cells(event, stored.segments[i].monotonic_ns));
-      write_table(base + "_events.tsv", events, files_);
+      events.finish(files_);
     }
   }
 

@@ -78,11 +78,10 @@ std::string bids_readme(const ProtocolSelection& selection) {
       selection.protocol_id);
 }
 
-std::string bids_sidecar(const ProtocolSelection& selection, const std::vector<Column>& columns) {
-  const auto& start = selection.sessions.back().start;
+std::string bids_sidecar(const SessionStart& start, const std::vector<Column>& columns) {
   const auto texts = texts_of(start);
   Json json;
-  json["TaskName"] = bids_label(selection.protocol_id);
+  json["TaskName"] = bids_label(start.protocol_id);
   json["TaskDescription"] = texts.title;
   if (!texts.instructions.empty()) json["Instructions"] = texts.instructions;
   json["StimulusPresentation"] = {{"OperatingSystem", start.kernel},

@@ -13,8 +13,9 @@ namespace turnpoint::store {
 std::string bids_description(const ProtocolSelection& selection);
 std::string bids_readme(const ProtocolSelection& selection);
 
-/// The sidecar of a table: the task, what the participant read, and the program, then each column.
-std::string bids_sidecar(const ProtocolSelection& selection, const std::vector<Column>& columns);
+/// The sidecar of a table, by the newest session: the task, what the participant read, and the program, then
+/// each column.
+std::string bids_sidecar(const SessionStart& start, const std::vector<Column>& columns);
 
 /// The columns of trials.csv; onset and duration are called stimulus_onset and stimulus_duration, since BIDS
 /// keeps the short names for tables of events.

@@ -5,6 +5,7 @@
 #include "station/store/export.hpp"
 #include "station/store/read.hpp"
 #include "station/store/text_table.hpp"
+#include "station/text/write_file.hpp"
 
 namespace turnpoint::store {
 
@@ -19,8 +20,19 @@ struct ProtocolSelection {
 /// folder. Throws StoreError.
 void write_file(const std::string& path, const std::string& bytes);
 
-/// The same for a table; notes it in `files`.
-void write_table(const std::string& path, const TextTable& table, std::vector<ExportedFile>& files);
+/// The same for a table of any length, written row by row.
+class TableFile {
+ public:
+  TableFile(const std::string& path, const TableStyle& style, const std::vector<std::string>& columns);
+  void row(const std::vector<Cell>& cells);
+  /// The file appears under its name; notes it in `files`.
+  void finish(std::vector<ExportedFile>& files);
+
+ private:
+  std::string path_;
+  TextTable table_;
+  text::FileWriter file_;
+};
 
 /// The two formats.
 void export_csv(Database& database, const ProtocolSelection& selection, const TableStyle& style,

@@ -9,7 +9,11 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <functional>
+#include <string_view>
 #include <utility>
+
+#include "station/text/sha256.hpp"
 
 namespace turnpoint::store {
 
@@ -74,20 +78,37 @@ std::uint64_t file_size(const std::string& path) {
   fail_system(fault_of_errno(errno), path, errno, "check the path, its permissions and the disk");
 }
 
-std::string read_bytes(const std::string& path) {
+namespace {
+
+/// Gives all bytes of a file to `take`, piece by piece.
+void read_pieces(const std::string& path, const std::function<void(std::string_view)>& take) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  std::string bytes(file_size(path), '\0');
-  std::size_t done = 0;
-  while (file.get() >= 0 && done < bytes.size()) {
-    const auto size = ::read(file.get(), bytes.data() + done, bytes.size() - done);
+  auto left = file_size(path);
+  std::string piece(std::min<std::uint64_t>(left, 1U << 20U), '\0');
+  while (file.get() >= 0 && left > 0) {
+    const auto size = ::read(file.get(), piece.data(), std::min<std::uint64_t>(left, piece.size()));
     if (size < 0 && errno == EINTR) continue;
     if (size == 0) errno = EIO;  // shorter than the system said
     if (size <= 0) break;
-    done += static_cast<std::size_t>(size);
+    take(std::string_view(piece).substr(0, static_cast<std::size_t>(size)));
+    left -= static_cast<std::uint64_t>(size);
   }
-  if (file.get() < 0 || done < bytes.size())
+  if (file.get() < 0 || left > 0)
     fail_system(fault_of_errno(errno), "read " + path, errno, "check the disk and the permissions");
+}
+
+}  // namespace
+
+std::string read_bytes(const std::string& path) {
+  std::string bytes;
+  read_pieces(path, [&](std::string_view piece) { bytes += piece; });
   return bytes;
+}
+
+std::string sha256_of_file(const std::string& path) {
+  text::Sha256 hash;
+  read_pieces(path, [&](std::string_view piece) { hash.add(piece); });
+  return hash.hex();
 }
 
 std::string folder_of(const std::string& path) { return fs::absolute(path).parent_path().string(); }

@@ -25,6 +25,8 @@ bool file_exists(const std::string& path);
 std::uint64_t file_size(const std::string& path);
 /// All bytes of a file; a read error is an error, not the end of the file.
 std::string read_bytes(const std::string& path);
+/// SHA-256 of a file of any size, read piece by piece.
+std::string sha256_of_file(const std::string& path);
 /// The folder that a file is in, absolute.
 std::string folder_of(const std::string& path);
 /// Names in a folder, sorted. A folder that cannot be listed to its end is an error, a missing one too.

@@ -69,27 +69,34 @@ std::string same_key(const Part& part, const std::vector<std::string>& columns) 
   return condition;
 }
 
-/// The first row that both have and that differs, if any.
+/// The first row that both have and that differs, if any. All columns in one pass over the table.
 void refuse_conflicts(Database& database, const Part& part) {
   const auto columns = columns_of(database, part.table);
-  std::string key;
-  for (const auto& column : columns)
+  std::string key, differs, values;
+  std::vector<std::string> compared;
+  for (const auto& column : columns) {
     if (in_list(column, part.key))
       key += fmt::format("{}'{} ' || s.{}", key.empty() ? "" : " || ', ' || ", column, column);
-  for (const auto& column : columns) {
     if (in_list(column, part.key) || in_list(column, part.own_columns)) continue;
-    Statement rows(database,
-                   fmt::format("SELECT {}, m.{}, s.{} FROM source.{} s JOIN main.{} m ON {} WHERE {} AND "
-                               "m.{} IS NOT s.{} LIMIT 1",
-                               key, column, column, part.table, part.table, same_key(part, columns),
-                               part.incoming, column, column));
-    if (rows.step())
+    compared.push_back(column);
+    differs += fmt::format("{}m.{} IS NOT s.{}", differs.empty() ? "" : " OR ", column, column);
+    values += fmt::format(", m.{0} IS NOT s.{0}, m.{0}, s.{0}", column);
+  }
+  if (compared.empty()) return;
+  // The rows that come in lead, by the other's key: the table here may be many times as large.
+  Statement rows(
+      database,
+      fmt::format("SELECT {}{} FROM source.{} s CROSS JOIN main.{} m ON {} WHERE {} AND ({}) LIMIT 1", key,
+                  values, part.table, part.table, same_key(part, columns), part.incoming, differs));
+  if (!rows.step()) return;
+  for (int i = 0; i < static_cast<int>(compared.size()); ++i)
+    if (rows.integer(3 * i + 1) != 0)
       throw StoreError(
           Fault::conflict,
           fmt::format("merge: table {}, {}: {} is {} here and {} there; nothing was merged; one of the "
                       "two databases was changed by hand, or the session was gone on with in both",
-                      part.table, rows.text(0), column, rows.text(1), rows.text(2)));
-  }
+                      part.table, rows.text(0), compared[static_cast<std::size_t>(i)], rows.text(3 * i + 2),
+                      rows.text(3 * i + 3)));
 }
 
 /// One place in the counterbalancing given to two people: two databases call themselves the same station.
@@ -223,6 +230,7 @@ class SourceCopy {
   SourceCopy(const std::string& source, const std::string& beside) : path_(beside + ".merging") {
     verify_checksum_file(source);
     auto reader = open_reader(source);
+    check_pages(reader);
     copy_to_file(reader, path_, source);
   }
   SourceCopy(const SourceCopy&) = delete;
@@ -261,8 +269,9 @@ MergeReport merge(const std::string& name, const std::string& source) {
   if (fs::exists(source) && fs::exists(path) && fs::equivalent(source, path))
     throw StoreError(Fault::refused, fmt::format("merge: {} and {} are one file", path, source));
   auto writer = open_writer(path, IfMissing::create);
-  const SourceCopy copy(source, path);
   auto& database = writer.database;
+  check_pages(database);
+  const SourceCopy copy(source, path);
   Statement(database, "ATTACH ? AS source").bind(copy.path()).run();
   database.execute(
       "CREATE TEMP TABLE incoming (session_id, station_id, participant, protocol_key, rig_key, "

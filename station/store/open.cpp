@@ -163,7 +163,7 @@ Writer open_writer(const std::string& name, IfMissing if_missing) {
   database.execute("PRAGMA busy_timeout = 2000");
   const int version = checked_version(database);
   require_writable(database);
-  check_pages(database);
+  check_ends(database);
   remove_leftovers(path);
   if (version < schema_version()) copy_to_file(database, copy_before_migration(path), path);
   database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
@@ -180,9 +180,9 @@ Database open_reader(const std::string& name) {
   if (state == FileState::empty) refuse_empty(path);
   auto database = open_plain_reader(path);
   const int version = checked_version(database);
-  check_pages(database);
+  check_ends(database);
   if (version == schema_version()) return database;
-  Database migrated(":memory:", Database::Access::create);
+  Database migrated("", Database::Access::create);
   copy_database(database, migrated);
   migrate(migrated);
   return migrated;

@@ -35,16 +35,17 @@ struct Writer {
 /// What open_writer does where there is no file.
 enum class IfMissing { create, fail };
 
-/// Opens a database for writing: WAL, synchronous FULL, foreign keys; checks its pages, and takes an older
-/// schema to the current one after a copy FILE.before-vN. A new file appears whole or not at all. What
-/// interrupted operations have left beside the database is removed. What root makes anew in another user's
-/// folder, the lock as well, is that user's. Sessions that a dead process left running become interrupted,
-/// those without trials abandoned. Throws StoreError and changes nothing for a file that is empty, damaged,
-/// not Turnpoint's or newer.
+/// Opens a database for writing: WAL, synchronous FULL, foreign keys; checks its ends (check_ends()), which
+/// takes as long for a large file as for a small one, and takes an older schema to the current one after a
+/// copy FILE.before-vN. A new file appears whole or not at all. What interrupted operations have left beside
+/// the database is removed. What root makes anew in another user's folder, the lock as well, is that user's.
+/// Sessions that a dead process left running become interrupted, those without trials abandoned. Throws
+/// StoreError and changes nothing for a file that is empty, damaged, not Turnpoint's or newer.
 Writer open_writer(const std::string& path, IfMissing if_missing);
 
-/// Opens a database for reading only, also beside a running session and on a read-only disk. An older schema
-/// is read through a migrated copy in memory.
+/// Opens a database for reading only, also beside a running session and on a read-only disk, and checks its
+/// ends. Whoever copies or judges the whole of it calls check_pages() as well. An older schema is read
+/// through a migrated copy in a temporary file.
 Database open_reader(const std::string& path);
 
 }  // namespace turnpoint::store

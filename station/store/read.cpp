@@ -1,6 +1,7 @@
 #include "station/store/read.hpp"
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 #include <utility>
 
@@ -15,46 +16,81 @@ namespace turnpoint::store {
 
 namespace {
 
-/// The fields of a whole SessionRecord, in the order in which session_from() reads them, then what is
-/// counted.
-std::string sessions_sql() {
-  return "SELECT " + column_list(session_table(), "s.") + ", " + column_list(protocol_table(), "p.") + ", " +
-         column_list(rig_table(), "r.") + ", " + column_list(calibration_table(), "c.") + R"sql(,
-  (SELECT count(*) FROM segment g WHERE g.session_id = s.session_id),
-  (SELECT count(*) FROM trial t WHERE t.session_id = s.session_id),
-  max((SELECT max(g.realtime_ns) FROM segment g WHERE g.session_id = s.session_id),
-      coalesce((SELECT t.recorded_realtime_ns FROM trial t WHERE t.session_id = s.session_id
-                ORDER BY t.trial_index DESC LIMIT 1), 0)),
-  (SELECT l.sha256 FROM link l WHERE l.session_id = s.session_id ORDER BY l.link_index DESC LIMIT 1),
-  coalesce((SELECT max(t.trial_id) FROM trial t WHERE t.session_id = s.session_id), 0),
-  EXISTS (SELECT 1 FROM merged m WHERE m.session_id = s.session_id)
-FROM session s JOIN protocol p USING (protocol_key) JOIN rig r USING (rig_key)
-  LEFT JOIN calibration c USING (calibration_id)
-WHERE ?1 IN ('', s.session_id) AND ?2 IN ('', p.protocol_id)
-)sql";
+enum class LongTexts { read, left_out };
+
+/// What a SessionRecord is read from, in the order of its columns.
+std::vector<Table<SessionRecord>> session_tables(LongTexts texts) {
+  std::vector tables = {session_table(), protocol_table(), rig_table(), calibration_table()};
+  const std::set<std::string> long_texts = {"text", "canonical"};
+  for (auto& table : tables)
+    if (texts == LongTexts::left_out)
+      std::erase_if(table.fields, [&](const auto& field) { return long_texts.count(field.name) != 0; });
+  return tables;
 }
 
-SessionRecord session_from(const Statement& row) {
-  SessionRecord session;
-  session.session_id = row.text(0);
-  int column = 0;
-  const auto read = [&](const Table<SessionRecord>& table) {
-    column += static_cast<int>(table.place.size());
-    read_fields(row, table, column, session);
-    column += static_cast<int>(table.fields.size());
-  };
-  read(session_table());
-  read(protocol_table());
-  read(rig_table());
-  read(calibration_table());
-  session.segments = static_cast<int>(row.integer(column));
-  session.trials = static_cast<int>(row.integer(column + 1));
-  session.last_activity_realtime_ns = row.integer(column + 2);
-  session.checksum = row.text(column + 3);
-  session.last_trial_id = row.integer(column + 4);
-  session.merged = row.integer(column + 5) != 0;
-  return session;
-}
+/// Reads sessions one by one: each by its key, so that the others are not touched.
+class SessionReader {
+ public:
+  SessionReader(Database& database, LongTexts texts)
+      : people_(database),
+        tables_(session_tables(texts)),
+        rows_(database, sql(tables_)),
+        notes_(database,
+               "SELECT text FROM annotation WHERE session_id = ? ORDER BY realtime_ns, annotation_id") {}
+
+  std::optional<SessionRecord> read(const std::string& session_id) {
+    rows_.bind(session_id);
+    if (!rows_.step()) return std::nullopt;
+    auto session = from_row();
+    rows_.reset();
+    session.person = people_.label({session.start.station_id, session.start.participant});
+    notes_.bind(session_id);
+    while (notes_.step()) session.annotations.push_back(notes_.text(0));
+    return session;
+  }
+
+  const People& people() const { return people_; }
+
+ private:
+  static std::string sql(const std::vector<Table<SessionRecord>>& tables) {
+    std::string columns;
+    for (const auto& table : tables) columns += column_list(table, std::string(table.name) + ".") + ", ";
+    return "SELECT " + columns + R"sql(
+  (SELECT count(*) FROM segment g WHERE g.session_id = session.session_id),
+  (SELECT count(*) FROM trial t WHERE t.session_id = session.session_id),
+  max((SELECT max(g.realtime_ns) FROM segment g WHERE g.session_id = session.session_id),
+      coalesce((SELECT t.recorded_realtime_ns FROM trial t WHERE t.session_id = session.session_id
+                ORDER BY t.trial_index DESC LIMIT 1), 0)),
+  (SELECT l.sha256 FROM link l WHERE l.session_id = session.session_id ORDER BY l.link_index DESC LIMIT 1),
+  coalesce((SELECT max(t.trial_id) FROM trial t WHERE t.session_id = session.session_id), 0),
+  EXISTS (SELECT 1 FROM merged m WHERE m.session_id = session.session_id)
+FROM session JOIN protocol USING (protocol_key) JOIN rig USING (rig_key) LEFT JOIN calibration USING (calibration_id)
+WHERE session.session_id = ?
+)sql";
+  }
+
+  SessionRecord from_row() const {
+    SessionRecord session;
+    session.session_id = rows_.text(0);
+    int column = 0;
+    for (const auto& table : tables_) {
+      column += static_cast<int>(table.place.size());
+      read_fields(rows_, table, column, session);
+      column += static_cast<int>(table.fields.size());
+    }
+    session.segments = static_cast<int>(rows_.integer(column));
+    session.trials = static_cast<int>(rows_.integer(column + 1));
+    session.last_activity_realtime_ns = rows_.integer(column + 2);
+    session.checksum = rows_.text(column + 3);
+    session.last_trial_id = rows_.integer(column + 4);
+    session.merged = rows_.integer(column + 5) != 0;
+    return session;
+  }
+
+  People people_;
+  std::vector<Table<SessionRecord>> tables_;
+  Statement rows_, notes_;
+};
 
 /// The rows of one table that belong to a session.
 template <class Record>
@@ -84,29 +120,19 @@ bool is_among(const Bearer& bearer, const std::vector<std::vector<Bearer>>& pers
   });
 }
 
-/// Trials are numbered in the order in which they were stored; the clock may have been set since.
-bool newer(const SessionRecord& a, const SessionRecord& b) {
-  return std::make_pair(!a.merged, a.last_trial_id) > std::make_pair(!b.merged, b.last_trial_id);
-}
-
 }  // namespace
 
 std::vector<SessionRecord> list_sessions(Database& database, const SessionFilter& filter) {
   std::vector<SessionRecord> sessions;
-  Statement rows(database, sessions_sql());
-  Statement notes(database,
-                  "SELECT text FROM annotation WHERE session_id = ? ORDER BY realtime_ns, annotation_id");
+  SessionReader reader(database, LongTexts::left_out);
+  const auto wanted = reader.people().named(filter.participant);
+  Statement rows(database,
+                 "SELECT session_id, station_id, participant FROM session JOIN protocol USING "
+                 "(protocol_key) WHERE ?1 IN ('', session_id) AND ?2 IN ('', protocol_id)");
   rows.bind(filter.session_id, filter.protocol_id);
-  const People people(database);
-  const auto wanted = people.named(filter.participant);
   while (rows.step()) {
-    auto session = session_from(rows);
-    const Bearer bearer{session.start.station_id, session.start.participant};
-    if (!filter.participant.empty() && !is_among(bearer, wanted)) continue;
-    session.person = people.label(bearer);
-    notes.bind(session.session_id);
-    while (notes.step()) session.annotations.push_back(notes.text(0));
-    sessions.push_back(std::move(session));
+    if (!filter.participant.empty() && !is_among({rows.text(1), rows.text(2)}, wanted)) continue;
+    if (auto session = reader.read(rows.text(0))) sessions.push_back(std::move(*session));
   }
   const auto place = [](const SessionRecord& session) {
     return std::tie(session.person, session.start.protocol_id, session.session_index, session.session_id);
@@ -121,13 +147,30 @@ std::vector<SessionRecord> list_sessions(const std::string& path, const SessionF
   return list_sessions(database, filter);
 }
 
-StoredSession read_session(Database& database, const std::string& session_id) {
-  auto sessions = list_sessions(database, {session_id, "", ""});
-  if (session_id.empty() || sessions.empty())
+SessionRecord session_record(Database& database, const std::string& session_id) {
+  auto session = SessionReader(database, LongTexts::read).read(session_id);
+  if (!session)
     throw StoreError(Fault::missing, "database " + database.path() + ": it has no session \"" + session_id +
                                          "\"; `turnpoint sessions` lists those that it has");
-  return {std::move(sessions.front()), read_rows(database, segment_table(), session_id, "segment_index"),
-          read_blocks(database, session_id), read_rows(database, event_table(), session_id, "event_index")};
+  return std::move(*session);
+}
+
+std::vector<std::string> participants(const std::string& path) {
+  auto database = open_reader(path);
+  std::vector<std::string> codes;
+  Statement rows(database, "SELECT DISTINCT participant FROM session ORDER BY participant");
+  while (rows.step()) codes.push_back(rows.text(0));
+  return codes;
+}
+
+StoredSession read_session(Database& database, const SessionRecord& session) {
+  const auto& id = session.session_id;
+  return {session, read_rows(database, segment_table(), id, "segment_index"), read_blocks(database, id),
+          read_rows(database, event_table(), id, "event_index")};
+}
+
+StoredSession read_session(Database& database, const std::string& session_id) {
+  return read_session(database, session_record(database, session_id));
 }
 
 StoredSession read_session(const std::string& path, const std::string& session_id) {
@@ -136,16 +179,19 @@ StoredSession read_session(const std::string& path, const std::string& session_i
 }
 
 std::optional<Interrupted> interrupted_session(const std::string& path, const std::string& session_id) {
-  std::optional<Interrupted> newest;
-  for (auto& session : list_sessions(path, {session_id, "", ""})) {
-    const bool open =
-        session.status == SessionStatus::interrupted || session.status == SessionStatus::running;
-    if (!open || session.trials == 0) continue;
-    if (newest && !newer(session, newest->session)) continue;
-    const auto age_ns = realtime_ns() - session.last_activity_realtime_ns;
-    newest = Interrupted{std::move(session), static_cast<double>(age_ns) * 1e-9};
-  }
-  return newest;
+  auto database = open_reader(path);
+  // Trials are numbered in the order in which they were stored; the clock may have been set since.
+  Statement newest(
+      database,
+      "SELECT s.session_id, (SELECT max(trial_id) FROM trial t WHERE t.session_id = s.session_id) AS last"
+      " FROM session s WHERE s.status IN ('interrupted', 'running') AND ?1 IN ('', s.session_id)"
+      " AND last IS NOT NULL"
+      " ORDER BY EXISTS (SELECT 1 FROM merged m WHERE m.session_id = s.session_id), last DESC LIMIT 1");
+  newest.bind(session_id);
+  if (!newest.step()) return std::nullopt;
+  auto session = session_record(database, newest.text(0));
+  const auto age_ns = realtime_ns() - session.last_activity_realtime_ns;
+  return Interrupted{std::move(session), static_cast<double>(age_ns) * 1e-9};
 }
 
 }  // namespace turnpoint::store

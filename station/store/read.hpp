@@ -15,10 +15,17 @@ struct SessionFilter {
   std::string session_id, participant, protocol_id;
 };
 
-/// Sessions in the order of person, protocol, index and id. Reads only; works beside a running session.
+/// Sessions in the order of person, protocol, index and id, without the texts of protocol, rig and
+/// calibration: a database has many sessions and few texts. Reads only; works beside a running session.
 /// Throws StoreError.
 std::vector<SessionRecord> list_sessions(const std::string& database, const SessionFilter& filter = {});
 std::vector<SessionRecord> list_sessions(Database& database, const SessionFilter& filter = {});
+
+/// One session with its texts. Throws StoreError (missing) where there is none of that id.
+SessionRecord session_record(Database& database, const std::string& session_id);
+
+/// Participant codes of all sessions, in alphabetical order.
+std::vector<std::string> participants(const std::string& database);
 
 /// A whole session as it stands. Throws StoreError (missing) where there is none of that id.
 struct StoredSession {
@@ -29,6 +36,8 @@ struct StoredSession {
 };
 StoredSession read_session(const std::string& database, const std::string& session_id);
 StoredSession read_session(Database& database, const std::string& session_id);
+/// The rows of a session that list_sessions() gave.
+StoredSession read_session(Database& database, const SessionRecord& session);
 
 /// A session that can be gone on with.
 struct Interrupted {

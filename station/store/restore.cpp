@@ -20,7 +20,8 @@ namespace {
 /// now may be whole.
 void require_lost(const std::string& path) {
   try {
-    open_reader(path);
+    auto database = open_reader(path);
+    check_pages(database);
   } catch (const StoreError& error) {
     const auto fault = error.fault();
     const bool absent = fault == Fault::missing && !file_exists(path);
@@ -112,7 +113,8 @@ Candidates candidates_for(const std::string& path, const RestoreOptions& options
 bool is_good(const StoredBackup& candidate) {
   if (!agrees_with_checksum(candidate.path)) return false;
   try {
-    open_reader(candidate.path);
+    auto backup = open_reader(candidate.path);
+    check_pages(backup);
     return true;
   } catch (const StoreError& error) {
     if (is_damage(error) && !file_exists(candidate.path + ".sha256")) return false;

@@ -186,7 +186,7 @@ SessionLog SessionLog::begin(const std::string& path, const SessionStart& start,
   impl->chain.emplace(database, id);
   impl->commit(transaction);
   impl->place = {id, 1, 0, 0};
-  impl->session = list_sessions(database, {id, "", ""}).front();
+  impl->session = session_record(database, id);
   return SessionLog(std::move(impl));
 }
 
@@ -223,7 +223,7 @@ SessionLog SessionLog::resume(const std::string& path, const std::string& id, co
       .run();
   impl->chain.emplace(database, id);
   impl->commit(transaction);
-  impl->session = list_sessions(database, {id, "", ""}).front();
+  impl->session = session_record(database, id);
   impl->blocks = std::move(stored.blocks);
   return SessionLog(std::move(impl));
 }

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -35,6 +36,8 @@ class TextTable {
   /// As many cells as there are columns; anything else is a std::logic_error.
   void row(const std::vector<Cell>& cells);
   const std::string& text() const { return text_; }
+  /// The text since the last call: a large table is written piece by piece.
+  std::string take() { return std::exchange(text_, ""); }
   std::size_t rows() const { return rows_; }
 
  private:

@@ -7,6 +7,7 @@
 
 #include "station/store/open.hpp"
 #include "station/store/text_table.hpp"
+#include "station/store/whole_file.hpp"
 #include "station/text/toml.hpp"
 
 namespace turnpoint::store {
@@ -70,7 +71,8 @@ bool Verification::good() const {
 Verification verify(const std::string& path, const VerifyOptions& options) {
   std::vector<Exported> exported;
   if (!options.against.empty()) exported = read_export(options.against);
-  auto database = open_reader(path);  // which checks pages and references
+  auto database = open_reader(path);
+  check_pages(database);
   Verification result;
   if (options.session_id.empty())
     result.sessions = verify_database(database);

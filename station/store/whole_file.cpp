@@ -4,6 +4,10 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <string_view>
+#include <utility>
+#include <vector>
+
 #include "station/store/files.hpp"
 #include "station/store/identity.hpp"
 #include "station/store/schema.hpp"
@@ -69,6 +73,29 @@ void check_pages(Database& database) {
   if (pages != "ok") database.fail(SQLITE_CORRUPT, "quick_check: " + pages);
   Statement keys(database, "PRAGMA foreign_key_check");
   if (keys.step()) database.fail(SQLITE_CORRUPT, "foreign_key_check: table " + keys.text(0));
+}
+
+void check_ends(Database& database) {
+  std::vector<std::string> tables;
+  Statement names(database, "SELECT name FROM sqlite_schema WHERE type = 'table' ORDER BY name");
+  while (names.step()) tables.push_back(names.text(0));
+  for (const auto& table : tables) database.integer("SELECT 1 FROM \"" + table + "\" LIMIT 1");
+  Statement last(database, "SELECT * FROM trial ORDER BY trial_id DESC LIMIT 1");
+  if (!last.step()) return;
+  for (const auto& [table, key] : {std::pair("session", "status"), std::pair("segment", "segment_index"),
+                                   std::pair("block", "run_order"), std::pair("tone", "trial_index"),
+                                   std::pair("event", "event_index")}) {
+    Statement row(database,
+                  fmt::format("SELECT * FROM {} WHERE session_id = ? ORDER BY {} DESC LIMIT 1", table, key));
+    row.bind(last.text(1));
+    const bool needed = std::string_view("session segment block").find(table) != std::string_view::npos;
+    if (!row.step() && needed)
+      throw StoreError(Fault::corrupt,
+                       fmt::format("database {}: the last trial has lost its {}; it was left "
+                                   "untouched; restore the newest good backup (turnpoint backup "
+                                   "--db FILE --dir FOLDER --restore)",
+                                   database.path(), table));
+  }
 }
 
 void refuse_absent(const std::string& path) {

@@ -29,8 +29,13 @@ std::string replace_by_restored(const std::string& path);
 /// Removes what interrupted operations on this database have left: files that never got their name.
 void remove_leftovers(const std::string& path);
 
-/// PRAGMA quick_check and foreign_key_check; throws StoreError (corrupt) with what they say.
+/// PRAGMA quick_check and foreign_key_check of the whole file; throws StoreError (corrupt) with what they
+/// say.
 void check_pages(Database& database);
+
+/// What can be checked without reading the whole file: its header and length, the first page of every table,
+/// and the last trial with all that belongs to it. Throws StoreError (corrupt).
+void check_ends(Database& database);
 
 /// UTC with milliseconds, for names that people read.
 std::string time_stamp();

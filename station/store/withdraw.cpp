@@ -11,6 +11,7 @@
 #include "station/store/open.hpp"
 #include "station/store/read.hpp"
 #include "station/store/sqlite.hpp"
+#include "station/store/whole_file.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::store {
@@ -174,6 +175,7 @@ Withdrawal withdraw(const std::string& name, const WithdrawOptions& options) {
   const auto path = canonical(name);
   auto writer = open_writer(path, IfMissing::fail);
   auto& database = writer.database;
+  check_pages(database);
   auto withdrawal = choose(database, options);
   count_rows(database, withdrawal);
   const auto ids = ids_of(database, withdrawal);
