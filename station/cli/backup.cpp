@@ -5,6 +5,7 @@
 
 #include <memory>
 
+#include "station/app/operator_choices.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 
@@ -15,16 +16,19 @@ namespace {
 struct Options {
   std::string database;
   store::BackupOptions backup;
-  std::string database_id;
-  bool restore = false;
+  std::string database_id, to = "folder";
+  bool restore = false, drill = false;
 };
 
 void back_up(const Options& options, Context& context) {
-  const auto report = store::backup(options.database, options.backup);
+  auto how = options.backup;
+  how.destination = options.to == "disk" ? store::Destination::disk : store::Destination::folder;
+  const auto report = store::backup(options.database, how);
   if (context.json) {
-    context.out << Json{{"path", report.path},      {"number", report.number},     {"sha256", report.sha256},
-                        {"bytes", report.bytes},    {"sessions", report.sessions}, {"trials", report.trials},
-                        {"removed", report.removed}}
+    context.out << Json{{"path", report.path},         {"number", report.number},
+                        {"sha256", report.sha256},     {"bytes", report.bytes},
+                        {"sessions", report.sessions}, {"trials", report.trials},
+                        {"removed", report.removed},   {"unrecorded", report.unrecorded}}
                        .dump(2)
                 << "\n";
     return;
@@ -32,6 +36,32 @@ void back_up(const Options& options, Context& context) {
   fmt::print(context.out, "{}: {} sessions, {} trials, {} bytes, read back and checked\n", report.path,
              report.sessions, report.trials, report.bytes);
   for (const auto& path : report.removed) fmt::print(context.out, "rotated out: {}\n", path);
+  if (!report.unrecorded.empty())
+    fmt::print(context.out, "the start page will not know of this backup: {}\n", report.unrecorded);
+}
+
+void drill(const Options& options, Context& context) {
+  const auto drill = store::drill_restore(options.database, options.backup.directory);
+  if (!drill.problems.empty()) context.exit_code = 1;
+  if (context.json) {
+    context.out << Json{{"from", drill.from},
+                        {"number", drill.number},
+                        {"age_s", drill.age_s},
+                        {"sessions", drill.sessions},
+                        {"trials", drill.trials},
+                        {"live_sessions", drill.live_sessions},
+                        {"live_trials", drill.live_trials},
+                        {"problems", drill.problems}}
+                       .dump(2)
+                << "\n";
+    return;
+  }
+  fmt::print(context.out, "{}: {} old, restored into a temporary file, checked and removed again\n",
+             drill.from, app::age_in_words(drill.age_s));
+  fmt::print(context.out, "it holds {} sessions, {} trials; the database has {} sessions, {} trials\n",
+             drill.sessions, drill.trials, drill.live_sessions, drill.live_trials);
+  for (const auto& problem : drill.problems) fmt::print(context.out, "{}\n", problem);
+  if (drill.problems.empty()) fmt::print(context.out, "every row of it is as it was recorded\n");
 }
 
 void restore(const Options& options, Context& context) {
@@ -78,10 +108,28 @@ void add_backup(CommandLine& app, Context& context) {
                     "Put the newest good backup in the place of a damaged, empty or missing database");
   command->add_option("--database-id", options->database_id,
                       "With --restore: whose backups, where the folder holds those of several databases");
+  command
+      ->add_option(
+          "--to", options->to,
+          "folder | disk; disk: refuse unless another disk than the database's is mounted at --dir or "
+          "the folder above it")
+      ->check(one_of({"folder", "disk"}))
+      ->capture_default_str();
+  command->add_flag("--drill", options->drill,
+                    "Restore the newest backup into a temporary file in --dir, check it, compare it with the "
+                    "database, and remove it again");
   add_json(*command, context);
-  command->footer("Example: turnpoint backup --db lab.sqlite --dir /mnt/backup --keep 30");
+  command->footer(
+      "Example: turnpoint backup --db lab.sqlite --dir /mnt/backup --keep 30\n"
+      "turnpoint-backup.timer makes one every day (deploy/README.md). Exit status 1 where a backup, a "
+      "restore or a "
+      "drill\nis not good.");
   command->callback([options, &context] {
-    if (options->restore)
+    if (options->restore && options->drill) throw UsageError("--restore and --drill: one of them");
+    if (options->backup.directory.empty()) throw UsageError("--dir: the name of the folder is empty");
+    if (options->drill)
+      drill(*options, context);
+    else if (options->restore)
       restore(*options, context);
     else
       back_up(*options, context);

@@ -3,14 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
+#include <fstream>
 
 #include "station/store/backup_folder.hpp"
 #include "station/store/export_files.hpp"
 #include "station/store/files.hpp"
+#include "station/store/identity.hpp"
 #include "station/store/open.hpp"
 #include "station/store/whole_file.hpp"
-#include "station/text/number.hpp"
+#include "station/text/write_file.hpp"
 
 namespace turnpoint::store {
 
@@ -38,6 +41,19 @@ std::vector<StoredBackup> backups_of(const std::string& directory, const std::st
   return all;
 }
 
+std::string record_path(const std::string& database) { return database + ".last-backup"; }
+
+/// For the operator's page. Where it cannot be written, the backup is as good.
+void record(BackupReport& report, const std::string& database, const std::string& database_id) {
+  try {
+    const auto name = record_path(database);
+    text::write_file(name, fmt::format("{}\n{}\n{}\n", database_id, realtime_ns(), report.path));
+    give_to_owner_of_folder(name);
+  } catch (const std::exception& error) {
+    report.unrecorded = error.what();
+  }
+}
+
 /// What is in the file that was made: never what was meant to be in it.
 void read_back(BackupReport& report, std::int64_t sessions) {
   Database copy(report.path, Database::Access::immutable);
@@ -55,11 +71,23 @@ void read_back(BackupReport& report, std::int64_t sessions) {
 void verify_checksum_file(const std::string& path) {
   if (!file_exists(path + ".sha256")) return;
   const auto expected = read_bytes(path + ".sha256").substr(0, 64);
-  if (text::sha256(read_bytes(path)) == expected) return;
+  if (sha256_of_file(path) == expected) return;
   throw StoreError(Fault::corrupt,
                    fmt::format("{} does not agree with {}.sha256: it was damaged or changed after it "
                                "was written; nothing was read from it; take another copy",
                                path, path));
+}
+
+std::optional<LastBackup> last_backup(const std::string& name) {
+  const auto path = canonical(name);
+  std::ifstream file(record_path(path));
+  std::string id, time;
+  LastBackup last;
+  if (!std::getline(file, id) || !std::getline(file, time) || !std::getline(file, last.path)) return {};
+  const auto known = remembered_database_id(path);
+  const auto read = std::from_chars(time.data(), time.data() + time.size(), last.realtime_ns);
+  if (read.ec != std::errc{} || (!known.empty() && id != known)) return {};
+  return last;
 }
 
 std::vector<std::string> backups_in(const std::string& directory, const std::string& path) {
@@ -72,10 +100,13 @@ std::vector<std::string> backups_in(const std::string& directory, const std::str
 BackupReport backup(const std::string& name, const BackupOptions& options) {
   const auto path = canonical(name), directory = canonical(options.directory);
   auto database = open_reader(path);
+  check_pages(database);
+  if (options.destination == Destination::disk) require_disk(directory, path);
   make_folder(directory);
   const BackupFolderLock lock(directory);
   remove_interrupted_backups(directory);
-  const auto older = backups_of(directory, id_of(database));
+  const auto database_id = id_of(database);
+  const auto older = backups_of(directory, database_id);
   BackupReport report;
   report.number = next_backup_number(directory);
   report.path = fmt::format("{}/{}-{:06}-{}.sqlite", directory, stem_of(path), report.number, time_stamp());
@@ -83,11 +114,11 @@ BackupReport backup(const std::string& name, const BackupOptions& options) {
   copy_to_file(database, report.path, path,
                [&](Database& copy) { write_backup_note(copy, stem_of(path), report.number); });
   read_back(report, sessions);
-  const auto bytes = read_bytes(report.path);
-  report.bytes = bytes.size();
-  report.sha256 = text::sha256(bytes);
+  report.bytes = file_size(report.path);
+  report.sha256 = sha256_of_file(report.path);
   write_file(report.path + ".sha256",
              report.sha256 + "  " + fs::path(report.path).filename().string() + "\n");
+  record(report, path, database_id);
   const auto kept_of_older = static_cast<std::size_t>(std::max(0, options.keep - 1));
   for (std::size_t i = 0; options.keep > 0 && i + kept_of_older < older.size(); ++i) {
     remove_backup(older[i].path);

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -7,9 +8,15 @@
 
 namespace turnpoint::store {
 
+enum class Destination {
+  folder,  ///< any folder, made where it is missing
+  disk,    ///< a folder on a disk, stick or share of its own: refused where none is mounted
+};
+
 struct BackupOptions {
   std::string directory;
   int keep = 10;  ///< newest backups of this database that stay, the one just made among them; 0 keeps all
+  Destination destination = Destination::folder;
 };
 
 struct BackupReport {
@@ -19,12 +26,23 @@ struct BackupReport {
   std::int64_t number = 0;  ///< rises with each backup made into the folder, whatever the clock says
   std::int64_t sessions = 0, trials = 0;
   std::vector<std::string> removed;  ///< older backups that rotation took
+  std::string unrecorded;            ///< why last_backup() does not know of it; "" where it does
 };
 
 /// Copies a database, also one that a session is writing, to `directory`/NAME-NUMBER-TIME.sqlite: durable,
 /// read back and checked before it gets its name, and only then are older ones of the same database rotated
 /// out. A damaged database is not copied over good backups. Throws StoreError.
 BackupReport backup(const std::string& database, const BackupOptions& options);
+
+/// The newest backup of a database that was read back and checked, wherever it lies now.
+struct LastBackup {
+  std::string path;
+  std::int64_t realtime_ns = 0;  ///< wall clock when it was made
+};
+
+/// What the last backup of this database has noted beside it (FILE.last-backup); none where none was made.
+/// Reads two small files and nothing on the disk of the backups.
+std::optional<LastBackup> last_backup(const std::string& database);
 
 /// The backups of this database (by its id, whatever they are called) in a folder, oldest first. Throws
 /// StoreError.
@@ -52,6 +70,20 @@ struct Restoration {
 /// Throws StoreError: refused where the database is good, conflict where several databases come into
 /// question, and whatever keeps a database from being opened that is not known to be damaged.
 Restoration restore_backup(const std::string& database, const RestoreOptions& options);
+
+/// What restoring the newest backup into a temporary file has shown.
+struct Drill {
+  std::string from;
+  std::int64_t number = 0;
+  double age_s = 0;  ///< by the time in its name
+  std::int64_t sessions = 0, trials = 0, live_sessions = 0, live_trials = 0;
+  std::vector<std::string> problems;  ///< empty where a restore would bring back what was recorded
+};
+
+/// Restores the newest backup of a database into a temporary file beside that, checks pages, references and
+/// every checksum, and compares its sessions with those of the database. Leaves nothing behind. Throws
+/// StoreError where the newest backup cannot be restored at all.
+Drill drill_restore(const std::string& database, const std::string& directory);
 
 /// Throws StoreError (corrupt) where FILE.sha256 stands beside a file and does not agree with it.
 void verify_checksum_file(const std::string& path);

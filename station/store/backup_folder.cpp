@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <ctime>
 #include <regex>
 
 #include "station/store/files.hpp"
@@ -15,7 +17,15 @@ namespace turnpoint::store {
 namespace {
 
 /// STEM-TIME.sqlite in older releases, STEM-NUMBER-TIME.sqlite since.
-const std::regex kName(R"((.*?)(?:-(\d{6,12}))?-\d{8}T\d{6}\.\d{3}Z\.sqlite)");
+const std::regex kName(R"((.*?)(?:-(\d{6,12}))?-(\d{8}T\d{6})\.\d{3}Z\.sqlite)");
+
+/// "20240229T120000", UTC.
+std::int64_t nanoseconds_of(const std::string& stamp) {
+  std::tm utc{};
+  return ::strptime(stamp.c_str(), "%Y%m%dT%H%M%S", &utc) == nullptr
+             ? 0
+             : static_cast<std::int64_t>(::timegm(&utc)) * 1'000'000'000;
+}
 
 std::string meta(Database& database, const std::string& key) {
   Statement row(database, "SELECT value FROM meta WHERE key = ?");
@@ -23,12 +33,12 @@ std::string meta(Database& database, const std::string& key) {
   return row.step() ? row.text(0) : "";
 }
 
-/// `number` as the name has it, "" where it has none.
-StoredBackup read_backup(const std::string& path, const std::string& stem, const std::string& number) {
+StoredBackup read_backup(const std::string& path, const std::smatch& name) {
   StoredBackup backup;
   backup.path = path;
-  backup.stem = stem;
-  if (!number.empty()) backup.number = std::stoll(number);
+  backup.stem = name[1];
+  if (name[2].matched) backup.number = std::stoll(name[2]);
+  backup.made_realtime_ns = nanoseconds_of(name[3]);
   try {
     Database database(path, Database::Access::immutable);
     if (const auto noted = meta(database, "backup_of"); !noted.empty()) backup.stem = noted;
@@ -49,8 +59,7 @@ std::vector<StoredBackup> stored_backups(const std::string& folder) {
   std::vector<StoredBackup> backups;
   for (const auto& name : list_folder(folder)) {
     std::smatch parts;
-    if (std::regex_match(name, parts, kName))
-      backups.push_back(read_backup(folder + "/" + name, parts[1], parts[2]));
+    if (std::regex_match(name, parts, kName)) backups.push_back(read_backup(folder + "/" + name, parts));
   }
   std::stable_sort(backups.begin(), backups.end(),
                    [](const auto& a, const auto& b) { return a.number < b.number; });
@@ -87,9 +96,41 @@ BackupFolderLock::BackupFolderLock(const std::string& folder)
 
 BackupFolderLock::~BackupFolderLock() { ::close(descriptor_); }
 
+std::string drill_file(const std::string& backup) { return backup + ".drill"; }
+
+namespace {
+
+/// The file system that a folder is on. With "/." behind it a disk that is mounted at need is mounted now.
+dev_t file_system_of(const std::string& folder) {
+  struct stat status {};
+  if (::stat((folder + "/.").c_str(), &status) == 0) return status.st_dev;
+  fail_system(fault_of_errno(errno), folder, errno, "check the folder and its disk");
+}
+
+bool is_mount_point(const std::string& folder) {
+  return file_exists(folder) && file_system_of(folder) != file_system_of(folder_of(folder));
+}
+
+}  // namespace
+
+void require_disk(const std::string& folder, const std::string& database) {
+  const auto above = folder_of(folder);
+  const auto refuse = [&](const std::string& why) {
+    throw StoreError(Fault::missing,
+                     fmt::format("backup to {}: {}; nothing was written; mount the disk of the "
+                                 "backups, or, where a plain folder is meant, say --to folder",
+                                 folder, why));
+  };
+  const bool mounted = is_mount_point(folder) || is_mount_point(above);
+  if (!mounted) refuse(fmt::format("no disk is mounted there, nor at {}", above));
+  if (file_system_of(file_exists(folder) ? folder : above) == file_system_of(folder_of(database)))
+    refuse("it is on the disk of the database itself");
+}
+
 std::vector<std::string> remove_interrupted_backups(const std::string& folder) {
   std::vector<std::string> removed;
-  static const std::regex half_made(R"(.*-\d{8}T\d{6}\.\d{3}Z\.sqlite(\.sha256)?\.new(-wal|-shm|-journal)?)");
+  static const std::regex half_made(
+      R"(.*-\d{8}T\d{6}\.\d{3}Z\.sqlite(\.sha256)?(\.drill|\.drill\.new|\.new)(-wal|-shm|-journal)?)");
   for (const auto& name : list_folder(folder)) {
     if (!std::regex_match(name, half_made)) continue;
     remove_file(folder + "/" + name);

@@ -15,6 +15,7 @@ struct StoredBackup {
   std::string station;      ///< of one of its sessions, "" where it has none
   std::string stem;         ///< name of the database without folder and ending, when the backup was made
   std::int64_t number = 0;  ///< rises with each backup made into the folder; 0 in those of older releases
+  std::int64_t made_realtime_ns = 0;  ///< by its name
   std::string trouble;  ///< what kept it from being read, where that is not known to be damage; "" otherwise
   bool readable() const { return !database_id.empty(); }
 };
@@ -44,6 +45,13 @@ class BackupFolderLock {
  private:
   int descriptor_ = -1;
 };
+
+/// Throws StoreError (missing) unless a disk other than the database's is mounted at the folder or at the one
+/// above it: without its disk a mount point is an empty folder on the system's.
+void require_disk(const std::string& folder, const std::string& database);
+
+/// Where a drill restores a backup to: its leftovers are removed as those of an interrupted backup.
+std::string drill_file(const std::string& backup);
 
 /// Removes what interrupted backups have left in a folder: files that never got their name. Under its lock.
 /// Returns what was removed.

@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "station/store/backup.hpp"
+#include "station/store/backup_folder.hpp"
+#include "station/store/checksum.hpp"
+#include "station/store/files.hpp"
+#include "station/store/identity.hpp"
+#include "station/store/open.hpp"
+#include "station/store/whole_file.hpp"
+
+namespace turnpoint::store {
+
+namespace {
+
+std::int64_t sessions_in(Database& database) { return database.integer("SELECT count(*) FROM session"); }
+std::int64_t trials_in(Database& database) { return database.integer("SELECT count(*) FROM trial"); }
+
+/// The newest of this database. One that cannot be read is not passed over: it may be the one a restore
+/// needs.
+StoredBackup newest_backup(const std::string& directory, const std::string& path, const std::string& id) {
+  const auto stem = std::filesystem::path(path).stem().string();
+  StoredBackup newest;
+  for (const auto& backup : stored_backups(directory))
+    if (backup.readable() ? backup.database_id == id : backup.stem == stem) newest = backup;
+  if (newest.path.empty())
+    throw StoreError(Fault::missing, fmt::format("drill: {} holds no backup of {}", directory, path));
+  if (!newest.readable())
+    throw StoreError(Fault::corrupt,
+                     fmt::format("drill: the newest backup, {}, cannot be read: {}; check its disk and make "
+                                 "another backup",
+                                 newest.path, newest.trouble.empty() ? "it is damaged" : newest.trouble));
+  return newest;
+}
+
+/// A restored backup, as long as the drill lasts.
+class Restored {
+ public:
+  explicit Restored(const StoredBackup& backup) : path_(drill_file(backup.path)) {
+    verify_checksum_file(backup.path);
+    auto source = open_reader(backup.path);
+    copy_to_file(source, path_, backup.path, clear_backup_note);
+  }
+  Restored(const Restored&) = delete;
+  Restored& operator=(const Restored&) = delete;
+  ~Restored() {
+    try {
+      remove_database(path_);
+    } catch (const StoreError&) {
+      // The next backup or drill removes it.
+    }
+  }
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
+
+/// What the database holds may have grown since, or been withdrawn, and nothing else.
+std::string difference(Database& live, const VerifiedSession& session) {
+  Statement withdrawn(live, "SELECT 1 FROM tombstone WHERE session_id = ?");
+  Statement there(live, "SELECT 1 FROM session WHERE session_id = ?");
+  if (withdrawn.bind(session.session_id).step()) return "";
+  if (!there.bind(session.session_id).step()) return "the database no longer holds it";
+  if (session.links == 0 || holds_link(live, session.session_id, session.last_sha256)) return "";
+  return "the database holds other rows of it";
+}
+
+}  // namespace
+
+Drill drill_restore(const std::string& name, const std::string& folder) {
+  const auto path = canonical(name), directory = canonical(folder);
+  auto live = open_reader(path);
+  const BackupFolderLock lock(directory);
+  remove_interrupted_backups(directory);
+  const auto backup =
+      newest_backup(directory, path, live.text("SELECT value FROM meta WHERE key = 'database_id'"));
+  Drill drill{backup.path,
+              backup.number,
+              1e-9 * static_cast<double>(realtime_ns() - backup.made_realtime_ns),
+              0,
+              0,
+              sessions_in(live),
+              trials_in(live),
+              {}};
+  const Restored restored(backup);
+  auto database = open_reader(restored.path());
+  drill.sessions = sessions_in(database);
+  drill.trials = trials_in(database);
+  for (auto& session : verify_database(database)) {
+    if (const auto differs = difference(live, session); !differs.empty()) session.problems.push_back(differs);
+    for (const auto& problem : session.problems)
+      drill.problems.push_back(fmt::format("session {}: {}", session.session_id, problem));
+  }
+  return drill;
+}
+
+}  // namespace turnpoint::store
