@@ -12,7 +12,7 @@ foreach(manual README.md LICENSE deploy/README.md deploy/boards.md deploy/to-mea
   install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT station)
 endforeach()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT station)
-install(FILES deploy/system/turnpoint.service DESTINATION lib/systemd/system COMPONENT station)
+install(FILES deploy/system/turnpoint.service deploy/system/turnpoint-backup.service deploy/system/turnpoint-backup.timer DESTINATION lib/systemd/system COMPONENT station)
 install(FILES deploy/system/watchdog.conf DESTINATION share/turnpoint/system COMPONENT station)
 install(FILES deploy/system/turnpoint.udev DESTINATION lib/udev/rules.d RENAME 60-turnpoint.rules COMPONENT station)
 install(FILES deploy/system/turnpoint.sysusers DESTINATION lib/sysusers.d RENAME turnpoint.conf COMPONENT station)
