@@ -17,6 +17,7 @@ namespace {
 void begin(const std::string& path) {
   store::SessionStart start;
   start.participant = "P99999";
+  start.protocol_id = "demo";
   auto log = store::SessionLog::begin(path, start, {});
   log.finish(store::SessionStatus::stopped, "");
 }
