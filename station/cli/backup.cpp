@@ -37,7 +37,7 @@ void back_up(const Options& options, Context& context) {
              report.sessions, report.trials, report.bytes);
   for (const auto& path : report.removed) fmt::print(context.out, "rotated out: {}\n", path);
   if (!report.unrecorded.empty())
-    fmt::print(context.out, "the start page will not know of this backup: {}\n", report.unrecorded);
+    fmt::print(context.out, "this backup could not be noted beside the database: {}\n", report.unrecorded);
 }
 
 void drill(const Options& options, Context& context) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "station/store/backup.hpp"
 #include "station/store/backup_folder.hpp"
@@ -45,6 +46,7 @@ class Restored {
   Restored(const Restored&) = delete;
   Restored& operator=(const Restored&) = delete;
   ~Restored() {
+    if (path_.empty()) return;
     try {
       remove_database(path_);
     } catch (const StoreError&) {
@@ -52,6 +54,8 @@ class Restored {
     }
   }
   const std::string& path() const { return path_; }
+  /// Throws where it cannot be removed: a drill that leaves something behind must not say that it does not.
+  void remove() { remove_database(std::exchange(path_, "")); }
 
  private:
   std::string path_;
@@ -84,15 +88,18 @@ Drill drill_restore(const std::string& name, const std::string& folder) {
               sessions_in(live),
               trials_in(live),
               {}};
-  const Restored restored(backup);
-  auto database = open_reader(restored.path());
-  drill.sessions = sessions_in(database);
-  drill.trials = trials_in(database);
-  for (auto& session : verify_database(database)) {
-    if (const auto differs = difference(live, session); !differs.empty()) session.problems.push_back(differs);
-    for (const auto& problem : session.problems)
-      drill.problems.push_back(fmt::format("session {}: {}", session.session_id, problem));
+  Restored restored(backup);
+  {
+    auto database = open_reader(restored.path());
+    drill.sessions = sessions_in(database);
+    drill.trials = trials_in(database);
+    for (auto& session : verify_database(database)) {
+      if (const auto differs = difference(live, session); !differs.empty()) session.problems.push_back(differs);
+      for (const auto& problem : session.problems)
+        drill.problems.push_back(fmt::format("session {}: {}", session.session_id, problem));
+    }
   }
+  restored.remove();
   return drill;
 }
 
