@@ -1,10 +1,41 @@
 #include "station/procedure/constant_stimuli.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "station/procedure/state_hash.hpp"
 
 namespace turnpoint::procedure {
+
+namespace {
+
+using Levels = std::vector<std::vector<std::size_t>>;
+
+/// No design repeats a value so often: products of more levels need not be known.
+constexpr std::size_t kMost = 1'000'000;
+
+/// How many combinations the levels of these factors have, up to kMost.
+std::size_t crossed(const Levels& factors) {
+  std::size_t cells = 1;
+  for (const auto& levels : factors) cells = std::min(cells * levels.size(), kMost);
+  return cells;
+}
+
+/// The levels of the balanced factors in one repeat of a value. After any number of repeats the counts of the
+/// combinations differ by one at most, and so do those of each factor's levels: the factors step together,
+/// and each slips by one level whenever it has met the same combination of the factors before it.
+std::vector<std::size_t> combination(const Levels& factors, std::size_t repeat) {
+  std::vector<std::size_t> result;
+  std::size_t before = 1;
+  for (const auto& levels : factors) {
+    const auto cells = std::min(before * levels.size(), kMost), at = repeat % cells;
+    result.push_back(levels[(at + at / std::lcm(before, levels.size())) % levels.size()]);
+    before = cells;
+  }
+  return result;
+}
+
+}  // namespace
 
 ConstantStimuli::ConstantStimuli(const Spec& spec, const Context& context, const random::Key& key)
     : spec_(spec), context_(context), key_(key) {
@@ -18,20 +49,18 @@ std::vector<ConstantStimuli::Item> ConstantStimuli::items(random::Draws& draws) 
   const auto repeats = static_cast<std::size_t>(spec_.repeats);
   std::vector<Item> all(repeats * spec_.values.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i].value = i % spec_.values.size();
-  // Each value meets the levels of a balanced factor in a shuffled order of its own, over its repeats.
-  for (const auto& factor : spec_.balance) {
-    const auto levels = context_.factor_levels.at(factor);
-    for (std::size_t value = 0; value < spec_.values.size(); ++value) {
-      std::vector<std::size_t> shuffled(levels);
-      for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
-        if (repeat % levels == 0) {
-          for (std::size_t l = 0; l < levels; ++l) shuffled[l] = l;
-          draws.shuffle(shuffled);
+  Levels shuffled;
+  for (const auto& factor : spec_.balance) shuffled.emplace_back(context_.factor_levels.at(factor));
+  const auto cells = crossed(shuffled);
+  for (std::size_t value = 0; value < spec_.values.size(); ++value)
+    for (std::size_t repeat = 0; repeat < repeats; ++repeat) {
+      if (repeat % cells == 0)
+        for (auto& levels : shuffled) {
+          std::iota(levels.begin(), levels.end(), 0);
+          draws.shuffle(levels);
         }
-        all[repeat * spec_.values.size() + value].balance.push_back(shuffled[repeat % levels]);
-      }
+      all[repeat * spec_.values.size() + value].balance = combination(shuffled, repeat);
     }
-  }
   return all;
 }
 

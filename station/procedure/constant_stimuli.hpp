@@ -6,7 +6,7 @@
 
 namespace turnpoint::procedure {
 
-/// Every value `repeats` times, balanced factors crossed with the levels as evenly as the count allows,
+/// Every value `repeats` times, with the combinations of the balanced factors as evenly as the count allows,
 /// shuffled so that at most max_run right answers in a row are equal. What was not answered comes again
 /// later.
 class ConstantStimuli : public Procedure {

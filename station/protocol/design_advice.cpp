@@ -225,19 +225,37 @@ void advise_on_plan(AdviceList& advice) {
   check_analysis(advice);
 }
 
+namespace {
+
+constexpr std::size_t most_repeats = 10000;            // that a protocol may ask for
+constexpr std::size_t most_cells = 1'000'000'000'000;  // counted: a hundred long factors have more than fit
+
+/// Says how often each level meets each of these cells, unless that is equally often.
+void note_uneven(AdviceList& notes, const procedure::Spec& spec, std::size_t cells, const std::string& what) {
+  const auto repeats = static_cast<std::size_t>(spec.repeats), least = repeats / cells;
+  if (repeats % cells == 0) return;
+  const auto even = (least + 1) * cells;
+  notes.add(key_of(spec, "balance"),
+            "each level meets each of the " + std::to_string(cells) + " " + what + " " +
+                std::to_string(least) + " or " + std::to_string(least + 1) + " times",
+            even > most_repeats ? "fewer factors or fewer levels"
+                                : "equally often with repeats = " + std::to_string(even));
+}
+
+}  // namespace
+
 std::vector<Problem> notes(const Protocol& protocol) {
   AdviceList notes(protocol);
   for (const auto& spec : protocol.procedures) {
+    std::size_t crossed = 1;
+    std::string all;
     for (const auto& name : spec.balance) {
-      const auto* factor = find_factor(protocol.factors, name);
-      const int levels = factor ? static_cast<int>(factor->levels.size()) : 0;
-      if (levels == 0 || spec.repeats % levels == 0) continue;
-      const int least = spec.repeats / levels;
-      notes.add(key_of(spec, "balance"),
-                "each level meets each of the " + std::to_string(levels) + " values of \"" + name + "\" " +
-                    std::to_string(least) + " or " + std::to_string(least + 1) + " times",
-                "equally often with repeats = " + std::to_string((least + 1) * levels));
+      const auto levels = find_factor(protocol.factors, name)->levels.size();
+      note_uneven(notes, spec, levels, "values of \"" + name + "\"");
+      crossed = std::min(crossed * levels, most_cells);
+      all += (all.empty() ? "\"" : name == spec.balance.back() ? " and \"" : ", \"") + name + "\"";
     }
+    if (spec.balance.size() > 1) note_uneven(notes, spec, crossed, "combinations of " + all);
     std::set<double> seen;
     for (const double value : spec.values)
       if (!seen.insert(value).second)

@@ -1,4 +1,6 @@
 #include <map>
+#include <string>
+#include <vector>
 
 #include "station/procedure/constant_stimuli.hpp"
 #include "tests/support/catch.hpp"
@@ -46,6 +48,50 @@ TEST_CASE("constant stimuli present each value as often, balanced, without long 
     for (const auto& [level, count] : counts) CHECK(count == 10);
     for (const auto& [pair, count] : crossed) CHECK((count == 3 || count == 4));
   }
+}
+
+TEST_CASE("several balanced factors are crossed as evenly as the repeats allow", "[procedure]") {
+  auto spec = offsets();
+  spec.balance = {"mark_mm", "speed", "hand"};
+  auto context = marks();
+  context.factor_levels = {{"mark_mm", 3}, {"speed", 2}, {"hand", 2}};
+  spec.repeats = GENERATE(1, 4, 7, 12, 20, 24);
+  spec.shuffle = GENERATE(Shuffle::within_repeat, Shuffle::within_block);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const auto procedure = make_procedure(spec, context, {seed, {}, 1, 0, 0});
+    std::map<double, std::map<std::vector<std::size_t>, int>> met;
+    for (; procedure->next(); procedure->record(Answer::one)) {
+      const auto proposal = *procedure->next();
+      const auto mark = proposal.balanced[0].second, speed = proposal.balanced[1].second,
+                 hand = proposal.balanced[2].second;
+      auto& counts = met[proposal.level];
+      ++counts[{0, mark}], ++counts[{1, speed}], ++counts[{2, hand}], ++counts[{3, mark, speed, hand}];
+    }
+    for (auto& [level, counts] : met) {
+      const auto even = [&](std::vector<std::size_t> cell, int cells) {
+        const int times = counts[cell], least = spec.repeats / cells;
+        return times == least || (times == least + 1 && spec.repeats % cells != 0);
+      };
+      for (std::size_t mark = 0; mark < 3; ++mark) {
+        CHECK(even({0, mark}, 3));
+        for (std::size_t speed = 0; speed < 2; ++speed)
+          for (std::size_t hand = 0; hand < 2; ++hand) CHECK(even({3, mark, speed, hand}, 12));
+      }
+      for (std::size_t either = 0; either < 2; ++either)
+        CHECK((even({1, either}, 2) && even({2, either}, 2)));
+    }
+  }
+}
+
+TEST_CASE("one balanced factor gets the levels that it got when sessions were first stored", "[procedure]") {
+  auto spec = offsets();
+  spec.values = {-9, 9};
+  spec.repeats = 7;
+  std::string levels;
+  const auto procedure = make_procedure(spec, marks(), {3, {}, 1, 0, 0});
+  for (; procedure->next(); procedure->record(Answer::one))
+    levels += std::to_string(procedure->next()->balanced.at(0).second);
+  CHECK(levels == "01201201220110");
 }
 
 TEST_CASE("an unanswered trial comes again later, unless its deadline is part of the design", "[procedure]") {

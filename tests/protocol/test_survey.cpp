@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "station/protocol/design_advice.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
@@ -171,5 +172,57 @@ TEST_CASE("what is probably not meant is a warning at its place", "[protocol]") 
     CHECK(contains(advice(replaced(constant, "[scene.edge]",
                                    "[[factor]]\nname = \"spare\"\nlevels = [1, 2]\n[scene.edge]")),
                    "the factor \"spare\" is not used"));
+  }
+}
+
+TEST_CASE("counts that balance cannot make even are noted, of one factor and of several together",
+          "[protocol]") {
+  const auto notes = [](const std::string& balance, const std::string& repeats) {
+    auto text = replaced(source("boundary-constant.toml"), "[scene.edge]",
+                         "[[factor]]\nname = \"hand\"\nlevels = [1, 2]\n"
+                         "[[factor]]\nname = \"speed\"\nlevels = [1, 2, 3, 4]\n[scene.edge]");
+    text = replaced(text, "balance = [\"mark_mm\"]", "balance = " + balance);
+    return all_of(protocol::notes(
+        protocol::parse(replaced(text, "repeats = 10\n", "repeats = " + repeats + "\n"), "p.toml")));
+  };
+  const auto one_line = [](const std::string& text) {
+    return std::count(text.begin(), text.end(), '\n') == 1;
+  };
+  SECTION("one factor") {
+    const auto mark = "[\"mark_mm\"]";
+    CHECK(notes(mark, "9").empty());
+    const auto said = notes(mark, "10");
+    CHECK(contains(said, "p.toml:65:"));
+    CHECK(contains(said,
+                   "each level meets each of the 3 values of \"mark_mm\" 3 or 4 times; "
+                   "equally often with repeats = 12"));
+    CHECK(one_line(said));
+  }
+  SECTION("two factors whose combinations are uneven though each factor is even") {
+    const auto both = "[\"mark_mm\", \"hand\"]";
+    CHECK(notes(both, "12").empty());
+    const auto more = notes("[\"hand\", \"speed\"]", "12");
+    CHECK(contains(more,
+                   "each level meets each of the 8 combinations of \"hand\" and \"speed\" 1 or 2 times; "
+                   "equally often with repeats = 16"));
+    CHECK(one_line(more));
+  }
+  SECTION("more combinations than repeats") {
+    const auto said = notes("[\"mark_mm\", \"hand\", \"speed\"]", "12");
+    CHECK(contains(said,
+                   "each of the 24 combinations of \"mark_mm\", \"hand\" and \"speed\" 0 or 1 times; "
+                   "equally often with repeats = 24"));
+    CHECK(one_line(said));
+  }
+  SECTION("combinations that no number of repeats meets") {
+    std::string levels = "[1";
+    for (int i = 2; i <= 1500; ++i) levels += ", " + std::to_string(i);
+    auto text = replaced(source("boundary-constant.toml"), "[scene.edge]",
+                         "[[factor]]\nname = \"many\"\nlevels = " + levels +
+                             "]\n[[factor]]\nname = \"more\"\nlevels = " + levels + "]\n[scene.edge]");
+    text = replaced(text, "balance = [\"mark_mm\"]", "balance = [\"many\", \"more\"]");
+    CHECK(contains(all_of(protocol::notes(protocol::parse(text, "p.toml"))),
+                   "each of the 2250000 combinations of \"many\" and \"more\" 0 or 1 times; fewer factors or "
+                   "fewer levels"));
   }
 }
