@@ -28,7 +28,8 @@ double extent(const Cells& cells) { return cells.high - cells.low; }
 
 }  // namespace
 
-PosteriorGrid::PosteriorGrid(Function function, Guess guess, const AxisCounts& counts, const Box& prior)
+PosteriorGrid::PosteriorGrid(Function function, Guess guess, const AxisCounts& counts, const Box& prior,
+                             double falling_share)
     : function_(function), guess_(guess), counts_(counts), prior_(prior) {
   Box box = prior;
   for (int i = 0; i < kMostRefinements; ++i) {
@@ -40,7 +41,7 @@ PosteriorGrid::PosteriorGrid(Function function, Guess guess, const AxisCounts& c
     if (!shrunk) break;
   }
   evaluate(with_counts(box, extent(box[at_guess]) > 0 ? kFineWithGuess : kFine));
-  set_weights();
+  set_weights(falling_share);
 }
 
 double PosteriorGrid::rate(int cell) const { return std::exp(box_[at_rate].centre(cell)); }
@@ -116,17 +117,33 @@ Box PosteriorGrid::narrowed() const {
   return box;
 }
 
-void PosteriorGrid::set_weights() {
+/// 1 where the prior is flat.
+double PosteriorGrid::prior_density(Parameter parameter, int cell, double falling_share) const {
+  const double falling = falling_share * extent(prior_[parameter]), at = box_[parameter].centre(cell);
+  const double inside = std::min(at - prior_[parameter].low, prior_[parameter].high - at);
+  return inside < falling ? inside / falling : 1;
+}
+
+void PosteriorGrid::set_weights(double falling_share) {
   const double best = *std::max_element(log_likelihood_.begin(), log_likelihood_.end());
+  for (const double value : log_likelihood_) flat_.push_back(std::exp(value - best));
   double total = 0;
-  for (const double value : log_likelihood_) total += weight_.emplace_back(std::exp(value - best));
+  for (int t = 0; t < box_[at_threshold].count; ++t)
+    for (int r = 0; r < box_[at_rate].count; ++r) {
+      const double density =
+          prior_density(at_threshold, t, falling_share) * prior_density(at_rate, r, falling_share);
+      for (std::size_t e = 0; e < ends_.size(); ++e)
+        total += weight_.emplace_back(density * flat_[weight_.size()]);
+    }
   for (auto& weight : weight_) weight /= total;
 }
 
-Marginal PosteriorGrid::marginal(Parameter parameter) const {
+Marginal PosteriorGrid::marginal(Parameter parameter) const { return marginal(parameter, weight_); }
+
+Marginal PosteriorGrid::marginal(Parameter parameter, const std::vector<double>& weights) const {
   const auto count = static_cast<std::size_t>(box_[parameter].count), step = stride(parameter);
   std::vector<double> mass(count);
-  for (std::size_t i = 0; i < weight_.size(); ++i) mass[i / step % count] += weight_[i];
+  for (std::size_t i = 0; i < weights.size(); ++i) mass[i / step % count] += weights[i];
   return {box_[parameter], std::move(mass)};
 }
 
@@ -178,13 +195,13 @@ Marginal PosteriorGrid::marginal_of_probability(double u) const {
 }
 
 bool PosteriorGrid::open_low(Parameter parameter) const {
-  const auto of = marginal(parameter);
+  const auto of = marginal(parameter, flat_);
   const double least = *std::max_element(of.mass().begin(), of.mass().end()) * std::exp(-kNotExcluded_nats);
   return of.cells().low <= prior_[parameter].low && of.mass().front() >= least;
 }
 
 bool PosteriorGrid::open_high(Parameter parameter) const {
-  const auto of = marginal(parameter);
+  const auto of = marginal(parameter, flat_);
   const double least = *std::max_element(of.mass().begin(), of.mass().end()) * std::exp(-kNotExcluded_nats);
   return of.cells().high >= prior_[parameter].high && of.mass().back() >= least;
 }

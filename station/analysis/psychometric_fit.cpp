@@ -180,14 +180,7 @@ AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, S
 
 ThetaBounds theta_bounds(const AxisCounts& counts, const FitOptions& options) {
   const double range = counts.u.back() - counts.lowest();
-  double rate_low = 0.1 / range, rate_high = 80 / range;
-  const bool falling = options.function == Function::normal;
-  const auto& for_low = falling ? options.slope_high : options.slope_low;
-  const auto& for_high = falling ? options.slope_low : options.slope_high;
-  if (for_low) rate_low = rate_from_slope(options.function, *for_low);
-  if (for_high) rate_high = rate_from_slope(options.function, *for_high);
-  if (!(rate_low > 0 && rate_low <= rate_high))
-    throw std::invalid_argument("bounds of the slope: 0 < low <= high");
+  const double rate_low = 0.1 / range, rate_high = 80 / range;
   ThetaBounds bounds;
   bounds.low = {counts.lowest() - range, std::log(rate_low), options.lapse_low, options.guess_low};
   bounds.high = {counts.u.back() + range, std::log(rate_high), options.lapse_high, options.guess_high};

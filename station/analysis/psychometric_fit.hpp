@@ -32,7 +32,6 @@ struct FitOptions {
   double guess_value = 0.5;                     ///< for Guess::fixed
   double guess_low = 0, guess_high = 0.5;       ///< for Guess::fitted
   double lapse_low = 0, lapse_high = 0.06;      ///< equal: fixed
-  std::optional<double> slope_low, slope_high;  ///< else from the range of the levels
   int minimum_levels = 3, minimum_trials = 15;  ///< below: no fit, but a statement
 };
 
@@ -65,11 +64,13 @@ struct ParameterInterval {
   bool touches_low = false, touches_high = false;  ///< an end stands on a bound: the data do not limit it
 };
 
-/// What is thought possible before the first answer. Threshold: uniform on the function's axis from low to
-/// high, in the unit of the level. Slope: its logarithm uniform from low to high, as in Psychometric.
+/// What is thought possible before the first answer. Threshold: from low to high on the function's axis, in
+/// the unit of the level. Slope: its logarithm from low to high, as in Psychometric. The density of both is
+/// flat but for this share of the range at either end, over which it falls linearly to 0.
 struct Prior {
   double threshold_low = 0, threshold_high = 1;
   double slope_low = 0, slope_high = 1;
+  double falling_share = 0;  ///< 0 to 0.5
 };
 
 enum class IntervalMethod { none, bootstrap, posterior };

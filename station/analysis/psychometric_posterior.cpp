@@ -12,20 +12,24 @@ namespace turnpoint::analysis {
 
 namespace {
 
-constexpr double kBeyondLevels = 0.25;  ///< of the range of the levels
-/// Rates times the range of the levels, and how much wider than these, or than stated slopes, a prior is.
-constexpr double kShallow = 1.5, kSteep = 24, kWider = 2;
+/// Rates times the range of the levels.
+constexpr double kShallow = 1.5, kSteep = 24;
+/// Estimates in this share of a prior's range at either end are pointed out.
+constexpr double kOuter = 0.25;
+/// Of the flat part of a prior, beyond either end; and the same of the whole range.
+constexpr double kBeyond = 0.25, kFallingShare = kBeyond / (1 + 2 * kBeyond);
 
 void check(const Prior& prior) {
   const auto rises = [](double low, double high) {
     return std::isfinite(low) && std::isfinite(high) && low < high;
   };
   if (!rises(prior.threshold_low, prior.threshold_high) || !rises(prior.slope_low, prior.slope_high) ||
-      !(prior.slope_low > 0))
+      !(prior.slope_low > 0) || !(prior.falling_share >= 0 && prior.falling_share <= 0.5))
     throw std::invalid_argument("prior: threshold " + text::number(prior.threshold_low) + " to " +
                                 text::number(prior.threshold_high) + ", slope " +
                                 text::number(prior.slope_low) + " to " + text::number(prior.slope_high) +
-                                "; low < high is allowed, and a slope above 0");
+                                ", falling over " + text::number(prior.falling_share) +
+                                "; low < high is allowed, a slope above 0, and a share up to 0.5");
 }
 
 Cells between(double one, double other) { return {std::min(one, other), std::max(one, other), 1}; }
@@ -50,7 +54,8 @@ class Reading {
         options_(into.fit.options),
         prior_(prior),
         counts_(axis_counts(into.fit.data, options_.function, options_.scale)),
-        grid_(options_.function, options_.guess, counts_, box_of(options_, prior)) {
+        box_(box_of(options_, prior)),
+        grid_(options_.function, options_.guess, counts_, box_, prior.falling_share) {
     for (const auto& point : into.fit.data) trials_ += point.trials;
   }
 
@@ -72,12 +77,15 @@ class Reading {
 
   void read_intervals() {
     auto& intervals = result_.intervals;
+    if (off_centre(at_threshold)) say_off_centre("threshold");
     intervals.threshold = interval(at_threshold, [this](double u) { return to_level(u); });
     if (grid_.undetermined(at_rate))
       say_undetermined(options_.function == Function::normal ? "spread" : "slope", prior_.slope_low,
                        prior_.slope_high);
-    else
+    else {
       intervals.slope = interval(at_rate, [this](double r) { return to_slope(r); });
+      if (off_centre(at_rate)) say_off_centre(options_.function == Function::normal ? "spread" : "slope");
+    }
     const auto itself = [](double share) { return share; };
     if (options_.lapse_low < options_.lapse_high) intervals.lapse = interval(at_lapse, itself);
     if (options_.guess == Guess::fitted) intervals.guess = interval(at_guess, itself);
@@ -111,6 +119,19 @@ class Reading {
                                      text::number(high, 3) + "."});
   }
 
+  bool off_centre(Parameter parameter) const {
+    const double median = grid_.marginal(parameter).quantile(0.5);
+    const double outer = kOuter * (box_[parameter].high - box_[parameter].low);
+    return median < box_[parameter].low + outer || median > box_[parameter].high - outer;
+  }
+
+  void say_off_centre(const std::string& what) {
+    result_.fit.statements.push_back(
+        {what + "-off-centre", "The " + what +
+                                   " lies outside the middle half of what the prior allows: there "
+                                   "fewer than 95 % of such intervals may hold the true value."});
+  }
+
   template <class Map>
   Interval central(const Marginal& of, Map map) const {
     const double c = result_.intervals.confidence;
@@ -130,6 +151,7 @@ class Reading {
   const FitOptions& options_;
   const Prior& prior_;
   AxisCounts counts_;
+  Box box_;
   PosteriorGrid grid_;
   int trials_ = 0;
 };
@@ -148,11 +170,25 @@ Prior prior_around(Function function, Scale scale, const Range& levels, const st
       rate_low = std::min(rate_low, rate_from_slope(function, slope));
       rate_high = std::max(rate_high, rate_from_slope(function, slope));
     }
-  Prior prior{level_from_axis(function, scale, low - kBeyondLevels * range),
-              level_from_axis(function, scale, high + kBeyondLevels * range),
-              slope_from_rate(function, rate_low / kWider), slope_from_rate(function, rate_high * kWider)};
+  const double wider = std::pow(rate_high / rate_low, kBeyond);
+  Prior prior{level_from_axis(function, scale, low - kBeyond * range),
+              level_from_axis(function, scale, high + kBeyond * range),
+              slope_from_rate(function, rate_low / wider), slope_from_rate(function, rate_high * wider),
+              kFallingShare};
   if (prior.slope_low > prior.slope_high) std::swap(prior.slope_low, prior.slope_high);
   return prior;
+}
+
+Prior flat_part(Function function, Scale scale, const Prior& prior) {
+  const auto within = [&prior](double low, double high) {
+    const double cut = prior.falling_share * (high - low);
+    return Range{low + cut, high - cut};
+  };
+  const auto [low, high] = within(axis_position(function, scale, prior.threshold_low),
+                                  axis_position(function, scale, prior.threshold_high));
+  const auto [shallow, steep] = within(std::log(prior.slope_low), std::log(prior.slope_high));
+  return {level_from_axis(function, scale, low), level_from_axis(function, scale, high), std::exp(shallow),
+          std::exp(steep)};
 }
 
 PosteriorFit fit_posterior(const std::vector<LevelCount>& data, const FitOptions& options, const Prior& prior,

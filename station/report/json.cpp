@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "station/analysis/psychometric_posterior.hpp"
 #include "station/report/html.hpp"
 
 namespace turnpoint::report {
@@ -33,7 +34,8 @@ Json value(const std::vector<analysis::Statement>& statements) {
   return list;
 }
 
-/// What each parameter of a posterior was uniform over; null for a bootstrap.
+/// What each parameter of a posterior was uniform over, and where the prior of some ends that falls beyond;
+/// null for a bootstrap.
 Json prior_json(const NamedFit& named) {
   const auto& prior = named.intervals.prior;
   if (!prior) return nullptr;
@@ -41,10 +43,13 @@ Json prior_json(const NamedFit& named) {
     return {{"low", value(low)}, {"high", value(high)}, {"uniform_in", logarithmic ? "logarithm" : "value"}};
   };
   const auto& options = named.fit.options;
+  const auto flat = analysis::flat_part(options.function, options.scale, *prior);
   Json json;
   json["threshold"] =
-      uniform(prior->threshold_low, prior->threshold_high, options.scale == analysis::Scale::log10);
-  json["slope"] = uniform(prior->slope_low, prior->slope_high, true);
+      uniform(flat.threshold_low, flat.threshold_high, options.scale == analysis::Scale::log10);
+  json["threshold"]["falls_to_0_at"] = {value(prior->threshold_low), value(prior->threshold_high)};
+  json["slope"] = uniform(flat.slope_low, flat.slope_high, true);
+  json["slope"]["falls_to_0_at"] = {value(prior->slope_low), value(prior->slope_high)};
   json["lapse"] = uniform(options.lapse_low, options.lapse_high, false);
   if (options.guess == analysis::Guess::fitted)
     json["guess"] = uniform(options.guess_low, options.guess_high, false);

@@ -151,16 +151,23 @@ std::string describe_intervals(const NamedFit& named, const SessionData& data) {
   };
   const auto& prior = *intervals.prior;
   const auto& options = named.fit.options;
+  const auto flat = analysis::flat_part(options.function, options.scale, prior);
+  const auto falling = [&](double low, double high) {
+    if (prior.falling_share == 0) return std::string();
+    return ", falling to 0 at " + text::number(low, 3) + " and " + text::number(high, 3);
+  };
   const bool two_sided = data.design == Design::two_sided;
   std::string text =
       "Posterior medians. 95 % credible intervals: central, posterior on a grid, since the answers chose the "
       "levels. Prior: " +
       std::string(two_sided ? "PSE" : "threshold") + " uniform" +
       (options.scale == analysis::Scale::log10 ? " in its logarithm" : "") + " from " +
-      range(prior.threshold_low, prior.threshold_high);
+      range(flat.threshold_low, flat.threshold_high);
   if (!data.level_unit.empty()) text += " " + data.level_unit;
+  text += falling(prior.threshold_low, prior.threshold_high);
   text += std::string(options.function == terms::Function::normal ? "; spread" : "; slope") +
-          " uniform in its logarithm from " + range(prior.slope_low, prior.slope_high);
+          " uniform in its logarithm from " + range(flat.slope_low, flat.slope_high) +
+          falling(prior.slope_low, prior.slope_high);
   text += "; lapse rate uniform from " + range(options.lapse_low, options.lapse_high);
   if (options.guess == analysis::Guess::fitted)
     text += "; guess rate uniform from " + range(options.guess_low, options.guess_high);

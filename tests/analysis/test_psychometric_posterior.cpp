@@ -52,6 +52,7 @@ reference::Samples sampled(const PosteriorFit& fit) {
   reference::Prior same{prior.threshold_low, prior.threshold_high, prior.slope_low, prior.slope_high,
                         o.lapse_low,         o.lapse_high,         o.guess_value,   o.guess_value};
   if (o.guess == Guess::fitted) same.guess_low = o.guess_low, same.guess_high = o.guess_high;
+  same.falling_share = prior.falling_share;
   same.guess_is_lapse = o.guess == Guess::tied_to_lapse;
   return reference::sample(
       o.function == Function::weibull ? reference::Shape::weibull_dB : reference::Shape::normal, data, same,
@@ -160,6 +161,32 @@ TEST_CASE("All answers right leave a threshold below, and none of it is made up"
   CHECK(says(fit, "extrapolated"));
 }
 
+TEST_CASE("An estimate outside the middle half of the prior is pointed out", "[analysis]") {
+  const auto inside = fit_posterior(staircase({-20, 2, 0.5, 0.02}, 200, 1), {}, kContrast, 0);
+  CHECK_FALSE(says(inside, "threshold-off-centre"));
+  CHECK_FALSE(says(inside, "slope-off-centre"));
+  const auto low = fit_posterior(staircase({-29, 2, 0.5, 0.02}, 200, 1), {}, kContrast, 0);
+  CHECK(low.fit.parameters->threshold < -26.625);
+  CHECK(says(low, "threshold-off-centre"));
+  const auto steep = fit_posterior(staircase({-15, 9, 0.5, 0.02}, 400, 1), {}, kContrast, 0);
+  CHECK(steep.fit.parameters->slope > 5.5);
+  CHECK(says(steep, "slope-off-centre"));
+  CHECK_FALSE(says(steep, "threshold-off-centre"));
+}
+
+TEST_CASE("A prior that falls towards its ends weighs less there, and abstains as a flat one does",
+          "[analysis]") {
+  const auto data = staircase({-9, 0.5, 0.5, 0.01}, 48, 3);
+  auto flat = kContrast;
+  flat.falling_share = 0;
+  const auto with = fit_posterior(data, {}, kContrast, 0), without = fit_posterior(data, {}, flat, 0);
+  REQUIRE((with.intervals.threshold && without.intervals.threshold));
+  CHECK(with.intervals.threshold->interval.low > without.intervals.threshold->interval.low);
+  CHECK(with.intervals.slope.has_value() == without.intervals.slope.has_value());
+  CHECK(with.intervals.threshold->touches_high == without.intervals.threshold->touches_high);
+  CHECK_THROWS_AS(fit_posterior(data, {}, {-40, 4, 0.25, 15, 0.6}, 0), std::invalid_argument);
+}
+
 TEST_CASE("Posteriors refuse reversed data, few trials and nonsense", "[analysis]") {
   CHECK(says(fit_posterior({{-20, 40, 38}, {-15, 40, 30}, {-10, 40, 21}}, {}, kContrast, 0), "reversed"));
   CHECK(says(fit_posterior({{-20, 4, 2}, {-15, 4, 4}}, {}, kContrast, 0), "too-few-trials"));
@@ -205,8 +232,10 @@ TEST_CASE("A prior follows from the levels that a design can present, and from s
   CHECK(kContrast.slope_low == Approx(0.75 / 27 * 20 / std::log(10.0)));
   CHECK(kContrast.slope_high == Approx(48.0 / 27 * 20 / std::log(10.0)));
   const auto stated = prior_around(Function::weibull, Scale::linear, {-30, -3}, Range{0.2, 3});
-  CHECK(stated.slope_low == Approx(0.1));
-  CHECK(stated.slope_high == kContrast.slope_high);
+  const auto flat = flat_part(Function::weibull, Scale::linear, stated);
+  CHECK(flat.slope_low == Approx(0.2));
+  CHECK(flat.slope_high == Approx(kContrast.slope_high / 2));
+  CHECK(stated.slope_low == Approx(0.2 / std::pow(flat.slope_high / 0.2, 0.25)));
   const auto spread = prior_around(Function::normal, Scale::linear, {-24, 24}, Range{2, 15});
   CHECK(spread.slope_low == Approx(1));
   CHECK(spread.slope_high == Approx(64));

@@ -1,6 +1,7 @@
-// coverage [--folder DIR] [--sessions N] [--procedure NAME] [--threads N] [--table]: how often the report's
-// 95 % intervals of adaptive data hold the true value. Keeps each session in DIR and goes on where it was
-// stopped; prints the table of what is there. Ends with 1 where an interval breaks its promise.
+// coverage [--folder DIR] [--sessions N] [--procedure NAME] [--references N] [--threads N] [--table]: how often
+// the report's 95 % intervals of adaptive data hold the true value. Keeps each session in DIR and continues
+// where it was stopped; prints the table of what is there. Ends with 1 where an interval breaks its promise or
+// a cell has fewer sessions than asked for.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -18,14 +19,12 @@ using namespace coverage;
 struct Request {
   std::string folder = "build/coverage";
   std::vector<std::string> procedures = kProcedures;
-  int sessions = 2000, threads = 1;
+  int sessions = 2000, references = 60, threads = 1;
   bool table_only = false;
 };
 
-/// So many sessions of each cell also have the reference's widths.
-constexpr int kReferences = 60;
 /// Sessions between two writes.
-constexpr int kPart = 20;
+constexpr std::size_t kPart = 20;
 
 std::string file_of(const Request& request, const std::string& procedure, std::size_t source) {
   return fmt::format("{}/{}-{}.csv", request.folder, procedure, source);
@@ -34,28 +33,31 @@ std::string file_of(const Request& request, const std::string& procedure, std::s
 void simulate(const Request& request, const std::string& procedure, std::size_t source) {
   const auto path = file_of(request, procedure, source);
   const Design design(procedure);
-  for (auto done = static_cast<int>(read(path).size()); done < request.sessions;) {
-    const int part = std::min(kPart, request.sessions - done);
-    std::vector<Session> sessions(static_cast<std::size_t>(part));
-    turnpoint::app::in_parallel(part, request.threads, {}, [&](int i) {
-      const int index = done + i;
+  auto missing = missing_seeds(read(path), request.sessions);
+  while (!missing.empty()) {
+    const auto part = std::min(kPart, missing.size());
+    std::vector<Session> sessions(part);
+    turnpoint::app::in_parallel(static_cast<int>(part), request.threads, {}, [&](int i) {
+      const auto seed = missing[static_cast<std::size_t>(i)];
       sessions[static_cast<std::size_t>(i)] =
-          design.run(sources()[source], static_cast<std::uint64_t>(index + 1), index < kReferences);
+          design.run(sources()[source], seed, seed <= static_cast<std::uint64_t>(request.references));
     });
     append(path, sessions);
-    done += part;
-    fmt::print(stderr, "\r{}, {}: {} of {}   ", procedure, sources()[source].name, done, request.sessions);
+    missing.erase(missing.begin(), missing.begin() + static_cast<std::ptrdiff_t>(part));
+    fmt::print(stderr, "\r{}, {}: {} of {}   ", procedure, sources()[source].name,
+               request.sessions - static_cast<int>(missing.size()), request.sessions);
   }
 }
 
 std::string cell(const Tally& tally, const std::string& broken) {
   if (tally.printed == 0) return "none printed";
-  auto text = fmt::format("{:.1f} % ({:.1f} %, {})", 100 * tally.coverage(), 100 * tally.abstained(),
+  auto text = fmt::format("{:.1f} ± {:.1f} % ({:.1f} %, {})", 100 * tally.coverage(),
+                          100 * tally.standard_error(), 100 * tally.abstained(),
                           tally.width_ratio ? fmt::format("{:.2f}", *tally.width_ratio) : "-");
   return broken.empty() ? text : text + " BROKEN:" + broken;
 }
 
-/// Whether every promise is kept.
+/// Whether every promise is kept, by as many sessions as were asked for.
 bool print_table(const Request& request) {
   fmt::print("| procedure | true values | trials | sessions | threshold | slope | 75 % point |\n");
   fmt::print("|---|---|---|---|---|---|---|\n");
@@ -63,6 +65,7 @@ bool print_table(const Request& request) {
   for (const auto& procedure : request.procedures)
     for (std::size_t source = 0; source < sources().size(); ++source) {
       const auto sessions = read(file_of(request, procedure, source));
+      kept = kept && missing_seeds(sessions, request.sessions).empty();
       if (sessions.empty()) continue;
       for (std::size_t t = 0; t < kTrials.size(); ++t) {
         fmt::print("| {} | {} | {} | {} |", procedure, sources()[source].name, kTrials[t], sessions.size());
@@ -89,6 +92,10 @@ int main(int argc, char** argv) {
   app.add_option("--sessions", request.sessions, "Of each cell")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  app.add_option("--references", request.references,
+                 "As many of them, the first, also have the width of the reference; takes most of the time")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--threads", request.threads, "At once")->capture_default_str()->check(CLI::PositiveNumber);
   app.add_flag("--table", request.table_only, "Only print what is there");
   CLI11_PARSE(app, argc, argv);

@@ -27,9 +27,15 @@ double share_right(const Truth& truth, double level_dB) {
 
 Truth drawn_from(const analysis::Prior& prior, std::uint64_t seed) {
   random::Draws draws({seed, random::Stream::observer, kTruthBlock, 0, 0});
+  const auto within = [&](double low, double high) {
+    for (;;) {
+      const double at = draws.uniform(), nearest = std::min(at, 1 - at);
+      if (draws.uniform() * prior.falling_share < nearest) return low + at * (high - low);
+    }
+  };
   Truth truth;
-  truth.threshold_dB = draws.uniform(prior.threshold_low, prior.threshold_high);
-  truth.slope = std::exp(draws.uniform(std::log(prior.slope_low), std::log(prior.slope_high)));
+  truth.threshold_dB = within(prior.threshold_low, prior.threshold_high);
+  truth.slope = std::exp(within(std::log(prior.slope_low), std::log(prior.slope_high)));
   truth.lapse = draws.uniform(0, kMostLapses);
   return truth;
 }
@@ -50,10 +56,11 @@ void add_reference(const report::SessionData& data, const analysis::Prior& prior
                    Printed& into) {
   std::vector<reference::Level> answers;
   for (const auto& trial : data.trials) answers.push_back({*trial.level, 1, *trial.correct ? 1 : 0});
-  const auto samples = reference::sample(reference::Shape::weibull_dB, reference::merged(answers),
-                                         {prior.threshold_low, prior.threshold_high, prior.slope_low,
-                                          prior.slope_high, 0, kMostLapses, 0.5, 0.5},
-                                         kReferenceSteps, seed);
+  const auto samples =
+      reference::sample(reference::Shape::weibull_dB, reference::merged(answers),
+                        {prior.threshold_low, prior.threshold_high, prior.slope_low, prior.slope_high, 0,
+                         kMostLapses, 0.5, 0.5, false, prior.falling_share},
+                        kReferenceSteps, seed);
   const auto central = [](const std::vector<double>& values) {
     return Ends{reference::quantile(values, 0.025), reference::quantile(values, 0.975)};
   };
@@ -73,7 +80,11 @@ const std::vector<Source>& sources() {
                                        {"-25 dB, slope 1, lapses .02", Truth{-25, 1, 0.02}},
                                        {"-22 dB, slope 3, lapses .04", Truth{-22, 3, 0.04}},
                                        {"-7 dB, slope 0.8, lapses .01", Truth{-7, 0.8, 0.01}},
-                                       {"-6 dB, slope 4, lapses .02", Truth{-6, 4, 0.02}}};
+                                       {"-7 dB, slope 4, lapses .02", Truth{-7, 4, 0.02}},
+                                       {"-26 dB, slope 5, lapses .02", Truth{-26, 5, 0.02}},
+                                       {"-25 dB, slope 2, lapses .02", Truth{-25, 2, 0.02}},
+                                       {"-16 dB, slope 0.7, lapses .03", Truth{-16, 0.7, 0.03}},
+                                       {"-12 dB, slope 2, lapses .02", Truth{-12, 2, 0.02}}};
   return all;
 }
 

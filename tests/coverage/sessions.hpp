@@ -27,7 +27,7 @@ struct Source {
   std::string name;
   std::optional<Truth> fixed;
 };
-/// The prior, and values off its centre (-16.5 dB, slope 1.9), within the grids of QUEST+ and psi.
+/// The prior, and values off its centre (-16.5 dB, slope 1.9), within the middle half of its ranges.
 const std::vector<Source>& sources();
 
 using Ends = std::pair<double, double>;

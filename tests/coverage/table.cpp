@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -61,6 +62,8 @@ std::vector<std::string> split(const std::string& line) {
 
 }  // namespace
 
+double Tally::standard_error() const { return std::sqrt(coverage() * (1 - coverage()) / printed); }
+
 Tally tally(const std::vector<Session>& sessions, std::size_t trials_index, Quantity quantity,
             double stretch) {
   Tally result;
@@ -88,8 +91,7 @@ std::string broken_promise(const Tally& tally, const Source& source, Quantity qu
   std::string broken;
   const double least = source.fixed ? (quantity == slope ? 0.95 : 0.93) : 0.935,
                most = source.fixed ? 1 : 0.965;
-  const double error = std::sqrt(least * (1 - least) / tally.printed);
-  if (tally.coverage() < least - 2 * error || tally.coverage() > most + 2 * error) broken += " coverage";
+  if (tally.coverage() < least || tally.coverage() > most) broken += " coverage";
   if (tally.width_ratio && *tally.width_ratio > 1.3) broken += " width";
   if (quantity == threshold && trials >= 96 && tally.abstained() > 0.05) broken += " abstentions";
   return broken;
@@ -97,6 +99,7 @@ std::string broken_promise(const Tally& tally, const Source& source, Quantity qu
 
 std::vector<Session> read(const std::string& path) {
   std::vector<Session> sessions;
+  std::set<std::uint64_t> seeds;
   std::ifstream in(path);
   std::stringstream text;
   text << in.rdbuf();
@@ -108,8 +111,19 @@ std::vector<Session> read(const std::string& path) {
     const auto fields = split(line);
     if (fields.size() != kFields) throw std::runtime_error(path + ": a line of another program version");
     sessions.push_back(session_of(fields));
+    if (!seeds.insert(sessions.back().seed).second)
+      throw std::runtime_error(fmt::format("{}: seed {} is there twice", path, sessions.back().seed));
   }
   return sessions;
+}
+
+std::vector<std::uint64_t> missing_seeds(const std::vector<Session>& there, int sessions) {
+  std::set<std::uint64_t> seeds;
+  for (const auto& session : there) seeds.insert(session.seed);
+  std::vector<std::uint64_t> missing;
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(sessions); ++seed)
+    if (!seeds.contains(seed)) missing.push_back(seed);
+  return missing;
 }
 
 void append(const std::string& path, const std::vector<Session>& sessions) {

@@ -1,12 +1,15 @@
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
+#include "station/analysis/psychometric_posterior.hpp"
 #include "station/app/parallel.hpp"
 #include "tests/coverage/table.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace coverage;
+namespace analysis = turnpoint::analysis;
 
 namespace {
 
@@ -42,6 +45,51 @@ TEST_CASE("Printed 95 % intervals after 96 trials of QUEST+ hold true values dra
   CHECK(tally(sessions, 1, threshold).abstained() <= 0.05);
 }
 
+TEST_CASE("Intervals after 200 trials of QUEST+ hold the slope of a shallow function off the prior's centre",
+          "[coverage]") {
+  // A prior that is flat up to its ends gives 92 %; two standard errors of 800 sessions are 1.4 %.
+  const auto sessions = sessions_of("quest-plus", sources()[3], 800, 200, 0);
+  CHECK(tally(sessions, 2, slope).coverage() >= 0.945);
+  CHECK(tally(sessions, 2, threshold).coverage() >= 0.93);
+}
+
+TEST_CASE("A cell keeps its promise by the share that was found, without an allowance for chance",
+          "[coverage]") {
+  const auto broken = [](int held, std::size_t source, Quantity quantity) {
+    Tally found;
+    found.sessions = found.printed = 2000, found.held = held;
+    return !broken_promise(found, sources()[source], quantity, 200).empty();
+  };
+  CHECK(broken(1859, 1, threshold));
+  CHECK(broken(1859, 1, level_75));
+  CHECK_FALSE(broken(1860, 1, threshold));
+  CHECK(broken(1899, 1, slope));
+  CHECK_FALSE(broken(1900, 1, slope));
+  CHECK(broken(1869, 0, slope));
+  CHECK(broken(1931, 0, slope));
+  CHECK_FALSE(broken(1930, 0, slope));
+  Tally found;
+  found.sessions = found.printed = 2000, found.held = 1850;
+  CHECK(found.standard_error() == Approx(0.0059).margin(0.0001));
+}
+
+TEST_CASE("Fixed true values of the coverage table lie in the middle half of the prior, off its centre",
+          "[coverage]") {
+  const auto prior =
+      analysis::prior_around(analysis::Function::weibull, analysis::Scale::linear, {-30, -3}, {});
+  const auto share = [](double value, double low, double high) { return (value - low) / (high - low); };
+  int off_centre = 0;
+  for (const auto& source : sources()) {
+    if (!source.fixed) continue;
+    const double threshold = share(source.fixed->threshold_dB, prior.threshold_low, prior.threshold_high),
+                 slope = share(std::log(source.fixed->slope), std::log(prior.slope_low),
+                               std::log(prior.slope_high));
+    CHECK((threshold > 0.25 && threshold < 0.75 && slope > 0.25 && slope < 0.75));
+    off_centre += std::abs(threshold - 0.5) > 0.1 ? 1 : 0;
+  }
+  CHECK(off_centre >= 6);
+}
+
 TEST_CASE("A session of the coverage table is its seed's, alone or among others", "[coverage]") {
   const Design design("staircase");
   const auto one = design.run(sources()[1], 7, false), again = design.run(sources()[1], 7, false),
@@ -66,6 +114,16 @@ TEST_CASE("A run of the coverage table that was cut off goes on where it stopped
     CHECK(found[i].after[0].interval == sessions[i].after[0].interval);
     CHECK(found[i].after[0].reference == sessions[i].after[0].reference);
   }
-  append(path, sessions_of("psi", sources()[0], 1, 48, 0));
-  CHECK(read(path).size() == 4);
+  CHECK(missing_seeds(found, 5) == std::vector<std::uint64_t>{4, 5});
+}
+
+TEST_CASE("Parts of a coverage table are joined in any order, but no seed counts twice", "[coverage]") {
+  const TemporaryFolder folder;
+  const auto path = folder / "cell.csv";
+  const auto sessions = sessions_of("psi", sources()[0], 3, 48, 0);
+  append(path, {sessions[2]});
+  append(path, {sessions[0]});
+  CHECK(missing_seeds(read(path), 3) == std::vector<std::uint64_t>{2});
+  append(path, {sessions[2]});
+  CHECK_THROWS_WITH(read(path), path + ": seed 3 is there twice");
 }

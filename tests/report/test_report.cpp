@@ -155,18 +155,23 @@ TEST_CASE("A forced-choice session in dB has its threshold and 75 % point in the
 
 TEST_CASE("Where the answers chose the levels the report states the posterior and its prior", "[report]") {
   auto data = staircase_session();
-  data.prior = analysis::Prior{-40, 3, 0.25, 16};
+  data.prior = analysis::Prior{-40, 3, 0.25, 16, 0.25};
   const auto summary = summarise(data);
   const auto& found = summary.fits[0].intervals;
   REQUIRE((found.threshold && found.slope && found.interval_75));
   const auto html = to_html(summary);
   CHECK(html.find("95 % credible intervals: central, posterior on a grid") != std::string::npos);
-  CHECK(html.find("threshold uniform from -40 to 3 dB; slope uniform in its logarithm from 0.25 to 16; lapse "
-                  "rate uniform from 0 to 0.06.") != std::string::npos);
+  CHECK(
+      html.find(
+          "threshold uniform from -29.2 to -7.75 dB, falling to 0 at -40 and 3; slope uniform in its "
+          "logarithm from 0.707 to 5.66, falling to 0 at 0.25 and 16; lapse rate uniform from 0 to 0.06.") !=
+      std::string::npos);
   CHECK(html.find("bootstrap") == std::string::npos);
   CHECK(html.find("Deviance") == std::string::npos);
   const auto fit = nlohmann::json::parse(to_json(summary))["fits"][0];
-  CHECK(fit["prior"]["threshold"]["low"] == -40);
+  CHECK(fit["prior"]["threshold"]["low"] == -29.25);
+  CHECK(fit["prior"]["threshold"]["falls_to_0_at"][0] == -40);
+  CHECK(fit["prior"]["slope"]["falls_to_0_at"][1] == 16);
   CHECK(fit["prior"]["slope"]["uniform_in"] == "logarithm");
   CHECK(fit["threshold_interval"]["low"] == found.threshold->interval.low);
   CHECK(fit["deviance"].is_null());

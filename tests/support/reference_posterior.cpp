@@ -26,8 +26,19 @@ double probability(Shape shape, double guess, const Point& at, double x) {
   return guess + (1 - guess - at[2]) * f;
 }
 
-double log_likelihood(Shape shape, const std::vector<Level>& data, const Prior& prior, const Point& at) {
+/// Of threshold or ln slope at this share of the prior's range.
+double log_prior(double at, double falling_share) {
+  const double nearest = std::min(at, 1 - at);
+  return nearest < falling_share ? std::log(nearest / falling_share) : 0;
+}
+
+double log_posterior(Shape shape, const std::vector<Level>& data, const Prior& prior, const Point& at) {
   double sum = 0;
+  if (prior.falling_share > 0)
+    sum += log_prior((at[0] - prior.threshold_low) / (prior.threshold_high - prior.threshold_low),
+                     prior.falling_share) +
+           log_prior((at[1] - std::log(prior.slope_low)) / std::log(prior.slope_high / prior.slope_low),
+                     prior.falling_share);
   for (const auto& point : data) {
     const double p = std::clamp(probability(shape, guess_of(prior, at), at, point.level), 1e-12, 1 - 1e-12);
     sum += point.positive * std::log(p) + (point.trials - point.positive) * std::log(1 - p);
@@ -70,7 +81,7 @@ Samples sample(Shape shape, const std::vector<Level>& data, const Prior& prior, 
   for (int i = 0; i < 500; ++i) {
     Point start;
     for (std::size_t k = 0; k < 4; ++k) start[k] = draws.uniform(low[k], high[k]);
-    const double found = log_likelihood(shape, data, prior, start);
+    const double found = log_posterior(shape, data, prior, start);
     if (found > value) value = found, here = start;
   }
   Samples samples;
@@ -83,7 +94,7 @@ Samples sample(Shape shape, const std::vector<Level>& data, const Prior& prior, 
       inside = inside && next[k] >= low[k] && next[k] <= high[k];
     }
     if (inside) {
-      const double found = log_likelihood(shape, data, prior, next);
+      const double found = log_posterior(shape, data, prior, next);
       if (found >= value || draws.uniform() < std::exp(found - value)) here = next, value = found;
     }
     if (i < 0 || i % kKeptOneIn != 0) continue;

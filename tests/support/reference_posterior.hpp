@@ -16,11 +16,13 @@ struct Level {
 /// Ascending, one entry a level.
 std::vector<Level> merged(std::vector<Level> levels);
 
-/// Uniform in threshold, logarithm of the slope, lapse rate and guess rate; equal ends fix a parameter.
+/// Uniform in threshold, logarithm of the slope, lapse rate and guess rate; equal ends fix a parameter. The
+/// density of the first two falls linearly to 0 over this share of the range at both ends.
 struct Prior {
   double threshold_low = 0, threshold_high = 1, slope_low = 1, slope_high = 2, lapse_low = 0, lapse_high = 0,
          guess_low = 0, guess_high = 0;
   bool guess_is_lapse = false;
+  double falling_share = 0;
 };
 
 /// One draw each of the parameters and of the level with probability 0.75 (NaN where there is none).
