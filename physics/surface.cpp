@@ -78,12 +78,6 @@ std::optional<Material> find_material(std::string_view wanted) {
   return std::nullopt;
 }
 
-std::vector<std::string_view> material_names() {
-  std::vector<std::string_view> names;
-  for (const Material& material : materials) names.push_back(material.name);
-  return names;
-}
-
 void validate(const Surface& s) {
   require(finite_positive(s.density_kg_m3), "density_kg_m3", s.density_kg_m3, "above 0");
   require(std::isfinite(s.tension_Pa) && s.tension_Pa >= 0, "tension_Pa", s.tension_Pa, "0 or more");

@@ -90,9 +90,8 @@ struct Material {
   double yield_strength_Pa;  // of a strong commercial temper (handbook value, 10 % or so)
 };
 
-// Looks up a named material; none when unknown. `material_names` lists what there is.
+// Looks up a named material; none when unknown.
 std::optional<Material> find_material(std::string_view name);
-std::vector<std::string_view> material_names();
 
 // Throws std::invalid_argument naming the first quantity outside its physical range and what is allowed.
 void validate(const Surface& surface);

@@ -27,10 +27,6 @@ std::optional<double> d_prime_forced_choice(double proportion_correct) {
   return scaled_z(proportion_correct, std::numbers::sqrt2);
 }
 
-std::optional<double> d_prime_single_interval_unbiased(double proportion_correct) {
-  return scaled_z(proportion_correct, 2);
-}
-
 std::optional<double> log_linear_proportion(int successes, int trials) {
   if (successes < 0 || successes > trials)
     throw std::invalid_argument(std::to_string(successes) + " of " + std::to_string(trials) +

@@ -12,9 +12,6 @@ namespace turnpoint::analysis {
 /// for a proportion of 0 or 1, where it is not finite; use the log-linear counts there.
 std::optional<double> d_prime_forced_choice(double proportion_correct);
 
-/// Single-interval two-answer (left/right): 2 z(Pc), right for a symmetric observer without bias only.
-std::optional<double> d_prime_single_interval_unbiased(double proportion_correct);
-
 /// Answers of a yes/no task, or of a two-answer task with one answer taken as "yes".
 struct YesNoCounts {
   int hits = 0, misses = 0, false_alarms = 0, correct_rejections = 0;

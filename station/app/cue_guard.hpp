@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "station/protocol/survey.hpp"
+#include "station/rig/rig.hpp"
 
 namespace turnpoint::app {
 

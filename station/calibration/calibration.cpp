@@ -90,22 +90,4 @@ std::vector<std::string> problems(const Calibration& calibration, const std::str
   return found;
 }
 
-std::optional<Drive> drive_for(const ResponseFit& response, double frequency_Hz, double displacement_m) {
-  if (!(frequency_Hz >= response.low_Hz && frequency_Hz <= response.high_Hz)) return std::nullopt;
-  const auto& points = response.points;
-  const auto above = std::find_if(points.begin(), points.end(), [=](const ResponsePoint& point) {
-    return point.frequency_Hz >= frequency_Hz;
-  });
-  double best = 0;
-  for (const ResponsePoint& point : points) best = std::max(best, point.m_per_full_scale);
-  double log = std::log(above->m_per_full_scale), phase = above->phase_rad;
-  if (above != points.begin() && above->frequency_Hz > frequency_Hz) {
-    const ResponsePoint& below = *(above - 1);
-    const double u = (frequency_Hz - below.frequency_Hz) / (above->frequency_Hz - below.frequency_Hz);
-    log = (1 - u) * std::log(below.m_per_full_scale) + u * log;
-    phase = (1 - u) * below.phase_rad + u * phase;
-  }
-  return Drive{displacement_m / std::exp(log), phase, 20 * std::log10(best / std::exp(log))};
-}
-
 }  // namespace turnpoint::calibration

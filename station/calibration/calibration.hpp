@@ -65,13 +65,4 @@ int days_left(const Calibration& calibration, const std::string& today);
 std::vector<std::string> problems(const Calibration& calibration, const std::string& rig_sha256,
                                   const std::string& today);
 
-/// The drive (full scale) for a displacement of the drive edge, by linear interpolation in the logarithm.
-/// None outside the band in which equalisation stays within 20 dB.
-struct Drive {
-  double full_scale = 0;
-  double phase_rad = 0;        ///< to be subtracted from the drive's phase
-  double equalisation_dB = 0;  ///< above the best frequency
-};
-std::optional<Drive> drive_for(const ResponseFit& response, double frequency_Hz, double displacement_m);
-
 }  // namespace turnpoint::calibration

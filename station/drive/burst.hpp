@@ -24,13 +24,9 @@ struct ToneSet {
   std::int32_t count = 0;
 };
 
-/// Raised cosine (Hann) has a continuous slope; smoothstep is the 7th-order polynomial with three
-/// vanishing derivatives at both ends, whose spectrum falls off faster.
-enum class RampShape : std::int32_t { raised_cosine, smoothstep };
-
-/// How amplitude comes and goes. A ramp of 0 frames is an abrupt gate, which is felt: ask for it on purpose.
+/// How amplitude comes and goes: as a raised cosine (Hann), whose slope is continuous. A ramp of 0 frames is
+/// an abrupt gate, which is felt: ask for it on purpose.
 struct Ramp {
-  RampShape shape = RampShape::raised_cosine;
   std::int64_t frames = 9600;  ///< 50 ms at 192 kHz
 };
 

@@ -70,7 +70,6 @@ enum class Samples : std::int32_t { rendered, passed };
 struct StreamConfig {
   OutputConfig output;
   Samples samples = Samples::rendered;
-  Precision precision = Precision::exact;
   SynthLimits limits;
   int fifo_priority = 70;
   double converter_delay_s = 0;  ///< group delay of the converter, added to predicted times

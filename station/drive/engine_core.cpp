@@ -12,8 +12,7 @@ constexpr const char* not_taken = "burst refused: the audio thread has not taken
 
 }  // namespace
 
-EngineCore::EngineCore(const StreamConfig& config)
-    : config_(config), synth_(format_of(config.output), config.precision) {}
+EngineCore::EngineCore(const StreamConfig& config) : config_(config), synth_(format_of(config.output)) {}
 
 void EngineCore::send(const Command& command) {
   if (!commands_->push(command)) throw BurstRefused(not_taken);

@@ -54,7 +54,6 @@ class Exposure {
   void add(const Exposed& exposed);
 
   double on_time_s(double from_s, double to_s) const;  ///< on the surface between two times
-  double session_left_s(double now_s) const { return session_start_s_ + limits_.session_s - now_s; }
 
  private:
   bool fits(double start_s, double length_s) const;

@@ -25,13 +25,11 @@ inline Partial advanced(Partial partial, std::uint64_t frames) noexcept {
 
 /// Inner loops for one kind of processor. `steady` adds `frames` samples of a partial without glide to `sum`;
 /// `gliding` also follows curvature and amplitude_change along `shape` (one value a frame).
-/// The double loops give the same bits on every processor; the float loops are within -140 dB of them.
+/// They give the same bits on every processor.
 struct Kernels {
   const char* name;
   void (*steady)(double* sum, int frames, Partial partial) noexcept;
   void (*gliding)(double* sum, int frames, Partial partial, const double* shape) noexcept;
-  void (*steady_float)(float* sum, int frames, Partial partial) noexcept;
-  void (*gliding_float)(float* sum, int frames, Partial partial, const double* shape) noexcept;
 };
 
 /// The loops that every processor of the architecture runs.

@@ -1,12 +1,12 @@
 // Compiled with -mavx2; called only where oscillator_dispatch_x86.cpp has found it. No fused multiply-add
-// here: the double loops give the same bits everywhere.
+// here: the loops give the same bits everywhere.
 #include "station/drive/oscillator_avx2.hpp"
 #include "station/drive/oscillator_kernels.hpp"
 
 namespace turnpoint::drive {
 
 const Kernels& avx2_kernels() noexcept {
-  static constexpr Kernels kernels{"avx2", steady, gliding, steady_float_avx2, gliding_float_avx2};
+  static constexpr Kernels kernels{"avx2", steady, gliding};
   return kernels;
 }
 

@@ -3,9 +3,7 @@
 
 namespace turnpoint::drive {
 
-/// Only for processors with AVX2 and FMA.
+/// Only for processors with AVX2.
 const Kernels& avx2_kernels() noexcept;
-void steady_float_avx2(float* sum, int frames, Partial partial) noexcept;
-void gliding_float_avx2(float* sum, int frames, Partial partial, const double* shape) noexcept;
 
 }  // namespace turnpoint::drive

@@ -3,8 +3,7 @@
 namespace turnpoint::drive {
 
 const Kernels& best_kernels() noexcept {
-  static const Kernels& chosen =
-      __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? avx2_kernels() : generic_kernels();
+  static const Kernels& chosen = __builtin_cpu_supports("avx2") ? avx2_kernels() : generic_kernels();
   return chosen;
 }
 

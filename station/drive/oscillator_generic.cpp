@@ -3,7 +3,7 @@
 namespace turnpoint::drive {
 
 const Kernels& generic_kernels() noexcept {
-  static constexpr Kernels kernels{"generic", steady, gliding, steady_float, gliding_float};
+  static constexpr Kernels kernels{"generic", steady, gliding};
   return kernels;
 }
 

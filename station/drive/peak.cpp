@@ -70,7 +70,7 @@ std::array<double, max_channels> peak_bound(const PreparedBurst& burst, const Pr
 }
 
 std::array<double, max_channels> rendered_peak(const PreparedBurst& burst, const Format& format) {
-  Synth synth(format, Precision::exact);
+  Synth synth(format);
   PreparedBurst moved = burst;
   moved.start_frame = 0;
   std::array<double, max_channels> peak{};

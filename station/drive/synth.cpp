@@ -21,7 +21,6 @@ struct Synth::State {
   };
 
   Format format;
-  Precision precision;
   const Kernels* kernels;
   std::array<Slot, max_voices> slots;
   std::int64_t next_frame = 0;
@@ -56,8 +55,7 @@ struct Synth::State {
       std::fill_n(mix.samples[c].begin(), frames, 0.0);
       std::fill_n(mix.dithered[c].begin(), frames, std::uint8_t{0});
     }
-    const auto width = precision == Precision::exact ? Voice::Width::wide : Voice::Width::narrow;
-    step(frame, frames, [&](Voice& voice, std::int64_t at) { voice.add(at, mix, scratch, *kernels, width); });
+    step(frame, frames, [&](Voice& voice, std::int64_t at) { voice.add(at, mix, scratch, *kernels); });
   }
 
   /// Takes every voice over these frames by `go(voice, frame of the burst)`, and says what began and ended.
@@ -103,14 +101,13 @@ struct Synth::State {
   }
 };
 
-Synth::Synth(const Format& format, Precision precision, const Kernels& kernels) : state_(new State) {
+Synth::Synth(const Format& format, const Kernels& kernels) : state_(new State) {
   if (format.rate_Hz < 8000 || format.rate_Hz > 768000 || format.channels < 1 ||
       format.channels > max_channels || format.bits < 8 || format.bits > 32)
     throw terms::UsageError(fmt::format(
         "stream of {} Hz, {} channels, {} bits; allowed 8000 to 768000 Hz, 1 to {} channels, 8 to 32 bits",
         format.rate_Hz, format.channels, format.bits, max_channels));
   state_->format = format;
-  state_->precision = precision;
   state_->kernels = &kernels;
 }
 
@@ -201,9 +198,5 @@ MemoryRange Synth::memory() const noexcept { return range_of(*state_); }
 bool Synth::active() const noexcept { return state_->active(); }
 
 std::uint64_t Synth::saturated() const noexcept { return state_->saturated; }
-
-Precision precision_for(double tolerance_dB) noexcept {
-  return tolerance_dB < -130 ? Precision::exact : Precision::fast;
-}
 
 }  // namespace turnpoint::drive

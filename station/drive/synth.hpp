@@ -9,14 +9,7 @@
 
 namespace turnpoint::drive {
 
-/// exact: double, the same samples on every machine, spurious products below -290 dB before quantisation.
-/// fast: float, below -130 dB.
-enum class Precision { exact, fast };
-
 struct MemoryRange;  // rights.hpp
-
-/// The cheapest path whose error stays below `tolerance_dB` re full scale (negative).
-Precision precision_for(double tolerance_dB) noexcept;
 
 /// What happened to a burst, in frames of the stream.
 enum class SynthEventKind : std::int32_t { started, ended, missed };
@@ -26,17 +19,18 @@ struct SynthEvent {
   std::int64_t frame = 0;  ///< first frame, first silent frame, or the frame that was already gone
 };
 
-/// Renders bursts into blocks. Everything is preallocated: after construction nothing allocates, locks,
-/// throws or logs. One thread at a time. Samples depend only on the absolute frame and the bursts, not on how
-/// the stream is cut into blocks; masking noise alone keeps a filter state and is the same only for an
-/// unbroken stream.
+/// Renders bursts into blocks, in double: the same samples on every machine, spurious products below -290 dB
+/// before quantisation. Everything is preallocated: after construction nothing allocates, locks, throws or
+/// logs. One thread at a time. Samples depend only on the absolute frame and the bursts, not on how the
+/// stream is cut into blocks; masking noise alone keeps a filter state and is the same only for an unbroken
+/// stream.
 class Synth {
  public:
   static constexpr int max_block = 512;
   static constexpr int max_voices = 4;  ///< bursts that may wait or sound at once
 
   /// Throws terms::UsageError for a format outside 8-768 kHz, 1-8 channels, 8-32 bits.
-  Synth(const Format& format, Precision precision, const Kernels& kernels = best_kernels());
+  explicit Synth(const Format& format, const Kernels& kernels = best_kernels());
   ~Synth();
   Synth(const Synth&) = delete;
   Synth& operator=(const Synth&) = delete;

@@ -64,7 +64,7 @@ const PreparedChange* Voice::due_change(std::int64_t at) const noexcept {
 
 void Voice::begin_glide(std::int64_t at, const PreparedChange& change) noexcept {
   const auto since = static_cast<std::uint64_t>(at - origin_);
-  const double along = glide_end_ == never ? 0 : ramp_at(burst_.ramp.shape, at - origin_, glide_frames_);
+  const double along = glide_end_ == never ? 0 : ramp_at(at - origin_, glide_frames_);
   const int count = std::max(burst_.tone_count, change.count);
   glide_frames_ = std::max<std::int64_t>(1, change.frames);
   for (int i = 0; i < count; ++i) {
@@ -128,25 +128,17 @@ std::int64_t Voice::next_boundary(std::int64_t at) const noexcept {
   return std::max(next, at + 1);
 }
 
-void Voice::tones(std::int64_t at, int offset, int count, Scratch& scratch, const Kernels& kernels,
-                  Width width) noexcept {
+void Voice::tones(std::int64_t at, int offset, int count, Scratch& scratch, const Kernels& kernels) noexcept {
   const bool gliding = glide_end_ != never;
   double* shape = scratch.shape.data() + offset;
   if (gliding)
-    for (int n = 0; n < count; ++n) shape[n] = ramp_at(burst_.ramp.shape, at + n - origin_, glide_frames_);
+    for (int n = 0; n < count; ++n) shape[n] = ramp_at(at + n - origin_, glide_frames_);
   for (int i = 0; i < burst_.tone_count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const Partial p = advanced(partials_[k], static_cast<std::uint64_t>(at - origin_));
     if (p.amplitude == 0 && p.amplitude_change == 0) continue;
     double* sum = scratch.dry[static_cast<std::size_t>(burst_.tones[k].channel)].data() + offset;
-    if (width == Width::wide) {
-      gliding ? kernels.gliding(sum, count, p, shape) : kernels.steady(sum, count, p);
-      continue;
-    }
-    float* narrow = scratch.narrow.data();
-    std::fill_n(narrow, count, 0.0F);
-    gliding ? kernels.gliding_float(narrow, count, p, shape) : kernels.steady_float(narrow, count, p);
-    for (int n = 0; n < count; ++n) sum[n] += static_cast<double>(narrow[n]);
+    gliding ? kernels.gliding(sum, count, p, shape) : kernels.steady(sum, count, p);
   }
 }
 
@@ -159,12 +151,11 @@ bool Voice::gains(std::int64_t at, int count, Scratch& scratch) const noexcept {
   for (int n = 0; n < count; ++n) {
     const std::int64_t f = at + n;
     double gain = 1;
-    if (f < ramp) gain *= ramp_at(burst_.ramp.shape, f, ramp);
-    if (f >= fall) gain *= ramp_at(burst_.ramp.shape, burst_.length_frames - 1 - f, ramp);
+    if (f < ramp) gain *= ramp_at(f, ramp);
+    if (f >= fall) gain *= ramp_at(burst_.length_frames - 1 - f, ramp);
     for (std::size_t s = 0; s < stop_count_; ++s)
-      if (f >= stops_[s].at)
-        gain *= ramp_at(stops_[s].ramp.shape, stops_[s].end() - 1 - f, stops_[s].ramp.frames);
-    if (resuming && f < resume_at_ + ramp) gain *= ramp_at(burst_.ramp.shape, f - resume_at_, ramp);
+      if (f >= stops_[s].at) gain *= ramp_at(stops_[s].end() - 1 - f, stops_[s].ramp.frames);
+    if (resuming && f < resume_at_ + ramp) gain *= ramp_at(f - resume_at_, ramp);
     scratch.gain[static_cast<std::size_t>(n)] = gain;
   }
   return true;
@@ -204,7 +195,7 @@ void Voice::pass(std::int64_t at, int frames) noexcept {
   for (std::int64_t n = std::max<std::int64_t>(at, 0); n < last; n = next_boundary(n)) enter(n);
 }
 
-void Voice::add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kernels, Width width) noexcept {
+void Voice::add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kernels) noexcept {
   const int first = static_cast<int>(std::clamp<std::int64_t>(-at, 0, mix.frames));
   const int last = static_cast<int>(std::clamp<std::int64_t>(end() - at, first, mix.frames));
   if (first == last) return;
@@ -218,7 +209,7 @@ void Voice::add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kern
   for (int n = first; n < last;) {
     enter(at + n);
     const int count = static_cast<int>(std::min<std::int64_t>(next_boundary(at + n) - (at + n), last - n));
-    tones(at + n, n, count, scratch, kernels, width);
+    tones(at + n, n, count, scratch, kernels);
     n += count;
   }
   const bool gated = gains(at + first, last - first, scratch);

@@ -24,16 +24,12 @@ struct Scratch {
   alignas(64) std::array<std::array<double, Mix::block>, max_channels> dry;
   alignas(64) std::array<double, Mix::block> gain;
   alignas(64) std::array<double, Mix::block> shape;
-  alignas(64) std::array<float, Mix::block> narrow;
 };
 
 /// One burst on its way through the stream: where it is, and what has been asked of it since. Frames are
 /// counted from the burst's start. No allocation; all functions noexcept.
 class Voice {
  public:
-  /// float loops if `narrow`
-  enum class Width { wide, narrow };
-
   void begin(const PreparedBurst& burst) noexcept;
   /// Supersedes any live change that still waits.
   void change(const PreparedChange& change) noexcept;
@@ -43,7 +39,7 @@ class Voice {
   void resume(std::int64_t at) noexcept;
 
   /// Adds frames [at, at + mix.frames) to the mix. `at` must not fall. May be negative (not begun).
-  void add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kernels, Width width) noexcept;
+  void add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kernels) noexcept;
 
   /// Goes on by so many frames without computing them; the noise's filters stand still.
   void pass(std::int64_t at, int frames) noexcept;
@@ -57,8 +53,7 @@ class Voice {
   const PreparedChange* due_change(std::int64_t at) const noexcept;
   void begin_glide(std::int64_t at, const PreparedChange& change) noexcept;
   void end_glide(std::int64_t at) noexcept;
-  void tones(std::int64_t at, int offset, int count, Scratch& scratch, const Kernels& kernels,
-             Width width) noexcept;
+  void tones(std::int64_t at, int offset, int count, Scratch& scratch, const Kernels& kernels) noexcept;
   bool gains(std::int64_t at, int count, Scratch& scratch) const noexcept;
   void markers(std::int64_t at, int first, int last, Mix& mix) const noexcept;
   void noise(std::int64_t at, int first, int last, Mix& mix, const Scratch& scratch, bool gated) noexcept;

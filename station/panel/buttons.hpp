@@ -70,8 +70,6 @@ class Panel {
   virtual ~Panel() = default;
   /// Names in the order of the URI ("left", "right"); empty without buttons.
   virtual const std::vector<std::string>& buttons() const = 0;
-  virtual bool has_contact() const = 0;
-  virtual bool tells_position() const = 0;
   /// What has gone and is not back yet, and why; "" when all is there.
   virtual std::string missing() const = 0;
 

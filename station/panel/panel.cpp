@@ -138,8 +138,6 @@ class RigPanel final : public Panel {
   explicit RigPanel(PanelHandlers handlers) : handlers_(std::move(handlers)) {}
 
   const std::vector<std::string>& buttons() const override { return names_; }
-  bool has_contact() const override { return has_contact_; }
-  bool tells_position() const override { return tells_position_; }
   std::string missing() const override {
     for (const auto* device : {lines_.get(), touch_.get()})
       if (device && !device->missing().empty()) return device->missing();
@@ -155,7 +153,6 @@ class RigPanel final : public Panel {
   }
 
   std::vector<std::string> names_;
-  bool has_contact_ = false, tells_position_ = false;
   PanelHandlers handlers_;
   std::unique_ptr<DeviceWatch> lines_, touch_;
 
@@ -210,9 +207,7 @@ void plan_buttons(const std::string& text, RigPanel& panel, LinePanel& plan) {
 
 void plan_contact(const std::string& text, RigPanel& panel, LinePanel& plan) {
   Uri uri = parse_uri(text);
-  panel.has_contact_ = true;
   if (uri.scheme == "sim") {
-    panel.tells_position_ = true;
   } else if (uri.scheme == "gpio") {
     plan.contact_low = take_low(uri);
     const std::string line = uri.take("line", "");
@@ -230,7 +225,6 @@ void plan_contact(const std::string& text, RigPanel& panel, LinePanel& plan) {
     panel.touch_ =
         std::make_unique<DeviceWatch>(touch_opener(uri.name, axis == "x" ? ABS_X : ABS_Y, panel.handlers_),
                                       evdev_priority, panel.handlers_);
-    panel.tells_position_ = true;
   } else {
     throw terms::UsageError("contact '" + text + "'; allowed sim:, gpio:line=LINE, evdev:NAME");
   }
@@ -242,7 +236,6 @@ std::unique_ptr<Panel> watch_lines(OpenLines open, const LinePanel& plan, PanelH
   auto panel = std::make_unique<RigPanel>(std::move(handlers));
   for (int k = 0; k < plan.lines; ++k)
     if (k != plan.contact) panel->names_.push_back(plan.names.at(static_cast<std::size_t>(k)));
-  panel->has_contact_ = plan.contact >= 0;
   panel->lines_ = std::make_unique<DeviceWatch>(line_opener(std::move(open), plan, panel->handlers_),
                                                 panel_priority, panel->handlers_);
   return panel;

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "station/procedure/spec.hpp"
-#include "station/rig/rig.hpp"
 #include "station/terms/trial.hpp"
 #include "station/text/problem.hpp"
 
@@ -235,10 +234,5 @@ Protocol parse(const std::string& source, const std::string& path);
 /// The blocks in the order that the participant with this sequence index (from 0) runs them: sequences are
 /// unrolled by their Williams square, cycles and mirror.
 std::vector<Block> block_order(const Protocol& protocol, int sequence_index);
-
-/// What stands between this protocol and this rig: unreachable boundaries, missing devices, limits. Empty:
-/// none.
-/// These are the problems of survey() (station/protocol/survey.hpp), which says more.
-std::vector<text::Problem> check_against(const Protocol& protocol, const rig::Rig& rig);
 
 }  // namespace turnpoint::protocol

@@ -295,8 +295,4 @@ Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_tok
   return survey;
 }
 
-std::vector<text::Problem> check_against(const Protocol& protocol, const rig::Rig& rig) {
-  return survey(protocol, rig).problems;
-}
-
 }  // namespace turnpoint::protocol

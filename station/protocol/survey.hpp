@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "station/protocol/protocol.hpp"
+#include "station/rig/rig.hpp"
 #include "station/scene/cues.hpp"
 
 namespace turnpoint::protocol {

@@ -51,16 +51,6 @@ Method ours(std::uint64_t increment) {
           }};
 }
 
-Method ours_float(std::uint64_t increment) {
-  return {"integer phase, polynomial, float",
-          [=](std::int64_t frame, Block& out) {
-            out.narrow.fill(0);
-            best_kernels().steady_float(out.narrow.data(), block,
-                                        {increment * static_cast<std::uint64_t>(frame), increment, 0, 1, 0});
-          },
-          false, true};
-}
-
 Method libm(std::uint64_t increment) {
   return {"integer phase, libm", [=](std::int64_t frame, Block& out) {
             for (std::size_t n = 0; n < block; ++n) {
@@ -158,7 +148,6 @@ SynthBenchmark benchmark_synthesis(double frequency_Hz, int rate_Hz) {
   const std::uint64_t increment = phase_increment(frequency_Hz, rate_Hz);
   const auto methods = [&] {
     return std::vector<Method>{ours(increment),
-                               ours_float(increment),
                                libm(increment),
                                table(increment, 12),
                                table(increment, 16),

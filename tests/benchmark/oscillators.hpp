@@ -20,8 +20,8 @@ struct SynthBenchmark {
 };
 
 /// Error against time of the methods in use elsewhere (table with linear interpolation, rotation, biquad,
-/// libm with an exact phase, sin(2 pi f t) with a growing t in double and float) and of ours in double and
-/// float. Runs for about a second.
+/// libm with an exact phase, sin(2 pi f t) with a growing t in double and float) and of ours. Runs for about
+/// a second.
 SynthBenchmark benchmark_synthesis(double frequency_Hz = 19600.123, int rate_Hz = 192000);
 
 }  // namespace turnpoint::benchmark

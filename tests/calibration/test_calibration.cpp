@@ -69,18 +69,6 @@ TEST_CASE("measurements become a file that reads back as the same calibration", 
   CHECK(back.sound.size() == 2);
 }
 
-TEST_CASE("a drive level comes from the response, within the band only", "[calibration]") {
-  const ResponseFit response = made().transducers.at(0).response;
-  const auto drive = drive_for(response, 35000, 1e-6);
-  REQUIRE(drive.has_value());
-  CHECK(drive->full_scale == Approx(0.5).epsilon(0.01));  // 0.5 um at a quarter of full scale
-  CHECK(drive->equalisation_dB == Approx(0).margin(0.1));
-  CHECK(drive_for(response, 27000, 1e-6)->equalisation_dB == Approx(6.02).margin(0.1));
-  CHECK(drive_for(response, 27000, 1e-6)->phase_rad == Approx(M_PI / 3).margin(0.01));
-  CHECK_FALSE(drive_for(response, 19999, 1e-6).has_value());
-  CHECK_FALSE(drive_for(response, 50001, 1e-6).has_value());
-}
-
 TEST_CASE("a calibration expires, belongs to one rig file, and says so", "[calibration]") {
   const Calibration calibration = made();
   CHECK(days_left(calibration, "2026-02-27") == 30);

@@ -31,7 +31,7 @@ Burst burst_of(std::int64_t length_frames) {
 /// Channel 0 of frames [first, end) as a synthesis without gaps renders them.
 std::vector<std::int32_t> unbroken(std::span<const PreparedBurst> bursts, const Format& format,
                                    std::int64_t first, std::int64_t end) {
-  Synth synth(format, Precision::exact);
+  Synth synth(format);
   for (const auto& burst : bursts) REQUIRE(synth.start(burst));
   std::vector<std::int32_t> block(static_cast<std::size_t>(format.channels * (end - first)));
   synth.skip_to(first);

@@ -89,7 +89,7 @@ TEST_CASE("frames that are passed by have the events of frames that are rendered
     const auto first = draw(4000), second = draw(9000);
     for (auto* stream : {rendered.get(), passed.get()}) {
       stream->advance(first);
-      if (k % 4 == 0) stream->stop(id, Ramp{RampShape::raised_cosine, 300});
+      if (k % 4 == 0) stream->stop(id, Ramp{300});
       stream->advance(second);
     }
     while (const auto event = rendered->poll()) {
@@ -148,7 +148,7 @@ TEST_CASE("a live change moves the tone under the finger and a stop ends the bur
   change.to = one_tone(25000, 1.2).tones;
   CHECK_THROWS_AS(stream->change(id, change), BurstRefused);
   stream->advance(50000);
-  stream->stop(id, {RampShape::smoothstep, 9600});
+  stream->stop(id, {9600});
   stream->advance(9600);
   const auto started = stream->poll();
   const auto ended = stream->poll();

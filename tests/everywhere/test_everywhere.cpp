@@ -42,7 +42,7 @@ drive::Burst burst() {
 template <class Sample>
 std::string rendered(const drive::Burst& burst) {
   const drive::Format format;
-  drive::Synth synth(format, drive::Precision::exact);
+  drive::Synth synth(format);
   REQUIRE(synth.start(drive::prepare(burst, format)));
   std::vector<Sample> all, block(2 * 384);
   for (std::int64_t frame = 0; frame < 200064; frame += 384) {

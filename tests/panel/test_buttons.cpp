@@ -249,10 +249,8 @@ TEST_CASE("a simulated panel hands on what is simulated, and mistakes in the tex
   panel->simulate(Press{1, 1});
   CHECK(pressed == 1);
   CHECK(panel->buttons().size() == 2);
-  CHECK(panel->tells_position());
   const auto none = open_panel(std::nullopt, std::nullopt, handlers);
   CHECK(none->buttons().empty());
-  CHECK_FALSE(none->has_contact());
   CHECK_THROWS_AS(open_panel(ButtonsConfig{"gpio:left=NO_SUCH_LINE"}, std::nullopt, handlers), LineError);
   CHECK_THROWS_AS(open_panel(ButtonsConfig{"gpio:left=A,refractory_ms=-1"}, std::nullopt, handlers),
                   terms::UsageError);

@@ -38,7 +38,7 @@ std::string all_of(const std::vector<text::Problem>& problems) {
 }
 
 std::string problems(const std::string& protocol_text, const rig::Rig& rig) {
-  return all_of(check_against(protocol::parse(protocol_text, "p.toml"), rig));
+  return all_of(protocol::survey(protocol::parse(protocol_text, "p.toml"), rig).problems);
 }
 
 bool contains(const std::string& all, const std::string& part) { return all.find(part) != std::string::npos; }

@@ -17,7 +17,7 @@ namespace {
 std::vector<std::int32_t> samples_of(const Burst& burst) {
   const Format format;
   const auto prepared = prepare(burst, format, {});
-  Synth synth(format, Precision::exact);
+  Synth synth(format);
   std::vector<std::int32_t> samples(static_cast<std::size_t>(burst.length_frames * format.channels));
   if (!synth.start(prepared)) std::abort();
   synth.render(burst.start_frame, samples);
