@@ -93,6 +93,10 @@ struct Score {
 /// Which number of an interval of two scenes is attended to.
 enum class Feature { last, change, first };
 
+/// Two sets of draws of the strength, equally many. A rule that was chosen on one set looks better there than
+/// it is.
+enum class Draws { to_choose, to_judge };
+
 struct Strategy {
   Feature feature = Feature::last;
   Rule rule;
@@ -148,7 +152,7 @@ class Guard {
   const std::vector<Interval>& intervals_of(const TrialSpec& trial);
   const std::vector<Presentation>& presentations(const protocol::Factors& cell, const TrialCensus& census);
   Cells cells_of(const TrialCensus& census);
-  std::vector<Look> looks(const CueKind& kind, Feature feature, const Cells& cells) const;
+  std::vector<Look> looks(const CueKind& kind, Feature feature, const Cells& cells, Draws draws) const;
   Score score(const CueKind& kind, const Strategy& strategy, const Cells& cells) const;
   int answer(const CueKind& kind, const Strategy& strategy, const TrialSpec& trial, std::uint64_t seed);
   void run_sessions(const CueKind& kind, const Strategy& strategy, int count, std::vector<Score>& done);
@@ -219,7 +223,7 @@ Cells Guard::cells_of(const TrialCensus& census) {
 
 // Roving is uniform: points of a low-discrepancy sequence (Roberts 2018) stand for the draws of the
 // intervals.
-std::vector<Look> Guard::looks(const CueKind& kind, Feature feature, const Cells& cells) const {
+std::vector<Look> Guard::looks(const CueKind& kind, Feature feature, const Cells& cells, Draws draws) const {
   constexpr double g = 1.2207440846057596;
   constexpr double steps[] = {1 / g, 1 / (g * g), 1 / (g * g * g)};
   const auto moves = [&](const Interval& interval) {
@@ -231,11 +235,12 @@ std::vector<Look> Guard::looks(const CueKind& kind, Feature feature, const Cells
     for (const auto& presentation : *presentations) {
       const auto& intervals = presentation.intervals;
       const int points = std::any_of(intervals.begin(), intervals.end(), moves) ? points_ : 1;
-      for (int k = 0; k < points; ++k) {
+      const int begin = draws == Draws::to_choose ? 1 : points + 1;
+      for (int k = begin; k < begin + points; ++k) {
         Look look;
         look.correct = presentation.correct, look.weight = trials * presentation.share / points;
         for (std::size_t i = 0; i < intervals.size(); ++i) {
-          const double u = points == 1 ? 0.5 : std::fmod(presentation.turn + (k + 1) * steps[i], 1.0);
+          const double u = points == 1 ? 0.5 : std::fmod(presentation.turn + k * steps[i], 1.0);
           look.x[i] = number_of(kind, intervals[i], feature, intervals[i].first.rove_dB * (2 * u - 1));
         }
         looks.push_back(look);
@@ -246,7 +251,7 @@ std::vector<Look> Guard::looks(const CueKind& kind, Feature feature, const Cells
 
 Score Guard::score(const CueKind& kind, const Strategy& strategy, const Cells& cells) const {
   Score score;
-  for (const auto& look : looks(kind, strategy.feature, cells)) {
+  for (const auto& look : looks(kind, strategy.feature, cells, Draws::to_judge)) {
     const auto correct = static_cast<std::size_t>(look.correct);
     score.trials += look.weight, score.keys[correct] += look.weight;
     score.right += look.weight * shares(strategy.rule, protocol_.task.kind, look.x)[correct];
@@ -297,14 +302,15 @@ std::optional<Reached> Guard::same_everywhere(const CueKind& kind, const Strateg
     low = std::min(low, here.accuracy()), high = std::max(high, here.accuracy());
   }
   if (high - low > 2 * precision) return std::nullopt;
-  return Reached{0.5 * (low + high), chance(score(kind, strategy, all))};
+  const double by_guessing = chance(score(kind, strategy, all));
+  return Reached{std::max(0.5 * (low + high), by_guessing), by_guessing, 0.5 * (high - low)};
 }
 
 // The number of sessions follows from the first ones only, not from what is reached in the others.
 Reached Guard::by_itself(const CueKind& kind, const Strategy& strategy, const Cells& all) {
   if (const auto same = same_everywhere(kind, strategy, all)) return *same;
   std::vector<std::array<double, 3>> answers;
-  for (const auto& look : looks(kind, strategy.feature, all))
+  for (const auto& look : looks(kind, strategy.feature, all, Draws::to_judge))
     answers.push_back(shares(strategy.rule, protocol_.task.kind, look.x));
   auto& found = reached_[std::move(answers)];
   if (!found) {
@@ -314,7 +320,7 @@ Reached Guard::by_itself(const CueKind& kind, const Strategy& strategy, const Ce
     run_sessions(kind, strategy,
                  static_cast<int>(std::min<double>(most_sessions, first_sessions * error * error)), done);
     const auto sum = sum_of(done);
-    found = {std::max(sum.accuracy(), chance(sum)), chance(sum)};
+    found = {std::max(sum.accuracy(), chance(sum)), chance(sum), 3 * standard_error(done)};
   }
   return *found;
 }
@@ -329,8 +335,9 @@ CueReport Guard::report(const CueKind& kind, const Cells& all) {
   if (change) features.insert(features.end(), {Feature::change, Feature::first});
   Grain grain{smallest_difference_dB, 0};
   Strategy best;
+  double most = -1;
   for (const auto feature : features) {
-    const auto looked = looks(kind, feature, all);
+    const auto looked = looks(kind, feature, all, Draws::to_choose);
     if (feature == Feature::last) {
       std::tie(report.low, report.high) =
           range_of(looked, session::orders_of(protocol_.task).front().intervals.size());
@@ -339,15 +346,17 @@ CueReport Guard::report(const CueKind& kind, const Cells& all) {
                  smallest_difference};
     }
     const Strategy strategy{feature, best_rule(task, looked, grain)};
-    const auto reached = score(kind, strategy, all);
-    report.chance = kind.source == Source::nothing ? guessing() : chance(reached);
-    if (reached.accuracy() > report.accuracy) report.accuracy = reached.accuracy(), best = strategy;
+    const double right = accuracy(strategy.rule, task, looked);
+    if (right > most) most = right, best = strategy;
   }
+  const auto reached = score(kind, best, all);
+  report.chance = kind.source == Source::nothing ? guessing() : chance(reached);
+  report.accuracy = std::max(reached.accuracy(), report.chance);
   if (levels_follow_right_answers(protocol_) && kind.source != Source::nothing) {
     report.whole_sessions = by_itself(kind, best, all);
-    const auto& [accuracy, chance] = *report.whole_sessions;
+    const auto& [accuracy, chance, error] = *report.whole_sessions;
     if (accuracy - chance > report.accuracy - report.chance)
-      report.accuracy = accuracy, report.chance = chance;
+      report.accuracy = accuracy, report.chance = chance, report.error = error;
   }
   report.low *= kind.scale, report.high *= kind.scale;
   return report;

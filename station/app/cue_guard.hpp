@@ -12,6 +12,7 @@ namespace turnpoint::app {
 struct Reached {
   double accuracy = 0;  ///< proportion right
   double chance = 0;    ///< of the same trials without the cue: by guessing, or always with the same key
+  double error = 0;     ///< three standard errors of either; 0 where nothing was simulated
 };
 
 /// What an observer reaches who attends to one cue only. A cue far above chance is either what the task asks
@@ -20,9 +21,9 @@ struct CueReport {
   std::string cue;           ///< "pitch", "loudness", "amplitude at the wide end", ...
   double low = 0, high = 0;  ///< over everything that the main trials present, in `unit`
   std::string unit;
-  double accuracy = 0, chance = 0.5;  ///< as in Reached
-  /// Only where levels follow right answers. Then `accuracy` and `chance` are these or those with every level
-  /// equally often, whichever lie further apart.
+  double accuracy = 0, chance = 0.5, error = 0;  ///< as in Reached
+  /// Only where levels follow right answers. Then `accuracy`, `chance` and `error` are these or those with
+  /// every level equally often, wherever accuracy and chance lie further apart.
   std::optional<Reached> whole_sessions = {};
 };
 
@@ -34,7 +35,8 @@ struct CueGuard {
 
 /// Compares all that the main trials present: standard and target as they stand together in a trial, each
 /// kind of trial weighted by how often it occurs (trial_census.hpp), catch trials included and practice left
-/// out. Order of intervals, drawn factors and roving are taken with their exact probabilities.
+/// out. Order of intervals and drawn factors are taken with their exact probabilities; of roving there are
+/// two sets of at most 256 draws a trial, one that chooses the rule and one that says what it reaches.
 ///
 /// The observer knows the task and the best rule for these trials: of one interval, a criterion or a band of
 /// the cue (of what the interval ends with, begins with, or of its change where it has two scenes); of two
@@ -46,7 +48,8 @@ struct CueGuard {
 /// A procedure that chooses levels by the answers counts with each level that it can present equally often.
 /// Where it follows right answers, the observer also goes through simulated sessions by itself with the same
 /// rule, so that its own answers set the levels: as many sessions as it takes that three standard errors are
-/// 1 %, at most 1000. The larger gain over chance is reported. Where it follows one of two answers (`tracks`)
+/// 1 %, at most 1000. A rule that does equally well at each level, within 2 %, needs no sessions: it reaches
+/// the same in any. The larger gain over chance is reported. Where it follows one of two answers (`tracks`)
 /// such sessions say nothing: the share of that answer settles at the target whatever it depends on.
 ///
 /// Duration is that at half the amplitude: of two equally long intervals, the one with the longer ramps is
