@@ -92,6 +92,7 @@ Json to_json(const app::Check& check) {
                     {"unit", cue.unit},
                     {"accuracy", json_number(cue.accuracy)},
                     {"chance", json_number(cue.chance)},
+                    {"accuracy_error", json_number(cue.error)},
                     {"above_chance", cue.accuracy > cue.chance + noticeable}});
   const auto extremes = extremes_of(check.survey);
   const bool planned = !check.survey.sights.empty();
@@ -124,26 +125,34 @@ std::string range(const app::Spread& spread, double unit) {
   return low == high ? median : median + " (" + low + " to " + high + ")";
 }
 
+long percent(double share) { return std::lround(100 * share); }
+
 void print_cues(std::ostream& out, const app::CueGuard& cues) {
   if (!cues.not_compared.empty())
     return fmt::print(out, "Cues: NOT COMPARED ({}): nothing is known of leaks\n", cues.not_compared);
   if (!cues.nothing_to_tell.empty())
     return fmt::print(out, "Cues: none to compare: {}\n", cues.nothing_to_tell);
   std::string named;
-  for (const auto& cue : cues.reports)
-    if (cue.accuracy > cue.chance + noticeable)
-      named += fmt::format("\n  {}: {} % right, {} to {} {}", cue.cue, std::lround(100 * cue.accuracy),
-                           number(cue.low, 3), number(cue.high, 3), cue.unit);
-  const auto chance = std::lround(100 * cues.reports.front().chance);
-  if (named.empty())
-    fmt::print(out,
-               "Cues: an observer with one cue alone stays near chance ({} %), for each of the {} cues\n",
-               chance, cues.reports.size());
-  else
-    fmt::print(out,
-               "Cues: with one of these alone an observer who knows the best rule does better than "
-               "without it ({} %):{}\n",
-               chance, named);
+  double least = 1, most = 0;
+  for (const auto& cue : cues.reports) {
+    least = std::min(least, cue.chance), most = std::max(most, cue.chance);
+    if (cue.accuracy <= cue.chance + noticeable) continue;
+    named += fmt::format("\n  {}: {} % right{} (chance {} %)", cue.cue, percent(cue.accuracy),
+                         cue.error > 0 ? fmt::format(" +- {} %", number(100 * cue.error, 2)) : "",
+                         percent(cue.chance));
+    if (!cue.unit.empty())
+      named += fmt::format(", {} to {} {}", number(cue.low, 3), number(cue.high, 3), cue.unit);
+  }
+  if (!named.empty())
+    return fmt::print(out,
+                      "Cues: with one of these alone an observer who knows the best rule does better than "
+                      "without it:{}\n",
+                      named);
+  const auto chance = percent(least) == percent(most)
+                          ? fmt::format("{}", percent(most))
+                          : fmt::format("{} to {}", percent(least), percent(most));
+  fmt::print(out, "Cues: an observer with one cue alone stays near chance ({} %), for each of the {} cues\n",
+             chance, cues.reports.size());
 }
 
 void print(std::ostream& out, const app::Check& check, const std::string& path) {

@@ -61,6 +61,7 @@ Json to_json(const std::vector<app::CueReport>& cues) {
     list.push_back({{"cue", cue.cue},
                     {"accuracy", json_number(cue.accuracy)},
                     {"chance", json_number(cue.chance)},
+                    {"accuracy_error", json_number(cue.error)},
                     {"above_chance", cue.accuracy > cue.chance + noticeable}});
   return list;
 }
@@ -112,11 +113,10 @@ void print(std::ostream& out, const app::Power& power) {
 
 void print(std::ostream& out, const std::vector<app::CueReport>& cues) {
   if (cues.empty()) return;
-  fmt::print(out, "An observer with one cue alone and the best criterion for it (chance {} %):\n",
-             number(100 * cues.front().chance, 3));
+  fmt::print(out, "An observer with one cue alone and the best rule for it:\n");
   for (const auto& cue : cues)
-    fmt::print(out, "  {:<30} {:>5} % right{}\n", cue.cue, number(100 * cue.accuracy, 3),
-               cue.accuracy > cue.chance + noticeable ? ", above chance" : "");
+    fmt::print(out, "  {:<30} {:>5} % right (chance {} %){}\n", cue.cue, number(100 * cue.accuracy, 3),
+               number(100 * cue.chance, 3), cue.accuracy > cue.chance + noticeable ? ", above chance" : "");
 }
 
 /// One line that rewrites itself, only where somebody watches.
