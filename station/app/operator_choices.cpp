@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <set>
 
+#include "station/store/backup.hpp"
+#include "station/store/identity.hpp"
 #include "station/store/read.hpp"
 #include "station/text/number.hpp"
 
@@ -90,9 +92,17 @@ std::string default_database() {
 
 std::vector<std::string> known_participants(const std::string& database) {
   if (!fs::exists(database)) return {};
-  std::set<std::string> codes;
-  for (const auto& session : store::list_sessions(database)) codes.insert(session.start.participant);
-  return {codes.begin(), codes.end()};
+  return store::participants(database);
+}
+
+BackupNote backup_note(const std::string& database) {
+  constexpr int old_hours = 7 * 24;
+  const auto last = store::last_backup(database);
+  if (!last) return {};
+  const auto age_ns = store::realtime_ns() - last->realtime_ns;
+  if (age_ns < 0) return {BackupNote::State::ahead, 0};
+  const auto hours = static_cast<int>(age_ns / 3'600'000'000'000);
+  return {hours < old_hours ? BackupNote::State::recent : BackupNote::State::old, hours};
 }
 
 std::optional<InterruptedNote> interrupted_note(const std::string& database) {

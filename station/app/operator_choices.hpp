@@ -23,6 +23,15 @@ std::vector<ProtocolEntry> list_protocols(const std::string& folder);
 /// Participant codes that the database has seen, in alphabetical order; none where there is no database yet.
 std::vector<std::string> known_participants(const std::string& database);
 
+/// How long ago the last good backup of the database was made, as its record says.
+struct BackupNote {
+  enum class State { none, recent, old, ahead } state = State::none;  ///< ahead: the clock was set back since
+  int hours = 0;
+  bool operator==(const BackupNote&) const = default;
+};
+/// Old after 7 days.
+BackupNote backup_note(const std::string& database);
+
 /// A session that could go on.
 struct InterruptedNote {
   std::string session_id, participant, protocol_id;

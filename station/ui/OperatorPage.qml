@@ -39,11 +39,32 @@ Rectangle {
             font { pixelSize: look.textTitle; weight: Font.Bold }
         }
         PlainText {
-            anchors { left: brand.right; leftMargin: 2 * look.unit; right: parent.right; baseline: brand.baseline }
+            anchors { left: brand.right; leftMargin: 2 * look.unit; right: backup.left; rightMargin: 2 * look.unit; baseline: brand.baseline }
             text: root.operating.rig + "   ·   " + root.operating.database
             color: look.quiet
             font.pixelSize: look.textSmall
             elide: Text.ElideMiddle
+        }
+        Row {
+            id: backup
+            readonly property bool due: root.operating.backup.state !== "recent"
+            anchors { right: parent.right; verticalCenter: parent.verticalCenter }
+            spacing: 0.5 * look.unit
+            Glyph {
+                objectName: "backupDue"
+                visible: backup.due
+                anchors.verticalCenter: parent.verticalCenter
+                height: 1.3 * look.textSmall
+                name: "alert"
+                color: look.wrong
+            }
+            PlainText {
+                objectName: "backup"
+                anchors.verticalCenter: parent.verticalCenter
+                text: texts.lastBackup(root.operating.backup)
+                color: backup.due ? look.wrong : look.quiet
+                font { pixelSize: look.textSmall; weight: backup.due ? Font.DemiBold : Font.Normal }
+            }
         }
     }
 

@@ -30,6 +30,20 @@ QtObject {
         return hiragana.test(text[i]) && !polite(i) && (begins.test(text[i + 1]) || polite(i + 1))
     }
 
+    // {state: none | recent | old | ahead, hours}
+    function lastBackup(backup) {
+        if (backup.state === "none") return pick("No backup yet", "Noch keine Sicherung", "バックアップはまだありません")
+        if (backup.state === "ahead")
+            return pick("Last backup: in the future, check the clock", "Letzte Sicherung: in der Zukunft, bitte Uhr prüfen",
+                        "最後のバックアップが未来の日時です。時計を確認してください")
+        if (backup.state === "old")
+            return pick("Last good backup: %1 days ago, older than 7 days", "Letzte gute Sicherung: vor %1 Tagen, älter als 7 Tage",
+                        "最後のバックアップは%1日前です。7日より前です").arg(Math.floor(backup.hours / 24))
+        if (backup.hours < 48)
+            return pick("Last good backup: %1 h ago", "Letzte gute Sicherung: vor %1 h", "最後のバックアップは%1時間前です").arg(backup.hours)
+        return pick("Last good backup: %1 days ago", "Letzte gute Sicherung: vor %1 Tagen", "最後のバックアップは%1日前です").arg(Math.floor(backup.hours / 24))
+    }
+
     readonly property string proceed: pick("Continue", "Weiter", "次へ")
     readonly property string done: pick("Done", "Fertig", "決定")
     readonly property string pressDone: pick("Press Done.", "Bitte auf Fertig tippen.", "「決定」を押してください。")

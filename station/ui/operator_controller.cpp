@@ -1,6 +1,7 @@
 #include "station/ui/operator_controller.hpp"
 
 #include <QFileInfo>
+#include <chrono>
 #include <filesystem>
 #include <sstream>
 #include <utility>
@@ -38,6 +39,8 @@ OperatorController::OperatorController(app::StationRequest request, QObject* par
 OperatorController::OperatorController(app::StationRequest request, Checker checker, QObject* parent)
     : QObject(parent), request_(std::move(request)), checker_(std::move(checker)), worker_(*this) {
   std::filesystem::create_directories(std::filesystem::absolute(request_.database).parent_path());
+  connect(&minutes_, &QTimer::timeout, this, &OperatorController::look_at_backup);
+  minutes_.start(std::chrono::minutes(1));
   refresh();
 }
 
@@ -50,12 +53,19 @@ void OperatorController::refresh() {
   try {
     participants_ = to_list(app::known_participants(request_.database));
     interrupted_ = app::interrupted_note(request_.database);
+    backup_ = app::backup_note(request_.database);
   } catch (const std::exception& error) {
     words_.problems = lines_of(error);
   }
   emit changed();
   if (selected_ < 0 && !protocols_.empty()) return select(0);
   if (checking_) check_selected();  // its check was abandoned for the session
+}
+
+void OperatorController::look_at_backup() {
+  const auto now = app::backup_note(request_.database);
+  if (now == std::exchange(backup_, now)) return;
+  emit changed();
 }
 
 /// The job runs on the worker; what it returns runs here, unless something newer was asked for meanwhile.
@@ -226,6 +236,15 @@ QVariantList OperatorController::cues() const {
 
 QStringList OperatorController::languages() const {
   return entry() != nullptr ? to_list(entry()->languages) : QStringList();
+}
+
+QVariantMap OperatorController::backup() const {
+  using State = app::BackupNote::State;
+  const auto* state = backup_.state == State::none     ? "none"
+                      : backup_.state == State::recent ? "recent"
+                      : backup_.state == State::old    ? "old"
+                                                       : "ahead";
+  return {{"state", state}, {"hours", backup_.hours}};
 }
 
 QString OperatorController::interrupted() const {

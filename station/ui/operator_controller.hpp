@@ -2,6 +2,7 @@
 #include <QObject>
 #include <QQmlEngine>
 #include <QStringList>
+#include <QTimer>
 #include <QVariantList>
 #include <functional>
 #include <optional>
@@ -44,6 +45,7 @@ class OperatorController : public QObject {
   Q_PROPERTY(bool live READ live NOTIFY changed)
   Q_PROPERTY(bool armed READ armed NOTIFY changed)
   Q_PROPERTY(QString interrupted READ interrupted NOTIFY changed)  ///< "" where nothing was
+  Q_PROPERTY(QVariantMap backup READ backup NOTIFY changed)  ///< {state: none | recent | old | ahead, hours}
   Q_PROPERTY(bool mayBegin READ may_begin NOTIFY changed)
   Q_PROPERTY(bool preparing READ preparing NOTIFY changed)
   Q_PROPERTY(QString rig READ rig CONSTANT)
@@ -73,6 +75,7 @@ class OperatorController : public QObject {
   bool live() const { return live_; }
   bool armed() const { return armed_; }
   QString interrupted() const;
+  QVariantMap backup() const;
   bool may_begin() const;
   bool preparing() const { return preparing_; }
   QString rig() const { return QString::fromStdString(request_.rig); }
@@ -98,6 +101,7 @@ class OperatorController : public QObject {
   void work(std::function<Then(const std::stop_token&)> job,
             void (OperatorController::*failed)(std::vector<std::string>));
   void check_selected();
+  void look_at_backup();
   void stay();
   void fail(std::vector<std::string> problems);
   void refuse(std::vector<std::string> reasons);
@@ -108,6 +112,8 @@ class OperatorController : public QObject {
   std::vector<app::ProtocolEntry> protocols_;
   QStringList participants_;
   std::optional<app::InterruptedNote> interrupted_;
+  app::BackupNote backup_;
+  QTimer minutes_;  ///< the page may stand for days
   app::CheckWords words_;
   std::vector<std::string> refused_;  ///< why the last session chosen did not begin
   int selected_ = -1, language_ = -1;

@@ -7,6 +7,9 @@
 #include <mutex>
 
 #include "station/app/prepare.hpp"
+#include "station/store/backup.hpp"
+#include "station/store/identity.hpp"
+#include "station/store/session_log.hpp"
 #include "station/ui/operator_controller.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -173,4 +176,29 @@ TEST_CASE("a session that cannot be resumed leaves the check of the chosen proto
   REQUIRE(start.comes([&] { return !start.page->checking() && !start.page->preparing(); }));
   CHECK(start.shown() == "a.toml");
   CHECK_FALSE(start.page->problems().empty());
+}
+
+TEST_CASE("the start page says how old the last good backup is", "[start]") {
+  StartPage start;
+  const auto database = start.folder / "lab.sqlite", record = database + ".last-backup";
+  store::SessionStart session;
+  session.participant = "P01";
+  store::SessionLog::begin(database, session, {}).finish(store::SessionStatus::stopped, "");
+  start.open();
+  CHECK(start.page->backup()["state"] == "none");
+
+  store::backup(database, {start.folder / "backups"});
+  std::string id, time, path;
+  std::ifstream(record) >> id >> time >> path;
+  const auto aged = [&](double days) {
+    const auto at_ns = store::realtime_ns() - static_cast<std::int64_t>(days * 86'400e9);
+    std::ofstream(record) << id << "\n" << at_ns << "\n" << path << "\n";
+    start.page->refresh();
+    return start.page->backup();
+  };
+  CHECK(aged(0.1)["state"] == "recent");
+  CHECK(aged(6.9)["state"] == "recent");
+  CHECK(aged(6.9)["hours"] == 165);
+  CHECK(aged(7.1)["state"] == "old");
+  CHECK(aged(-1)["state"] == "ahead");
 }

@@ -25,6 +25,8 @@ Item {
         pixelsPerMm: 5.9
     }
 
+    Texts { id: words; language: "en" }
+
     TestCase {
         name: "Operator"
         when: windowShown
@@ -48,6 +50,26 @@ Item {
             let button = null
             tryVerify(() => (button = find(parent, name)) !== null, 5000, name)
             mouseClick(button, button.width / 2, button.height / 2)
+        }
+
+        function test_a_backup_that_is_missing_or_old_is_marked_in_words_and_by_a_sign() {
+            page.active = true
+            liveView.visible = false
+            tryVerify(() => says(page.item, "No backup yet"), 5000)
+            verify(find(page.item, "backupDue") !== null)
+            page.active = false
+        }
+        function test_the_age_of_the_last_backup_is_told_in_each_language_data() {
+            return [{ tag: "en", age: "3 h ago", old: "9 days ago, older than 7 days" },
+                    { tag: "de", age: "vor 3 h", old: "vor 9 Tagen, älter als 7 Tage" },
+                    { tag: "ja", age: "3時間前", old: "9日前" }]
+        }
+        function test_the_age_of_the_last_backup_is_told_in_each_language(row) {
+            words.language = row.tag
+            const told = backup => words.lastBackup(backup).replace(/\u2060/g, "")
+            verify(told({ state: "recent", hours: 3 }).includes(row.age))
+            verify(told({ state: "old", hours: 9 * 24 + 5 }).includes(row.old))
+            verify(told({ state: "none", hours: 0 }) !== told({ state: "ahead", hours: 0 }))
         }
 
         function says(parent, wanted) {
