@@ -10,9 +10,16 @@ namespace turnpoint::plot {
 
 namespace {
 
+/// A smaller part of a number than this is rounding, not a difference: ticks could not be counted along it.
+constexpr double kRounding = 1e-9;
+
+bool differ(double low, double high) {
+  return high - low > kRounding * std::max(std::abs(low), std::abs(high));
+}
+
 void check(const Axis& axis) {
   const bool positive = axis.scale == AxisScale::linear || axis.low > 0;
-  if (!(axis.low < axis.high) || !std::isfinite(axis.low) || !std::isfinite(axis.high) || !positive)
+  if (!differ(axis.low, axis.high) || !std::isfinite(axis.low) || !std::isfinite(axis.high) || !positive)
     throw std::invalid_argument("axis \"" + axis.label + "\" from " + text::number(axis.low) + " to " +
                                 text::number(axis.high) +
                                 ": needs finite limits, the low one below, above 0 on a log axis");
@@ -90,7 +97,7 @@ Axis fitted(std::string name, const std::vector<double>& values, double margin, 
   }
   if (low > high) low = 0, high = 1;
   double room = margin * (high - low);
-  if (!(high > low)) room = std::max(0.5 * std::abs(low), 0.5);
+  if (!differ(low, high)) room = std::max(0.5 * std::abs(low), 0.5);
   low -= room;
   high += room;
   if (logarithmic) return {std::move(name), std::pow(10.0, low), std::pow(10.0, high), scale};
