@@ -235,6 +235,15 @@ class Restore(Backup):
                 wrong("a new database was begun in the middle of a restore")
 
 
+class Drill(Backup):
+    def arguments(self):
+        return ("backup", "--db", "lab.sqlite", "--dir", "backups", "--drill")
+
+    def done(self, folder):
+        if left := glob.glob(os.path.join(folder, "**", "*.drill*"), recursive=True):
+            wrong(f"the drill has left {left}")
+
+
 class Merge(Operation):
     def prepare(self, folder):
         Operation.prepare(self, folder)
@@ -317,7 +326,7 @@ class Calibrate(Operation):
             wrong("calibration.toml is half written")
 
 
-OPERATIONS = {"create": Create, "migrate": Migrate, "run": Run, "resume": Resume, "backup": Backup, "restore": Restore,
+OPERATIONS = {"create": Create, "migrate": Migrate, "run": Run, "resume": Resume, "backup": Backup, "restore": Restore, "drill": Drill,
               "merge": Merge, "withdraw": Withdraw, "export": Export, "calibrate": Calibrate}
 
 
