@@ -47,7 +47,8 @@ Rectangle {
         }
         Row {
             id: backup
-            readonly property bool due: root.operating.backup.state !== "recent"
+            readonly property var age: root.operating.backup
+            readonly property bool due: age.state !== "recent"
             anchors { right: parent.right; verticalCenter: parent.verticalCenter }
             spacing: 0.5 * look.unit
             Glyph {
@@ -61,7 +62,7 @@ Rectangle {
             PlainText {
                 objectName: "backup"
                 anchors.verticalCenter: parent.verticalCenter
-                text: texts.lastBackup(root.operating.backup)
+                text: texts.lastBackup(backup.age)
                 color: backup.due ? look.wrong : look.quiet
                 font { pixelSize: look.textSmall; weight: backup.due ? Font.DemiBold : Font.Normal }
             }
