@@ -96,7 +96,11 @@ TEST_CASE(
     "what the guard states is what an observer of one cue reaches in whole sessions, within 2 %, for 200 "
     "random protocols",
     "[app][cues]") {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  constexpr int count = 16;  // the release leg has them all; here it is the memory that is watched
+#else
   constexpr int count = 200;
+#endif
   const char* const asked = std::getenv("TURNPOINT_CUE_SEEDS");
   const int first = asked ? std::stoi(asked) : 0;
   std::vector<Compared> compared(count);
@@ -115,6 +119,7 @@ TEST_CASE(
     INFO("random protocol " << first + i << "\n" << compared[static_cast<std::size_t>(i)].text);
     CHECK(compared[static_cast<std::size_t>(i)].faults == "");
   }
+  if (count < 200) return;
   if (asked) WARN(within << " of " << count << " protocols within 2 %, worst difference " << worst);
   std::string all;
   for (const auto& [feature, n] : coverage) {
