@@ -97,7 +97,7 @@ TEST_CASE(
     "random protocols",
     "[app][cues]") {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  constexpr int count = 16;  // the release leg has them all; here it is the memory that is watched
+  constexpr int count = 8;  // the release leg has them all; here it is the memory that is watched
 #else
   constexpr int count = 200;
 #endif
