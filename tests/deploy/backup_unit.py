@@ -96,7 +96,7 @@ def run(program):
             done = unit.run(plain)
             check(done.stderr, done.returncode == 0 and "read back and checked" in done.stdout)
         check(f"it keeps {backups(folder)}", len(backups(folder)) == 2)
-        check("the start page is not told", os.path.exists(database + ".last-backup"))
+        check("the start page cannot know of it", os.path.exists(database + ".last-backup"))
         before = sorted(os.listdir(folder))
         drill = subprocess.run([program, "backup", "--db", database, "--dir", folder, "--drill"], capture_output=True,
                                text=True, check=False)
