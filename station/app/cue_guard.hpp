@@ -12,7 +12,7 @@ namespace turnpoint::app {
 struct Reached {
   double accuracy = 0;  ///< proportion right
   double chance = 0;    ///< of the same trials without the cue: by guessing, or always with the same key
-  double error = 0;     ///< three standard errors of either; 0 where nothing was simulated
+  double error = 0;     ///< three standard errors of either, or half the spread between levels; 0: exact
 };
 
 /// What an observer reaches who attends to one cue only. A cue far above chance is either what the task asks
