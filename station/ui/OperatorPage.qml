@@ -45,27 +45,12 @@ Rectangle {
             font.pixelSize: look.textSmall
             elide: Text.ElideMiddle
         }
-        Row {
+        BackupAge {
             id: backup
-            readonly property var age: root.operating.backup
-            readonly property bool due: age.state !== "recent"
             anchors { right: parent.right; verticalCenter: parent.verticalCenter }
-            spacing: 0.5 * look.unit
-            Glyph {
-                objectName: "backupDue"
-                visible: backup.due
-                anchors.verticalCenter: parent.verticalCenter
-                height: 1.3 * look.textSmall
-                name: "alert"
-                color: look.wrong
-            }
-            PlainText {
-                objectName: "backup"
-                anchors.verticalCenter: parent.verticalCenter
-                text: texts.lastBackup(backup.age)
-                color: backup.due ? look.wrong : look.quiet
-                font { pixelSize: look.textSmall; weight: backup.due ? Font.DemiBold : Font.Normal }
-            }
+            theme: look
+            texts: texts
+            age: root.operating.backup
         }
     }
 
