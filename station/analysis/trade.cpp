@@ -235,7 +235,7 @@ struct MeasureName {
 };
 constexpr MeasureName kNames[measures] = {{"proportion correct", "proportion"},
                                           {"median response time", "s"},
-                                          {"boundary", "s = 0.1"},
+                                          {"boundary", "(s = 0.1)"},
                                           {"time outside the decision", "s"},
                                           {"LISAS", "s"},
                                           {"inverse efficiency", "s"},
