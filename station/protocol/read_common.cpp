@@ -8,14 +8,14 @@
 namespace turnpoint::protocol {
 
 using text::TableReader;
-using Kind = text::Value::Kind;
+using text::Value;
 
 Localised localised_from(const text::Value& value, const std::string& key, const Reading& reading) {
   Localised texts;
   const auto& languages = reading.protocol.languages;
   auto& findings = reading.findings;
   const std::string example = "{ " + (languages.empty() ? "en" : languages.front()) + " = \"...\" }";
-  if (value.kind != Kind::table) {
+  if (value.kind != Value::Kind::table) {
     findings.add(value.place, "\"" + key + "\" is " + describe(value),
                  "a text in each language is needed: " + example);
     return texts;
@@ -24,7 +24,7 @@ Localised localised_from(const text::Value& value, const std::string& key, const
     if (std::find(languages.begin(), languages.end(), entry.key) == languages.end())
       findings.add(entry.place, "\"" + key + "\" has a text in \"" + entry.key + "\", which is not declared",
                    "[protocol] languages has " + text::quoted_list(languages));
-    else if (entry.value.kind != Kind::string || entry.value.string.empty())
+    else if (entry.value.kind != Value::Kind::string || entry.value.string.empty())
       findings.add(entry.value.place, "\"" + key + "\" is " + describe(entry.value),
                    "a text in quotes is needed");
     else
@@ -46,7 +46,7 @@ std::optional<Distribution> read_distribution(TableReader& reader, const std::st
   const auto* value = reader.take(key);
   if (!value) return std::nullopt;
   const text::Range seconds{0, 3600, text::Range::Ends::closed, "s"};
-  if (value->kind == Kind::table) {
+  if (value->kind == Value::Kind::table) {
     TableReader inner(*value, reader.path(key), reader.findings());
     inner.require("uniform", "two times in seconds: { uniform = [0.8, 1.2] }");
     const auto interval = inner.maybe_interval("uniform", seconds);
@@ -68,6 +68,8 @@ std::string read_name(TableReader& reader, const std::string& key, const std::st
   return name;
 }
 
+using text::Value;
+
 namespace {
 
 std::string shown(const FactorValue& value) {
@@ -81,8 +83,8 @@ std::optional<FactorValue> read_factor_value(const text::Value& value, const Fac
                                              text::Findings& findings) {
   if (is_broken(factor)) return std::nullopt;
   const bool numeric = span(factor).has_value();
-  const bool is_number = value.kind == Kind::number || value.kind == Kind::integer;
-  if (numeric != is_number || (!numeric && value.kind != Kind::string)) {
+  const bool is_number = value.kind == Value::Kind::number || value.kind == Value::Kind::integer;
+  if (numeric != is_number || (!numeric && value.kind != Value::Kind::string)) {
     findings.add(value.place, "a value of \"" + factor.name + "\" is " + describe(value),
                  numeric ? "a number is needed" : "one of its names in quotes is needed");
     return std::nullopt;

@@ -10,7 +10,7 @@ namespace turnpoint::protocol {
 
 using text::Range;
 using text::TableReader;
-using Kind = text::Value::Kind;
+using text::Value;
 
 namespace {
 
@@ -28,13 +28,14 @@ void read_seed(TableReader& file, Reading& reading) {
   }
   TableReader reader(*table, "random", reading.findings);
   const auto* seed = reader.require("seed", "\"per-session\" or a whole number from 0 to 2^53");
-  if (seed && seed->kind == Kind::integer && seed->integer >= 0 && seed->integer <= (std::int64_t{1} << 53))
+  if (seed && seed->kind == Value::Kind::integer && seed->integer >= 0 &&
+      seed->integer <= (std::int64_t{1} << 53))
     reading.protocol.seed = static_cast<std::uint64_t>(seed->integer);
-  else if (seed && (seed->kind != Kind::string || seed->string != "per-session"))
-    reader.problem(
-        "seed",
-        "\"seed\" is " + (seed->kind == Kind::integer ? std::to_string(seed->integer) : describe(*seed)),
-        "allowed: \"per-session\" or a whole number from 0 to 2^53");
+  else if (seed && (seed->kind != Value::Kind::string || seed->string != "per-session"))
+    reader.problem("seed",
+                   "\"seed\" is " +
+                       (seed->kind == Value::Kind::integer ? std::to_string(seed->integer) : describe(*seed)),
+                   "allowed: \"per-session\" or a whole number from 0 to 2^53");
   reader.finish();
 }
 
@@ -49,9 +50,9 @@ void check_factor_name(TableReader& reader, const std::string& name) {
 }
 
 void read_level(const text::Value& item, Factor& factor, text::Findings& findings) {
-  const bool number = item.kind == Kind::number || item.kind == Kind::integer;
+  const bool number = item.kind == Value::Kind::number || item.kind == Value::Kind::integer;
   const bool fits = number ? text::inside_range(item.number, {-1e6, 1e6})
-                           : item.kind == Kind::string && !item.string.empty() && !factor.range;
+                           : item.kind == Value::Kind::string && !item.string.empty() && !factor.range;
   const FactorValue value = number ? FactorValue(item.number) : FactorValue(item.string);
   const auto& levels = factor.levels;
   if (!fits || (!levels.empty() && value.index() != levels.front().index()))
@@ -77,10 +78,11 @@ Factor read_factor(const text::Value& table, Reading& reading) {
   if (!reader.has("range") && !levels)
     reading.findings.add(factor.place, "the factor \"" + factor.name + "\" has no values",
                          "\"range\" = [low, high] or \"levels\" = [...]");
-  if (levels && (levels->kind != Kind::array || levels->items.empty()))
-    reader.problem("levels",
-                   "\"levels\" is " + std::string(levels->kind == Kind::array ? "empty" : describe(*levels)),
-                   "a list of numbers or of names is needed");
+  if (levels && (levels->kind != Value::Kind::array || levels->items.empty()))
+    reader.problem(
+        "levels",
+        "\"levels\" is " + std::string(levels->kind == Value::Kind::array ? "empty" : describe(*levels)),
+        "a list of numbers or of names is needed");
   else if (levels)
     for (const auto& item : levels->items) read_level(item, factor, reading.findings);
   reader.finish();

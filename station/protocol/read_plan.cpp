@@ -11,7 +11,6 @@ namespace turnpoint::protocol {
 using text::Range;
 using text::TableReader;
 using text::Value;
-using Kind = Value::Kind;
 
 namespace {
 
@@ -38,7 +37,7 @@ void read_what(TableReader& reader, Block& block, const Reading& reading) {
   const auto* factor = read_numeric_factor(reader, "level", reading);
   const auto* list = reader.require("levels", "the values to show in turn");
   reader.numbers("levels", {-1e6, 1e6});
-  if (!factor || !list || list->kind != Kind::array) return;
+  if (!factor || !list || list->kind != Value::Kind::array) return;
   block.level = factor->name;
   for (const auto& item : list->items)
     if (const auto value = read_factor_value(item, *factor, reading.findings))
@@ -64,11 +63,11 @@ void read_catch(TableReader& reader, Block& block, const Reading& reading) {
       else if (read)
         inner.problem(factor.name, "\"catch\" sets a factor that has names", "a numeric factor");
     };
-    if (value->kind != Kind::array)
+    if (value->kind != Value::Kind::array)
       one(*value);
     else
       for (const auto& item : value->items) one(item);
-    if (value->kind == Kind::array && value->items.empty())
+    if (value->kind == Value::Kind::array && value->items.empty())
       inner.problem(factor.name, "\"catch\" has an empty list", "at least one level that is easy");
   }
   if (trials.factor.empty() && table->entries.size() <= 1)

@@ -9,7 +9,6 @@ namespace turnpoint::protocol {
 using text::Range;
 using text::TableReader;
 using text::Value;
-using Kind = Value::Kind;
 
 namespace {
 
@@ -24,17 +23,17 @@ void check_scene(const std::string& name, const text::Place& place, const Readin
 std::vector<std::string> read_interval(const Value& item, const Reading& reading) {
   std::vector<std::string> scenes;
   const auto one = [&](const Value& value) {
-    if (value.kind != Kind::string)
+    if (value.kind != Value::Kind::string)
       return reading.findings.add(value.place, "an interval holds " + describe(value),
                                   "the name of a scene in quotes");
     check_scene(value.string, value.place, reading);
     scenes.push_back(value.string);
   };
-  if (item.kind != Kind::array)
+  if (item.kind != Value::Kind::array)
     one(item);
   else
     for (const auto& value : item.items) one(value);
-  if (item.kind == Kind::array && item.items.size() != 1 && item.items.size() != 2)
+  if (item.kind == Value::Kind::array && item.items.size() != 1 && item.items.size() != 2)
     reading.findings.add(item.place, "an interval has " + std::to_string(item.items.size()) + " scenes",
                          "one, or two of which the second follows after the foreperiod");
   return scenes;
@@ -54,7 +53,7 @@ void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
   }
   const auto* list = reader.require("intervals", "a list of scene names: [\"edge\"]");
   if (!list) return;
-  if (list->kind != Kind::array)
+  if (list->kind != Value::Kind::array)
     return reader.problem("intervals", "\"intervals\" is " + describe(*list),
                           "a list of scene names: [\"edge\"]");
   for (const auto& item : list->items) task.intervals.push_back(read_interval(item, reading));
@@ -102,7 +101,7 @@ void read_choices(TableReader& reader, Task& task, const Reading& reading) {
   }
   const std::size_t needed = task.kind == TaskKind::oddity ? 3 : task.kind == TaskKind::adjustment ? 1 : 2;
   const auto* list = reader.take("choices");
-  if (list && list->kind == Kind::array && list->items.size() != needed)
+  if (list && list->kind == Value::Kind::array && list->items.size() != needed)
     reading.findings.add(list->items.size() > needed ? list->items[needed].place : list->place,
                          "\"choices\" has " + std::to_string(list->items.size()),
                          std::to_string(needed) + " for this kind of task");
@@ -135,7 +134,7 @@ void read_correct_answers(TableReader& reader, Task& task, const Reading& readin
     if (std::find(ids.begin(), ids.end(), entry.key) == ids.end())
       reading.findings.add(entry.place, "\"correct\" has \"" + entry.key + "\", which is no choice",
                            suggestion(entry.key, ids));
-    if (entry.value.kind != Kind::string) {
+    if (entry.value.kind != Value::Kind::string) {
       reading.findings.add(entry.value.place, "\"correct\" has " + describe(entry.value),
                            "a comparison in quotes: \"offset_mm < 0\"");
       continue;
@@ -223,7 +222,7 @@ void read_instructions(TableReader& file, Reading& reading) {
   const auto* tables = file.maybe_table("instructions");
   if (!tables) return;
   for (const auto& entry : tables->entries) {
-    if (entry.value.kind != Kind::table) {
+    if (entry.value.kind != Value::Kind::table) {
       reading.findings.add(entry.place, "\"instructions." + entry.key + "\" is " + describe(entry.value),
                            "a table [instructions.NAME] is needed");
       continue;
