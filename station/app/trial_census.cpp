@@ -90,7 +90,7 @@ void TrialCensus::add(const Block& block, const procedure::Spec* spec, const std
 }
 
 void TrialCensus::add(const Block& block, const TrialSpec& trial) {
-  if (block.practice || trial.type != terms::TrialType::experimental) return;
+  if (trial.type != terms::TrialType::experimental) return;
   add(block, protocol::find_procedure(*protocol_, trial.procedure), {trial.level.value_or(0)}, 1);
 }
 

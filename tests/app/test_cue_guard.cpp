@@ -296,6 +296,23 @@ TEST_CASE("a cue that helps only with the easiest levels is found in sessions th
   CHECK(report(guard, "duration").whole_sessions->error == 0);
 }
 
+TEST_CASE("easy practice adds nothing to what a cue reaches in sessions that it leads itself",
+          "[app][cues]") {
+  const auto main = std::string("[[block]]\nname = \"main\"");
+  const auto practised = replaced(roved_staircase(60), main,
+                                  "[[block]]\nname = \"practice\"\nlevel = \"level_mm\"\nlevels = [20.0]\n"
+                                  "trials = 60\npractice = true\n" +
+                                      main);
+  const auto reached = [](const std::string& text) {
+    const auto guard = guard_of(text);
+    const auto& own = report(guard, "amplitude at the wide end").whole_sessions;
+    REQUIRE(own);
+    return own->accuracy;
+  };
+  // Counted in, sixty trials that the cue always finds would take 0.72 to 0.86.
+  CHECK(reached(practised) == Approx(reached(roved_staircase(60))).margin(0.03));
+}
+
 TEST_CASE("what a rule reaches is counted on other draws than those that chose it", "[app][cues]") {
   // Roving hides the amplitude, which the level does not change: the best band of many only fits the draws.
   std::map<std::string, int> features;
