@@ -11,8 +11,7 @@
 #include <system_error>
 
 #include "station/store/export_files.hpp"
-#include "station/text/number.hpp"
-#include "station/text/toml.hpp"
+#include "station/store/files.hpp"
 
 namespace turnpoint::cli {
 
@@ -39,8 +38,7 @@ std::vector<std::string> sign_files(const std::string& folder, const std::vector
                                     const std::string& key) {
   std::string sums;
   for (const auto& file : files)
-    sums +=
-        text::sha256(text::read_file(file)) + "  " + std::filesystem::relative(file, folder).string() + "\n";
+    sums += store::sha256_of_file(file) + "  " + std::filesystem::relative(file, folder).string() + "\n";
   const auto list = (std::filesystem::path(folder) / "SHA256SUMS").string();
   const auto signature = list + ".sig";
   store::write_file(list, sums);

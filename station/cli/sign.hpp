@@ -7,7 +7,8 @@ namespace turnpoint::cli {
 /// Writes FOLDER/SHA256SUMS over the files (as `sha256sum -c` reads it) and signs it with `ssh-keygen -Y
 /// sign`, which writes SHA256SUMS.sig beside it. `key` is an SSH key file, or a public one whose private half
 /// an agent holds; a passphrase is asked for on the terminal. Every file must be inside the folder. Returns
-/// the paths of the two files. Throws std::system_error, or std::runtime_error where ssh-keygen refuses.
+/// the paths of the two files. Throws store::StoreError where a file cannot be read, and std::runtime_error
+/// where ssh-keygen refuses.
 std::vector<std::string> sign_files(const std::string& folder, const std::vector<std::string>& files,
                                     const std::string& key);
 

@@ -80,20 +80,26 @@ std::uint64_t file_size(const std::string& path) {
 
 namespace {
 
-/// Gives all bytes of a file to `take`, piece by piece.
+/// Gives all bytes of a file to `take`, piece by piece. Opening a pipe does not wait for a writer.
 void read_pieces(const std::string& path, const std::function<void(std::string_view)>& take) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  auto left = file_size(path);
-  std::string piece(std::min<std::uint64_t>(left, 1U << 20U), '\0');
-  while (file.get() >= 0 && left > 0) {
-    const auto size = ::read(file.get(), piece.data(), std::min<std::uint64_t>(left, piece.size()));
-    if (size < 0 && errno == EINTR) continue;
-    if (size == 0) errno = EIO;  // shorter than the system said
-    if (size <= 0) break;
-    take(std::string_view(piece).substr(0, static_cast<std::size_t>(size)));
-    left -= static_cast<std::uint64_t>(size);
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (file.get() >= 0 && !fs::is_regular_file(path))
+    fail_system(Fault::cannot_open, "read " + path, EINVAL,
+                "it is a folder, a pipe or a device; name a file");
+  const auto expected = file_size(path);
+  std::string piece(std::size_t{1} << 20U, '\0');
+  std::uint64_t taken = 0;
+  ssize_t size = file.get() < 0 ? -1 : 1;
+  while (size > 0) {
+    do size = ::read(file.get(), piece.data(), piece.size());
+    while (size < 0 && errno == EINTR);
+    if (size == 0 && taken < expected) size = -1, errno = EIO;  // shorter than the system said
+    if (size > 0) {
+      take(std::string_view(piece).substr(0, static_cast<std::size_t>(size)));
+      taken += static_cast<std::uint64_t>(size);
+    }
   }
-  if (file.get() < 0 || left > 0)
+  if (size < 0)
     fail_system(fault_of_errno(errno), "read " + path, errno, "check the disk and the permissions");
 }
 

@@ -2,9 +2,9 @@
 
 #include <fstream>
 #include <iterator>
-#include <system_error>
 
 #include "station/cli/sign.hpp"
+#include "station/store/error.hpp"
 #include "station/store/read.hpp"
 #include "station/store/sqlite.hpp"
 #include "tests/support/catch.hpp"
@@ -84,7 +84,7 @@ TEST_CASE("nothing is signed where an exported file cannot be read to its end", 
   REQUIRE(::mkfifo(fifo.c_str(), 0600) == 0);
   for (const std::string& file : {folder.path, fifo, folder / "absent.csv", std::string("/proc/self/mem")}) {
     INFO(file);
-    CHECK_THROWS_AS(turnpoint::cli::sign_files(folder.path, {file}, "key"), std::system_error);
+    CHECK_THROWS_AS(turnpoint::cli::sign_files(folder.path, {file}, "key"), turnpoint::store::StoreError);
     CHECK_FALSE(std::filesystem::exists(folder / "SHA256SUMS"));
   }
 }
