@@ -7,13 +7,12 @@
 #include "station/analysis/diffusion.hpp"
 #include "station/analysis/proportion.hpp"
 #include "station/app/conditions.hpp"
+#include "station/procedure/description.hpp"
 #include "station/session/rows.hpp"
 
 namespace turnpoint::app {
 
 namespace {
-
-using procedure::Kind;
 
 /// Probability of a 1 by level; empty where the level alone does not decide it.
 std::function<double(double)> share_of_ones(const protocol::Protocol& protocol, const procedure::Spec& spec,
@@ -38,15 +37,6 @@ std::function<double(double)> share_of_ones(const protocol::Protocol& protocol, 
     question.level = level;
     return observer.share(question, choice);
   };
-}
-
-/// Probability of a 1 where steps down and up balance (Garcia-Perez 1998); equal steps give .5^(1/n).
-std::optional<double> staircase_target(const procedure::Spec& spec) {
-  if (spec.target) return spec.target;
-  const auto& down = spec.step_down.empty() ? spec.step : spec.step_down;
-  const auto& up = spec.step_up.empty() ? spec.step : spec.step_up;
-  if (spec.n_up != 1 || down.empty() || up.empty()) return std::nullopt;
-  return std::pow(up.back() / (up.back() + down.back()), 1.0 / spec.n_down);
 }
 
 /// Where a monotone function crosses a value between two levels; none where it does not.
@@ -90,22 +80,8 @@ std::optional<double> settled_level(const protocol::Protocol& protocol, const pr
   const auto crosses = [&, low = low, high = high](double value) {
     return without_rounding(crossing(share, low, high, value), threshold);
   };
-  switch (spec.kind) {
-    case Kind::constant_stimuli:
-    case Kind::adjustment:
-      return std::nullopt;
-    case Kind::up_down:
-    case Kind::weighted_up_down: {
-      const auto target = staircase_target(spec);
-      return target ? crosses(*target) : std::nullopt;
-    }
-    case Kind::quest_plus:
-    case Kind::psi:
-    case Kind::psi_marginal:
-      break;
-  }
-  const double way = spec.function == terms::Function::weibull ? 1 - std::exp(-1.0) : 0.5;
-  return crosses(share(low) + way * (share(high) - share(low)));
+  const auto target = procedure::description(spec.kind).settles_at(spec, share(low), share(high));
+  return target ? crosses(*target) : std::nullopt;
 }
 
 void GeneratingValues::add(const protocol::Protocol& protocol, const session::TrialSpec& trial,

@@ -8,7 +8,7 @@
 
 #include "station/analysis/psychometric_posterior.hpp"
 #include "station/app/conditions.hpp"
-#include "station/procedure/procedure.hpp"
+#include "station/procedure/description.hpp"
 #include "station/protocol/answers.hpp"
 
 namespace turnpoint::app {
@@ -99,16 +99,11 @@ void choose_function(const protocol::Protocol& protocol, report::SessionData& da
   if (rises && (decibel || positive)) data.function = terms::Function::weibull;
   data.scale = rises && positive && !decibel ? analysis::Scale::log10 : analysis::Scale::linear;
   for (const auto& spec : protocol.procedures) {
-    using procedure::Kind;
-    if (spec.kind != Kind::quest_plus && spec.kind != Kind::psi && spec.kind != Kind::psi_marginal) continue;
+    if (procedure::description(spec.kind).choice != procedure::Choice::posterior) continue;
     // A Weibull function needs levels above 0, or in dB.
     if (spec.function != terms::Function::weibull || decibel || positive) data.function = spec.function;
     return;
   }
-}
-
-bool adaptive(const procedure::Spec& spec) {
-  return spec.kind != procedure::Kind::constant_stimuli && spec.kind != procedure::Kind::adjustment;
 }
 
 using analysis::Range;
@@ -147,7 +142,7 @@ std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, cons
     range = range ? Range{std::min(range->first, by.first), std::max(range->second, by.second)} : by;
   };
   for (const auto& spec : protocol.procedures) {
-    if (!adaptive(spec)) continue;
+    if (!procedure::follows_answers(spec)) continue;
     widen(levels, levels_of(spec, protocol));
     if (same_function(spec, data))
       for (const double slope : spec.slope.values) widen(slopes, {slope, slope});
@@ -181,7 +176,7 @@ void set_level_words(const std::string& level, report::SessionData& data) {
 void add_staircases(const std::vector<const store::BlockRecord*>& blocks, const protocol::Protocol& protocol,
                     report::SessionData& data) {
   for (const auto& spec : protocol.procedures) {
-    if (spec.kind != procedure::Kind::up_down && spec.kind != procedure::Kind::weighted_up_down) continue;
+    if (procedure::description(spec.kind).choice != procedure::Choice::track) continue;
     for (const auto* block : blocks) {
       if (block->start.practice) continue;
       const auto stairs = procedure::make_procedure(spec, {}, {});

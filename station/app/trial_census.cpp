@@ -2,21 +2,19 @@
 
 #include <algorithm>
 
+#include "station/procedure/description.hpp"
 #include "station/protocol/sources.hpp"
 
 namespace turnpoint::app {
 
 namespace {
 
+using procedure::follows_answers;
 using protocol::Block;
 using protocol::Protocol;
 using session::TrialSpec;
 
 constexpr int most_trials_of_a_block = 20'000, enough_trials = 40'000;
-
-bool follows_answers(const procedure::Spec& spec) {
-  return spec.kind != procedure::Kind::constant_stimuli && spec.kind != procedure::Kind::adjustment;
-}
 
 double trials_of(const procedure::Spec& spec) {
   if (!follows_answers(spec)) return static_cast<double>(spec.values.size()) * spec.repeats;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "station/procedure/description.hpp"
+#include "station/procedure/keys.hpp"
 #include "station/procedure/state_hash.hpp"
 
 namespace turnpoint::procedure {
@@ -35,5 +37,23 @@ std::uint64_t Adjustment::state_hash() const {
   for (const double setting : settings_) hash.add(std::bit_cast<std::uint64_t>(setting));
   return hash.value();
 }
+
+extern const Description adjustment{
+    Kind::adjustment,
+    "adjustment",
+    Choice::listed,
+    [](text::TableReader& reader, Spec& spec) {
+      spec.values = reader.numbers("start", any_level);
+      read_list(reader, spec);
+    },
+    [](const Spec& spec, std::vector<Fault>& faults) {
+      if (spec.values.empty()) faults.push_back({"start", "missing", "one or more levels to start from"});
+      if (spec.repeats < 1) faults.push_back({"repeats", "below 1", "a whole number of 1 or more"});
+    },
+    [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {
+      return std::make_unique<Adjustment>(spec, context, key);
+    },
+    [](const Spec&, double, double) -> std::optional<double> { return std::nullopt; },
+};
 
 }  // namespace turnpoint::procedure

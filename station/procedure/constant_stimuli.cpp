@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "station/procedure/description.hpp"
+#include "station/procedure/keys.hpp"
 #include "station/procedure/state_hash.hpp"
 
 namespace turnpoint::procedure {
@@ -141,5 +143,24 @@ std::uint64_t ConstantStimuli::state_hash() const {
   for (std::size_t i = position_; i < queue_.size(); ++i) hash.add(queue_[i].value);
   return hash.value();
 }
+
+extern const Description constant_stimuli{
+    Kind::constant_stimuli,
+    "constant-stimuli",
+    Choice::listed,
+    [](text::TableReader& reader, Spec& spec) {
+      spec.values = reader.numbers("values", any_level);
+      read_list(reader, spec);
+    },
+    [](const Spec& spec, std::vector<Fault>& faults) {
+      if (spec.values.empty()) faults.push_back({"values", "missing", "one or more levels"});
+      if (spec.repeats < 1) faults.push_back({"repeats", "below 1", "a whole number of 1 or more"});
+      if (spec.max_run && *spec.max_run < 1) faults.push_back({"order.max_run", "below 1", "1 or more"});
+    },
+    [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {
+      return std::make_unique<ConstantStimuli>(spec, context, key);
+    },
+    [](const Spec&, double, double) -> std::optional<double> { return std::nullopt; },
+};
 
 }  // namespace turnpoint::procedure

@@ -1,13 +1,49 @@
 #include "station/procedure/procedure.hpp"
 
+#include <array>
 #include <stdexcept>
 
-#include "station/procedure/adjustment.hpp"
-#include "station/procedure/constant_stimuli.hpp"
-#include "station/procedure/quest_plus.hpp"
-#include "station/procedure/staircase.hpp"
+#include "station/procedure/description.hpp"
 
 namespace turnpoint::procedure {
+
+// A table, because a linker drops objects of a static library that only register themselves.
+extern const Description constant_stimuli, up_down, weighted_up_down, quest_plus, psi, psi_marginal,
+    adjustment;
+
+namespace {
+
+constexpr std::array kDescriptions{&constant_stimuli, &up_down,   &weighted_up_down, &quest_plus, &psi,
+                                   &psi_marginal,     &adjustment};
+
+}  // namespace
+
+const Description& description(Kind kind) {
+  for (const auto* entry : kDescriptions)
+    if (entry->kind == kind) return *entry;
+  throw std::logic_error("procedure: a kind without a description");
+}
+
+const char* name(Kind kind) { return description(kind).name; }
+
+std::optional<Kind> parse_kind(const std::string& text) {
+  for (const auto* entry : kDescriptions)
+    if (text == entry->name) return entry->kind;
+  return std::nullopt;
+}
+
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
+  for (const auto* entry : kDescriptions) names.emplace_back(entry->name);
+  return names;
+}
+
+std::vector<Fault> validate(const Spec& spec) {
+  std::vector<Fault> faults;
+  if (spec.level.empty()) faults.push_back({"level", "missing", "the name of a factor"});
+  description(spec.kind).validate(spec, faults);
+  return faults;
+}
 
 void Procedure::record_setting(double) {
   throw std::logic_error("procedure: only an adjustment takes a setting");
@@ -17,21 +53,7 @@ std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& conte
   if (const auto faults = validate(spec); !faults.empty())
     throw std::invalid_argument("procedure " + spec.name + ": " + faults.front().key + ": " +
                                 faults.front().what + "; " + faults.front().allowed);
-  switch (spec.kind) {
-    case Kind::constant_stimuli:
-      return std::make_unique<ConstantStimuli>(spec, context, key);
-    case Kind::adjustment:
-      return std::make_unique<Adjustment>(spec, context, key);
-    case Kind::up_down:
-    case Kind::weighted_up_down:
-      return std::make_unique<Staircase>(spec, context);
-    case Kind::quest_plus:
-    case Kind::psi:
-    case Kind::psi_marginal:
-      return std::make_unique<QuestPlus>(spec);
-  }
-  throw std::invalid_argument("procedure " + spec.name + ": " + name(spec.kind) +
-                              " is not a kind of procedure");
+  return description(spec.kind).make(spec, context, key);
 }
 
 }  // namespace turnpoint::procedure

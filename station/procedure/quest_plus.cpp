@@ -1,7 +1,11 @@
 #include "station/procedure/quest_plus.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "station/procedure/description.hpp"
+#include "station/procedure/grid.hpp"
+#include "station/procedure/keys.hpp"
 #include "station/procedure/state_hash.hpp"
 
 namespace turnpoint::procedure {
@@ -63,5 +67,109 @@ std::uint64_t QuestPlus::state_hash() const {
   hash.add(static_cast<std::uint64_t>(unanswered_));
   return hash.value();
 }
+
+namespace {
+
+void read_axes(text::TableReader& reader, Spec& spec) {
+  if (const auto* grid = reader.table("grid", "grid.threshold, grid.slope, grid.guess and grid.lapse")) {
+    text::TableReader inner(*grid, reader.path("grid"), reader.findings());
+    const auto axis = [&](const char* key, Grid& into) {
+      if (const auto* value = inner.require(key, "a grid: { from, to, step } or { values = [...] }"))
+        into = read_grid(*value, inner.path(key), Axis::parameter, reader.findings());
+    };
+    axis("threshold", spec.threshold), axis("slope", spec.slope), axis("guess", spec.guess),
+        axis("lapse", spec.lapse);
+    inner.finish();
+  }
+  if (const auto* prior = reader.maybe_table("prior")) {
+    text::TableReader inner(*prior, reader.path("prior"), reader.findings());
+    const auto axis = [&](const char* key, Prior& into) {
+      if (const auto* value = inner.take(key)) into = read_prior(*value, inner.path(key), reader.findings());
+    };
+    axis("threshold", spec.prior_threshold), axis("slope", spec.prior_slope), axis("guess", spec.prior_guess),
+        axis("lapse", spec.prior_lapse);
+    inner.finish();
+  }
+}
+
+void read_posterior(text::TableReader& reader, Spec& spec) {
+  read_tracks(reader, spec);
+  read_scale(reader, spec);
+  const auto function = reader.word("function", {"weibull", "normal", "logistic"});
+  spec.function = function == "normal"     ? terms::Function::normal
+                  : function == "logistic" ? terms::Function::logistic
+                                           : terms::Function::weibull;
+  if (const auto* stimuli = reader.require("stimuli", "the levels to choose from: { from, to, step }"))
+    spec.stimuli = read_grid(*stimuli, reader.path("stimuli"), Axis::stimuli, reader.findings());
+  read_axes(reader, spec);
+  const std::vector<std::string> parameters{"threshold", "slope", "guess", "lapse"};
+  spec.nuisance = reader.maybe_strings("nuisance");
+  for (const auto& name : spec.nuisance)
+    if (std::find(parameters.begin(), parameters.end(), name) == parameters.end())
+      reader.problem("nuisance", "\"" + name + "\" is no parameter",
+                     "allowed: " + text::quoted_list(parameters));
+  reader.word("select", {"min-expected-entropy"}, "min-expected-entropy");
+  read_stop(reader, spec);
+}
+
+void validate_rate(const char* key, const Grid& grid, std::vector<Fault>& faults) {
+  for (const double rate : grid.values)
+    if (!(rate >= 0 && rate < 1))
+      return faults.push_back({key, "a rate outside 0 to 1", "probabilities from 0 up to, but not, 1"});
+}
+
+void validate_prior(const char* key, const Prior& prior, const Grid& grid, std::vector<Fault>& faults) {
+  if (prior.weights.empty()) return;
+  const auto values = grid.values.size();
+  if (prior.weights.size() != values)
+    faults.push_back({key, std::to_string(prior.weights.size()) + " weights",
+                      "as many as \"grid\" has values: " + std::to_string(values)});
+  else if (std::none_of(prior.weights.begin(), prior.weights.end(), [](double w) { return w > 0; }))
+    faults.push_back({key, "all weights are 0", "at least one above 0"});
+}
+
+void validate_posterior(const Spec& spec, std::vector<Fault>& faults) {
+  if (spec.stimuli.values.empty()) faults.push_back({"stimuli", "missing", "the levels to choose from"});
+  if (spec.threshold.values.empty()) faults.push_back({"grid.threshold", "missing", "its values"});
+  if (spec.slope.values.empty()) faults.push_back({"grid.slope", "missing", "its values"});
+  if (!positive(spec.slope.values)) faults.push_back({"grid.slope", "a slope is not above 0", "above 0"});
+  validate_rate("grid.guess", spec.guess, faults);
+  validate_rate("grid.lapse", spec.lapse, faults);
+  validate_prior("prior.threshold", spec.prior_threshold, spec.threshold, faults);
+  validate_prior("prior.slope", spec.prior_slope, spec.slope, faults);
+  validate_prior("prior.guess", spec.prior_guess, spec.guess, faults);
+  validate_prior("prior.lapse", spec.prior_lapse, spec.lapse, faults);
+  // What one trial has to look through: some seconds on a small computer.
+  constexpr double most = 5e7;
+  double size = static_cast<double>(spec.stimuli.values.size());
+  for (const auto* grid : {&spec.threshold, &spec.slope, &spec.guess, &spec.lapse})
+    size *= static_cast<double>(std::max<std::size_t>(1, grid->values.size()));
+  if (size > most)
+    faults.push_back({"grid.threshold", "stimuli and grids have too many combinations to choose in time",
+                      "at most 50 million"});
+  if (!spec.stop.trials && !spec.stop.threshold_sd && !spec.stop.entropy_nats)
+    faults.push_back({"stop", "nothing stops it", "trials or threshold_sd"});
+}
+
+std::unique_ptr<Procedure> make_quest_plus(const Spec& spec, const Context&, const random::Key&) {
+  return std::make_unique<QuestPlus>(spec);
+}
+
+/// Where the assumed function has its threshold.
+std::optional<double> share_at_threshold(const Spec& spec, double least, double most) {
+  const double way = spec.function == Function::weibull ? 1 - std::exp(-1.0) : 0.5;
+  return least + way * (most - least);
+}
+
+}  // namespace
+
+extern const Description quest_plus{Kind::quest_plus,   "quest-plus",    Choice::posterior, read_posterior,
+                                    validate_posterior, make_quest_plus, share_at_threshold};
+
+extern const Description psi{Kind::psi,          "psi",           Choice::posterior, read_posterior,
+                             validate_posterior, make_quest_plus, share_at_threshold};
+
+extern const Description psi_marginal{Kind::psi_marginal, "psi-marginal",  Choice::posterior, read_posterior,
+                                      validate_posterior, make_quest_plus, share_at_threshold};
 
 }  // namespace turnpoint::procedure

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "station/procedure/description.hpp"
+#include "station/procedure/keys.hpp"
 #include "station/procedure/state_hash.hpp"
 #include "station/random/elementary.hpp"
 
@@ -129,5 +131,80 @@ std::uint64_t Staircase::state_hash() const {
   hash.add(static_cast<std::uint64_t>(8 * spent_ + unanswered_));
   return hash.value();
 }
+
+namespace {
+
+void read_steps(text::TableReader& reader, Spec& spec) {
+  const text::Range step{0, 1e6, text::Range::Ends::open_low};
+  spec.step = reader.maybe_numbers("step", step);
+  spec.step_down = reader.maybe_numbers("step_down", step);
+  spec.step_up = reader.maybe_numbers("step_up", step);
+  if (reader.has("step") == reader.has("step_down"))
+    reader.findings().add(
+        reader.has("step") ? reader.place("step_down") : reader.place("step_up"),
+        reader.title() + (reader.has("step") ? " has both \"step\" and \"step_down\"" : " has no steps"),
+        "\"step\" (up and down alike) or \"step_down\"");
+}
+
+void read_staircase(text::TableReader& reader, Spec& spec) {
+  read_tracks(reader, spec);
+  read_scale(reader, spec);
+  read_span(reader, spec);
+  read_steps(reader, spec);
+  spec.discard_reversals = reader.integer("discard_reversals", 0, 1000, 0);
+  if (spec.kind == Kind::up_down) {
+    spec.n_down = reader.integer("n_down", 1, 20);
+    spec.n_up = reader.integer("n_up", 1, 20, 1);
+    spec.initial_down = reader.maybe_integer("initial_down", 1, 20);
+  } else {
+    spec.target = reader.number("target", {0, 1, text::Range::Ends::open});
+    if (reader.has("step_up"))
+      reader.problem("step_up", "\"step_up\" beside \"target\"",
+                     "the step up follows from the target and the step down");
+  }
+  read_stop(reader, spec);
+}
+
+void validate_staircase(const Spec& spec, std::vector<Fault>& faults) {
+  validate_span(spec, faults);
+  if (spec.step.empty() && spec.step_down.empty() && spec.step_up.empty())
+    faults.push_back({"step_down", "missing", "one or more steps above 0"});
+  if (!positive(spec.step) || !positive(spec.step_down) || !positive(spec.step_up))
+    faults.push_back({"step_down", "a step is not above 0", "steps above 0"});
+  if (spec.kind == Kind::weighted_up_down && (!spec.target || !(*spec.target > 0 && *spec.target < 1)))
+    faults.push_back({"target", "missing or outside (0, 1)", "a probability between 0 and 1"});
+  if (spec.kind == Kind::up_down && (spec.n_down < 1 || spec.n_up < 1))
+    faults.push_back({"n_down", "below 1", "whole numbers of 1 or more"});
+  if (spec.kind == Kind::up_down && spec.step.empty() && (spec.step_down.empty() || spec.step_up.empty()))
+    faults.push_back({"step", "missing for one direction", "step, or both step_down and step_up"});
+  if (!spec.stop.trials && !spec.stop.reversals)
+    faults.push_back({"stop", "nothing stops it", "trials or reversals"});
+  if (spec.discard_reversals < 0 || (spec.stop.reversals && spec.stop.rule == StopRule::any &&
+                                     spec.discard_reversals + 2 > *spec.stop.reversals))
+    faults.push_back({"discard_reversals", "leaves fewer than two reversals to average",
+                      "at least two fewer than the reversals at which the staircase stops"});
+}
+
+std::unique_ptr<Procedure> make_staircase(const Spec& spec, const Context& context, const random::Key&) {
+  return std::make_unique<Staircase>(spec, context);
+}
+
+/// Where steps down and up balance (Garcia-Perez 1998); equal steps give .5^(1/n).
+std::optional<double> staircase_target(const Spec& spec, double, double) {
+  if (spec.target) return spec.target;
+  const auto& down = spec.step_down.empty() ? spec.step : spec.step_down;
+  const auto& up = spec.step_up.empty() ? spec.step : spec.step_up;
+  if (spec.n_up != 1 || down.empty() || up.empty()) return std::nullopt;
+  return std::pow(up.back() / (up.back() + down.back()), 1.0 / spec.n_down);
+}
+
+}  // namespace
+
+extern const Description up_down{Kind::up_down,      "up-down",      Choice::track,   read_staircase,
+                                 validate_staircase, make_staircase, staircase_target};
+
+extern const Description weighted_up_down{Kind::weighted_up_down, "weighted-up-down", Choice::track,
+                                          read_staircase,         validate_staircase, make_staircase,
+                                          staircase_target};
 
 }  // namespace turnpoint::procedure

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "station/procedure/description.hpp"
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
@@ -54,9 +55,7 @@ void check_scored(text::TableReader& file, const Reading& reading) {
   const bool stated = table && table->find("correct");
   if (!table || task.kind != TaskKind::single_interval || stated) return;
   for (const auto& spec : protocol.procedures) {
-    const bool adaptive =
-        spec.kind != procedure::Kind::constant_stimuli && spec.kind != procedure::Kind::adjustment;
-    if (adaptive && spec.tracks.empty())
+    if (procedure::follows_answers(spec) && spec.tracks.empty())
       reading.findings.add(
           table->place, "the procedure \"" + spec.name + "\" follows correctness, and no answer is correct",
           "\"correct\" in [task], or \"tracks\" in the procedure");

@@ -57,7 +57,7 @@ void check_steps(AdviceList& advice, const Spec& spec) {
 // As many wrong answers as right ones move a staircase to where half of the answers are right, or below.
 void check_target(AdviceList& advice, const Spec& spec) {
   const double guessing = chance(advice.protocol);
-  if (spec.kind == Kind::weighted_up_down && spec.target && *spec.target <= guessing + 1e-9)
+  if (spec.target && *spec.target <= guessing + 1e-9)
     advice.add(key_of(spec, "target"), "a target of " + number(*spec.target, 3) + " is not above guessing",
                "between " + number(guessing, 3) + " and 1");
   const bool larger_up = !spec.step_up.empty() && spec.step_up.back() > spec.step_down.back();

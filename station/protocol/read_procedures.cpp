@@ -2,8 +2,8 @@
 #include <map>
 #include <set>
 
+#include "station/procedure/description.hpp"
 #include "station/protocol/expression.hpp"
-#include "station/protocol/grid.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/text/number.hpp"
 
@@ -16,8 +16,6 @@ using text::TableReader;
 using text::Value;
 
 namespace {
-
-const Range any_level{-1e6, 1e6};
 
 // A copy's keys lie over those of the procedure that it copies; grids and priors axis by axis.
 Value overlay(Value below, const Value& own) {
@@ -38,23 +36,7 @@ Value overlay(Value below, const Value& own) {
   return below;
 }
 
-void read_order(TableReader& reader, Spec& spec) {
-  const auto* table = reader.maybe_table("order");
-  if (!table) {
-    if (!reader.has("order")) reader.defaulted("order.shuffle", "\"within-repeat\"");
-    return;
-  }
-  TableReader inner(*table, reader.path("order"), reader.findings());
-  const auto shuffle = inner.word("shuffle", {"within-repeat", "within-block", "none"}, "within-repeat");
-  spec.shuffle = shuffle == "none"           ? procedure::Shuffle::none
-                 : shuffle == "within-block" ? procedure::Shuffle::within_block
-                                             : procedure::Shuffle::within_repeat;
-  spec.max_run = inner.maybe_integer("max_run", 1, 1000);
-  inner.finish();
-}
-
-void read_balance(TableReader& reader, Spec& spec, const Reading& reading) {
-  spec.balance = reader.maybe_strings("balance");
+void check_balance(TableReader& reader, const Spec& spec, const Reading& reading) {
   const auto& factors = reading.protocol.factors;
   std::set<std::string> seen;
   for (const auto& name : spec.balance) {
@@ -70,131 +52,12 @@ void read_balance(TableReader& reader, Spec& spec, const Reading& reading) {
   }
 }
 
-void read_constant(TableReader& reader, Spec& spec, const Reading& reading) {
-  spec.values = reader.numbers("values", any_level);
-  spec.repeats = reader.integer("repeats", 1, 10000);
-  read_balance(reader, spec, reading);
-  read_order(reader, spec);
-}
-
-void read_adjustment(TableReader& reader, Spec& spec, const Reading& reading) {
-  spec.values = reader.numbers("start", any_level);
-  spec.repeats = reader.integer("repeats", 1, 10000);
-  read_balance(reader, spec, reading);
-  read_order(reader, spec);
-}
-
-void read_tracks(TableReader& reader, Spec& spec, const Reading& reading) {
-  spec.tracks = reader.maybe_string("tracks").value_or("");
+void check_tracks(TableReader& reader, const Spec& spec, const Reading& reading) {
   std::vector<std::string> ids;
   for (const auto& choice : reading.protocol.task.choices) ids.push_back(choice.id);
   if (!spec.tracks.empty() && !ids.empty() && std::find(ids.begin(), ids.end(), spec.tracks) == ids.end())
     reader.problem("tracks", "\"" + spec.tracks + "\" is no choice of the task",
                    suggestion(spec.tracks, ids));
-}
-
-void read_scale(TableReader& reader, Spec& spec) {
-  const auto scale = reader.word("scale", {"linear", "log10", "dB"}, "linear");
-  spec.scale = scale == "log10" ? procedure::Scale::log10
-               : scale == "dB"  ? procedure::Scale::dB
-                                : procedure::Scale::linear;
-}
-
-void read_stop(TableReader& reader, Spec& spec) {
-  const auto* table = reader.table("stop", "when it ends: { trials = 40 }");
-  if (!table) return;
-  TableReader inner(*table, reader.path("stop"), reader.findings());
-  spec.stop.trials = inner.maybe_integer("trials", 1, 100000);
-  spec.stop.reversals = inner.maybe_integer("reversals", 1, 10000);
-  spec.stop.min_trials = inner.maybe_integer("min_trials", 1, 100000);
-  spec.stop.threshold_sd = inner.maybe_number("threshold_sd", {0, 1e6, Range::Ends::open_low});
-  spec.stop.entropy_nats = inner.maybe_number("entropy_nats", {-100, 100});
-  const int rules =
-      inner.has("trials") + inner.has("reversals") + inner.has("threshold_sd") + inner.has("entropy_nats");
-  if (rules == 0)
-    reader.findings().add(table->place, "\"stop\" has no rule",
-                          "\"trials\", \"reversals\", \"threshold_sd\" or \"entropy_nats\"");
-  if (rules > 1 && !inner.has("rule"))
-    reader.findings().add(table->place, "\"stop\" has several rules",
-                          "\"rule\" = \"or\" (the first that holds ends it) or \"and\" (all must hold)");
-  spec.stop.rule = inner.maybe_word("rule", {"or", "and"}).value_or("or") == "and" ? procedure::StopRule::all
-                                                                                   : procedure::StopRule::any;
-  inner.finish();
-}
-
-void read_steps(TableReader& reader, Spec& spec) {
-  const Range step{0, 1e6, Range::Ends::open_low};
-  spec.step = reader.maybe_numbers("step", step);
-  spec.step_down = reader.maybe_numbers("step_down", step);
-  spec.step_up = reader.maybe_numbers("step_up", step);
-  if (reader.has("step") == reader.has("step_down"))
-    reader.findings().add(
-        reader.has("step") ? reader.place("step_down") : reader.place("step_up"),
-        reader.title() + (reader.has("step") ? " has both \"step\" and \"step_down\"" : " has no steps"),
-        "\"step\" (up and down alike) or \"step_down\"");
-}
-
-void read_staircase(TableReader& reader, Spec& spec, const Reading& reading) {
-  read_tracks(reader, spec, reading);
-  read_scale(reader, spec);
-  spec.start = reader.number("start", any_level);
-  spec.min = reader.number("min", any_level);
-  spec.max = reader.number("max", any_level);
-  read_steps(reader, spec);
-  spec.discard_reversals = reader.integer("discard_reversals", 0, 1000, 0);
-  if (spec.kind == Kind::up_down) {
-    spec.n_down = reader.integer("n_down", 1, 20);
-    spec.n_up = reader.integer("n_up", 1, 20, 1);
-    spec.initial_down = reader.maybe_integer("initial_down", 1, 20);
-  } else {
-    spec.target = reader.number("target", {0, 1, Range::Ends::open});
-    if (reader.has("step_up"))
-      reader.problem("step_up", "\"step_up\" beside \"target\"",
-                     "the step up follows from the target and the step down");
-  }
-  read_stop(reader, spec);
-}
-
-void read_axes(TableReader& reader, Spec& spec) {
-  if (const auto* grid = reader.table("grid", "grid.threshold, grid.slope, grid.guess and grid.lapse")) {
-    TableReader inner(*grid, reader.path("grid"), reader.findings());
-    const auto axis = [&](const char* key, procedure::Grid& into) {
-      if (const auto* value = inner.require(key, "a grid: { from, to, step } or { values = [...] }"))
-        into = read_grid(*value, inner.path(key), Axis::parameter, reader.findings());
-    };
-    axis("threshold", spec.threshold), axis("slope", spec.slope), axis("guess", spec.guess),
-        axis("lapse", spec.lapse);
-    inner.finish();
-  }
-  if (const auto* prior = reader.maybe_table("prior")) {
-    TableReader inner(*prior, reader.path("prior"), reader.findings());
-    const auto axis = [&](const char* key, procedure::Prior& into) {
-      if (const auto* value = inner.take(key)) into = read_prior(*value, inner.path(key), reader.findings());
-    };
-    axis("threshold", spec.prior_threshold), axis("slope", spec.prior_slope), axis("guess", spec.prior_guess),
-        axis("lapse", spec.prior_lapse);
-    inner.finish();
-  }
-}
-
-void read_posterior(TableReader& reader, Spec& spec, const Reading& reading) {
-  read_tracks(reader, spec, reading);
-  read_scale(reader, spec);
-  const auto function = reader.word("function", {"weibull", "normal", "logistic"});
-  spec.function = function == "normal"     ? terms::Function::normal
-                  : function == "logistic" ? terms::Function::logistic
-                                           : terms::Function::weibull;
-  if (const auto* stimuli = reader.require("stimuli", "the levels to choose from: { from, to, step }"))
-    spec.stimuli = read_grid(*stimuli, reader.path("stimuli"), Axis::stimuli, reader.findings());
-  read_axes(reader, spec);
-  const std::vector<std::string> parameters{"threshold", "slope", "guess", "lapse"};
-  spec.nuisance = reader.maybe_strings("nuisance");
-  for (const auto& name : spec.nuisance)
-    if (std::find(parameters.begin(), parameters.end(), name) == parameters.end())
-      reader.problem("nuisance", "\"" + name + "\" is no parameter",
-                     "allowed: " + text::quoted_list(parameters));
-  reader.word("select", {"min-expected-entropy"}, "min-expected-entropy");
-  read_stop(reader, spec);
 }
 
 // Every level that the procedure can present must be a value of its factor.
@@ -248,20 +111,9 @@ Spec read_procedure(const Value& table, const Reading& reading, text::Findings& 
       procedure::parse_kind(reader.word("kind", procedure::kind_names())).value_or(Kind::constant_stimuli);
   const auto* factor = read_numeric_factor(reader, "level", reading);
   if (factor) spec.level = factor->name;
-  switch (spec.kind) {
-    case Kind::constant_stimuli:
-      read_constant(reader, spec, reading);
-      break;
-    case Kind::adjustment:
-      read_adjustment(reader, spec, reading);
-      break;
-    case Kind::up_down:
-    case Kind::weighted_up_down:
-      read_staircase(reader, spec, reading);
-      break;
-    default:
-      read_posterior(reader, spec, reading);
-  }
+  procedure::description(spec.kind).read(reader, spec);
+  check_tracks(reader, spec, reading);
+  check_balance(reader, spec, reading);
   if (factor && !is_broken(*factor)) check_levels(reader, spec, *factor);
   if (findings.problems.empty()) check_spec(table, spec, findings);
   reader.finish();

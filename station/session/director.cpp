@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "station/procedure/procedure.hpp"
+#include "station/procedure/description.hpp"
 #include "station/procedure/state_hash.hpp"
 #include "station/session/director_state.hpp"
 #include "station/session/trial_orders.hpp"
@@ -78,10 +78,10 @@ int Director::State::block_expected(const Block& b) const {
   double trials = 0;
   for (const auto& name : b.procedures) {
     const auto& spec = *find_spec(name);
-    if (spec.kind == procedure::Kind::constant_stimuli || spec.kind == procedure::Kind::adjustment)
-      trials += static_cast<double>(spec.values.size()) * spec.repeats;
-    else
+    if (procedure::follows_answers(spec))
       trials += spec.stop.trials.value_or(6 * spec.stop.reversals.value_or(8));
+    else
+      trials += static_cast<double>(spec.values.size()) * spec.repeats;
   }
   return static_cast<int>(std::lround(trials * (1 + (b.catch_trials ? b.catch_trials->rate : 0))));
 }

@@ -4,17 +4,16 @@
 #include "station/procedure/spec.hpp"
 #include "station/text/reader.hpp"
 
-namespace turnpoint::protocol {
+namespace turnpoint::procedure {
 
 /// Whether an axis is levels to present or a parameter (which may be tied to another).
 enum class Axis { stimuli, parameter };
 
 /// Reads { from, to, step }, { from, to, count }, { log_from, log_to, count }, { values } or { tied = "lapse"
 /// } and makes the values explicit, the same on every machine.
-procedure::Grid read_grid(const text::Value& table, const std::string& name, Axis axis,
-                          text::Findings& findings);
+Grid read_grid(const text::Value& table, const std::string& name, Axis axis, text::Findings& findings);
 
 /// Reads { normal = { mean, sd } } or { weights = [...] }.
-procedure::Prior read_prior(const text::Value& table, const std::string& name, text::Findings& findings);
+Prior read_prior(const text::Value& table, const std::string& name, text::Findings& findings);
 
-}  // namespace turnpoint::protocol
+}  // namespace turnpoint::procedure

@@ -1,11 +1,11 @@
-#include "station/protocol/grid.hpp"
+#include "station/procedure/grid.hpp"
 
 #include <cmath>
 
 #include "station/random/elementary.hpp"
 #include "station/text/number.hpp"
 
-namespace turnpoint::protocol {
+namespace turnpoint::procedure {
 
 namespace {
 
@@ -66,9 +66,8 @@ std::vector<double> log_axis(TableReader& reader) {
 
 }  // namespace
 
-procedure::Grid read_grid(const text::Value& table, const std::string& name, Axis axis,
-                          text::Findings& findings) {
-  procedure::Grid grid;
+Grid read_grid(const text::Value& table, const std::string& name, Axis axis, text::Findings& findings) {
+  Grid grid;
   if (table.kind != text::Value::Kind::table) {
     findings.add(table.place, "\"" + name + "\" is " + describe(table), std::string("allowed: ") + forms);
     return grid;
@@ -95,8 +94,8 @@ procedure::Grid read_grid(const text::Value& table, const std::string& name, Axi
   return grid;
 }
 
-procedure::Prior read_prior(const text::Value& table, const std::string& name, text::Findings& findings) {
-  procedure::Prior prior;
+Prior read_prior(const text::Value& table, const std::string& name, text::Findings& findings) {
+  Prior prior;
   if (table.kind != text::Value::Kind::table) {
     findings.add(table.place, "\"" + name + "\" is " + describe(table),
                  "{ normal = { mean, sd } } or { weights = [...] }");
@@ -118,4 +117,4 @@ procedure::Prior read_prior(const text::Value& table, const std::string& name, t
   return prior;
 }
 
-}  // namespace turnpoint::protocol
+}  // namespace turnpoint::procedure

@@ -1,0 +1,86 @@
+#include "station/procedure/keys.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace turnpoint::procedure {
+
+using text::Range;
+using text::TableReader;
+
+namespace {
+
+void read_order(TableReader& reader, Spec& spec) {
+  const auto* table = reader.maybe_table("order");
+  if (!table) {
+    if (!reader.has("order")) reader.defaulted("order.shuffle", "\"within-repeat\"");
+    return;
+  }
+  TableReader inner(*table, reader.path("order"), reader.findings());
+  const auto shuffle = inner.word("shuffle", {"within-repeat", "within-block", "none"}, "within-repeat");
+  spec.shuffle = shuffle == "none"           ? Shuffle::none
+                 : shuffle == "within-block" ? Shuffle::within_block
+                                             : Shuffle::within_repeat;
+  spec.max_run = inner.maybe_integer("max_run", 1, 1000);
+  inner.finish();
+}
+
+}  // namespace
+
+void read_tracks(TableReader& reader, Spec& spec) {
+  spec.tracks = reader.maybe_string("tracks").value_or("");
+}
+
+void read_scale(TableReader& reader, Spec& spec) {
+  const auto scale = reader.word("scale", {"linear", "log10", "dB"}, "linear");
+  spec.scale = scale == "log10" ? Scale::log10 : scale == "dB" ? Scale::dB : Scale::linear;
+}
+
+void read_stop(TableReader& reader, Spec& spec) {
+  const auto* table = reader.table("stop", "when it ends: { trials = 40 }");
+  if (!table) return;
+  TableReader inner(*table, reader.path("stop"), reader.findings());
+  spec.stop.trials = inner.maybe_integer("trials", 1, 100000);
+  spec.stop.reversals = inner.maybe_integer("reversals", 1, 10000);
+  spec.stop.min_trials = inner.maybe_integer("min_trials", 1, 100000);
+  spec.stop.threshold_sd = inner.maybe_number("threshold_sd", {0, 1e6, Range::Ends::open_low});
+  spec.stop.entropy_nats = inner.maybe_number("entropy_nats", {-100, 100});
+  const int rules =
+      inner.has("trials") + inner.has("reversals") + inner.has("threshold_sd") + inner.has("entropy_nats");
+  if (rules == 0)
+    reader.findings().add(table->place, "\"stop\" has no rule",
+                          "\"trials\", \"reversals\", \"threshold_sd\" or \"entropy_nats\"");
+  if (rules > 1 && !inner.has("rule"))
+    reader.findings().add(table->place, "\"stop\" has several rules",
+                          "\"rule\" = \"or\" (the first that holds ends it) or \"and\" (all must hold)");
+  spec.stop.rule =
+      inner.maybe_word("rule", {"or", "and"}).value_or("or") == "and" ? StopRule::all : StopRule::any;
+  inner.finish();
+}
+
+void read_list(TableReader& reader, Spec& spec) {
+  spec.repeats = reader.integer("repeats", 1, 10000);
+  spec.balance = reader.maybe_strings("balance");
+  read_order(reader, spec);
+}
+
+void read_span(TableReader& reader, Spec& spec) {
+  spec.start = reader.number("start", any_level);
+  spec.min = reader.number("min", any_level);
+  spec.max = reader.number("max", any_level);
+}
+
+void validate_span(const Spec& spec, std::vector<Fault>& faults) {
+  if (!spec.start) faults.push_back({"start", "missing", "the first level, a number"});
+  if (spec.min && spec.max && *spec.min >= *spec.max) faults.push_back({"min", "not below max", "min < max"});
+  if (spec.start && ((spec.min && *spec.start < *spec.min) || (spec.max && *spec.start > *spec.max)))
+    faults.push_back({"start", "outside min ... max", "a level between min and max"});
+  if (spec.scale != Scale::linear && spec.start && !(*spec.start > 0))
+    faults.push_back({"start", "not above 0 on a logarithmic scale", "a level above 0"});
+}
+
+bool positive(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return v > 0 && std::isfinite(v); });
+}
+
+}  // namespace turnpoint::procedure
