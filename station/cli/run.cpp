@@ -69,8 +69,7 @@ void print_summary(std::ostream& out, const session::Summary& s) {
              s.anticipations, s.voided);
   if (s.accuracy) fmt::print(out, "  {} % of the scored answers right\n", number(100 * *s.accuracy, 3));
   for (const auto& e : s.estimates)
-    fmt::print(out, "  {}: {} {} (SD {}{})\n", e.procedure, e.parameter, number(e.mean, 4), number(e.sd, 3),
-               e.basis.empty() ? "" : ", " + e.basis);
+    fmt::print(out, "  {}: {} {}\n", e.procedure, e.parameter, session::in_words(e));
   if (s.stretched_s > 0)
     fmt::print(out, "  intervals stretched by {} s in all to keep the rig's limits\n",
                number(s.stretched_s, 3));

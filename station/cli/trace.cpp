@@ -69,8 +69,9 @@ void trace(const Options& options, Context& context) {
     fmt::print(context.out, "{:>4} {:>10} {}\n", i + 1, text::number(result.levels[i]), options.answers[i]);
   fmt::print(context.out, "next {}\n", result.next ? text::number(*result.next) : "none: it has stopped");
   for (const auto& [parameter, e] : result.estimates)
-    fmt::print(context.out, "{}: mode {}, mean {}, SD {}{}\n", parameter, text::number(e.mode),
-               text::number(e.mean), text::number(e.sd), e.basis.empty() ? "" : ", " + e.basis);
+    fmt::print(context.out, "{}: mode {}, mean {}{}{}\n", parameter, text::number(e.mode),
+               text::number(e.mean), e.sd ? ", SD " + text::number(*e.sd) : "",
+               e.basis.empty() ? "" : ", " + e.basis);
 }
 
 }  // namespace

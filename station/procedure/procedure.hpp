@@ -23,8 +23,9 @@ struct Proposal {
 enum class Answer { one, zero, none };  ///< one: correct, or the tracked answer
 
 struct Estimate {
-  double mode = 0, mean = 0, sd = 0;
-  std::string basis;  ///< of a staircase: the reversals averaged, "reversals 5 to 12 of 12"; else empty
+  double mode = 0, mean = 0;
+  std::optional<double> sd;  ///< none where a single number is all that there is
+  std::string basis;         ///< of a track: what it is taken from, "reversals 5 to 12 of 12"; else empty
 };
 
 /// What constant stimuli must know of the protocol: how many levels each balanced factor has, and which

@@ -25,7 +25,7 @@ bool QuestPlus::done() const {
   const bool by_trials = stop.trials && trials >= *stop.trials;
   if (by_trials && stop.rule == StopRule::any) return true;
   if (stop.min_trials && trials < *stop.min_trials) return false;
-  const bool by_sd = stop.threshold_sd && posterior_.estimate(Posterior::threshold).sd <= *stop.threshold_sd;
+  const bool by_sd = stop.threshold_sd && *posterior_.estimate(Posterior::threshold).sd <= *stop.threshold_sd;
   const bool by_entropy = stop.entropy_nats && posterior_.entropy_nats() <= *stop.entropy_nats;
   if (stop.rule == StopRule::any) return by_trials || by_sd || by_entropy;
   return (!stop.trials || by_trials) && (!stop.threshold_sd || by_sd) && (!stop.entropy_nats || by_entropy);

@@ -264,14 +264,15 @@ std::string detection_section(const Summary& summary) {
 
 std::string staircase_table(const SessionData& data) {
   if (data.staircases.empty()) return "";
-  std::string html = "<table><tr><th>Staircase</th><th>Block</th><th>" +
-                     escaped(in_unit("Mean of its reversals", data)) + "</th><th>" +
-                     escaped(in_unit("Their standard deviation", data)) + "</th><th>Averaged</th></tr>";
-  for (const auto& stairs : data.staircases)
+  std::string html = "<table><tr><th>Procedure</th><th>Block</th><th>" + escaped(in_unit("Estimate", data)) +
+                     "</th><th>" + escaped(in_unit("Standard deviation", data)) +
+                     "</th><th>Taken from</th></tr>";
+  for (const auto& stairs : data.staircases) {
+    const auto mean = stairs.sd ? text::estimated(stairs.mean, *stairs.sd) : text::number(stairs.mean, 3);
     html += "<tr><td>" + escaped(stairs.procedure) + "</td><td>" + escaped(stairs.block) +
-            "</td><td class=\"n\">" + minus(text::estimated(stairs.mean, stairs.sd)) +
-            "</td><td class=\"n\">" + number(stairs.sd, 2) + "</td><td>" + escaped(stairs.basis) +
-            "</td></tr>";
+            "</td><td class=\"n\">" + minus(mean) + "</td><td class=\"n\">" +
+            (stairs.sd ? number(*stairs.sd, 2) : "") + "</td><td>" + escaped(stairs.basis) + "</td></tr>";
+  }
   return html + "</table>\n";
 }
 

@@ -172,7 +172,7 @@ std::string to_json(const Summary& summary) {
                                   {"block", stairs.block},
                                   {"mean", value(stairs.mean)},
                                   {"sd", value(stairs.sd)},
-                                  {"averaged", stairs.basis}});
+                                  {"basis", stairs.basis}});
   json["bias"] = nullptr;
   if (summary.bias)
     json["bias"] = {{"share_second", value(summary.bias->share_second)},

@@ -23,10 +23,11 @@ enum class Design {
 /// Whether some trials have no signal, so that "yes" there is a false alarm.
 inline bool has_noise(Design design) { return design == Design::yes_no || design == Design::same_different; }
 
-/// What a staircase came to; `basis` says which reversals were averaged.
+/// What a track of levels came to; `basis` says what the estimate is taken from.
 struct StaircaseResult {
   std::string block, procedure;
-  double mean = 0, sd = 0;  ///< of the reversals, in the unit of the level
+  double mean = 0;           ///< in the unit of the level
+  std::optional<double> sd;  ///< of the reversals that were averaged
   std::string basis;
 };
 

@@ -8,6 +8,7 @@
 #include "station/procedure/state_hash.hpp"
 #include "station/session/director_state.hpp"
 #include "station/session/trial_orders.hpp"
+#include "station/text/number.hpp"
 
 namespace turnpoint::session {
 
@@ -168,13 +169,19 @@ std::vector<ProcedureEstimate> Director::estimates() const {
   return all;
 }
 
-std::optional<std::pair<double, double>> Director::threshold() const {
+std::optional<std::pair<double, std::optional<double>>> Director::threshold() const {
   if (state_->current_procedure == State::no_procedure) return std::nullopt;
   const auto estimates = state_->procedures[static_cast<std::size_t>(state_->current_procedure)]->estimates();
   auto found = estimates.find("threshold");
   if (found == estimates.end()) found = estimates.find("pse");
   if (found == estimates.end()) return std::nullopt;
   return std::pair(found->second.mean, found->second.sd);
+}
+
+std::string in_words(const ProcedureEstimate& estimate) {
+  std::string rest = estimate.sd ? "SD " + text::number(*estimate.sd, 3) : "";
+  if (!estimate.basis.empty()) rest += (rest.empty() ? "" : ", ") + estimate.basis;
+  return text::number(estimate.mean, 4) + (rest.empty() ? "" : " (" + rest + ")");
 }
 
 std::uint64_t Director::state_hash() const {

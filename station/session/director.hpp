@@ -38,9 +38,12 @@ struct TrialEnd {
 
 struct ProcedureEstimate {
   std::string procedure, parameter;
-  double mean = 0, sd = 0;
-  std::string basis;  ///< of a staircase: which reversals the mean and SD are of
+  double mean = 0;
+  std::optional<double> sd;  ///< as in procedure::Estimate
+  std::string basis;
 };
+/// `-12.3 (SD 1.25, reversals 5 to 12 of 12)`: what there is of it.
+std::string in_words(const ProcedureEstimate& estimate);
 
 /// Decides what comes next: blocks in the participant's order, practice with its pass criterion, procedures
 /// and their interleaving, catch trials, orders of intervals, roving and intervals in time. Pure: the same
@@ -79,7 +82,7 @@ class Director {
   /// Of the block's procedures that estimate something.
   std::vector<ProcedureEstimate> estimates() const;
   /// Threshold (or PSE) estimate and its SD of the procedure that gave the last trial, where there is one.
-  std::optional<std::pair<double, double>> threshold() const;
+  std::optional<std::pair<double, std::optional<double>>> threshold() const;
   /// A hash of all discrete state: equal after a replay, or something differs.
   std::uint64_t state_hash() const;
 

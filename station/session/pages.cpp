@@ -160,9 +160,7 @@ Page Pages::end(const Summary& summary, const Director& director) const {
                   {"Void", std::to_string(summary.voided)}};
   if (summary.accuracy) page.summary.push_back({"Right", text::number(100 * *summary.accuracy, 3) + " %"});
   for (const auto& e : summary.estimates)
-    page.summary.push_back(
-        {e.procedure + ", " + e.parameter, text::number(e.mean, 4) + " (SD " + text::number(e.sd, 3) +
-                                               (e.basis.empty() ? "" : ", " + e.basis) + ")"});
+    page.summary.push_back({e.procedure + ", " + e.parameter, in_words(e)});
   return page;
 }
 

@@ -32,9 +32,10 @@ void run(const Spec& spec, Pattern pattern, double low, double high) {
   CHECK(inside);
   CHECK(procedure->recorded() == kTrials);
   for (const auto& [parameter, estimate] : procedure->estimates()) {
-    INFO(parameter << " " << estimate.mean << " " << estimate.sd << " " << estimate.mode);
-    CHECK((std::isfinite(estimate.mean) && std::isfinite(estimate.sd) && std::isfinite(estimate.mode)));
-    CHECK(estimate.sd >= 0);
+    INFO(parameter << " " << estimate.mean << " " << estimate.sd.value_or(0) << " " << estimate.mode);
+    CHECK((std::isfinite(estimate.mean) && std::isfinite(estimate.sd.value_or(0)) &&
+           std::isfinite(estimate.mode)));
+    CHECK(estimate.sd.value_or(0) >= 0);
   }
   if (const auto entropy = procedure->entropy_nats()) CHECK((std::isfinite(*entropy) && *entropy > -1e-9));
 }
