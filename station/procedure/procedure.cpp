@@ -8,13 +8,27 @@
 namespace turnpoint::procedure {
 
 // A table, because a linker drops objects of a static library that only register themselves.
-extern const Description constant_stimuli, up_down, weighted_up_down, quest_plus, psi, psi_marginal,
-    adjustment;
+extern const Description constant_stimuli;
+extern const Description up_down;
+extern const Description weighted_up_down;
+extern const Description quest_plus;
+extern const Description psi;
+extern const Description psi_marginal;
+extern const Description adjustment;
+extern const Description accelerated_stochastic_approximation;
 
 namespace {
 
-constexpr std::array kDescriptions{&constant_stimuli, &up_down,   &weighted_up_down, &quest_plus, &psi,
-                                   &psi_marginal,     &adjustment};
+constexpr std::array kDescriptions{
+    &constant_stimuli,
+    &up_down,
+    &weighted_up_down,
+    &quest_plus,
+    &psi,
+    &psi_marginal,
+    &adjustment,
+    &accelerated_stochastic_approximation,
+};
 
 }  // namespace
 

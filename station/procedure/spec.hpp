@@ -9,7 +9,16 @@
 
 namespace turnpoint::procedure {
 
-enum class Kind { constant_stimuli, up_down, weighted_up_down, quest_plus, psi, psi_marginal, adjustment };
+enum class Kind {
+  constant_stimuli,
+  up_down,
+  weighted_up_down,
+  quest_plus,
+  psi,
+  psi_marginal,
+  adjustment,
+  accelerated_stochastic_approximation
+};
 using terms::Function;
 enum class Scale { linear, log10, dB };
 enum class Shuffle { within_repeat, within_block, none };

@@ -86,7 +86,7 @@ TEST_CASE("all right goes to the lowest threshold of the grid, all wrong to the 
   }
 }
 
-TEST_CASE("a staircase with limits stays inside them for ten thousand answers of any kind", "[procedure]") {
+TEST_CASE("a track with limits stays inside them for ten thousand answers of any kind", "[procedure]") {
   for (const auto pattern : {Pattern::all_right, Pattern::all_wrong, Pattern::alternating}) {
     auto spec = staircase(Scale::linear);
     spec.min = -400, spec.max = 400;
@@ -95,11 +95,19 @@ TEST_CASE("a staircase with limits stays inside them for ten thousand answers of
     spec.n_down = 1;
     spec.target = GENERATE(0.01, 0.75, 0.99);
     run(spec, pattern, -400, 400);
+    spec.kind = Kind::accelerated_stochastic_approximation;
+    spec.step = {200};
+    run(spec, pattern, -400, 400);
   }
 }
 
-TEST_CASE("a multiplying staircase without limits neither overflows nor reaches zero", "[procedure]") {
+TEST_CASE("a multiplying track without limits neither overflows nor reaches zero", "[procedure]") {
   for (const auto scale : {Scale::dB, Scale::log10})
     for (const auto pattern : {Pattern::all_right, Pattern::all_wrong, Pattern::alternating})
-      run(staircase(scale), pattern, 1e-300, 1e300);
+      for (const auto kind : {Kind::up_down, Kind::accelerated_stochastic_approximation}) {
+        auto spec = staircase(scale);
+        spec.kind = kind;
+        if (kind != Kind::up_down) spec.step = {50}, spec.target = 0.75;
+        run(spec, pattern, 1e-300, 1e300);
+      }
 }

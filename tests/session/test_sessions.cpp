@@ -10,6 +10,7 @@
 #include "station/session/session.hpp"
 #include "station/store/read.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/stochastic_approximation.hpp"
 
 using namespace turnpoint;
 namespace fs = std::filesystem;
@@ -165,6 +166,45 @@ TEST_CASE("a session cut at any page goes on with the very trial that the unbrok
       CHECK(trials[i].response == expected[i].response);
       CHECK(trials[i].state_hash == expected[i].state_hash);
     }
+  }
+}
+
+TEST_CASE("an accelerated stochastic approximation cut in the middle of a track goes on at the same level",
+          "[session]") {
+  const Folder folder;
+  std::ofstream(folder / "asa.toml") << stochastic_approximation();
+  const auto request = [&](const std::string& database) {
+    auto made = request_for("", folder / database);
+    made.protocol = folder / "asa.toml";
+    return made;
+  };
+  const auto whole = run(request("whole.sqlite"));
+  const auto expected = trials_of(folder / "whole.sqlite", whole.session_id);
+  REQUIRE(whole.estimates.size() == 2);
+  CHECK(whole.estimates[0].basis.find("the level after 20 answers with ") == 0);
+  CHECK_FALSE(whole.estimates[0].sd.has_value());
+  for (const int page : {70, 100, 130}) {
+    INFO("cut at page " << page);
+    const auto database = "cut" + std::to_string(page) + ".sqlite";
+    Cut cut(page);
+    session::Inputs inputs;
+    CHECK_THROWS_AS(session::run(app::prepare(request(database)), &cut, inputs), std::runtime_error);
+    const auto before = store::list_sessions(folder / database).front().trials;
+    CHECK(before > 8);
+    CHECK(before + 4 < static_cast<int>(expected.size()));
+    std::ostringstream messages;
+    auto resumed = app::prepare_resume({folder / database, "", "resume", true}, messages);
+    REQUIRE(resumed.has_value());
+    resumed->protocol.resume.warmup = 0;
+    const auto summary = session::run(*resumed, nullptr, inputs);
+    const auto trials = trials_of(folder / database, summary.session_id);
+    REQUIRE(trials.size() == expected.size());
+    for (std::size_t i = 0; i < trials.size(); ++i) {
+      CHECK(trials[i].level == expected[i].level);
+      CHECK(trials[i].state_hash == expected[i].state_hash);
+    }
+    REQUIRE(summary.estimates.size() == 2);
+    CHECK(summary.estimates[0].mean == whole.estimates[0].mean);
   }
 }
 

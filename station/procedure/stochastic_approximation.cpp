@@ -1,0 +1,75 @@
+#include <string>
+
+#include "station/procedure/description.hpp"
+#include "station/procedure/keys.hpp"
+#include "station/procedure/track.hpp"
+
+namespace turnpoint::procedure {
+
+namespace {
+
+/// Accelerated stochastic approximation (Kesten 1958, Ann. Math. Stat. 29, 41-59) in the form of Treutwein
+/// (1995, Vision Research 35, 2503-2522) and Faes et al. (2007, Perception & Psychophysics 69, 254-262):
+///
+///     x_{n+1} = x_n - c / n (Z_n - phi)        for n = 1, 2
+///     x_{n+1} = x_n - c / (2 + m) (Z_n - phi)  from n = 3 on
+///
+/// x_n is the level of trial n, Z_n its answer (1 or 0), c the "step", phi the "target", and m the number of
+/// changes between a 1 and a 0 among the first n answers. (Kesten's own m leaves out the change at answer n
+/// itself, so his steps are those of one change earlier.) The changes are the reversals: a rule "reversals"
+/// stops at a smallest step, c / (2 + reversals). The level after the last answer is the estimate, as it is
+/// of any stochastic approximation; a single level has no standard deviation. There is none before the first
+/// change, when the levels have moved in one direction only.
+class StochasticApproximation : public Track {
+ public:
+  using Track::Track;
+
+  std::map<std::string, Estimate> estimates() const override {
+    if (reversals_.empty()) return {};
+    const auto changes = reversals_.size();
+    Estimate estimate;
+    estimate.mean = estimate.mode = level_;
+    estimate.basis = "the level after " + std::to_string(recorded_) + " answers with " +
+                     std::to_string(changes) + (changes == 1 ? " reversal" : " reversals");
+    return {{"threshold", estimate}};
+  }
+
+ private:
+  void learn(Answer answer) override {
+    const bool one = answer == Answer::one;
+    turn(one ? Direction::down : Direction::up);
+    const int divisor = recorded_ <= 2 ? recorded_ : 2 + static_cast<int>(reversals_.size());
+    move(-spec_.step.front() / divisor * ((one ? 1 : 0) - *spec_.target));
+  }
+};
+
+}  // namespace
+
+extern const Description accelerated_stochastic_approximation{
+    Kind::accelerated_stochastic_approximation,
+    "accelerated-stochastic-approximation",
+    Choice::track,
+    [](text::TableReader& reader, Spec& spec) {
+      read_tracks(reader, spec);
+      read_scale(reader, spec);
+      read_span(reader, spec);
+      spec.step = {reader.number("step", {0, 1e6, text::Range::Ends::open_low})};
+      spec.target = reader.number("target", {0, 1, text::Range::Ends::open});
+      read_stop(reader, spec);
+    },
+    [](const Spec& spec, std::vector<Fault>& faults) {
+      validate_span(spec, faults);
+      if (spec.step.size() != 1 || !positive(spec.step))
+        faults.push_back({"step", "missing or not above 0", "one number above 0"});
+      if (!spec.target || !(*spec.target > 0 && *spec.target < 1))
+        faults.push_back({"target", "missing or outside (0, 1)", "a probability between 0 and 1"});
+      if (!spec.stop.trials && !spec.stop.reversals)
+        faults.push_back({"stop", "nothing stops it", "trials or reversals"});
+    },
+    [](const Spec& spec, const Context&, const random::Key&) -> std::unique_ptr<Procedure> {
+      return std::make_unique<StochasticApproximation>(spec);
+    },
+    [](const Spec& spec, double, double) { return spec.target; },
+};
+
+}  // namespace turnpoint::procedure
