@@ -56,6 +56,9 @@ TEST_CASE("accelerated stochastic approximation: a sequence worked out by hand",
   CHECK_FALSE(estimate.sd.has_value());
   CHECK(estimate.basis == "the level after 7 answers with 3 reversals");
   CHECK(trace(approximation(10, 8, 0.75), {}, "111").estimates.empty());
+  // A change at the second answer does not shorten its step, c / 2 * .75; it does that of the third, c / 3.
+  CHECK(trace(approximation(10, 8, 0.75), {}, "100").levels == std::vector<double>{10, 8, 11});
+  CHECK(*trace(approximation(10, 8, 0.75), {}, "100").next == Approx(13).epsilon(1e-15));
 }
 
 TEST_CASE("accelerated stochastic approximation follows the recursion for any answers", "[procedure]") {
