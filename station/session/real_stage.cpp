@@ -184,7 +184,6 @@ class RealStage : public Stage {
       case drive::EventKind::underrun:
         push(InputKind::xrun, now, fmt::format("{} frames lost from frame {}", event.frames, event.frame),
              interval ? 1 : 0);
-        if (interval) unheard_ = 0;  // the trial is void
         if (underruns_.exceeded_by(now))
           push(InputKind::failure, now,
                "more than three underruns within a minute; see `turnpoint doctor`, then resume");
