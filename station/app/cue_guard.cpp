@@ -102,6 +102,16 @@ struct Strategy {
   Rule rule;
 };
 
+/// Sessions in which the observer's answers lead to the next level. A cue that gives the same answers to all
+/// trials that came up leads to the same sessions.
+struct OwnSessions {
+  std::vector<Score> done;
+  std::map<const std::vector<Presentation>*, Score> scores;  ///< of one trial of each cell that came up
+  Cells visited;
+  std::vector<std::array<double, 3>> answers;  ///< to the visited cells
+  Reached reached;
+};
+
 double number_of(const CueKind& kind, const Interval& interval, Feature feature, double rove_dB) {
   if (kind.source == Source::nothing) return 0;
   if (kind.source == Source::duration) return interval.duration_s;
@@ -155,7 +165,9 @@ class Guard {
   std::vector<Look> looks(const CueKind& kind, Feature feature, const Cells& cells, Draws draws) const;
   Score score(const CueKind& kind, const Strategy& strategy, const Cells& cells) const;
   int answer(const CueKind& kind, const Strategy& strategy, const TrialSpec& trial, std::uint64_t seed);
-  void run_sessions(const CueKind& kind, const Strategy& strategy, int count, std::vector<Score>& done);
+  std::vector<std::array<double, 3>> answers_to(const Cells& cells, const CueKind& kind,
+                                                const Strategy& strategy) const;
+  void run_sessions(const CueKind& kind, const Strategy& strategy, int count, OwnSessions& own);
   std::optional<Reached> same_everywhere(const CueKind& kind, const Strategy& strategy,
                                          const Cells& all) const;
   Reached by_itself(const CueKind& kind, const Strategy& strategy, const Cells& all);
@@ -171,8 +183,7 @@ class Guard {
   std::map<protocol::Factors, std::vector<Presentation>> presentations_;
   std::map<std::pair<std::vector<std::vector<std::string>>, protocol::Factors>, std::vector<Interval>>
       intervals_;
-  /// In whole sessions, by the answers to all looks: cues that lead to the same answers share it.
-  std::map<std::vector<std::array<double, 3>>, std::optional<Reached>> reached_;
+  std::vector<OwnSessions> own_sessions_;
 };
 
 Interval Guard::interval_of(const std::vector<std::string>& scenes, const protocol::Factors& factors) {
@@ -274,21 +285,28 @@ int Guard::answer(const CueKind& kind, const Strategy& strategy, const TrialSpec
   return std::min(choice, static_cast<int>(protocol_.task.choices.size()) - 1);
 }
 
-// Goes on to so many sessions in all.
-void Guard::run_sessions(const CueKind& kind, const Strategy& strategy, int count, std::vector<Score>& done) {
-  std::map<const std::vector<Presentation>*, Score> scores;
-  while (static_cast<int>(done.size()) < count) {
+std::vector<std::array<double, 3>> Guard::answers_to(const Cells& cells, const CueKind& kind,
+                                                     const Strategy& strategy) const {
+  std::vector<std::array<double, 3>> answers;
+  for (const auto& look : looks(kind, strategy.feature, cells, Draws::to_judge))
+    answers.push_back(shares(strategy.rule, protocol_.task.kind, look.x));
+  return answers;
+}
+
+// Adds sessions until there are `count`.
+void Guard::run_sessions(const CueKind& kind, const Strategy& strategy, int count, OwnSessions& own) {
+  while (static_cast<int>(own.done.size()) < count) {
     if (stop_.stop_requested()) throw protocol::Abandoned();
-    const auto seed = static_cast<std::uint64_t>(done.size());
+    const auto seed = static_cast<std::uint64_t>(own.done.size());
     const auto census = census_of_session(
         protocol_, seed, [&](const TrialSpec& trial) { return answer(kind, strategy, trial, seed); });
     Score sum;
     for (const auto& [presentations, trials] : cells_of(census)) {
-      const auto [found, is_new] = scores.try_emplace(presentations);
+      const auto [found, is_new] = own.scores.try_emplace(presentations);
       if (is_new) found->second = score(kind, strategy, {{presentations, 1.0}});
       sum.add(found->second, trials);
     }
-    done.push_back(sum);
+    own.done.push_back(sum);
   }
 }
 
@@ -309,20 +327,18 @@ std::optional<Reached> Guard::same_everywhere(const CueKind& kind, const Strateg
 // The number of sessions follows from the first ones only, not from what is reached in the others.
 Reached Guard::by_itself(const CueKind& kind, const Strategy& strategy, const Cells& all) {
   if (const auto same = same_everywhere(kind, strategy, all)) return *same;
-  std::vector<std::array<double, 3>> answers;
-  for (const auto& look : looks(kind, strategy.feature, all, Draws::to_judge))
-    answers.push_back(shares(strategy.rule, protocol_.task.kind, look.x));
-  auto& found = reached_[std::move(answers)];
-  if (!found) {
-    std::vector<Score> done;
-    run_sessions(kind, strategy, first_sessions, done);
-    const double error = 3 * standard_error(done) / precision;
-    run_sessions(kind, strategy,
-                 static_cast<int>(std::min<double>(most_sessions, first_sessions * error * error)), done);
-    const auto sum = sum_of(done);
-    found = {std::max(sum.accuracy(), chance(sum)), chance(sum), 3 * standard_error(done)};
-  }
-  return *found;
+  for (const auto& known : own_sessions_)
+    if (answers_to(known.visited, kind, strategy) == known.answers) return known.reached;
+  OwnSessions own;
+  run_sessions(kind, strategy, first_sessions, own);
+  const double error = 3 * standard_error(own.done) / precision;
+  run_sessions(kind, strategy,
+               static_cast<int>(std::min<double>(most_sessions, first_sessions * error * error)), own);
+  const auto sum = sum_of(own.done);
+  own.reached = {std::max(sum.accuracy(), chance(sum)), chance(sum), 3 * standard_error(own.done)};
+  for (const auto& [presentations, unused] : own.scores) own.visited.emplace_back(presentations, 1.0);
+  own.answers = answers_to(own.visited, kind, strategy);
+  return own_sessions_.emplace_back(std::move(own)).reached;
 }
 
 CueReport Guard::report(const CueKind& kind, const Cells& all) {

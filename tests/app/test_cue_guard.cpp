@@ -321,6 +321,15 @@ TEST_CASE("what a rule reaches is counted on other draws than those that chose i
   CHECK(amplitude.accuracy - amplitude.chance < 0.01);
 }
 
+TEST_CASE("two cues share their sessions only if they agree on every level that came up", "[app][cues]") {
+  // The amplitude does not tell 155 mm from 158 mm; the strip's width does. No grid of levels has an 8.
+  std::map<std::string, int> features;
+  const auto guard = guard_of(tests::random_protocol(31103, features));
+  REQUIRE(report(guard, "strip width").whole_sessions);
+  CHECK(report(guard, "amplitude at the wide end").whole_sessions->accuracy < 0.98);
+  CHECK(report(guard, "strip width").whole_sessions->accuracy > 0.995);
+}
+
 TEST_CASE("a count of sessions that had to end early says how little precise it is", "[app][cues]") {
   const auto error_of = [](const std::string& text) {
     const auto guard = guard_of(text);
