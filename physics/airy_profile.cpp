@@ -5,6 +5,7 @@
 
 #include "physics/airy.hpp"
 #include "physics/dispersion.hpp"
+#include "physics/root.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -28,16 +29,14 @@ class AiryLine final : public CentreLine {
     const double target = std::log(level * airy(airy_last_peak).ai);
     double low = airy_last_peak, high = 2;
     while (log_ai(high) > target) high *= 2;
-    double t = 0.5 * (low + high);
-    for (int i = 0; i < 200; ++i) {
+    const auto tangent = [target](double t) {
       const Airy y = airy(t);
       const double miss = std::log(y.ai) + y.ln_scale - target;
-      (miss > 0 ? low : high) = t;
-      double next = t - miss * y.ai / y.dai;
-      if (!(next > low && next < high)) next = 0.5 * (low + high);
-      if (std::abs(next - t) < 1e-15) break;
-      t = next;
-    }
+      return Tangent{miss, t - miss * y.ai / y.dai};
+    };
+    const Bracket bracket{low, high};
+    const double t = newton(bracket, bracket.middle(), tangent,
+                            [](double next, double at) { return std::abs(next - at) < 1e-15; });
     return on_surface(t);
   }
 

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "physics/root.hpp"
+
 namespace turnpoint::physics {
 namespace {
 
@@ -18,21 +20,16 @@ constexpr double plate_root = 2.3650203724313520;
 // k W at the clamped cut-off, given tau = W^2 N/D: the root b of b sin b + g tanh(g) cos b = 0 in (pi/2, pi),
 // g^2 = b^2 + tau (the equation times cos b, which removes its pole); positive below the root.
 double clamped_root(double tau) noexcept {
-  double low = pi / 2, high = pi;
-  double b = 2.4;
-  for (int i = 0; i < 200; ++i) {
+  const auto tangent = [tau](double b) {
     const double g = std::sqrt(b * b + tau);
     const double t = std::tanh(g);
     const double sine = std::sin(b), cosine = std::cos(b);
     const double value = b * sine + g * t * cosine;
-    (value > 0 ? low : high) = b;
     const double slope = sine + b * cosine + b / g * (t + g * (1 - t * t)) * cosine - g * t * sine;
-    double next = b - value / slope;
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (std::abs(next - b) <= 2 * epsilon * b) return next;
-    b = next;
-  }
-  return b;
+    return Tangent{value, b - value / slope};
+  };
+  return newton({pi / 2, pi}, 2.4, tangent,
+                [](double next, double b) { return std::abs(next - b) <= 2 * epsilon * b; });
 }
 
 double positive(const char* quantity, double value) {

@@ -5,6 +5,7 @@
 
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
+#include "physics/root.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -61,14 +62,9 @@ std::optional<double> friction_edge_m(double length_m, const CentreLine& line, c
       f_outer = f_inner;
       continue;
     }
-    for (int i = 0; i < 60 && outer - inner > 1e-14 * length_m; ++i) {
-      double x = i % 3 == 2 ? 0.5 * (inner + outer) : inner + (outer - inner) * f_inner / (f_inner - f_outer);
-      if (!(x > inner && x < outer)) x = 0.5 * (inner + outer);
-      const double f = mean(x) - level;
-      (f <= 0 ? inner : outer) = x;
-      (f <= 0 ? f_inner : f_outer) = f;
-    }
-    return 0.5 * (inner + outer);
+    return false_position(
+        {inner, f_inner, outer, f_outer}, [&](double x) { return mean(x) - level; }, {3}, 0,
+        [&](const Chord& c) { return c.width() <= 1e-14 * length_m; });
   }
   return std::nullopt;
 }

@@ -8,6 +8,7 @@
 
 #include "physics/dispersion.hpp"
 #include "physics/edge_feature.hpp"
+#include "physics/root.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -78,11 +79,10 @@ class Builder {
   double limit(double with, double without) const {
     // A plate's solutions are dear, and the last step need not be found: the edge is tabulated up to it.
     const double enough = dispersion_.clamped_bending() ? 1e-9 : 1e-14;
-    for (int i = 0; i < 60 && std::abs(with - without) > enough * with; ++i) {
-      const double middle = 0.5 * (with + without);
-      (ratio(middle) ? with : without) = middle;
-    }
-    return with;
+    return bisect(
+               {with, without}, [this](double f) { return ratio(f).has_value(); },
+               [enough](const Bracket& b) { return b.width() <= enough * b.above; }, 60)
+        .above;
   }
 
   void fill(EdgeTable& table, double low, double high, int depth) const {

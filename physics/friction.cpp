@@ -5,6 +5,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "physics/root.hpp"
+
 namespace turnpoint::physics {
 namespace {
 
@@ -42,28 +44,22 @@ double displacement_for_share(const LoadSharing& m, double share) {
 // The share at a displacement: the film's overpressure must be what the contacts leave, (1 - share) of the
 // load. The difference rises with L = ln(share), so Newton steps inside a bracket find it.
 double share_at(const LoadSharing& m, double displacement_m, double ln_guess) {
-  double low = std::log(smallest_share), high = 0;
-  double x = std::max(low, ln_guess);
-  for (int i = 0; i < 100; ++i) {
+  const double lowest = std::log(smallest_share);
+  const auto tangent = [&](double x) {
     const double share = std::exp(x);
     const double gap = m.rest_gap_m - m.decay_length_m * x;
     const double e = displacement_m / gap;
-    double miss = 1, slope = 0;
-    if (e < 1) {
-      const double r = 2.5 * e * e / ((1 - e) * (1 + e));
-      const double root = std::sqrt(1 + r);
-      miss = m.ambient_Pa / m.pressure_Pa * r / (1 + root) - (1 - share);
-      slope = m.ambient_Pa / m.pressure_Pa * (r + 2.5) * e / ((1 - e) * (1 + e) * root) * e *
-                  m.decay_length_m / gap +
-              share;
-    }
-    (miss > 0 ? high : low) = x;
-    double next = slope > 0 ? x - miss / slope : 0.5 * (low + high);
-    if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (std::abs(next - x) < 1e-16 + 1e-15 * std::abs(x)) return std::exp(next);
-    x = next;
-  }
-  return std::exp(x);
+    if (e >= 1) return Tangent{1, x};  // beyond the gap: half way
+    const double r = 2.5 * e * e / ((1 - e) * (1 + e));
+    const double root = std::sqrt(1 + r);
+    const double miss = m.ambient_Pa / m.pressure_Pa * r / (1 + root) - (1 - share);
+    const double slope = m.ambient_Pa / m.pressure_Pa * (r + 2.5) * e / ((1 - e) * (1 + e) * root) * e *
+                             m.decay_length_m / gap +
+                         share;
+    return Tangent{miss, x - miss / slope};
+  };
+  const auto close = [](double next, double x) { return std::abs(next - x) < 1e-16 + 1e-15 * std::abs(x); };
+  return std::exp(newton({0, lowest}, std::max(lowest, ln_guess), tangent, close, 100));
 }
 
 void require(bool holds, const char* quantity, double value, const char* allowed) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "physics/root.hpp"
+
 namespace turnpoint::physics {
 namespace {
 
@@ -25,16 +27,9 @@ std::optional<double> find_last_peak(const CentreLine& line, double from_m, doub
       f_outer = f_inner;
       continue;
     }
-    for (int n = 0; n < 60; ++n) {
-      double x = n % 3 == 2 ? 0.5 * (inner + outer) : inner + (outer - inner) * f_inner / (f_inner - f_outer);
-      if (!(x > inner && x < outer)) x = 0.5 * (inner + outer);
-      if (x <= inner || x >= outer) break;
-      const double f = rise(line, x);
-      (f > 0 ? inner : outer) = x;
-      (f > 0 ? f_inner : f_outer) = f;
-      if (f == 0) return x;
-    }
-    return 0.5 * (inner + outer);
+    const auto never = [](const Chord&) { return false; };
+    return false_position(
+        {inner, f_inner, outer, f_outer}, [&](double x) { return rise(line, x); }, {3}, 0, never);
   }
   return std::nullopt;
 }
@@ -48,18 +43,15 @@ std::optional<double> find_level(const CentreLine& line, double peak_m, double l
     inner = outer;
     outer = std::min(length_m, outer + spacing_m);
   } while (line.value(outer).ln_magnitude() > target);
-  double x = 0.5 * (inner + outer);
-  for (int i = 0; i < 100; ++i) {
+  const auto tangent = [&](double x) {
     const Scaled v = line.value(x);
     const double miss = v.ln_magnitude() - target;
-    (miss > 0 ? inner : outer) = x;
     const double log_slope = v.mantissa == 0.0 ? 0 : (line.slope(x).mantissa / v.mantissa).real();
-    double next = log_slope == 0 ? x : x - miss / log_slope;
-    if (!(next > inner && next < outer)) next = 0.5 * (inner + outer);
-    if (std::abs(next - x) <= 1e-16 * length_m) return next;
-    x = next;
-  }
-  return x;
+    return Tangent{miss, x - miss / log_slope};
+  };
+  const auto close = [&](double next, double x) { return std::abs(next - x) <= 1e-16 * length_m; };
+  const Bracket bracket{inner, outer};
+  return newton(bracket, bracket.middle(), tangent, close, 100);
 }
 
 }  // namespace turnpoint::physics

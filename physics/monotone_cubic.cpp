@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "physics/root.hpp"
+
 namespace turnpoint::physics {
 namespace {
 
@@ -60,18 +62,13 @@ double MonotoneCubic::inverse(double y) const {
       [rising](double value, const Cubic& p) { return rising ? value < p.y0 : value > p.y0; });
   const Cubic& p = after == pieces_.begin() ? pieces_.front() : *(after - 1);
   if (y == p.y0) return p.x0;
-  double low = p.x0, high = p.x1;
-  double x = 0.5 * (low + high);
-  for (int i = 0; i < 100 && high > low; ++i) {
+  const Bracket bracket{rising ? p.x1 : p.x0, rising ? p.x0 : p.x1};
+  const auto tangent = [&](double x) {
     const double miss = p.value(x) - y;
-    if (miss == 0) return x;
-    ((miss > 0) == rising ? high : low) = x;
-    const double newton = x - miss / p.slope(x);
-    const double next = newton > low && newton < high ? newton : 0.5 * (low + high);
-    if (next == x) break;
-    x = next;
-  }
-  return x;
+    return Tangent{miss, x - miss / p.slope(x)};
+  };
+  return newton(
+      bracket, bracket.middle(), tangent, [](double next, double x) { return next == x; }, 100);
 }
 
 }  // namespace turnpoint::physics

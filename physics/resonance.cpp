@@ -6,6 +6,7 @@
 
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
+#include "physics/root.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -33,19 +34,11 @@ class Phase {
   Taper taper_;
 };
 
-// Frequency at which the phase reaches `target`, by safeguarded secants from a bracket.
-double solve(const Phase& phase, double target, double low, double f_low, double high, double f_high) {
-  double x = low;
-  for (int i = 0; i < 60 && high - low > 1e-13 * high; ++i) {
-    x = i % 4 == 3 ? 0.5 * (low + high) : low + (high - low) * f_low / (f_low - f_high);
-    if (!(x > low && x < high)) x = 0.5 * (low + high);
-    const double f = phase(x) - target;
-    if (f == 0) return x;
-    (f < 0 ? low : high) = x;
-    (f < 0 ? f_low : f_high) = f;
-    if (std::abs(f) < 1e-12) break;
-  }
-  return x;
+// Frequency at which the phase reaches `target`, inside a bracket.
+double solve(const Phase& phase, double target, const Chord& chord) {
+  return false_position(
+      chord, [&](double f) { return phase(f) - target; }, {4}, 1e-12,
+      [](const Chord& c) { return c.width() <= 1e-13 * c.right; });
 }
 
 // The resonance number n (1, 2, ...), searched outward from a frequency of known phase.
@@ -59,7 +52,7 @@ std::optional<double> resonance(const Phase& phase, int n, double from_Hz, doubl
     b = fa < 0 ? a * (1 + step) : a / (1 + step);
     const double fb = phase(b) - target;
     if ((fb < 0) != (fa < 0) || fb == 0) {
-      return a < b ? solve(phase, target, a, fa, b, fb) : solve(phase, target, b, fb, a, fa);
+      return solve(phase, target, a < b ? Chord{a, fa, b, fb} : Chord{b, fb, a, fa});
     }
     a = b;
     fa = fb;
@@ -83,23 +76,12 @@ double plate_step_Hz(const Surface& surface, double f) {
   return 0.5 * f * pi / (wavenumber_per_m(surface, f) * std::max(reach, 0.05 * surface.length_m));
 }
 
-// Zero between two frequencies of responses of unlike sign, by false position (Illinois): the response
-// crosses zero about like a cosine.
-double plate_zero(const Surface& surface, double a, double fa, double b, double fb) {
-  double previous = a;
-  for (int i = 0; i < 40; ++i) {
-    const double x = a + (b - a) * fa / (fa - fb);
-    const double f = plate_response(surface, x).value_or(fa);
-    if (f == 0 || std::abs(x - previous) <= 1e-9 * x) return x;
-    previous = x;
-    if ((f > 0) == (fb > 0)) {
-      fa *= 0.5;
-    } else {
-      a = b, fa = fb;
-    }
-    b = x, fb = f;
-  }
-  return b;
+// Zero between two frequencies of responses of unlike sign. The response crosses zero about like a cosine of
+// size 1 and many periods, so the relative error of the frequency is below the size of the response.
+double plate_zero(const Surface& surface, const Chord& chord) {
+  return false_position(
+      chord, [&](double f) { return plate_response(surface, f).value_or(chord.f_left); }, {8, true}, 1e-9,
+      [](const Chord& c) { return c.width() <= 1e-9 * c.right; });
 }
 
 // A walk in steps of frequency that stops for a moment at each zero it passes.
@@ -112,7 +94,8 @@ struct PlateWalk {
     f += by_Hz;
     const auto before = std::exchange(response, f > 0 ? plate_response(surface, f) : std::nullopt);
     if (!before || !response || (*before > 0) == (*response > 0)) return std::nullopt;
-    return plate_zero(surface, from, *before, f, *response);
+    return plate_zero(surface,
+                      from < f ? Chord{from, *before, f, *response} : Chord{f, *response, from, *before});
   }
 };
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "physics/field.hpp"
+#include "physics/root.hpp"
 #include "physics/taylor_kernel.hpp"
 #include "physics/taylor_series.hpp"
 
@@ -107,17 +108,9 @@ std::optional<double> TaylorMarch::State::peak_in(const TaylorStep& step) const 
       f_outer = f_inner;
       continue;
     }
-    // Regula falsi with halving when it stalls.
-    for (int n = 0; n < 100; ++n) {
-      double x = n % 3 == 2 ? 0.5 * (inner + outer) : inner + (outer - inner) * f_inner / (f_inner - f_outer);
-      if (!(x > inner && x < outer)) x = 0.5 * (inner + outer);
-      if (x <= inner || x >= outer) break;
-      const double f = rise(at(step, x), x);
-      (f > 0 ? inner : outer) = x;
-      (f > 0 ? f_inner : f_outer) = f;
-      if (f == 0) return x;
-    }
-    return 0.5 * (inner + outer);
+    return false_position(
+        {inner, f_inner, outer, f_outer}, [&](double x) { return rise(at(step, x), x); }, {3}, 0,
+        [](const Chord&) { return false; });
   }
   return std::nullopt;
 }
@@ -192,18 +185,17 @@ std::optional<double> TaylorMarch::level_m(double level) const {
     }
     outer = end;
   }
-  double x = 0.5 * (inner + outer);
-  for (int i = 0; i < 200; ++i) {
+  const auto tangent = [&](double x) {
     const Scaled v = value(x);
     const double miss = v.ln_magnitude() - target;
-    (miss > 0 ? inner : outer) = x;
     const double log_slope = v.mantissa == 0.0 ? 0 : (slope(x).mantissa / v.mantissa).real();
-    double next = log_slope == 0 ? x : x - miss / log_slope;
-    if (!(next > inner && next < outer)) next = 0.5 * (inner + outer);
-    if (std::abs(next - x) <= 1e-16 * state_->taper.length_m()) return next;
-    x = next;
-  }
-  return x;
+    return Tangent{miss, x - miss / log_slope};
+  };
+  const auto close = [&](double next, double x) {
+    return std::abs(next - x) <= 1e-16 * state_->taper.length_m();
+  };
+  const Bracket bracket{inner, outer};
+  return newton(bracket, bracket.middle(), tangent, close);
 }
 
 int TaylorMarch::zeros() const {

@@ -8,6 +8,7 @@
 #include "physics/airy.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/line_search.hpp"
+#include "physics/root.hpp"
 #include "physics/taper.hpp"
 
 namespace turnpoint::physics {
@@ -83,16 +84,14 @@ void UniformLine::find_turning() {
     steepness_ = 2 * k_ * k_ * k_ / mu;
     return;
   }
-  double low = 0, high = length_m_;
-  if (!(potential(low) > 0) || !(potential(high) < 0)) {
+  const Bracket ends{0, length_m_};
+  if (!(potential(ends.above) > 0) || !(potential(ends.not_above) < 0)) {
     throw std::domain_error("no turning point on this surface: the uniform approximation does not exist");
   }
-  for (int i = 0; i < 200 && high - low > 1e-16 * length_m_; ++i) {
-    const double x = 0.5 * (low + high);
-    if (x <= low || x >= high) break;
-    (potential(x) > 0 ? low : high) = x;
-  }
-  turning_m_ = 0.5 * (low + high);
+  turning_m_ = bisect(
+                   ends, [&](double x) { return potential(x) > 0; },
+                   [&](const Bracket& b) { return b.width() <= 1e-16 * length_m_; })
+                   .middle();
   const double step = 1e-6 * length_m_;
   steepness_ = (potential(turning_m_ - step) - potential(turning_m_ + step)) / (2 * step);
 }

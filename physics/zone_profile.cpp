@@ -9,6 +9,7 @@
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/nnls.hpp"
+#include "physics/root.hpp"
 #include "physics/taper.hpp"
 
 namespace turnpoint::physics {
@@ -205,7 +206,7 @@ void ZoneProfile::scale_to_friction() {
     return mean - request_.friction;
   };
   // Mean friction falls with the level. A bracket from the level before, on a logarithmic scale, growing;
-  // then false position (Illinois).
+  // then false position.
   double low = std::log(scale_), high = low;
   double f_low = miss(low), f_high = f_low;
   double step = scaled_before_ ? 0.01 : 0.3;
@@ -216,15 +217,10 @@ void ZoneProfile::scale_to_friction() {
     text << "mean friction " << request_.friction << " is not reachable in the zone";
     throw std::domain_error(text.str());
   }
-  double x = low, f = f_low;
-  for (int i = 0; i < 60 && std::abs(f) >= 1e-9 && high - low > 1e-12; ++i) {
-    x = i % 8 == 7 || f_low == f_high ? 0.5 * (low + high) : low + (high - low) * f_low / (f_low - f_high);
-    const double before = f;
-    f = miss(x);
-    (f > 0 ? low : high) = x;
-    (f > 0 ? f_low : f_high) = f;
-    if ((f > 0) == (before > 0) && i > 0) (f > 0 ? f_high : f_low) *= 0.5;
-  }
+  // A chord that is flat, or found already, needs no search.
+  const double x = std::abs(f_low) < 1e-9 ? low
+                                          : false_position({low, f_low, high, f_high}, miss, {8, true}, 1e-9,
+                                                           [](const Chord& c) { return c.width() <= 1e-12; });
   scale_ = std::exp(x);
   scaled_before_ = true;
 }

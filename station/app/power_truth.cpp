@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "physics/root.hpp"
 #include "station/analysis/diffusion.hpp"
 #include "station/analysis/proportion.hpp"
 #include "station/app/conditions.hpp"
@@ -45,11 +46,7 @@ std::optional<double> crossing(const std::function<double(double)>& share, doubl
   const bool rises = share(high) > share(low);
   const auto below = [&](double level) { return (share(level) < value) == rises; };
   if (!below(low) || below(high)) return std::nullopt;
-  for (int i = 0; i < 200; ++i) {
-    const double middle = 0.5 * (low + high);
-    (below(middle) ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
+  return physics::bisect({high, low}, [&](double level) { return !below(level); }).middle();
 }
 
 /// All levels between both asymptotes, whatever the unit.

@@ -1,0 +1,103 @@
+// Roots of a function between two points at which its sign differs: by halves, by Newton's steps, by false
+// position. Headers only, without allocation.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace turnpoint::physics {
+
+// An interval by the sign of the function at its ends; `above` may be the left end or the right one. A point
+// of value 0 counts as not above.
+struct Bracket {
+  double above;      // f > 0
+  double not_above;  // f <= 0
+
+  double middle() const { return 0.5 * (above + not_above); }
+  double width() const { return std::abs(above - not_above); }
+  // Strictly between the ends; false for a NaN.
+  bool inside(double x) const { return x > std::min(above, not_above) && x < std::max(above, not_above); }
+  void replace(bool is_above, double x) { (is_above ? above : not_above) = x; }
+};
+
+// All searches end where no number is left between the ends, and after `most` steps, which bounds the work
+// where the root is at 0 or rounding keeps steps from becoming small.
+
+// Halves the bracket until done(bracket). For a function of which the sign alone is known.
+template <typename IsAbove, typename Done>
+Bracket bisect(Bracket bracket, IsAbove&& is_above, Done&& done, int most = 200) {
+  for (int i = 0; i < most && !done(bracket); ++i) {
+    const double x = bracket.middle();
+    if (!bracket.inside(x)) break;
+    bracket.replace(is_above(x), x);
+  }
+  return bracket;
+}
+
+// The same until no number is left.
+template <typename IsAbove>
+Bracket bisect(Bracket bracket, IsAbove&& is_above) {
+  return bisect(bracket, is_above, [](const Bracket&) { return false; });
+}
+
+// What a Newton step starts from: the function's value at x, and where its tangent there meets 0 (anywhere
+// outside the bracket, or NaN, where it has none).
+struct Tangent {
+  double f, meets_0;
+};
+
+// Newton's steps from x; one that would leave the bracket goes to its middle instead. Ends at a point of
+// value 0, or at the point to which the last step led if that was close(point, x) to where it began.
+template <typename Function, typename Close>
+double newton(Bracket bracket, double x, Function&& tangent, Close&& close, int most = 200) {
+  for (int i = 0; i < most; ++i) {
+    const Tangent t = tangent(x);
+    if (t.f == 0) return x;
+    bracket.replace(t.f > 0, x);
+    const double next = bracket.inside(t.meets_0) ? t.meets_0 : bracket.middle();
+    if (close(next, x)) return next;
+    x = next;
+  }
+  return x;
+}
+
+// The two ends of an interval with the function's values, which differ in sign.
+struct Chord {
+  double left, f_left, right, f_right;
+
+  double middle() const { return 0.5 * (left + right); }
+  double width() const { return right - left; }
+  double meets_0() const { return left + (right - left) * f_left / (f_left - f_right); }
+};
+
+// How false position is kept from creeping towards one end.
+struct Creeping {
+  int halve_every;            // each so many-th step goes to the middle
+  bool halve_values = false;  // Illinois: an end that stays a second time counts half its value
+};
+
+// False position, until the function's size is at most `enough`, done(chord), or no number is left between
+// the ends. The point found last; at the end of a chord, its middle.
+template <typename Function, typename Done>
+double false_position(Chord chord, Function&& f, Creeping creeping, double enough, Done&& done,
+                      int most = 100) {
+  const bool left_above = chord.f_left > 0;
+  int stayed = 0;  // the end that stayed in the last step: -1 left, 1 right
+  for (int i = 0; i < most && !done(chord); ++i) {
+    double x = chord.meets_0();
+    const bool inside = x > chord.left && x < chord.right;
+    if (!inside || i % creeping.halve_every == creeping.halve_every - 1) x = chord.middle();
+    if (x <= chord.left || x >= chord.right) break;
+    const double value = f(x);
+    if (std::abs(value) <= enough) return x;
+    const bool replaces_left = (value > 0) == left_above;
+    (replaces_left ? chord.left : chord.right) = x;
+    (replaces_left ? chord.f_left : chord.f_right) = value;
+    const int stays = replaces_left ? 1 : -1;
+    if (creeping.halve_values && stays == stayed) (replaces_left ? chord.f_right : chord.f_left) *= 0.5;
+    stayed = stays;
+  }
+  return chord.middle();
+}
+
+}  // namespace turnpoint::physics
