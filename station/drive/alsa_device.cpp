@@ -32,7 +32,7 @@ std::string lower(std::string text) {
 void check_type(snd_pcm_t* pcm, const OutputConfig& config, const std::string& name) {
   const snd_pcm_type_t type = snd_pcm_type(pcm);
   if (type == SND_PCM_TYPE_HW) return;
-  const char* known = snd_pcm_type_name(type);  // none for dshare in alsa-lib 1.2.8
+  const char* known = snd_pcm_type_name(type);  // null for dshare in alsa-lib 1.2.8
   const std::string found = known ? lower(known) : fmt::format("type {}", static_cast<int>(type));
   const auto& allowed = config.allow_plugin;
   if (std::find(allowed.begin(), allowed.end(), found) == allowed.end())
@@ -41,7 +41,7 @@ void check_type(snd_pcm_t* pcm, const OutputConfig& config, const std::string& n
            found);
 }
 
-// The rates that the device takes as it is, in words.
+// Lists the rates that the device supports without conversion.
 std::string offered_rates(snd_pcm_t* pcm, const snd_pcm_hw_params_t* params) {
   std::string text;
   for (const unsigned rate :
@@ -66,7 +66,7 @@ HwParams any_params(snd_pcm_t* pcm, const std::string& name) {
   return params;
 }
 
-// The numbers of channels that the device takes, in words.
+// Lists the channel counts that the device supports.
 std::string offered_channels(snd_pcm_t* pcm, snd_pcm_hw_params_t* params) {
   unsigned lowest = 0, highest = 0;
   if (snd_pcm_hw_params_get_channels_min(params, &lowest) < 0 ||
@@ -79,7 +79,7 @@ std::string offered_channels(snd_pcm_t* pcm, snd_pcm_hw_params_t* params) {
   return text;
 }
 
-// 32-bit samples where the device takes them, else 24-bit ones, and its own number of channels.
+// Prefers 32-bit samples and falls back to 24-bit ones. Uses as many channels as the device has.
 void set_layout(AlsaDevice& device, snd_pcm_hw_params_t* p, const OutputConfig& config,
                 const std::string& name) {
   snd_pcm_t* pcm = device.pcm.get();
@@ -90,21 +90,21 @@ void set_layout(AlsaDevice& device, snd_pcm_hw_params_t* p, const OutputConfig& 
       refuse(name, "takes neither 32-bit samples (S32_LE) nor 24-bit ones (S24_3LE)");
   }
   if (device.layout.bits() < config.bits)
-    refuse(name, "takes samples of {} bits, the rig says {}", device.layout.bits(), config.bits);
+    refuse(name, "takes samples of {} bits, but the rig file says {}", device.layout.bits(), config.bits);
   const int channels = device.layout.channels;
   if (snd_pcm_hw_params_set_channels(pcm, p, static_cast<unsigned>(channels)) < 0)
     refuse(name, "does not take {} channels; it takes {} (the rig's device_channels)", channels,
            offered_channels(pcm, p));
 }
 
-// Each refusal is an error here: after one, alsa-lib would install some other value all the same.
+// Every refused parameter is an error. Otherwise alsa-lib would silently install another value.
 void set_hardware(AlsaDevice& device, const OutputConfig& config, const std::string& name) {
   snd_pcm_t* pcm = device.pcm.get();
   const HwParams params = any_params(pcm, name);
   snd_pcm_hw_params_t* p = params.get();
   check(snd_pcm_hw_params_set_rate_resample(pcm, p, 0), name, "switching resampling off");
   if (snd_pcm_hw_params_set_access(pcm, p, SND_PCM_ACCESS_RW_INTERLEAVED) < 0)
-    refuse(name, "takes no interleaved frames");
+    refuse(name, "does not take interleaved frames");
   set_layout(device, p, config, name);
   const auto rate = static_cast<unsigned>(config.rate_Hz);
   if (snd_pcm_hw_params_set_rate(pcm, p, rate, 0) < 0)
@@ -120,12 +120,12 @@ void set_hardware(AlsaDevice& device, const OutputConfig& config, const std::str
     refuse(name, "runs at {}/{} Hz when asked for {} Hz", numerator, denominator, rate);
   const int depth = snd_pcm_hw_params_get_sbits(p);
   if (snd_pcm_type(pcm) == SND_PCM_TYPE_HW && depth > 0 && depth < config.bits)
-    refuse(name, "the converter has {} bits, the rig says {}", depth, config.bits);
+    refuse(name, "the converter has {} bits, but the rig file says {}", depth, config.bits);
   device.period_frames = static_cast<snd_pcm_uframes_t>(config.period_frames);
   check(snd_pcm_hw_params_get_buffer_size(p, &device.buffer_frames), name, "reading the buffer size");
 }
 
-// The stream runs on, on silence, through an underrun: it stops by itself never.
+// On underrun the stream keeps running and plays silence; it never stops on its own.
 void set_software(const AlsaDevice& device, const std::string& name) {
   snd_pcm_t* pcm = device.pcm.get();
   snd_pcm_sw_params_t* p = nullptr;
@@ -156,7 +156,7 @@ std::string described(snd_pcm_t* pcm) {
   return chain;
 }
 
-// A wrapper that is allowed may hide a converter: every rate along the chain must be the one asked for.
+// An allowed plug-in may hide a rate converter, so every rate along the chain must be the requested one.
 void check_chain(const AlsaDevice& device, const OutputConfig& config, const std::string& name) {
   if (device.chain.empty()) refuse(name, "alsa-lib does not say what the samples pass through");
   if (device.chain.find("Rate conversion PCM") != std::string::npos)
@@ -170,7 +170,7 @@ void check_chain(const AlsaDevice& device, const OutputConfig& config, const std
   }
 }
 
-// What the kernel itself has set the hardware to.
+// Checks the settings that the kernel itself reports for the hardware.
 void check_kernel(snd_pcm_t* pcm, const OutputConfig& config, const std::string& name) {
   if (snd_pcm_type(pcm) != SND_PCM_TYPE_HW) return;
   snd_pcm_info_t* raw = nullptr;
@@ -191,7 +191,7 @@ void check_kernel(snd_pcm_t* pcm, const OutputConfig& config, const std::string&
 
 void say_nothing(const char*, int, const char*, int, const char*, va_list) {}
 
-// alsa-lib also writes to standard error what its status says; this thread's errors are told once, by ours.
+// alsa-lib also prints its errors to standard error. Silence it on this thread: our own messages report them.
 struct QuietAlsa {
   snd_local_error_handler_t before = snd_lib_error_set_local(say_nothing);
   QuietAlsa() = default;

@@ -1,5 +1,5 @@
 #pragma once
-extern "C" {  // alsa-lib's header declares its per-thread error handler outside of its own
+extern "C" {  // alsa-lib's header declares its per-thread error handler outside its own extern "C" block.
 #include <alsa/asoundlib.h>
 }
 
@@ -16,19 +16,20 @@ struct PcmCloser {
 };
 using Pcm = std::unique_ptr<snd_pcm_t, PcmCloser>;
 
-/// A device that is prepared and proven to take the samples as they are.
+/// An open device that has been checked to take the samples unaltered.
 struct AlsaDevice {
   Pcm pcm;
-  FrameLayout layout;  ///< what it is to be written
+  FrameLayout layout;  ///< how frames must be packed
   snd_pcm_uframes_t period_frames = 0;
   snd_pcm_uframes_t buffer_frames = 0;
-  std::string chain;  ///< alsa-lib's own description of what the samples pass through
+  std::string chain;  ///< alsa-lib's own description of the plug-in chain that the samples pass through
 };
 
-/// Opens and checks: conversions switched off, type hw or allowed, exact rate, S32_LE or
-/// else S24_3LE, the channels that the rig says, no rate converter
-/// anywhere in the chain, and the kernel's own record of the rate. Throws OutputRefused (what was asked, what
-/// is offered), or std::system_error with ENOENT, ENODEV, EBUSY, EACCES for a device that cannot be had now.
+/// Opens a device and checks it: conversions are off, its type is hw or an allowed plug-in, the rate is
+/// exact, the format is S32_LE or else S24_3LE, the channels match the rig file, nothing in the chain
+/// converts rates, and the kernel reports the same rate. Throws OutputRefused (with what was asked and what
+/// is offered), or std::system_error with ENOENT, ENODEV, EBUSY or EACCES for a device that is currently not
+/// available.
 AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name);
 
 }  // namespace turnpoint::drive

@@ -4,9 +4,9 @@
 
 namespace turnpoint::drive {
 
-/// Whether a switch of the sound card behind an output `alsa:hw:...` is on, such as "Auto Mute Switch" of a
-/// PCM512x: on in any channel counts. None where the output is no hardware of ALSA, the card has no such
-/// switch, or it cannot be asked. Changes nothing.
+/// Reads a switch of the sound card behind an output `alsa:hw:...`, such as "Auto Mute Switch" of a PCM512x.
+/// Returns true if it is on in any channel. Returns nothing if the output is not ALSA hardware, the card has
+/// no such switch, or it cannot be read. Changes nothing.
 std::optional<bool> card_switch(const std::string& output_uri, const std::string& name);
 
 }  // namespace turnpoint::drive

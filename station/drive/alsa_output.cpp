@@ -26,7 +26,7 @@ class AlsaOutput final : public Output {
     const auto frames = static_cast<std::int64_t>(interleaved.size()) / config_.channels;
     if (recovery_.lost()) return absent(frames);
     WriteResult result;
-    // Not before the first block is there: what comes between opening and that would be an underrun.
+    // Start only once the first block is there. Starting at the opening would cause an underrun.
     if (!running_) {
       running_ = true;
       if (const int error = start(); error < 0) follow(recovery_.transferred({error}), error, frames, result);
@@ -45,7 +45,7 @@ class AlsaOutput final : public Output {
     return result;
   }
 
-  // Frames that have left the converter's buffer, at the time the driver stamped.
+  // Number of frames that have left the converter's buffer, at the time that the driver stamped.
   std::optional<Position> position() noexcept override {
     if (recovery_.lost()) return std::nullopt;
     snd_pcm_uframes_t free = 0;
@@ -58,7 +58,7 @@ class AlsaOutput final : public Output {
   }
 
   std::vector<MemoryRange> memory() const override { return {range_of(*this), range_of(packed_)}; }
-  // Its structures are opaque: nobody but the library knows where they are.
+  // alsa-lib's structures are opaque, so their memory ranges are unknown here.
   std::string memory_left_out() const override { return "alsa-lib's own objects"; }
 
   void finish() override {
@@ -71,9 +71,10 @@ class AlsaOutput final : public Output {
  private:
   snd_pcm_t* pcm() const noexcept { return device_.pcm.get(); }
 
-  // Prepared, a whole buffer of silence ahead, running. The silence is not counted: frames begin behind it.
+  // Prepares the device, fills its buffer with silence and starts it. This silence is not counted: frame 0
+  // comes after it.
   int start() noexcept {
-    snd_pcm_drop(pcm());  // a device that has been resumed still runs with what it had
+    snd_pcm_drop(pcm());  // a resumed device still has its old buffer contents
     if (const int error = snd_pcm_prepare(pcm()); error < 0) return error;
     const snd_pcm_uframes_t ahead = device_.buffer_frames - device_.period_frames;
     std::fill(packed_.begin(), packed_.end(), '\0');
@@ -82,7 +83,7 @@ class AlsaOutput final : public Output {
     return snd_pcm_start(pcm());
   }
 
-  // Waits for room and writes some frames; returns the frames written or a negative errno.
+  // Waits for room and writes some frames. Returns the number of frames written, or a negative errno.
   snd_pcm_sframes_t transfer(const std::int32_t* at, std::size_t frames, WriteResult& result) noexcept {
     const auto buffer = static_cast<snd_pcm_sframes_t>(device_.buffer_frames);
     const auto period = static_cast<snd_pcm_sframes_t>(device_.period_frames);
@@ -96,7 +97,7 @@ class AlsaOutput final : public Output {
       room = snd_pcm_avail(pcm());  // the wait may have been longer than the buffer lasts
     }
     if (room < 0) return room;
-    // With less than an eighth of a period left, the device could overtake the block while it is written.
+    // With less than an eighth of a period left, the device could overtake the block during the write.
     // Plug-ins without a device (null, file) never have anything queued.
     const bool hardware = snd_pcm_type(pcm()) == SND_PCM_TYPE_HW;
     const snd_pcm_sframes_t queued = buffer - room;
@@ -110,7 +111,7 @@ class AlsaOutput final : public Output {
     return done;
   }
 
-  // The device goes on in silence where it has nothing to play: it gets silence for the next `late` frames.
+  // When the device has run out of samples, it plays silence. This writes silence for the next `late` frames.
   snd_pcm_sframes_t skip(snd_pcm_sframes_t late, WriteResult& result) noexcept {
     const snd_pcm_sframes_t skipped = snd_pcm_forward(pcm(), static_cast<snd_pcm_uframes_t>(late));
     if (skipped < 0) return skipped;
@@ -122,7 +123,8 @@ class AlsaOutput final : public Output {
     return 0;
   }
 
-  // All the same it did: what was written is taken for lost, and the rest of the block is left out.
+  // The device overtook the block during the write. Counts the written frames as lost and skips the rest of
+  // the block.
   snd_pcm_sframes_t overtaken(snd_pcm_sframes_t done, std::size_t frames, WriteResult& result) noexcept {
     result.taken += done;
     result.dropped = done;
@@ -134,10 +136,10 @@ class AlsaOutput final : public Output {
     played_ = std::max(played_, frames_ - static_cast<std::int64_t>(device_.buffer_frames - room));
   }
 
-  // A device that neither plays nor fails: after five waits it is taken for lost.
+  // Handles a device that neither plays nor fails: after five waits it counts as lost.
   int stalled() noexcept { return ++stalls_ > 5 ? -ENODEV : -EAGAIN; }
 
-  // Carries a recovery out, until the device goes on, has been started anew, or is gone.
+  // Carries out a recovery until the device continues, has been restarted, or is lost.
   void follow(RecoveryAction action, int error, std::int64_t frames, WriteResult& result) noexcept {
     while (action != RecoveryAction::go_on) {
       int outcome = 0;
@@ -160,8 +162,8 @@ class AlsaOutput final : public Output {
     }
   }
 
-  // The silence that the device was started with counts as frames that passed. What it had before and did not
-  // play is gone.
+  // The silence that the device was restarted with counts as frames that passed. Samples that it had not
+  // played before are gone.
   void note_gap(int error, WriteResult& result) noexcept {
     const auto gap = static_cast<std::int64_t>(device_.buffer_frames - device_.period_frames);
     result.status = WriteStatus::restarted;
@@ -184,7 +186,8 @@ class AlsaOutput final : public Output {
     result.passed = passed;
   }
 
-  // Lost: time goes on at the stream's own pace, and the device is tried again by its name.
+  // The device is lost. Keep the stream's time running at its nominal rate and try to reopen the device by
+  // name.
   WriteResult absent(std::int64_t frames) noexcept {
     sleep_until_ns(monotonic_ns() + period_ns());
     frames_ += frames;
@@ -209,7 +212,7 @@ class AlsaOutput final : public Output {
     } catch (const std::system_error& error) {
       return -error.code().value();
     } catch (const std::exception&) {
-      return -EINVAL;  // it is back, but not as it was
+      return -EINVAL;  // the device is back, but with different properties
     }
   }
 
@@ -220,10 +223,10 @@ class AlsaOutput final : public Output {
   OutputConfig config_;
   std::string name_;
   AlsaDevice device_;
-  std::vector<unsigned char> packed_;  ///< a buffer of the device's own frames
+  std::vector<unsigned char> packed_;  ///< a buffer of frames in the device's format
   Recovery recovery_;
-  std::int64_t frames_ = 0;  ///< given to the device, or passed
-  std::int64_t played_ = 0;  ///< of them, as far as is known
+  std::int64_t frames_ = 0;  ///< frames written or skipped
+  std::int64_t played_ = 0;  ///< frames of these known to be played
   std::int64_t lost_at_ns_ = 0;
   int stalls_ = 0;
   bool running_ = false;

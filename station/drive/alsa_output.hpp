@@ -5,7 +5,7 @@
 
 namespace turnpoint::drive {
 
-/// An ALSA device by its alsa-lib name (`hw:CARD=DAC,DEV=0`), opened so that no sample is altered on the way.
+/// Opens an ALSA device by its alsa-lib name (`hw:CARD=DAC,DEV=0`) in such a way that no sample is altered.
 /// Throws OutputRefused with what was asked and what the device offers.
 std::unique_ptr<Output> open_alsa(const OutputConfig& config, const std::string& name);
 

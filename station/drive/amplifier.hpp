@@ -8,51 +8,56 @@
 
 namespace turnpoint::drive {
 
-/// disarmed: line low until an operator arms. armed: line low, sound allowed. enabled: line high.
-/// faulted: line low and latched until an operator clears it.
+/// disarmed: the line stays low until an operator arms the amplifier.
+/// armed: the line is low, and sound is allowed.
+/// enabled: the line is high.
+/// faulted: the line is low and stays low until an operator clears the fault.
 enum class AmplifierState { disarmed, armed, enabled, faulted };
 const char* name(AmplifierState state);
 
-/// What latched the line low, and when (CLOCK_MONOTONIC, ns).
+/// The fault that latched the line low, and its time (CLOCK_MONOTONIC, ns).
 struct AmplifierFault : terms::Fault {
   std::int64_t time_ns = 0;
 };
 
-/// The power amplifier behind the converter. A guard thread of its own drives the line, and nothing else
-/// does: the line goes low within a millisecond of a fault whatever the callers of these functions do. They
-/// are for ordinary threads, except audio_alive(). All of them wait for the guard, never the other way round.
+/// The power amplifier behind the converter. Only its own guard thread drives the enable line, so the line
+/// goes low within a millisecond of a fault, whatever the callers of these functions are doing. Call these
+/// functions from ordinary threads; audio_alive() is for the audio thread. They wait for the guard; the guard
+/// never waits for them.
 class Amplifier {
  public:
   virtual ~Amplifier() = default;
 
-  /// Why not, or none when it was done.
+  /// The reason for a refusal; empty on success.
   using Refusal = std::optional<terms::Fault>;
 
-  /// By the operator only; always needed after a start, a device loss or a cleared fault. Refused while a
-  /// fault or the stop is present.
+  /// Only an operator may call this. It is required after a start, a device loss or a cleared fault. Refused
+  /// while a fault is present or the emergency stop is pressed.
   [[nodiscard]] virtual Refusal arm() = 0;
-  /// Line low, at once; not a fault.
+  /// Sets the line low at once. This is not a fault.
   virtual void disarm() noexcept = 0;
-  /// Line high. Call while the stream is silent, then ramp in. Refused unless armed.
+  /// Sets the line high. Call this while the stream is silent, then ramp in. Refused unless armed.
   [[nodiscard]] virtual Refusal enable() = 0;
-  /// Line low, still armed. Call once the stream is silent.
+  /// Sets the line low but stays armed. Call this once the stream is silent.
   virtual void disable() noexcept = 0;
-  /// Line low and latched, for a reason that the station found itself; the first reason is kept.
+  /// Latches the line low for a fault that the station detected itself. If there is a fault already, that one
+  /// is kept.
   virtual void trip(terms::FaultKind kind, std::string_view detail) noexcept = 0;
-  /// By the operator: drops a latched fault whose cause is gone; then disarmed.
+  /// For the operator: clears a latched fault if its cause is gone. The amplifier is disarmed afterwards.
   [[nodiscard]] virtual Refusal clear() = 0;
 
-  /// Proof of life: audio and session each say that they are alive, and the participant's page does so from
-  /// its first sign on (a session without a screen has none). The heartbeat line toggles only while all do.
-  /// They return at once.
+  /// Proof of life. The audio thread and the session each report that they are alive. So does the
+  /// participant's page, from its first report on (a session without a screen has none). The heartbeat line
+  /// toggles only while all of them report. These functions never block.
   virtual void audio_alive() noexcept = 0;
   virtual void session_alive() noexcept = 0;
   virtual void page_alive(std::int64_t time_ns) noexcept = 0;
 
   virtual AmplifierState state() const noexcept = 0;
-  /// What latched the fault; meaningful while the state is `faulted`.
+  /// The latched fault; valid while the state is `faulted`.
   virtual AmplifierFault fault() const = 0;
-  /// From the kernel's stamp of the last fault or stop edge until the line was low; -1 before there was one.
+  /// Time from the kernel's stamp of the last fault or stop edge until the line was low; -1 if there was none
+  /// yet.
   virtual std::int64_t reaction_ns() const noexcept = 0;
 };
 

@@ -24,32 +24,33 @@ struct ToneSet {
   std::int32_t count = 0;
 };
 
-/// How amplitude comes and goes: as a raised cosine (Hann), whose slope is continuous. A ramp of 0 frames is
-/// an abrupt gate, which is felt: ask for it on purpose.
+/// The shape in which amplitude rises and falls: a raised cosine (Hann), which has a continuous slope. A ramp
+/// of 0 frames switches abruptly, which can be felt, so use it only on purpose.
 struct Ramp {
   std::int64_t frames = 9600;  ///< 50 ms at 192 kHz
 };
 
-/// A change under the finger: from `at_frame` (counted from the burst's first frame) tone i glides to tone i
-/// of `to` within `frames`: frequency linearly and without a jump of phase, amplitude along the ramp's shape.
-/// A tone that only one of the sets has fades in (as if it had run silently since the onset) or out.
+/// A change while the finger is on the surface. Starting at `at_frame` (counted from the burst's first
+/// frame), tone i glides to tone i of `to` within `frames`. Frequency changes linearly and without a jump of
+/// phase; amplitude follows the ramp's shape. A tone that only one of the two sets contains fades out, or
+/// fades in as if it had run silently since the onset.
 struct Change {
   std::int64_t at_frame = 0;
   std::int64_t frames = 9600;
   ToneSet to;
 };
 
-/// A mark for recording equipment at the onset and at each change, on a channel that drives no transducer.
+/// A signal for recording equipment at the onset and at each change, on a channel that drives no transducer.
 enum class MarkerKind : std::int32_t { none, pulse, tone };
 struct Marker {
   MarkerKind kind = MarkerKind::none;
   std::int32_t channel = 1;
   double amplitude = 0.5;
-  double frequency_Hz = 1000;  ///< of a gated tone
+  double frequency_Hz = 1000;  ///< frequency of a gated tone
   std::int64_t frames = 192;
 };
 
-/// Band-limited noise that masks what is audible; gated by the burst's ramp. rms 0 is none.
+/// Band-limited noise that masks audible sound, gated by the burst's ramp. rms 0 means no noise.
 struct MaskingNoise {
   std::int32_t channel = 1;
   double rms = 0;
@@ -64,7 +65,7 @@ struct Burst {
   std::int64_t length_frames = 0;
   Ramp ramp;
   ToneSet tones;
-  std::array<Change, max_changes> changes{};  ///< in rising order, not overlapping
+  std::array<Change, max_changes> changes{};  ///< ascending, without overlap
   std::int32_t change_count = 0;
   Marker marker;
   MaskingNoise noise;

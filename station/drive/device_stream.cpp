@@ -31,7 +31,7 @@ std::optional<Event> DeviceStream::poll() {
   return core_.poll();
 }
 
-// Between a new relation and the device's first position in it, nothing is known.
+// After a restart nothing is known about the time of a frame until the device reports its first position.
 void DeviceStream::gather_positions() {
   const std::uint32_t relation = relation_.load();
   if (relation != clock_relation_) clock_.reset();
@@ -75,7 +75,7 @@ void DeviceStream::step() noexcept {
   output_->paced() ? follow_device() : follow_clock();
 }
 
-// The loss of a device is reported once, however long it lasts.
+// Reports the loss of a device once, however long it lasts.
 void DeviceStream::note_loss(const WriteResult& result) noexcept {
   const std::int64_t first = frame_ + result.taken - result.dropped;
   const std::int64_t next = frame_ + result.taken + result.passed;
@@ -109,7 +109,7 @@ void DeviceStream::follow_device() noexcept {
   const auto position = output_->position();
   if (!position) return;
   core_.heard(position->frame);
-  // When nobody asks for the clock the ring is full of older pairs, which do as well.
+  // If nobody reads the clock, the ring is full of older pairs. Those are good enough.
   static_cast<void>(positions_->push({relation_.load(), *position}));
   if (!rate_told_) check_rate(*position);
 }
@@ -124,7 +124,7 @@ void DeviceStream::check_rate(const Position& position) noexcept {
     core_.report({EventKind::rate_wrong, 0, position.frame, std::llround(rate->rate_Hz * 1000)});
 }
 
-// Files and null take frames at once. The clock paces them like a converter that is one period behind.
+// Files and null accept frames at once, so a clock paces them like a converter that is one period behind.
 void DeviceStream::follow_clock() noexcept {
   const std::int64_t rate = config_.output.rate_Hz, heard = frame_ - config_.output.period_frames;
   const std::int64_t due_ns = origin_ns_ + heard / rate * 1'000'000'000 + heard % rate * 1'000'000'000 / rate;

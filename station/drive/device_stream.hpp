@@ -13,19 +13,20 @@
 
 namespace turnpoint::drive {
 
-/// A stream on an output that plays in its own time, one block a step. Whoever steps it is the audio side:
-/// open_realtime() does so on a thread of its own, a test wherever it likes. Everything else is for one
+/// A stream on an output that plays in real time, one block per step. The thread that calls step() is the
+/// audio side: open_realtime() uses a thread of its own, a test may use any. Everything else is for one
 /// control thread.
 class DeviceStream : public Stream {
  public:
-  /// Throws as open_output.
+  /// Throws the same errors as open_output.
   explicit DeviceStream(const StreamConfig& config);
 
-  /// Audio side: renders the next block and writes it, which takes as long as the device does. After lost
-  /// frames the block is not played later instead: the next step renders the frames whose time it then is.
+  /// Audio side. Renders the next block and writes it, which takes as long as the device takes to play it. A
+  /// block that was lost is not played later: the next step renders the frames that are due by then.
   void step() noexcept;
 
-  /// What the audio side uses beside this object itself, and what of it is not in the list, in words.
+  /// Memory that the audio side uses beside this object, and a textual note about memory missing from the
+  /// list.
   std::vector<MemoryRange> memory() const;
   std::string memory_left_out() const { return output_->memory_left_out(); }
 
@@ -40,7 +41,7 @@ class DeviceStream : public Stream {
     core_.stop(burst, ramp, frame);
   }
   std::optional<Event> poll() override;
-  /// Two periods beyond what has been rendered: one is being rendered now.
+  /// Two periods ahead of what has been rendered, because one period is being rendered now.
   std::int64_t earliest_frame() const override {
     return core_.counters().frames + 2 * std::int64_t{config_.output.period_frames};
   }
@@ -53,8 +54,8 @@ class DeviceStream : public Stream {
   const StreamConfig& config() const override { return config_; }
 
  private:
-  /// Positions and rates cross the threads with the number of the relation between frames and time, or of the
-  /// device, that they hold for: what was measured before is never taken for what holds now.
+  /// Positions and rates cross the threads together with a number that identifies the restart or the device
+  /// that they belong to. A measurement from before a restart is therefore never mistaken for a current one.
   struct StampedPosition {
     std::uint32_t relation = 0;
     Position position;
@@ -76,15 +77,15 @@ class DeviceStream : public Stream {
   std::unique_ptr<Output> output_;
   std::unique_ptr<Ring<StampedPosition, 2048>> positions_ = std::make_unique<Ring<StampedPosition, 2048>>();
   std::unique_ptr<Ring<StampedRate, 4>> rates_ = std::make_unique<Ring<StampedRate, 4>>();
-  std::atomic<std::uint32_t> relation_{0};  ///< grows whenever the device was started anew
-  std::atomic<std::uint32_t> device_{0};    ///< grows whenever one was lost
-  // Control side.
+  std::atomic<std::uint32_t> relation_{0};  ///< incremented whenever the device was restarted
+  std::atomic<std::uint32_t> device_{0};    ///< incremented whenever a device was lost
+  // Control side:
   FrameClock clock_;
   std::uint32_t clock_relation_ = 0;
   std::optional<StampedRate> rate_;
-  // Audio side.
+  // Audio side:
   std::vector<std::int32_t> block_;
-  std::int64_t frame_ = 0;  ///< the next one to be rendered
+  std::int64_t frame_ = 0;  ///< the next frame to render
   std::int64_t origin_ns_ = 0;
   RateCheck rate_check_;
   bool rate_told_ = false;

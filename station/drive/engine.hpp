@@ -16,55 +16,56 @@
 
 namespace turnpoint::drive {
 
-/// Rendered is not heard: a device is given each frame a buffer's length before it plays it. A burst that
-/// began therefore ends twice: burst_ended when its last frame is rendered, and burst_heard when that has
-/// been played and none of its frames were lost. The underrun that costs a burst frames names it instead.
+/// A rendered frame is heard later: a device receives each frame one buffer length before it plays it. A
+/// burst that has begun therefore ends twice: burst_ended when its last frame has been rendered, and
+/// burst_heard when that frame has been played and no frame of the burst was lost. If frames were lost, the
+/// underrun event names the burst and there is no burst_heard.
 enum class EventKind : std::int32_t {
   burst_started,  ///< frame: first frame of the burst, as scheduled
-  burst_ended,    ///< frame: first silent frame; the burst's first one where it was stopped before it began
-  burst_heard,   ///< frame: first silent frame; every frame before it has left the device as it was scheduled
-  burst_missed,  ///< the command came when its first frame was already rendered: nothing sounds
-  underrun,      ///< frames [frame, frame + frames) were not played; what sounded goes on, ramped in
-  device_lost,   ///< from `frame` on nothing is played until the device is back and the operator re-arms
-  device_back,   ///< reopened by name; frames count on from `frame`
-  rate_wrong,    ///< the measured rate is more than 200 ppm off (`frames`: the rate in mHz): stop the session
+  burst_ended,    ///< frame: first silent frame, or the burst's first frame if it was stopped before it began
+  burst_heard,    ///< frame: first silent frame; every frame before it has been played as scheduled
+  burst_missed,   ///< the command came after its first frame had been rendered: the burst is not played
+  underrun,       ///< frames [frame, frame + frames) were not played; sounding bursts continue with a ramp
+  device_lost,    ///< nothing is played from `frame` on, until the device is back and the operator re-arms
+  device_back,    ///< the device was reopened by name; frame numbers continue from `frame`
+  rate_wrong,  ///< the measured rate is more than 200 ppm off (`frames`: the rate in mHz): stop the session
 };
 
 struct Event {
   EventKind kind = EventKind::burst_started;
-  std::uint32_t burst =
-      0;  ///< of an underrun or a loss: the first burst that lost frames by it; 0 where none did
+  std::uint32_t burst = 0;  ///< for an underrun or a loss: the first burst that lost frames; 0 if none did
   std::int64_t frame = 0;
   std::int64_t frames = 0;
-  int error = 0;  ///< negative errno of the device, where there is one
-  /// Of an underrun: the device was started anew, so what follows is played at another time than was
-  /// predicted. A burst that was not heard to its end by then has lost frames, even if none of them fell into
-  /// the gap.
+  int error = 0;  ///< negative errno of the device, if any
+  /// For an underrun: the device was restarted, so what follows is played at a different time than predicted.
+  /// A burst that had not been heard to its end by then has lost frames, even if none of them fell into the
+  /// gap.
   bool retimed = false;
 };
 
 struct Counters {
-  std::int64_t frames = 0;  ///< rendered
-  std::int64_t heard = 0;   ///< left the device, or were lost, as far as is known; losses before are reported
-  std::int64_t bursts = 0;  ///< begun
+  std::int64_t frames = 0;  ///< rendered frames
+  std::int64_t heard = 0;   ///< frames known to have been played or lost; earlier losses have been reported
+  std::int64_t bursts = 0;  ///< bursts that began
   std::int64_t missed = 0;
   std::int64_t underruns = 0;
-  std::int64_t lost_frames = 0;  ///< not played, by underruns
-  std::int64_t saturated = 0;    ///< samples out of range: a fault if not 0
+  std::int64_t lost_frames = 0;  ///< frames that underruns kept from being played
+  std::int64_t saturated = 0;    ///< samples out of range; anything but 0 is a fault
   std::int64_t device_losses = 0;
-  std::int64_t events_dropped = 0;  ///< nobody polled
+  std::int64_t events_dropped = 0;  ///< events lost because nobody called poll()
 };
 
-/// What the operating system granted to the audio thread, for the record and the screen.
+/// The rights that the operating system granted to the audio thread, for the record and the screen.
 struct Rights {
-  bool asked = false;     ///< a synchronous stream asks for nothing
-  int fifo_priority = 0;  ///< 0: not real time
+  bool asked = false;     ///< false for a synchronous stream, which needs no rights
+  int fifo_priority = 0;  ///< 0: not a real-time thread
   bool memory_locked = false;
-  std::string note;  ///< why not, where something was denied
+  std::string note;  ///< the reason, if something was denied
 };
 
-/// What a synchronous stream to `null:` does with its samples: computes them all the same, to measure them or
-/// the cost; or passes them by with the same events at the same frames, for sessions without a listener.
+/// What a synchronous stream to `null:` does with its samples. `rendered` computes them, to measure them or
+/// their cost. `passed` skips them but reports the same events at the same frames, for sessions that nobody
+/// listens to.
 enum class Samples : std::int32_t { rendered, passed };
 
 struct StreamConfig {
@@ -73,101 +74,104 @@ struct StreamConfig {
   SynthLimits limits;
   int fifo_priority = 70;
   double converter_delay_s = 0;  ///< group delay of the converter, added to predicted times
-  /// How far a synchronous stream renders ahead of what is heard, as a device with a buffer does: commands
-  /// take effect so many frames later. Other streams have their device's buffer.
+  /// How far a synchronous stream renders ahead of what is heard, like the buffer of a device: commands take
+  /// effect this many frames later. Other streams use their device's buffer.
   std::int64_t virtual_lead_frames = 0;
-  /// Told audio_alive() after each block that a device took; must outlive the stream. None: null.
+  /// May be null. Its audio_alive() is called after each block that a device accepted. It must outlive the
+  /// stream.
   Amplifier* amplifier = nullptr;
 };
 
-/// A burst that was accepted, and the frame at which it begins.
+/// An accepted burst and the frame at which it begins.
 struct Scheduled {
   std::uint32_t burst = 0;
   std::int64_t start_frame = 0;
 };
 
-/// A stream that runs on silence and plays bursts at absolute frames. All functions are for one control
-/// thread; none of them blocks on the audio thread. Frames count from 0 at the opening, through underruns and
-/// reopenings.
+/// A stream that plays silence and, at given frames, bursts. All functions are for one control thread; none
+/// of them waits for the audio thread. Frames are counted from 0 at the opening and keep counting through
+/// underruns and reopenings.
 class Stream {
  public:
   virtual ~Stream() = default;
 
-  /// Checks and sends a burst; returns its number (from 1). Throws BurstRefused (limits, sum of overlapping
-  /// peaks, start frame already gone, too many waiting).
+  /// Checks and sends a burst. Returns its number (from 1). Throws BurstRefused: a limit is exceeded,
+  /// overlapping peaks add up to too much, the start frame is already past, or too many bursts are waiting.
   virtual std::uint32_t schedule(const Burst& burst) = 0;
-  /// Sends bursts that were checked for this stream's format and limits, in the order of their start frames
-  /// and at exactly their distances: as they say or, where the first one could not be reached any more, all
-  /// later by the same number of frames. Takes microseconds. Throws BurstRefused, and then none of them
-  /// sounds.
+  /// Sends bursts that were already checked for this stream's format and limits, in the order of their start
+  /// frames. They start at these frames. If the first one is already too late, all of them are delayed by the
+  /// same number of frames, so that their distances stay exact. Takes microseconds. If it throws
+  /// BurstRefused, none of them is played.
   virtual std::vector<Scheduled> schedule_together(std::span<const PreparedBurst> bursts) = 0;
-  /// Checks one burst, which can take longer than a buffer lasts (see prepare), and sends it as above.
+  /// Checks one burst, which can take longer than a buffer lasts (see prepare), and sends it like
+  /// schedule_together.
   Scheduled schedule_soon(const Burst& burst);
-  /// Changes a burst that waits or sounds; `at_frame` counts from its start. Throws BurstRefused.
+  /// Changes a waiting or sounding burst; `at_frame` counts from its start. Throws BurstRefused.
   virtual void change(std::uint32_t burst, const Change& change) = 0;
-  /// Ramps one burst (0: all) down as soon as possible, or from an absolute frame. Throws std::runtime_error
-  /// when the audio thread takes no commands.
+  /// Ramps one burst down (0: all of them) as soon as possible, or from an absolute frame. Throws
+  /// std::runtime_error if the audio thread does not accept commands.
   virtual void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame = {}) = 0;
 
-  /// The next event of the audio side, oldest first. To be called at least every few seconds: it also takes
-  /// up the time stamps of the device, of which the audio thread can keep 2048.
+  /// The oldest event of the audio side not yet returned. Call this at least every few seconds: it also
+  /// collects the device's time stamps, of which the audio thread can keep 2048.
   virtual std::optional<Event> poll() = 0;
 
-  /// The soonest frame that a burst scheduled now is sure to reach.
+  /// The earliest frame that a burst scheduled now is certain to reach.
   virtual std::int64_t earliest_frame() const = 0;
-  /// Frames <-> CLOCK_MONOTONIC (virtual time for a synchronous stream). No pairs: nothing is known, as
-  /// before the device has first told its position, while it is lost, and just after it was started anew.
+  /// Maps frames to CLOCK_MONOTONIC (for a synchronous stream: to virtual time). A fit with no pairs means
+  /// that the time is not known: before the device has reported its first position, while it is lost, and
+  /// just after a restart.
   virtual ClockFit clock() = 0;
-  /// Predicted time at which a frame leaves the converter, group delay included; ns. None while nothing is
-  /// known.
+  /// Predicted time (ns) at which a frame leaves the converter, group delay included; empty while unknown.
   virtual std::optional<std::int64_t> time_of(std::int64_t frame) = 0;
   virtual std::optional<std::int64_t> frame_at(std::int64_t time_ns) = 0;
 
-  /// What the clock of the device that is open was measured at; none before 2 s, and for streams without a
-  /// device.
+  /// Measured rate of the open device's clock; empty for the first 2 s, and for streams without a device.
   virtual std::optional<MeasuredRate> measured_rate() = 0;
   virtual Counters counters() const = 0;
   virtual Rights rights() const = 0;
   virtual const StreamConfig& config() const = 0;
 };
 
-/// The virtual clock: no thread; the caller advances frames, as fast as the machine goes. Time starts at
-/// `origin_ns` and is frame / rate exactly.
+/// A stream on a virtual clock. It has no thread: the caller advances the frames, as fast as the machine can.
+/// Time starts at `origin_ns` and advances by exactly frame / rate.
 class SynchronousStream : public Stream {
  public:
-  /// Renders and writes `frames` frames. Throws std::system_error where a file cannot be written.
+  /// Renders and writes this many frames. Throws std::system_error if a file cannot be written.
   virtual void advance(std::int64_t frames) = 0;
-  virtual std::int64_t frame() const = 0;     ///< the next one to be rendered
+  virtual std::int64_t frame() const = 0;     ///< the next frame to render
   virtual std::int64_t now_ns() const = 0;    ///< time of that frame
-  virtual double largest_sample() const = 0;  ///< written so far, full scale
+  virtual double largest_sample() const = 0;  ///< largest sample written so far, relative to full scale
   /// Completes the output (file headers). Throws std::system_error.
   virtual void finish() = 0;
 };
 
-/// Throws as open_output, and terms::UsageError for a format that cannot be synthesised or samples that
-/// would be missing from an output.
+/// Throws the errors of open_output. Also throws terms::UsageError for a format that cannot be synthesised,
+/// or when samples are passed over although the output needs them.
 std::unique_ptr<SynchronousStream> open_synchronous(const StreamConfig& config, std::int64_t origin_ns = 0);
 
-/// Opens the output and starts the audio thread: paced by ALSA, or by CLOCK_MONOTONIC for `null:` and `wav:`.
-/// The destructor ramps down what sounds, and joins.
+/// Opens the output and starts the audio thread. ALSA sets the pace, or CLOCK_MONOTONIC for `null:` and
+/// `wav:`. The destructor ramps down what is sounding and joins the thread.
 std::unique_ptr<Stream> open_realtime(const StreamConfig& config);
 
-/// What a `play` did.
+/// The result of `play`.
 struct PlayReport {
   Counters counters;
   Rights rights;
   ClockFit clock;
-  std::optional<MeasuredRate> rate;  ///< of a device that played for 2 s or more
-  double peak = 0;                   ///< computed before playing, full scale
-  double largest_sample = 0;         ///< that was really written, full scale; 0 where the output is a device
+  std::optional<MeasuredRate> rate;  ///< for a device that played for 2 s or more
+  double peak = 0;                   ///< computed before playing, relative to full scale
+  /// largest sample written, relative to full scale; 0 if the output is a device
+  double largest_sample = 0;
   std::int64_t onset_frame = 0;
 };
 
-/// Of a stream that has played: all but the burst's own (peak, largest sample, onset).
+/// Reports on a stream after playing. Fills everything except the burst's own values (peak, largest sample,
+/// onset).
 PlayReport report_of(Stream& stream);
 
-/// Plays or renders one burst and the silence around it: in real time for `alsa:`, at once otherwise. The
-/// burst's start frame is moved to the soonest possible one. Throws as above.
+/// Plays or renders one burst and the silence around it: in real time for `alsa:`, as fast as possible
+/// otherwise. The burst starts at the earliest possible frame. Throws the errors of opening and scheduling.
 PlayReport play(const StreamConfig& config, Burst burst);
 
 }  // namespace turnpoint::drive

@@ -18,7 +18,7 @@ void EngineCore::send(const Command& command) {
   if (!commands_->push(command)) throw BurstRefused(not_taken);
 }
 
-// Peaks of bursts that overlap add up, channel by channel.
+// The peaks of overlapping bursts add up on each channel.
 void EngineCore::check_room(const PreparedBurst& burst) const {
   std::array<double, max_channels> sum = burst.peak;
   std::size_t voices = 0;
@@ -44,8 +44,8 @@ std::uint32_t EngineCore::schedule(const Burst& burst, const Earliest& earliest_
   const auto only_then = [&] {
     const auto earliest = earliest_frame();
     if (burst.start_frame < earliest)
-      throw BurstRefused(
-          fmt::format("burst refused: frame {} is gone; the soonest is {}", burst.start_frame, earliest));
+      throw BurstRefused(fmt::format("burst refused: frame {} is already past; the earliest possible is {}",
+                                     burst.start_frame, earliest));
     return earliest;
   };
   return schedule_together({&prepared, 1}, only_then).front().burst;
@@ -106,7 +106,7 @@ EngineCore::Open* EngineCore::find(std::uint32_t burst) {
   return found == open_.end() ? nullptr : &*found;
 }
 
-// Which bursts lost frames of [first_frame, end_frame); the first of them, or 0.
+// Marks the bursts that lost frames of [first_frame, end_frame). Returns the first of them, or 0.
 std::uint32_t EngineCore::damage(std::int64_t first_frame, std::int64_t end_frame) {
   std::uint32_t first = 0;
   for (Open& open : open_) {
@@ -117,7 +117,7 @@ std::uint32_t EngineCore::damage(std::int64_t first_frame, std::int64_t end_fram
   return first;
 }
 
-// Keeps the list of open bursts as an event of the audio side says.
+// Updates the list of open bursts from an event of the audio side.
 void EngineCore::follow(Event& event) {
   constexpr auto forever = std::numeric_limits<std::int64_t>::max();
   switch (event.kind) {
@@ -147,7 +147,7 @@ void EngineCore::follow(Event& event) {
 }
 
 void EngineCore::gather() {
-  // Read before the events: a loss before this frame is then among them.
+  // Read this before the events, so that every loss before this frame is among them.
   const std::int64_t heard = atomics_.heard.load();
   Event event;
   while (events_->pop(event)) {
@@ -209,7 +209,8 @@ void EngineCore::report(const Event& event) noexcept {
 
 void EngineCore::lose(const Event& event, std::int64_t next_frame) noexcept {
   synth_.skip_to(next_frame);
-  // Before the event: whoever has read that schedules nothing into the gap.
+  // Store this before sending the event, so that nobody who has read the event schedules a burst into the
+  // gap.
   atomics_.frames.store(next_frame);
   report(event);
 }
@@ -222,7 +223,7 @@ void EngineCore::take_commands() noexcept {
           report({EventKind::burst_missed, incoming_->start.id, incoming_->start.start_frame});
         break;
       case CommandKind::change:
-        // A burst that has just ended cannot change any more; its end is reported.
+        // A burst that has just ended can no longer change; its end is reported.
         static_cast<void>(synth_.change(incoming_->burst, incoming_->change));
         break;
       case CommandKind::stop:
@@ -232,7 +233,7 @@ void EngineCore::take_commands() noexcept {
   }
 }
 
-// What the synth said up to `frame`.
+// Reports the synth's events up to `frame`.
 void EngineCore::report_until(std::int64_t frame) noexcept {
   for (const SynthEvent& event : synth_.events()) {
     const EventKind kind = event.kind == SynthEventKind::started ? EventKind::burst_started

@@ -10,14 +10,14 @@
 
 namespace turnpoint::drive {
 
-/// What every transport drives: commands go in and events come out through rings, blocks are rendered in
+/// The part that all streams share. Commands go in and events come out through rings; blocks are rendered in
 /// between. `process`, `pass`, `heard`, `lose` and `report` belong to the audio side, everything else to one
 /// control thread.
 class EngineCore {
  public:
   explicit EngineCore(const StreamConfig& config);
 
-  /// The soonest frame that can be reached, asked once the burst is checked.
+  /// Returns the earliest frame that can still be reached. It is called after the burst has been checked.
   using Earliest = std::function<std::int64_t()>;
   std::uint32_t schedule(const Burst& burst, const Earliest& earliest_frame);
   std::vector<Scheduled> schedule_together(std::span<const PreparedBurst> bursts,
@@ -26,19 +26,19 @@ class EngineCore {
   void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame);
   std::optional<Event> poll();
   Counters counters() const noexcept;
-  /// What the audio side uses beside this object itself.
+  /// Memory that the audio side uses beside this object.
   std::vector<MemoryRange> memory() const;
 
-  /// Takes the waiting commands and renders the frames from `frame`.
+  /// Takes the waiting commands and renders frames, beginning with `frame`.
   void process(std::int64_t frame, std::span<std::int32_t> samples) noexcept;
-  /// The same without samples: commands and events alone.
+  /// The same without samples: only commands and events.
   void pass(std::int64_t frame, std::int64_t frames) noexcept;
-  /// Everything before `frame` has been played, but for what was reported as lost before this call.
+  /// Everything before `frame` has been played, except what was reported as lost before this call.
   void heard(std::int64_t frame) noexcept { atomics_.heard.store(frame); }
-  /// Frames were lost as the event says, and the next one to be rendered is `next_frame`, at or after the end
-  /// of what was rendered.
+  /// Reports lost frames by this event. The next frame to render is `next_frame`, at or after the end of what
+  /// was rendered.
   void lose(const Event& event, std::int64_t next_frame) noexcept;
-  /// An event of the transport; counts it too.
+  /// Reports and counts an event of the output.
   void report(const Event& event) noexcept;
 
  private:
@@ -51,10 +51,10 @@ class EngineCore {
     PreparedChange change;
     PreparedBurst start;
   };
-  /// A burst that has been sent and was neither heard nor named by a loss yet.
+  /// A burst that was sent but has not yet been heard or reported as damaged.
   struct Open {
     PreparedBurst burst;
-    std::int64_t end_frame = 0;  ///< as scheduled, or once it is rendered as it really is
+    std::int64_t end_frame = 0;  ///< as scheduled; once rendered, the actual end
     bool begun = false, rendered = false, damaged = false;
   };
   struct Atomics {
@@ -73,7 +73,7 @@ class EngineCore {
 
   StreamConfig config_;
   std::uint32_t last_id_ = 0;
-  std::vector<Open> open_;  ///< in the order sent
+  std::vector<Open> open_;  ///< in the order of sending
   std::deque<Event> gathered_;
   std::unique_ptr<Command> outgoing_ = std::make_unique<Command>();
   std::unique_ptr<Command> incoming_ = std::make_unique<Command>();

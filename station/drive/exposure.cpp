@@ -47,7 +47,7 @@ void Exposure::check(double displacement_m, double length_s) const {
                                     limits_.duty * window_s, window_s));
 }
 
-// The duty of any window is largest for the one that ends with a stimulus.
+// The duty cycle is largest in the window that ends with a stimulus, so only such windows are checked.
 bool Exposure::fits(double start_s, double length_s) const {
   constexpr double rounding_s = 1e-9;
   const double end_s = start_s + length_s;
@@ -62,8 +62,8 @@ double Exposure::earliest_start_s(double wanted_s, double length_s) const {
   check(0, length_s);
   double start_s = recent_.empty() ? wanted_s : std::max(wanted_s, recent_.back().end_s);
   if (!fits(start_s, length_s)) {
-    // Waiting only ever helps, so the soonest time is found by bisection; after a whole window nothing is
-    // left to count.
+    // A later start is never worse, so bisection finds the earliest one. After a whole window no earlier
+    // stimulus counts any more.
     double too_soon_s = start_s, late_s = start_s + window_s + rest_s;
     for (int k = 0; k < 60; ++k) {
       const double middle_s = 0.5 * (too_soon_s + late_s);
@@ -76,7 +76,8 @@ double Exposure::earliest_start_s(double wanted_s, double length_s) const {
   return start_s;
 }
 
-// A later stimulus that has to wait holds up the whole trial, since its gaps belong to the design.
+// If a later stimulus has to wait, the whole trial waits, because the gaps between its stimuli are part of
+// the design.
 double Exposure::earliest_start_s(double wanted_s, std::span<const Exposed> trial) const {
   constexpr int most_tries = 1000;
   double start_s = wanted_s;
@@ -113,7 +114,7 @@ std::string sound_problem(double frequency_Hz, double amplitude, const std::vect
   double full_scale_dB = above->level_dB;
   if (above->frequency_Hz != frequency_Hz) {
     const SoundLevel& below = *(above - 1);
-    // Between two measured tones the louder one counts: resonances are not straight lines.
+    // Between two measured tones use the louder one: because of resonances, interpolation would be wrong.
     full_scale_dB = std::max(below.level_dB, above->level_dB);
   }
   const double level_dB = full_scale_dB + 20 * std::log10(amplitude);

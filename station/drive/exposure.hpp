@@ -8,29 +8,30 @@
 
 namespace turnpoint::drive {
 
-/// What a rig allows to reach a finger.
+/// The largest vibration that a rig may deliver to a finger.
 struct ExposureLimits {
-  double displacement_m = 0;  ///< peak anywhere on the surface, tones summed
-  double continuous_s = 30;   ///< without a rest of 0.5 s
-  double duty = 0.8;          ///< of any 60 s
-  double session_s = 3600;    ///< of one sitting, its interruptions included
+  double displacement_m = 0;  ///< peak anywhere on the surface, all tones added
+  double continuous_s = 30;   ///< longest vibration without a rest of 0.5 s
+  double duty = 0.8;          ///< fraction of any 60 s
+  double session_s = 3600;    ///< one sitting, including its interruptions
 };
 
-/// A stimulus that was on the surface; seconds on a scale that goes on through restarts of the station, such
-/// as the wall time that the database keeps.
+/// A presented stimulus. Its times (seconds) must be on a scale that continues when the station restarts,
+/// such as the wall time in the database.
 struct Exposed {
   double start_s = 0;
   double end_s = 0;
 };
 
-/// A stimulus that a limit forbids, now or ever; the message names the limit, the value and what is allowed.
+/// A limit forbids this stimulus, either now or always. The message names the limit, the value and what is
+/// allowed.
 class LimitExceeded : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Keeps account of what the finger got. Pure: no clock. After a restart it is given the last minute's
-/// stimuli and the start of the session from the database, so that a crash does not reset a limit.
+/// Keeps account of the finger's exposure to vibration. Pure: no clock. After a restart, pass the last
+/// minute's stimuli and the session's start from the database, so that a crash does not reset a limit.
 class Exposure {
  public:
   static constexpr double window_s = 60;
@@ -39,21 +40,22 @@ class Exposure {
   /// Throws std::invalid_argument for limits that are not positive, or a duty above 1.
   Exposure(const ExposureLimits& limits, double session_start_s, const std::vector<Exposed>& history = {});
 
-  /// Throws LimitExceeded where a stimulus of this displacement and length can never be presented.
+  /// Throws LimitExceeded if a stimulus of this displacement and length can never be presented.
   void check(double displacement_m, double length_s) const;
 
-  /// The soonest time at or after `wanted_s` at which a stimulus of `length_s` keeps duty and continuous
-  /// time. The interval between trials stretches to it, and says so. Throws LimitExceeded as above, and when
-  /// the session's time would be over before the stimulus ends.
+  /// The earliest time at or after `wanted_s` at which a stimulus of `length_s` meets the limits of duty
+  /// cycle and continuous vibration. The pause between trials is extended accordingly and reported. Throws
+  /// LimitExceeded if the stimulus can never be presented, or if the session's time ends before the stimulus
+  /// does.
   double earliest_start_s(double wanted_s, double length_s) const;
 
-  /// The same for several stimuli of one trial, given in order by their times from its start.
+  /// The same for all stimuli of one trial, given in order with times from its start.
   double earliest_start_s(double wanted_s, std::span<const Exposed> trial) const;
 
-  /// What was presented in the end. Stimuli must come in order.
+  /// Records what was actually presented. Add stimuli in order.
   void add(const Exposed& exposed);
 
-  double on_time_s(double from_s, double to_s) const;  ///< on the surface between two times
+  double on_time_s(double from_s, double to_s) const;  ///< total stimulation between two times
 
  private:
   bool fits(double start_s, double length_s) const;
@@ -63,16 +65,16 @@ class Exposure {
   std::deque<Exposed> recent_;
 };
 
-/// A measured sound pressure level at one metre or at the participant's ear, for full scale.
+/// A sound pressure level measured at one metre or at the participant's ear, for a drive at full scale.
 struct SoundLevel {
   double frequency_Hz = 0;
   double level_dB = 0;
 };
 
-/// For live sessions: a tone below 22.4 kHz needs a measured level at its frequency (between two measured
-/// ones) that stays within 75 dB at its amplitude; from there to 25 kHz a measured level must stay within
-/// 75 dB too, at and above 25 kHz within 110 dB. Returns what is wrong, or "". Occupational guidance; see the
-/// rig's documentation.
+/// For live sessions. A tone below 22.4 kHz needs a measured level at its frequency (between two measured
+/// ones) that stays within 75 dB at its amplitude. From there to 25 kHz a measured level must also stay
+/// within 75 dB; at and above 25 kHz, within 110 dB. Returns the problem, or "" if there is none. The limits
+/// follow occupational guidance; see the rig's documentation.
 std::string sound_problem(double frequency_Hz, double amplitude, const std::vector<SoundLevel>& measured);
 
 }  // namespace turnpoint::drive

@@ -52,7 +52,7 @@ ClockFit FrameClock::fit() const {
   line.frame = newest.frame;
   line.time_ns = newest.time_ns;
   if (pairs_.size() < 8) return line;
-  // About the newest pair, so that the sums are of small numbers.
+  // Relative to the newest pair, so that the sums stay small.
   const auto count = static_cast<double>(pairs_.size());
   double mean_x = 0, mean_y = 0;
   for (const Pair& pair : pairs_) {

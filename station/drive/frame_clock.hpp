@@ -7,9 +7,9 @@ namespace turnpoint::drive {
 /// A straight line through (frame, CLOCK_MONOTONIC) pairs; stored with each trial.
 struct ClockFit {
   std::int64_t frame = 0;    ///< reference frame
-  std::int64_t time_ns = 0;  ///< when that frame leaves the converter, without its group delay
+  std::int64_t time_ns = 0;  ///< time at which that frame leaves the converter, without its group delay
   double ns_per_frame = 0;
-  double residual_ns = 0;  ///< rms of the pairs about the line
+  double residual_ns = 0;  ///< rms distance of the pairs from the line
   int pairs = 0;
 
   std::int64_t time_of(std::int64_t at_frame) const noexcept;
@@ -17,19 +17,19 @@ struct ClockFit {
   double rate_Hz() const noexcept { return 1e9 / ns_per_frame; }
 };
 
-/// Least squares over the newest pairs. Pure: no clock inside.
+/// A least-squares fit to the newest pairs. Pure: no clock inside.
 class FrameClock {
  public:
   /// Throws std::invalid_argument unless the nominal rate is positive and `window` at least 2.
   explicit FrameClock(double nominal_rate_Hz, int window = 1024);
 
-  /// A frame and the time at which it was at the converter; frames must rise. A pair that goes back in frame
-  /// or time starts the fit afresh (the device was restarted).
+  /// Adds a frame and the time at which it was at the converter; frames must ascend. If a pair goes back in
+  /// frame or time, the device was restarted and the fit starts over.
   void add(std::int64_t frame, std::int64_t time_ns);
   void reset();
 
-  /// The line; with fewer than 8 pairs the nominal rate through the newest pair. `pairs` 0 means nothing is
-  /// known.
+  /// The fitted line. With fewer than 8 pairs it goes through the newest pair with the nominal rate. `pairs`
+  /// 0 means that nothing is known.
   ClockFit fit() const;
 
  private:

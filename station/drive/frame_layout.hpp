@@ -5,10 +5,10 @@
 
 namespace turnpoint::drive {
 
-/// How a device wants a sample: 32 bits, or the upper 24 of them in three bytes; both little-endian.
+/// The sample format of a device: 32 bits, or the upper 24 of them in three bytes; both little-endian.
 enum class SampleFormat { s32_le, s24_3le };
 
-/// How a device's frames lie in memory. A device may have more channels than the stream.
+/// How a device arranges a frame in memory. A device may have more channels than the stream.
 struct FrameLayout {
   SampleFormat format = SampleFormat::s32_le;
   int channels = 2;
@@ -16,13 +16,13 @@ struct FrameLayout {
   std::size_t bytes() const noexcept {
     return static_cast<std::size_t>(channels) * (format == SampleFormat::s32_le ? 4 : 3);
   }
-  /// The depth that the format can carry.
+  /// The number of bits that the format can carry.
   int bits() const noexcept { return format == SampleFormat::s32_le ? 32 : 24; }
 };
 
-/// Packs whole frames of `channels` interleaved samples, left-aligned in 32 bits, as the device wants them.
-/// Channels that the stream does not have carry zeros. `out` has room for them; `channels` is at most the
-/// layout's.
+/// Packs whole frames of `channels` interleaved samples, left-aligned in 32 bits, into the device's layout.
+/// The device's additional channels carry zeros. `out` must be large enough, and `channels` must not exceed
+/// the layout's.
 void pack(std::span<const std::int32_t> samples, int channels, const FrameLayout& layout,
           std::span<unsigned char> out) noexcept;
 

@@ -3,13 +3,14 @@
 
 namespace turnpoint::drive {
 
-/// CLOCK_MONOTONIC in nanoseconds: the station's one clock for events, read here and nowhere else.
+/// CLOCK_MONOTONIC in nanoseconds, the clock of all events in the station.
 std::int64_t monotonic_ns() noexcept;
 
-/// CLOCK_MONOTONIC_RAW minus CLOCK_MONOTONIC now: what time services have added since the start; ns.
+/// CLOCK_MONOTONIC_RAW minus CLOCK_MONOTONIC, in ns: the correction that time services have made since the
+/// machine started.
 std::int64_t raw_minus_monotonic_ns() noexcept;
 
-/// Sleeps until that time, through signals.
+/// Sleeps until that time; signals do not cut it short.
 void sleep_until_ns(std::int64_t time_ns) noexcept;
 
 }  // namespace turnpoint::drive

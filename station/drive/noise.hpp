@@ -3,8 +3,8 @@
 
 namespace turnpoint::drive {
 
-/// SplitMix64's finaliser as a counter-based generator: the value depends on the counter alone, so that
-/// dither and noise are the same wherever a stream is entered. (Steele, Lea, Flood 2014.)
+/// SplitMix64's finaliser used as a counter-based generator (Steele, Lea, Flood 2014). The value depends only
+/// on the counter, so dither and noise are the same wherever rendering starts.
 inline std::uint64_t hashed(std::uint64_t counter) noexcept {
   std::uint64_t z = counter * 0x9e3779b97f4a7c15u;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -12,8 +12,8 @@ inline std::uint64_t hashed(std::uint64_t counter) noexcept {
   return z ^ (z >> 31);
 }
 
-/// Triangular in (-1, 1), variance 1/6: the sum of two independent uniform values from the halves of one
-/// hash.
+/// Triangular in (-1, 1), variance 1/6: the sum of two independent uniform values, one from each half of the
+/// bits.
 inline double triangular(std::uint64_t bits) noexcept {
   const auto high = static_cast<std::int32_t>(bits >> 32), low = static_cast<std::int32_t>(bits);
   return (static_cast<double>(high) + static_cast<double>(low) + 1.0) * 0x1p-32;

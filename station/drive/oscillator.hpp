@@ -3,39 +3,39 @@
 
 namespace turnpoint::drive {
 
-/// One sinusoid over a stretch of frames n = 0, 1, ...: the phase is
-/// phase + increment n + curvature n (n - 1) / 2 (units of 2^-64 cycles), an exact integer at every n.
+/// One sinusoid over frames n = 0, 1, ... Its phase is phase + increment n + curvature n (n - 1) / 2, in
+/// units of 2^-64 cycles: an exact integer at every n.
 struct Partial {
   std::uint64_t phase = 0;
   std::uint64_t increment = 0;
   std::uint64_t curvature = 0;  ///< signed, in two's complement; 0 unless the frequency glides
   double amplitude = 0;
-  double amplitude_change = 0;  ///< times the glide's shape, 0 ... 1
+  double amplitude_change = 0;  ///< multiplied by the glide's shape, 0 to 1
 };
 
-/// The partial seen from `frames` later: same sinusoid, n counted from there.
+/// The same sinusoid with n counted from `frames` later.
 inline Partial advanced(Partial partial, std::uint64_t frames) noexcept {
   partial.phase += partial.increment * frames;
-  // n (n - 1) / 2 modulo 2^64 without losing the bit that a division of a wrapped product would.
+  // n (n - 1) / 2 modulo 2^64. Dividing the wrapped product would lose its highest bit.
   const std::uint64_t pairs = frames % 2 == 0 ? frames / 2 * (frames - 1) : (frames - 1) / 2 * frames;
   partial.phase += partial.curvature * pairs;
   partial.increment += partial.curvature * frames;
   return partial;
 }
 
-/// Inner loops for one kind of processor. `steady` adds `frames` samples of a partial without glide to `sum`;
-/// `gliding` also follows curvature and amplitude_change along `shape` (one value a frame).
-/// They give the same bits on every processor.
+/// The inner loops for one kind of processor. `steady` adds `frames` samples of a partial without glide to
+/// `sum`; `gliding` also follows curvature and amplitude_change along `shape` (one value per frame). All
+/// processors give the same bits.
 struct Kernels {
   const char* name;
   void (*steady)(double* sum, int frames, Partial partial) noexcept;
   void (*gliding)(double* sum, int frames, Partial partial, const double* shape) noexcept;
 };
 
-/// The loops that every processor of the architecture runs.
+/// Loops that run on every processor of the architecture.
 const Kernels& generic_kernels() noexcept;
 
-/// The fastest loops that this processor runs, found once.
+/// The fastest loops that this processor supports; detected once.
 const Kernels& best_kernels() noexcept;
 
 }  // namespace turnpoint::drive

@@ -1,5 +1,5 @@
-// Compiled with -mavx2; called only where oscillator_dispatch_x86.cpp has found it. No fused multiply-add
-// here: the loops give the same bits everywhere.
+// Compiled with -mavx2 and called only if oscillator_dispatch_x86.cpp has detected AVX2. It must not use
+// fused multiply-add, because the loops must give the same bits on every processor.
 #include "station/drive/oscillator_avx2.hpp"
 #include "station/drive/oscillator_kernels.hpp"
 

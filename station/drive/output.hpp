@@ -12,7 +12,7 @@
 
 namespace turnpoint::drive {
 
-/// Where the drive goes and how. `uri` is `null:`, `wav:FILE` (32-bit PCM) or `alsa:NAME`.
+/// The output of the drive and its settings. `uri` is `null:`, `wav:FILE` (32-bit PCM) or `alsa:NAME`.
 struct OutputConfig {
   std::string uri = "null:";
   int rate_Hz = 192000;
@@ -20,63 +20,64 @@ struct OutputConfig {
   int bits = 24;
   int period_frames = 384;
   int periods = 4;
-  int device_channels = 0;  ///< of an ALSA device that has more than the stream; they carry zeros
+  /// channels of an ALSA device, if it has more than the stream; the others carry zeros
+  int device_channels = 0;
   std::vector<std::string> allow_plugin;  ///< alsa-lib plug-in types accepted beside hw (tests)
 };
 
 Format format_of(const OutputConfig& config) noexcept;
 
-/// How a write ended. skipped: the device ran past what it had and played silence, and those frames were
-/// passed over. restarted: the device had to be started anew, so frames and time have a new relation. lost:
-/// the device is gone (reported by every write until it is back). reopened: the device takes frames again.
+/// How a write ended.
+/// skipped: the device ran out of samples and played silence; those frames were skipped.
+/// restarted: the device had to be restarted, so the relation between frames and time has changed.
+/// lost: the device is gone (reported by every write until it is back).
+/// reopened: the device takes frames again.
 enum class WriteStatus { ok, skipped, restarted, lost, reopened };
 
-/// Unless `status` is ok, the frames of the block after the first `taken` were not written, and must not be:
-/// they belong to a time that has passed. The next frame to write is then `taken + passed` after the block's
-/// first.
+/// Unless `status` is ok, the frames of the block after the first `taken` were not written. Do not write them
+/// again, because their time has passed. The next frame to write is the block's first plus `taken + passed`.
 struct WriteResult {
   WriteStatus status = WriteStatus::ok;
   int error = 0;            ///< negative errno
   std::int64_t taken = 0;   ///< frames of this block that the device took
-  std::int64_t passed = 0;  ///< frames after those that pass in silence
-  /// Frames up to and including the taken ones that the device was given and (as far as is known) never
-  /// played.
+  std::int64_t passed = 0;  ///< frames after those that were replaced by silence
+  /// Frames that the device received, up to the last taken one, but (as far as is known) never played.
   std::int64_t dropped = 0;
 };
 
-/// A frame and when it was at the converter.
+/// A frame and the time at which it was at the converter.
 struct Position {
   std::int64_t frame = 0;
   std::int64_t time_ns = 0;
 };
 
-/// One place that takes a stream of interleaved 32-bit frames at an exact rate, opened and configured.
+/// An open output that takes interleaved 32-bit frames at an exact rate.
 class Output {
  public:
   virtual ~Output() = default;
   virtual const OutputConfig& config() const noexcept = 0;
-  /// Writes whole frames; blocks as long as the device does (files and null do not). Comes back at once,
-  /// without writing the rest, where frames were lost. Allocates and locks nothing.
+  /// Writes whole frames. Waits as long as the device does (files and null do not wait). If frames were lost,
+  /// it returns at once without writing the rest. Does not allocate or lock.
   virtual WriteResult write(std::span<const std::int32_t> interleaved) noexcept = 0;
-  /// The newest known position, if the device tells; frames count from the first one written.
+  /// The newest known position, if the device reports one. Frames are counted from the first one written.
   virtual std::optional<Position> position() noexcept = 0;
-  /// What write() and position() use, to be locked into memory, and what they use beside it, in words. Empty
-  /// for files and null.
+  /// Memory that write() and position() use, to be locked, and a textual note about further memory that is
+  /// not in the list. Empty for files and null.
   virtual std::vector<MemoryRange> memory() const { return {}; }
   virtual std::string memory_left_out() const { return ""; }
-  /// Plays what is buffered and closes; throws std::system_error where a file cannot be completed. The
-  /// destructor closes as well, silently.
+  /// Plays what is buffered, then closes. Throws std::system_error if a file cannot be completed. The
+  /// destructor closes too, but reports no errors.
   virtual void finish() = 0;
-  /// True where writing takes as long as playing.
+  /// True if writing takes as long as playing.
   virtual bool paced() const noexcept = 0;
 };
 
-/// Opens the output that the URI names; the one place that knows them all.
-/// Throws terms::UsageError for an unknown URI, std::system_error or OutputRefused for a device that
-/// cannot be opened exactly as asked.
+/// Opens the output of this URI. No other function maps URIs to outputs. Throws terms::UsageError for an
+/// unknown URI, and std::system_error or OutputRefused for a device that cannot be opened exactly as asked.
 std::unique_ptr<Output> open_output(const OutputConfig& config);
 
-/// A device that would not play the samples as they are: what was asked, and what it offers.
+/// The device would not play the samples unaltered. The message says what was asked and what the device
+/// offers.
 class OutputRefused : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -10,7 +10,7 @@
 namespace turnpoint::drive {
 namespace {
 
-// Impulse response of the noise filters until it has died away: sum of squares and of magnitudes.
+// Impulse response of the noise filters until it has decayed: its sum of squares and sum of magnitudes.
 struct Response {
   double energy = 0, magnitude = 0;
 };

@@ -44,7 +44,7 @@ int checked_count(const ToneSet& set) {
   return set.count;
 }
 
-// Fills `change` for a burst whose tones just before it are `before` (its count entries).
+// Fills in `change` for a burst whose tones before the change are `before` (its first `count` entries).
 PreparedChange prepare(const Change& change, const std::array<PreparedTone, max_tones>& before,
                        int before_count, const Format& format, const SynthLimits& limits) {
   PreparedChange out;
@@ -107,7 +107,7 @@ PreparedMarker prepare(const Marker& marker, const Burst& burst, const Format& f
   return out;
 }
 
-// Butterworth, second order, by the bilinear transform; all arithmetic is the station's own.
+// Second-order Butterworth filter by the bilinear transform. It uses only the station's own arithmetic.
 void low_pass(double frequency_Hz, const Format& format, double (&out)[5]) {
   const std::uint64_t half_angle = phase_increment(frequency_Hz, format.rate_Hz) / 2;
   const double t = sine_of_phase(half_angle) / sine_of_phase(half_angle + quarter_cycle);
@@ -120,7 +120,7 @@ void low_pass(double frequency_Hz, const Format& format, double (&out)[5]) {
 
 void high_pass(double frequency_Hz, const Format& format, double (&out)[5]) {
   low_pass(frequency_Hz, format, out);
-  const double b = (1 - out[3] + out[4]) / 4;  // unit gain at half the rate
+  const double b = (1 - out[3] + out[4]) / 4;  // unit gain at half the sampling rate
   out[0] = b;
   out[1] = -2 * b;
   out[2] = b;

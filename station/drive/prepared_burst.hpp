@@ -10,24 +10,24 @@
 
 namespace turnpoint::drive {
 
-/// What a stream is made of. `bits` is the converter's real depth, at which dither is added; samples travel
-/// left-aligned in 32 bits.
+/// The sample format of a stream. `bits` is the converter's real depth, at which dither is added; samples are
+/// passed left-aligned in 32 bits.
 struct Format {
   int rate_Hz = 192000;
   int channels = 2;
   int bits = 24;
 };
 
-/// What a burst must stay inside to be accepted.
+/// The limits that a burst must meet to be accepted.
 struct SynthLimits {
-  double peak = 1.0 - 0x1p-20;  ///< of any channel, full scale; leaves room for dither
+  double peak = 1.0 - 0x1p-20;  ///< for each channel, relative to full scale; leaves room for dither
   double highest_relative_Hz = terms::kHighestShareOfRate;
   std::int64_t longest_frames = 192000LL * 3600;
   std::int64_t longest_rendered_frames =
-      192000LL * 60;  ///< longer bursts are judged by the sum of amplitudes alone
+      192000LL * 60;  ///< longer bursts are not rendered but judged by the sum of their amplitudes
 };
 
-/// A burst that will not be played, with the reason.
+/// Thrown for a burst that will not be played; gives the reason.
 class BurstRefused : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -41,17 +41,19 @@ struct PreparedTone {
   std::int32_t channel = 0;
 };
 
-/// Where the tones go: tone i of `to` is tone i of the burst. `count` is at least the burst's own.
+/// The tones after the change: tone i of `to` continues tone i of the burst. `count` is at least the burst's
+/// own count.
 struct PreparedChange {
-  std::int64_t at_frame = 0;  ///< from the burst's first frame
+  std::int64_t at_frame = 0;  ///< counted from the burst's first frame
   std::int64_t frames = 1;
   std::int32_t count = 0;
-  bool live = false;  ///< sent while the burst sounded: if late it begins at once, its past is not made up
+  /// sent while the burst sounds: if it comes late, it begins at once and nothing of it is skipped
+  bool live = false;
   std::array<PreparedTone, max_tones> to{};
 };
 
-/// Two second-order sections for masking noise, y = b0 (x - x2) - a1 y1 - a2 y2 each (band pass), and its
-/// scale.
+/// Two second-order band-pass sections for masking noise, each y = b0 (x - x2) - a1 y1 - a2 y2, and a scale
+/// factor.
 struct PreparedNoise {
   std::int32_t channel = 0;
   double gain = 0;
@@ -68,7 +70,8 @@ struct PreparedMarker {
   std::int64_t frames = 0;
 };
 
-/// A checked burst, ready for the audio thread: plain integers and doubles, nothing left to refuse.
+/// A checked burst, ready for the audio thread. It contains only plain integers and doubles, and the audio
+/// thread need not check anything.
 struct PreparedBurst {
   std::uint32_t id = 0;
   std::int64_t start_frame = 0;
@@ -81,23 +84,23 @@ struct PreparedBurst {
   PreparedMarker marker;
   PreparedNoise noise;
   std::array<double, max_channels>
-      peak{};  ///< largest sample of each channel (or a bound that is inside the limit)
+      peak{};  ///< largest sample of each channel (or a bound that meets the limit)
 };
 
 static_assert(std::is_trivially_copyable_v<PreparedBurst>);
 
-/// Checks a burst against the format and the limits, and turns it into integers. The peak of a channel is the
-/// sum of its amplitudes where that is inside the limit, otherwise the largest sample of the whole burst,
-/// found by rendering it. Throws BurstRefused: a tone at or above 0.45 of the rate, a channel that is not
-/// there, a peak above the limit, ramps longer than the burst, changes out of order or crossing the end,
-/// values that are not finite.
+/// Checks a burst against the format and the limits, and converts it to integers. The peak of a channel is
+/// the sum of its amplitudes if that meets the limit; otherwise it is the largest sample of the whole burst,
+/// found by rendering. Throws BurstRefused for a tone at or above 0.45 of the rate, a channel that does not
+/// exist, a peak above the limit, ramps longer than the burst, changes that are out of order or extend beyond
+/// the end, and values that are not finite.
 PreparedBurst prepare(const Burst& burst, const Format& format, const SynthLimits& limits = {});
 
-/// A change for a burst that may be sounding already: the same checks. `burst` is what the control side knows
-/// of it, and gets the change's tones and the new peak. All tones glide by the same weight, so no mixture of
-/// the sets that they pass between is larger than the largest: the peak is the largest sum of amplitudes of
-/// the burst's first tones, of its own changes, and of all live ones so far, since a live change cannot wait
-/// for a rendering.
+/// Checks and converts a change for a burst that may already be sounding. `burst` is the control side's copy
+/// of it and is updated with the change's tones and the new peak. There is no time to render the burst, so
+/// the peak is a bound: all tones glide with the same weight, so no mixture during the glide exceeds the
+/// larger set. The bound is the largest amplitude sum among the burst's first tones, its own changes and all
+/// live changes so far.
 PreparedChange prepare_change(const Change& change, PreparedBurst& burst, const Format& format,
                               const SynthLimits& limits = {});
 

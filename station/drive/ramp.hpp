@@ -12,7 +12,7 @@ inline double ramp_gain(double u) noexcept {
   return s * s;
 }
 
-/// Gain of frame `n` of a rise of `frames`, sampled at half frames so that a fall is its mirror image.
+/// Gain of frame `n` in a rise of `frames`. It is sampled at half frames, so that a fall is its mirror image.
 inline double ramp_at(std::int64_t n, std::int64_t frames) noexcept {
   if (n >= frames) return 1;
   return ramp_gain((static_cast<double>(n) + 0.5) / static_cast<double>(frames));

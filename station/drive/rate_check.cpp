@@ -5,7 +5,7 @@
 
 namespace turnpoint::drive {
 
-// x: seconds on the raw clock; y: frames beyond what the nominal rate gives, which keeps the sums small.
+// x: seconds on the raw clock. y: frames in excess of the nominal rate, which keeps the sums small.
 void RateCheck::add(std::int64_t frame, std::int64_t raw_ns) noexcept {
   if (count_ == 0 || frame < last_frame_ || raw_ns < last_ns_) {
     first_frame_ = frame;
@@ -36,7 +36,8 @@ std::optional<MeasuredRate> RateCheck::result() const noexcept {
   rate.deviation_ppm = slope / nominal_rate_Hz_ * 1e6;
   rate.standard_error_ppm = std::sqrt(variance / sxx) / nominal_rate_Hz_ * 1e6;
   rate.span_s = span;
-  // Coarse stamps scatter together, so that a verdict against the device needs a wide margin, or time.
+  // Errors of coarse time stamps are correlated, so a verdict against the device needs a wide margin or a
+  // long time.
   const double off = std::abs(rate.deviation_ppm);
   const bool clear = off <= tolerance_ppm || off > tolerance_ppm + 4 * rate.standard_error_ppm;
   if ((rate.standard_error_ppm > 40 || !clear) && span < 20) return std::nullopt;

@@ -4,16 +4,17 @@
 
 namespace turnpoint::drive {
 
-/// What a device's own clock runs at, against CLOCK_MONOTONIC_RAW (which no time service steers).
+/// The rate of a device's clock, measured against CLOCK_MONOTONIC_RAW (which time services do not adjust).
 struct MeasuredRate {
   double rate_Hz = 0;
-  double deviation_ppm = 0;  ///< from the nominal rate
+  double deviation_ppm = 0;  ///< deviation from the nominal rate
   double standard_error_ppm = 0;
   double span_s = 0;
 };
 
-/// Tells whether frames pass at the rate that was promised: a resampler behind a device, or a wrong clock,
-/// shows here and nowhere else. Regression with running sums: constant memory, fit for the audio thread.
+/// Checks that the device plays frames at the promised rate. This is the only check that detects a resampler
+/// inside a device or a wrong clock. It is a regression with running sums: constant memory, safe for the
+/// audio thread.
 class RateCheck {
  public:
   static constexpr double tolerance_ppm = 200;
@@ -23,8 +24,8 @@ class RateCheck {
   void add(std::int64_t frame, std::int64_t raw_ns) noexcept;
   void restart() noexcept { count_ = 0; }
 
-  /// The rate, once at least 2 s have been seen and its standard error is 40 ppm or less (or 20 s have been
-  /// seen).
+  /// The rate, once the data span at least 2 s and the standard error is at most 40 ppm (or the data span 20
+  /// s).
   std::optional<MeasuredRate> result() const noexcept;
 
  private:

@@ -30,7 +30,7 @@ class Realtime final : public DeviceStream {
                                   config.fifo_priority, std::strerror(denied));
   }
 
-  // What sounds is ramped down, then the thread stops.
+  // Ramps down what is sounding, then stops the thread.
   ~Realtime() override {
     const OutputConfig& output = config().output;
     try {
@@ -38,7 +38,8 @@ class Realtime final : public DeviceStream {
       stop(0, ramp, std::nullopt);
       const std::int64_t tail = ramp.frames + std::int64_t{output.period_frames} * (output.periods + 1);
       sleep_until_ns(monotonic_ns() + tail * 1'000'000'000 / output.rate_Hz);
-    } catch (const std::exception&) {  // the audio thread takes no commands: nothing sounds either
+      // The audio thread does not accept commands, so nothing is sounding either.
+    } catch (const std::exception&) {
     }
     thread_.request_stop();
   }
@@ -56,7 +57,8 @@ class Realtime final : public DeviceStream {
   Rights rights_;
   std::atomic<int> granted_{0}, stack_denied_{0};
   std::latch started_{1};
-  std::jthread thread_;  // last: joined before what it uses goes
+  // The last member, so that the thread is joined before the objects that it uses are destroyed.
+  std::jthread thread_;
 };
 
 }  // namespace

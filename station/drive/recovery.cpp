@@ -6,8 +6,7 @@ namespace turnpoint::drive {
 namespace {
 
 constexpr std::int64_t reopen_every_ns = 250'000'000;
-constexpr int most_resumes =
-    50;  // a codec needs some ten periods; beyond that it is not coming back by itself
+constexpr int most_resumes = 50;  // a codec needs about ten periods; after 50 it will not recover by itself
 
 }  // namespace
 
@@ -41,8 +40,9 @@ RecoveryAction Recovery::acted(const DeviceReport& report) noexcept {
   if (report.disconnected || report.error == -ENODEV) return lose();
   if (state_ == State::resuming) {
     if (report.error == -EAGAIN && ++resumes_ < most_resumes) return RecoveryAction::wait;
-    // Many drivers cannot resume (ENOSYS). One that can has frames and times in a new relation, and the rest
-    // of a stimulus from before the sleep in its buffer: it starts anew as well.
+    // Many drivers cannot resume (ENOSYS). After a resume, the relation between frames and time has changed,
+    // and the buffer still holds the rest of a stimulus from before the sleep. So the device is restarted in
+    // this case as well.
     state_ = State::restarting;
     return RecoveryAction::restart;
   }

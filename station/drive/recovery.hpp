@@ -3,35 +3,35 @@
 
 namespace turnpoint::drive {
 
-/// What a sound device said: 0 or the negative errno of the last call, and whether its state is
-/// "disconnected".
+/// The state of a sound device after a call: 0 or the negative errno of the last call, and whether ALSA
+/// reports "disconnected".
 struct DeviceReport {
   int error = 0;
   bool disconnected = false;
 };
 
 enum class RecoveryAction {
-  go_on,    ///< all is well, or the call was only interrupted: try again
-  restart,  ///< underrun or woken: prepare, fill with silence, start
-  resume,   ///< suspended: ask the device to resume, before it is restarted
-  wait,     ///< the device is resuming: wait a period, then ask again
-  abandon,  ///< gone: close it; the stream is lost and the amplifier goes off
-  reopen,   ///< lost: try to open it by name
-  back,     ///< it is open again: an operator has to re-arm
+  go_on,    ///< all is well, or the call was merely interrupted: try again
+  restart,  ///< underrun, or after a resume: prepare, fill with silence, start
+  resume,   ///< suspended: ask the device to resume before restarting it
+  wait,     ///< the device is resuming: wait one period, then ask again
+  abandon,  ///< the device is gone: close it; the amplifier goes off
+  reopen,   ///< the device is lost: try to open it by name
+  back,     ///< the device is open again: an operator has to re-arm
 };
 
-/// What to do when a sound device fails, as a machine that is stepped with what the device said. Pure: it
-/// neither sleeps nor calls the device.
+/// Decides what to do when a sound device fails. This is a state machine that receives what the device
+/// reported. Pure: it neither sleeps nor calls the device.
 class Recovery {
  public:
-  /// After a transfer or a wait.
+  /// Call this after a transfer or a wait.
   RecoveryAction transferred(const DeviceReport& report) noexcept;
-  /// After the action `restart` or `resume` was carried out.
+  /// Call this after carrying out the action `restart` or `resume`.
   RecoveryAction acted(const DeviceReport& report) noexcept;
-  /// While lost: whenever a period has passed, with the time since the loss. Reopening is tried four times a
-  /// second.
+  /// Call this once per period while the device is lost, with the time since the loss. It asks to reopen four
+  /// times a second.
   RecoveryAction absent(std::int64_t lost_for_ns) noexcept;
-  /// After the action `reopen`: 0, or why not.
+  /// Call this after the action `reopen`, with 0 or the error.
   RecoveryAction reopened(int error) noexcept;
 
   bool lost() const noexcept { return state_ == State::lost; }
@@ -45,10 +45,10 @@ class Recovery {
   std::int64_t next_try_ns_ = 0;
 };
 
-/// Decides whether underruns are too many: more than three within a minute stop a session.
+/// Counts underruns: more than three within a minute stop a session.
 class UnderrunLimit {
  public:
-  /// True when this one makes it too many.
+  /// True if this underrun exceeds the limit.
   bool exceeded_by(std::int64_t time_ns) noexcept;
 
  private:

@@ -6,15 +6,15 @@
 
 namespace turnpoint::drive {
 
-/// Bounded queue from one producer thread to one consumer thread; both ends are wait-free. T crosses by value
-/// and must be trivially copyable. Capacity must be a power of two.
+/// Bounded queue from one producer thread to one consumer thread; both ends are wait-free. T is copied and
+/// must be trivially copyable. Capacity must be a power of two.
 template <typename T, std::size_t Capacity>
 class Ring {
   static_assert(std::is_trivially_copyable_v<T>);
   static_assert(Capacity >= 2 && (Capacity & (Capacity - 1)) == 0);
 
  public:
-  /// Producer only. False, and nothing done, when full.
+  /// Producer only. Returns false and does nothing if the ring is full.
   [[nodiscard]] bool push(const T& value) noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_.load(std::memory_order_acquire) == Capacity) return false;
@@ -23,12 +23,12 @@ class Ring {
     return true;
   }
 
-  /// Producer only. How many more are sure to fit.
+  /// Producer only. The number of values that are certain to fit.
   std::size_t room() const noexcept {
     return Capacity - (head_.load(std::memory_order_relaxed) - tail_.load(std::memory_order_acquire));
   }
 
-  /// Consumer only. False, and `value` untouched, when empty.
+  /// Consumer only. Returns false and leaves `value` unchanged if the ring is empty.
   [[nodiscard]] bool pop(T& value) noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     if (tail == head_.load(std::memory_order_acquire)) return false;

@@ -25,7 +25,7 @@ std::uint64_t phase_increment(double frequency_Hz, int rate_Hz) noexcept {
 std::uint64_t phase_of_angle(double angle_rad) noexcept {
   const double cycles = angle_rad / two_pi;
   const double fraction = cycles - std::floor(cycles);
-  // A tiny negative angle rounds up to a whole cycle, which is none.
+  // A tiny negative angle rounds up to a whole cycle, which is the same as 0.
   return fraction >= 1 ? 0 : static_cast<std::uint64_t>(fraction * 0x1p64);
 }
 

@@ -34,7 +34,7 @@ struct Synth::State {
     if (event_count < events.size()) events[event_count++] = {kind, burst, frame};
   }
 
-  // Frames between the last block and `frame` were lost: what sounds comes back ramped.
+  // Frames between the last block and `frame` were lost. Sounding bursts continue with a ramp.
   void skip_to(std::int64_t frame) noexcept {
     for (Slot& slot : slots) {
       if (slot.phase == Phase::unused) continue;
@@ -58,7 +58,8 @@ struct Synth::State {
     step(frame, frames, [&](Voice& voice, std::int64_t at) { voice.add(at, mix, scratch, *kernels); });
   }
 
-  /// Takes every voice over these frames by `go(voice, frame of the burst)`, and says what began and ended.
+  /// Advances every voice over these frames by calling `go(voice, frame of the burst)`, and records which
+  /// bursts began and ended.
   template <class Go>
   void step(std::int64_t frame, int frames, const Go& go) noexcept {
     if (frame != next_frame) skip_to(frame);
@@ -90,7 +91,7 @@ struct Synth::State {
         double value = mix.samples[c][n] * scale;
         if (mix.dithered[c][n])
           value += triangular(hashed((static_cast<std::uint64_t>(frame) + n) * max_channels + c));
-        // Adding 1.5 * 2^52 rounds to the nearest integer in the low bits, on every machine alike.
+        // Adding 1.5 * 2^52 rounds to the nearest integer in the low bits, on every machine in the same way.
         const double rounded = (value + 0x1.8p52) - 0x1.8p52;
         const double held = std::clamp(rounded, -scale, scale - 1);
         saturated += held != rounded ? 1 : 0;
@@ -157,7 +158,7 @@ void Synth::render(std::int64_t frame, std::span<std::int32_t> samples) noexcept
   for (std::size_t done = 0; done < total; done += max_block) {
     const auto frames = static_cast<int>(std::min<std::size_t>(max_block, total - done));
     const std::int64_t at = frame + static_cast<std::int64_t>(done);
-    if (!state_->active()) {  // most of a session: digital silence
+    if (!state_->active()) {  // most of a session is digital silence
       std::fill_n(samples.data() + done * channels, static_cast<std::size_t>(frames) * channels, 0);
       state_->next_frame = at + frames;
       continue;

@@ -9,65 +9,67 @@
 
 namespace turnpoint::drive {
 
-struct MemoryRange;  // rights.hpp
+struct MemoryRange;  // defined in memory_range.hpp
 
-/// What happened to a burst, in frames of the stream.
+/// An event of a burst, in frames of the stream.
 enum class SynthEventKind : std::int32_t { started, ended, missed };
 struct SynthEvent {
   SynthEventKind kind = SynthEventKind::started;
   std::uint32_t burst = 0;
-  std::int64_t frame = 0;  ///< first frame, first silent frame, or the frame that was already gone
+  /// started: first frame; ended: first silent frame; missed: the frame that was already past
+  std::int64_t frame = 0;
 };
 
-/// Renders bursts into blocks, in double: the same samples on every machine, spurious products below -290 dB
-/// before quantisation. Everything is preallocated: after construction nothing allocates, locks, throws or
-/// logs. One thread at a time. Samples depend only on the absolute frame and the bursts, not on how the
-/// stream is cut into blocks; masking noise alone keeps a filter state and is the same only for an unbroken
-/// stream.
+/// Renders bursts into blocks, in double precision: the same samples on every machine, with spurious products
+/// below -290 dB before quantisation. Everything is preallocated: after construction nothing allocates,
+/// locks, throws or logs. Use it from one thread at a time. Samples depend only on the absolute frame and the
+/// bursts, not on how the stream is divided into blocks. Masking noise is the exception: it has a filter
+/// state and is reproduced only by an unbroken stream.
 class Synth {
  public:
   static constexpr int max_block = 512;
-  static constexpr int max_voices = 4;  ///< bursts that may wait or sound at once
+  static constexpr int max_voices = 4;  ///< bursts that can wait or sound at the same time
 
-  /// Throws terms::UsageError for a format outside 8-768 kHz, 1-8 channels, 8-32 bits.
+  /// Throws terms::UsageError for a format outside 8-768 kHz, 1-8 channels or 8-32 bits.
   explicit Synth(const Format& format, const Kernels& kernels = best_kernels());
   ~Synth();
   Synth(const Synth&) = delete;
   Synth& operator=(const Synth&) = delete;
 
-  /// Takes a burst. False when all voices are taken.
+  /// Accepts a burst. Returns false if all voices are in use.
   [[nodiscard]] bool start(const PreparedBurst& burst) noexcept;
-  /// Changes a burst that waits or sounds, beside the burst's own changes; `at_frame` counts from the burst's
-  /// start. One whose frame is already gone begins with the next block; the newest supersedes one that still
-  /// waits, and takes over from a glide in progress. False when the burst is gone.
+  /// Changes a waiting or sounding burst, in addition to the burst's own changes; `at_frame` counts from the
+  /// burst's start. A change whose frame is already past begins with the next block. A newer change replaces
+  /// one that is still waiting, and takes over from a glide in progress. Returns false if the burst has
+  /// ended.
   [[nodiscard]] bool change(std::uint32_t burst, const PreparedChange& change) noexcept;
-  /// Ramps a burst (0: all) down from `frame`, or from the next block where that is gone. A second stop that
-  /// ends sooner multiplies with the ramp in progress, so that nothing jumps; one that ends later changes
-  /// nothing. Bursts that have not begun by then never do.
+  /// Ramps a burst (0: all) down from `frame`, or from the next block if that frame is past. A second stop
+  /// that ends sooner is multiplied with the ramp in progress, so that nothing jumps; one that ends later has
+  /// no effect. Bursts that have not begun by then never begin.
   void stop(std::uint32_t burst, std::int64_t frame, const Ramp& ramp) noexcept;
 
-  /// Writes frames [frame, frame + samples.size() / channels) left-aligned into interleaved `samples`. Where
-  /// `frame` is not the one that the last call ended at, frames were lost: bursts go on where they would have
-  /// been, ramped in.
+  /// Writes frames [frame, frame + samples.size() / channels) left-aligned into interleaved `samples`. If
+  /// `frame` is not the one at which the last call ended, frames were lost: bursts continue where they would
+  /// have been, with a ramp.
   void render(std::int64_t frame, std::span<std::int32_t> samples) noexcept;
   /// The same before dither and quantisation, as doubles, for measurement.
   void render(std::int64_t frame, std::span<double> samples) noexcept;
-  /// The last block, or its end, was not played: the next one begins at `frame`, which is at or after the end
-  /// of what was rendered, and what has begun by then comes back ramped in.
+  /// Call this if the last block, or its end, was not played. The next block begins at `frame`, which is at
+  /// or after the end of what was rendered. Bursts that have begun by then continue with a ramp.
   void skip_to(std::int64_t frame) noexcept;
-  /// Goes on by so many frames without computing them: the same events, and the same samples afterwards
-  /// (masking noise excepted).
+  /// Advances by this many frames without computing samples. Events and all later samples are the same as
+  /// after rendering (except for masking noise).
   void pass(std::int64_t frame, std::int64_t frames) noexcept;
 
   /// Events since the last call, oldest first; valid until the next render.
   std::span<const SynthEvent> events() const noexcept;
   void clear_events() noexcept;
 
-  /// All that render() uses beside this object itself.
+  /// All memory that render() uses beside this object.
   MemoryRange memory() const noexcept;
 
-  bool active() const noexcept;              ///< a burst waits or sounds
-  std::uint64_t saturated() const noexcept;  ///< samples that left the range: 0 unless limits were lifted
+  bool active() const noexcept;              ///< true while a burst waits or sounds
+  std::uint64_t saturated() const noexcept;  ///< samples out of range: 0 unless limits were lifted
 
  private:
   struct State;

@@ -70,7 +70,7 @@ void Voice::begin_glide(std::int64_t at, const PreparedChange& change) noexcept 
   for (int i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     target_[k] = change.to[k];
-    if (i >= burst_.tone_count) {  // a tone that only the change has: as if it had run silently
+    if (i >= burst_.tone_count) {  // a tone that only the change contains starts as if it had run silently
       burst_.tones[k] = change.to[k];
       const std::uint64_t gone = target_[k].increment * static_cast<std::uint64_t>(origin_);
       partials_[k] = {target_[k].phase + gone, target_[k].increment, 0, 0, 0};
@@ -112,7 +112,7 @@ void Voice::enter(std::int64_t at) noexcept {
         ++next_change_;
       else
         live_waits_ = false;
-      // A live change that came late begins now: its past has been heard already.
+      // A live change that came late begins now: the frames before have already been rendered.
       begin_glide(change.live ? at : change_at, change);
     } else {
       return;
@@ -142,7 +142,8 @@ void Voice::tones(std::int64_t at, int offset, int count, Scratch& scratch, cons
   }
 }
 
-// The product of all ramps that touch these frames; false where there is none and the gain is 1.
+// Computes the product of all ramps that overlap these frames. Returns false if there is none, so the gain is
+// 1.
 bool Voice::gains(std::int64_t at, int count, Scratch& scratch) const noexcept {
   const std::int64_t last = at + count, ramp = burst_.ramp.frames, fall = burst_.length_frames - ramp;
   const bool rising = at<ramp, falling = last> fall, stopping = stop_count_ > 0,

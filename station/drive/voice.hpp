@@ -10,7 +10,7 @@ namespace turnpoint::drive {
 
 inline constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 
-/// A block being mixed: one row a channel. `dithered` marks the frames of a channel that are not digital
+/// A block being mixed: one row per channel. `dithered` marks the frames of a channel that are not digital
 /// silence.
 struct Mix {
   static constexpr int block = 512;
@@ -26,22 +26,23 @@ struct Scratch {
   alignas(64) std::array<double, Mix::block> shape;
 };
 
-/// One burst on its way through the stream: where it is, and what has been asked of it since. Frames are
-/// counted from the burst's start. No allocation; all functions noexcept.
+/// A burst in the stream: its state and the changes and stops requested so far. Frames are counted from the
+/// burst's start. No allocation; all functions are noexcept.
 class Voice {
  public:
   void begin(const PreparedBurst& burst) noexcept;
-  /// Supersedes any live change that still waits.
+  /// Replaces any live change that is still waiting.
   void change(const PreparedChange& change) noexcept;
-  /// Ignored where the burst ends as soon already, and after eight stops.
+  /// Ignored if the burst already ends at least as soon, and after eight stops.
   void stop(std::int64_t at, const Ramp& ramp) noexcept;
-  /// Frames were lost: from `at` the sound comes back ramped.
+  /// Call this if frames were lost: from `at` on the sound continues with a ramp.
   void resume(std::int64_t at) noexcept;
 
-  /// Adds frames [at, at + mix.frames) to the mix. `at` must not fall. May be negative (not begun).
+  /// Adds frames [at, at + mix.frames) to the mix. `at` may be negative (the burst has not begun) and must
+  /// not decrease.
   void add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kernels) noexcept;
 
-  /// Goes on by so many frames without computing them; the noise's filters stand still.
+  /// Advances by this many frames without computing them. The noise filters keep their state.
   void pass(std::int64_t at, int frames) noexcept;
 
   std::int64_t end() const noexcept;  ///< first silent frame
@@ -60,8 +61,8 @@ class Voice {
 
   PreparedBurst burst_;
   std::array<Partial, max_tones> partials_;
-  std::int64_t origin_ = 0;         ///< frame at which `partials_` count 0
-  std::int64_t glide_end_ = never;  ///< of the glide in progress
+  std::int64_t origin_ = 0;         ///< frame at which n of `partials_` is 0
+  std::int64_t glide_end_ = never;  ///< end of the glide in progress
   std::int64_t glide_frames_ = 1;
   std::array<PreparedTone, max_tones> target_;
   int next_change_ = 0;
@@ -72,7 +73,7 @@ class Voice {
     Ramp ramp;
     std::int64_t end() const noexcept { return at + ramp.frames; }
   };
-  std::array<Stop, 8> stops_;  ///< each ends sooner than the one before it; their gains multiply
+  std::array<Stop, 8> stops_;  ///< each ends sooner than the one before it; their gains are multiplied
   std::size_t stop_count_ = 0;
   std::int64_t resume_at_ = -never;
   double high_[2] = {}, low_[2] = {};  ///< filter states of the noise

@@ -5,9 +5,9 @@
 
 namespace turnpoint::drive {
 
-/// A RIFF/WAVE file of 32-bit PCM (WAVE_FORMAT_EXTENSIBLE with the converter's depth as valid bits). Stops
-/// with an error before the 4 GiB that the format can hold. Throws std::system_error where the file cannot be
-/// created.
+/// Writes a RIFF/WAVE file of 32-bit PCM (WAVE_FORMAT_EXTENSIBLE with the converter's depth as valid bits).
+/// Stops with an error before the file reaches 4 GiB, the limit of the format. Throws std::system_error if
+/// the file cannot be created.
 std::unique_ptr<Output> open_wav(const OutputConfig& config, const std::string& path);
 
 }  // namespace turnpoint::drive

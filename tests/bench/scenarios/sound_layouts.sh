@@ -78,7 +78,7 @@ refused two.toml "does not take 2 channels; it takes 6 (the rig's device_channel
 synth six.toml alsa:hw:Loopback,0
 no_card
 card S24_3LE 2
-refused deep.toml "takes samples of 24 bits, the rig says 32"
+refused deep.toml "takes samples of 24 bits, but the rig file says 32"
 refused six.toml "does not take 6 channels; it takes 2 (the rig's device_channels)"
 synth two.toml alsa:hw:Loopback,0
 no_card
