@@ -9,17 +9,17 @@ namespace turnpoint::analysis {
 
 namespace {
 
-constexpr double kNearChance = 1e-3;  ///< of Pc from 1/2: there L^3 loses its digits
+constexpr double kNearChance = 1e-3;  ///< distance of Pc from 1/2 below which L^3 loses precision
 
-/// Variance of the decision time is (a / s)^4 h(L).
+/// The variance of the decision time is (a / s)^4 h(L).
 double h(double L) {
   L = std::abs(L);
-  if (L < 0.02) return (1 - L * L / 10) / 24;  // its series; the closed form cancels
+  if (L < 0.02) return (1 - L * L / 10) / 24;  // Taylor series, because the closed form cancels here
   const double e = std::exp(-L);
   return (1 - 2 * L * e - e * e) / (2 * L * L * L * (1 + e) * (1 + e));
 }
 
-/// Mean of the decision time is (a / s)^2 m(L).
+/// The mean of the decision time is (a / s)^2 m(L).
 double m(double L) { return std::abs(L) < 1e-4 ? 0.25 : std::tanh(L / 2) / (2 * L); }
 
 double corrected(const EzMoments& moments) {
@@ -27,7 +27,7 @@ double corrected(const EzMoments& moments) {
   return moments.proportion_correct;
 }
 
-/// Why no diffusion can be fitted to these moments, or none.
+/// The reason why no diffusion model fits these moments; empty if one does.
 std::optional<Statement> refusal(const EzMoments& moments) {
   const double p = corrected(moments);
   if (!(p > 0 && p < 1) || moments.proportion_correct > 1)
@@ -78,7 +78,8 @@ SharedEzResult shared_ez_diffusion(const std::vector<EzMoments>& conditions) {
     L.push_back(!refusal(moments) ? logit(p) : 0);
     weight.push_back(0);
     if (!usable) continue;
-    // Relative variance of VRT: kurtosis of the exit time (about 9 cv^2 above a normal's); of ln h: from L's.
+    // Relative variance of the estimate from VRT. The kurtosis of the exit time adds about 9 cv^2 to that of
+    // a normal distribution; the variance of ln h follows from that of L.
     const double l = L.back(), cv2 = h(l) / (m(l) * m(l)), step = 1e-3;
     const double dlnh = (std::log(h(l + step)) - std::log(h(l - step))) / (2 * step);
     const double spread = (2 + 9 * cv2) / correct + dlnh * dlnh / (moments.trials * p * (1 - p));

@@ -3,7 +3,7 @@
 
 namespace turnpoint::analysis {
 
-/// A number with its interval.
+/// A number and its interval.
 struct Estimate {
   double value = 0;
   Interval interval;

@@ -7,7 +7,8 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// Solves the damped system for the free parameters by Cholesky; false where it is not positive definite.
+/// Solves the damped system for the free parameters by Cholesky. Returns false if it is not positive
+/// definite.
 bool solve(std::array<std::array<double, 4>, 4> a, std::array<double, 4> b, const std::array<bool, 4>& free,
            std::array<double, 4>& x) {
   std::array<int, 4> index{};
@@ -70,7 +71,7 @@ std::array<double, 4> Likelihood::gradient_of_probability(const Theta& theta, co
                                                           double u) const {
   const double rate = std::exp(theta[1]), height = 1 - theta[3] - theta[2], from = rate * (u - theta[0]);
   const double f = core(function_, from + at.z), df = core_derivative(function_, from + at.z);
-  // Without a signal the function is flat, infinitely far down.
+  // On trials without a signal the function is flat, because they lie infinitely far below all levels.
   std::array<double, 4> dp{-height * df * rate, df > 0 ? height * df * from : 0,
                            -f + height * df * at.dz_dlapse, 1 - f + height * df * at.dz_dguess};
   if (guess_ == Guess::tied_to_lapse) dp[2] += dp[3], dp[3] = 0;
@@ -114,7 +115,7 @@ Likelihood::Maximum Likelihood::climb(Theta start) const {
       continue;
     }
     Theta next = theta;
-    // One standard deviation of the function, and a factor e in rate, are as far as a step is trusted.
+    // Limit each step to one standard deviation of the function and a factor of e in rate.
     step[0] = std::clamp(step[0], -2 / std::exp(theta[1]), 2 / std::exp(theta[1]));
     step[1] = std::clamp(step[1], -1.0, 1.0);
     for (int i = 0; i < 4; ++i) next[i] += step[i];
@@ -137,8 +138,8 @@ Likelihood::Maximum Likelihood::climb(Theta start) const {
 }
 
 Likelihood::Maximum Likelihood::steepest(const Maximum& found) const {
-  // Where the answers jump between two levels the likelihood is flat towards infinite slope, and the climb
-  // ends anywhere on that plateau: the bound says so.
+  // If the answers jump between two levels, the likelihood is flat towards infinite slope and the climb ends
+  // anywhere on that plateau. The bound on the slope marks this case.
   std::vector<double> thresholds{found.theta[0]};
   for (std::size_t i = 1; i < counts_.u.size(); ++i)
     if (counts_.u[i - 1] != kNoise && counts_.u[i - 1] <= found.theta[0] && found.theta[0] <= counts_.u[i])

@@ -7,28 +7,28 @@
 
 namespace turnpoint::analysis {
 
-/// Keeps logarithms finite where a probability reaches 0 or 1 in rounding.
+/// Keeps logarithms finite if rounding makes a probability 0 or 1.
 constexpr double kProbabilityFloor = 1e-12;
 
-/// Threshold on the axis, ln rate, lapse, guess: the optimiser's parameters. A parameter with equal bounds is
+/// The optimiser's parameters: threshold on the axis, ln rate, lapse, guess. A parameter with equal bounds is
 /// fixed; a tied guess follows the lapse.
 using Theta = std::array<double, 4>;
 struct ThetaBounds {
   Theta low{}, high{};
 };
 
-/// The levels on their axis with their counts: what every replicate of a bootstrap shares but for `positive`.
+/// Counts by level on the axis. All replicates of a bootstrap share them except for `positive`.
 struct AxisCounts {
-  std::vector<double> u, trials, positive;  ///< u ascending; the first may be kNoise
-  /// The lowest position of a signal.
+  std::vector<double> u, trials, positive;  ///< u is ascending; the first may be kNoise
+  /// The lowest level with a signal.
   double lowest() const { return u.front() == kNoise && u.size() > 1 ? u[1] : u.front(); }
 };
 
 /// The likelihood of one set of counts and its maximum.
 class Likelihood {
  public:
-  /// With an anchor theta[0] is the level at which the probability is `anchor`, not the threshold. Counts and
-  /// bounds must outlive the object.
+  /// With an anchor, theta[0] is not the threshold but the level at which the probability is `anchor`. Counts
+  /// and bounds must outlive the object.
   Likelihood(Function function, Guess guess, const AxisCounts& counts, const ThetaBounds& bounds,
              std::optional<double> anchor = std::nullopt)
       : function_(function), guess_(guess), counts_(counts), bounds_(bounds), anchor_(anchor) {}
@@ -40,10 +40,10 @@ class Likelihood {
     Theta theta{};
     double negative_log = 0;
   };
-  /// Fisher scoring with Levenberg damping from one start, projected on the bounds: an active bound keeps its
-  /// parameter as long as the gradient points outside.
+  /// Fisher scoring with Levenberg damping from one start, projected on the bounds: a parameter stays on its
+  /// bound as long as the gradient points outside.
   Maximum climb(Theta start) const;
-  /// The best of a grid of starts, each climbed a little, the leaders to the end.
+  /// Searches from a grid of starts: climbs a little from each, and to the end from the best ones.
   Maximum search() const;
 
  private:
@@ -53,7 +53,7 @@ class Likelihood {
     std::array<std::array<double, 4>, 4> information;
   };
   Local local(const Theta& theta) const;
-  /// The standard variable at theta[0], and how it moves with lapse and guess.
+  /// The standard variable at theta[0], and its derivatives with respect to lapse and guess.
   struct Anchor {
     double z = 0, dz_dlapse = 0, dz_dguess = 0;
   };

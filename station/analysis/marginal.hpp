@@ -3,7 +3,7 @@
 
 namespace turnpoint::analysis {
 
-/// Cells of equal width from low to high; a single cell may have no width.
+/// Cells of equal width from low to high. A single cell may have width 0.
 struct Cells {
   double low = 0, high = 1;
   int count = 1;
@@ -16,17 +16,18 @@ struct Cells {
 /// A distribution with constant density within each cell.
 class Marginal {
  public:
-  /// One mass a cell, of any sum above 0; throws std::invalid_argument for another number of masses.
+  /// Takes one mass per cell; their sum may be any number above 0. Throws std::invalid_argument if the number
+  /// of masses is wrong.
   Marginal(const Cells& cells, std::vector<double> mass);
 
   const Cells& cells() const { return cells_; }
   const std::vector<double>& mass() const { return mass_; }
-  /// p in [0, 1]; for 0 and 1 the ends of the cells.
+  /// p in [0, 1]; 0 and 1 give the outer ends of the cells.
   double quantile(double p) const;
 
  private:
   Cells cells_;
-  std::vector<double> mass_, cumulative_;  ///< cumulative_[i]: mass below edge i
+  std::vector<double> mass_, cumulative_;  ///< cumulative_[i] is the mass below edge i
 };
 
 }  // namespace turnpoint::analysis

@@ -9,12 +9,13 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// Cells whose profile likelihood lies so far below the largest are left out: 4.2 standard deviations.
+/// Cells whose profile likelihood is this far below the maximum are left out: 4.2 standard deviations.
 constexpr double kNegligible_nats = 9;
 /// Half the 95 % point of chi squared with one degree of freedom.
 constexpr double kNotExcluded_nats = 1.92;
 constexpr int kMostRefinements = 16;
-/// Cells along threshold, ln rate, lapse, guess. A fitted guess multiplies the grid; the others get fewer.
+/// Number of cells for threshold, ln rate, lapse and guess. A fitted guess multiplies the size of the grid,
+/// so the others get fewer cells.
 constexpr std::array<int, kParameters> kCoarse{24, 16, 3, 8}, kFine{96, 36, 4, 1},
     kFineWithGuess{64, 24, 3, 10};
 constexpr int kProbabilityCells = 500, kMostCrossingCells = 4096;
@@ -76,7 +77,7 @@ void PosteriorGrid::evaluate(const Box& box) {
     }
 }
 
-/// For each pair of asymptotes, from the function between them at each level.
+/// For each pair of asymptotes, computed from the function's core at each level.
 void PosteriorGrid::add_log_likelihoods(const std::vector<double>& between) {
   for (const auto& ends : ends_) {
     double sum = 0;
@@ -91,8 +92,8 @@ void PosteriorGrid::add_log_likelihoods(const std::vector<double>& between) {
   }
 }
 
-/// The box of the cells that matter, one cell wider at each side where there is one, but at least half as
-/// wide as this one: where cells are far wider than the posterior, the best centre may be the wrong one.
+/// The box around the cells that matter, one cell wider on each side if there is one, but at least half as
+/// wide as this one: if cells are far wider than the posterior, the best centre may be the wrong one.
 Box PosteriorGrid::narrowed() const {
   Box box = box_;
   for (std::size_t p = 0; p < kParameters; ++p) {
@@ -117,7 +118,7 @@ Box PosteriorGrid::narrowed() const {
   return box;
 }
 
-/// 1 where the prior is flat.
+/// Relative prior density; 1 on its flat part.
 double PosteriorGrid::prior_density(Parameter parameter, int cell, double falling_share) const {
   const double falling = falling_share * extent(prior_[parameter]), at = box_[parameter].centre(cell);
   const double inside = std::min(at - prior_[parameter].low, prior_[parameter].high - at);
@@ -148,7 +149,7 @@ Marginal PosteriorGrid::marginal(Parameter parameter, const std::vector<double>&
 }
 
 std::optional<Marginal> PosteriorGrid::marginal_of_crossing(double p) const {
-  // How far the crossing lies from the threshold, for each rate and pair of asymptotes.
+  // Distance of the crossing from the threshold, for each rate and pair of asymptotes.
   std::vector<std::optional<double>> shifts;
   double least = 1e300, most = -1e300, held = 0;
   for (int r = 0; r < box_[at_rate].count; ++r)
@@ -167,7 +168,7 @@ std::optional<Marginal> PosteriorGrid::marginal_of_crossing(double p) const {
   for (std::size_t i = 0; i < weight_.size(); ++i) {
     const auto& shift = shifts[i % shifts.size()];
     if (!shift) continue;
-    // The two nearest cells share the weight, which keeps its mean.
+    // Divide the weight between the two nearest cells, so that its mean does not change.
     const double level = thresholds.centre(static_cast<int>(i / shifts.size())) + *shift;
     const double at = std::max(0.0, (level - cells.low) / cells.width() - 0.5);
     const auto cell = std::min(static_cast<std::size_t>(at), mass.size() - 2);

@@ -13,32 +13,35 @@ enum Parameter { at_threshold, at_rate, at_lapse, at_guess };
 constexpr std::size_t kParameters = 4;
 using Box = std::array<Cells, kParameters>;
 
-/// The posterior of counts on a grid. The prior is uniform on each axis, but that its density falls linearly
-/// to 0 over a share of the range at both ends of threshold and rate.
+/// The posterior of counts on a grid. The prior is uniform on each axis. For threshold and rate, however, the
+/// density falls linearly to 0 over a share of the range at both ends.
 class PosteriorGrid {
  public:
-  /// Evaluates coarse grids, each on the part that matters of the one before, until one fills its box, and
-  /// then a fine grid. A parameter whose cells have no width is fixed; the guess of Guess::tied_to_lapse
-  /// follows the lapse whatever its cells are. `counts` has at least one level.
+  /// Evaluates coarse grids, each restricted to the part of the previous one that matters, until a grid fills
+  /// its box; then evaluates a fine grid. A parameter whose cells have no width is fixed. With
+  /// Guess::tied_to_lapse the guess follows the lapse, whatever its cells are. `counts` has at least one
+  /// level.
   PosteriorGrid(Function function, Guess guess, const AxisCounts& counts, const Box& prior,
                 double falling_share);
 
   Marginal marginal(Parameter parameter) const;
-  /// Of the axis position where the probability is `p`; none where most of the posterior reaches it nowhere.
+  /// Marginal of the axis position at which the probability is `p`. Empty if no such position exists for most
+  /// of the posterior.
   std::optional<Marginal> marginal_of_crossing(double p) const;
-  /// Of the probability at a position on the axis.
+  /// Marginal of the probability at a position on the axis.
   Marginal marginal_of_probability(double u) const;
 
-  /// Whether the data exclude neither end of the prior: under a flat one the density falls by less than the
-  /// likelihood ratio that 95 % of ratios stay below. An interval would only repeat the prior.
+  /// True if the data exclude neither end of the prior; an interval would then merely repeat the prior. An
+  /// end is not excluded if, under a flat prior, the density falls there by less than the 95 % likelihood
+  /// ratio.
   bool undetermined(Parameter parameter) const { return open_low(parameter) && open_high(parameter); }
-  /// Whether they do not exclude one end: there the prior limits the parameter, not the data.
+  /// True if the data do not exclude that end: there the prior limits the parameter, not the data.
   bool open_low(Parameter parameter) const;
   bool open_high(Parameter parameter) const;
 
  private:
   struct Asymptotes {
-    double low = 0, range = 1;  ///< guess, 1 - guess - lapse
+    double low = 0, range = 1;  ///< guess and 1 - guess - lapse
   };
   void evaluate(const Box& box);
   void add_log_likelihoods(const std::vector<double>& between);
@@ -54,9 +57,10 @@ class PosteriorGrid {
   Guess guess_;
   AxisCounts counts_;
   Box prior_, box_;
-  std::vector<Asymptotes> ends_;                 ///< [lapse][guess]
-  std::vector<double> log_likelihood_;           ///< [threshold][rate][lapse][guess]
-  std::vector<double> weight_, flat_;            ///< the same; with the prior, and under a flat one
+  std::vector<Asymptotes> ends_;        ///< indexed by [lapse][guess]
+  std::vector<double> log_likelihood_;  ///< indexed by [threshold][rate][lapse][guess]
+  /// same index: posterior weight with the prior, and with a flat prior
+  std::vector<double> weight_, flat_;
 };
 
 }  // namespace turnpoint::analysis

@@ -40,7 +40,7 @@ Interval wilson(int successes, int trials, double confidence) {
   const double z = normal_quantile(0.5 + confidence / 2), z2 = z * z;
   const double centre = (p + z2 / (2 * n)) / (1 + z2 / n);
   const double half = z / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
-  // At 0 and at n the limit is exact; rounding must not step outside.
+  // At 0 and at n the limit is exact; rounding must not push it outside [0, 1].
   return {successes == 0 ? 0 : centre - half, successes == trials ? 1 : centre + half, confidence};
 }
 

@@ -9,11 +9,12 @@ double normal_density(double z);
 /// Inverse of normal_cdf; throws std::invalid_argument outside (0, 1).
 double normal_quantile(double p);
 
-/// Score interval of a binomial proportion (Wilson 1927). 0 <= successes <= trials, trials > 0; anything else
-/// throws std::invalid_argument, as does a confidence outside (0, 1).
+/// Score interval of a binomial proportion (Wilson 1927). Requires 0 <= successes <= trials, trials > 0, and
+/// a confidence in (0, 1); otherwise throws std::invalid_argument.
 Interval wilson(int successes, int trials, double confidence = 0.95);
 
-/// The interval of Clopper & Pearson (1934), never below its stated coverage. Arguments as for wilson().
+/// The interval of Clopper & Pearson (1934), whose coverage is never below the stated one. Arguments as for
+/// wilson().
 Interval clopper_pearson(int successes, int trials, double confidence = 0.95);
 
 }  // namespace turnpoint::analysis

@@ -13,19 +13,19 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// A quantity with an interval: which entry of theta, and what theta[0] stands for.
+/// A quantity that gets an interval: its entry in theta, and the meaning of theta[0] for it.
 struct Quantity {
   int parameter;
   std::optional<double> anchor;
 };
 
-/// What a fit needs to be repeated on drawn counts.
+/// Everything needed to repeat a fit on resampled counts.
 struct Replicator {
   FitOptions options;
   AxisCounts counts;
   ThetaBounds bounds;
   Theta best{};
-  std::vector<double> model;  ///< probability at each level
+  std::vector<double> model;  ///< fitted probability at each level
 
   Likelihood likelihood(const AxisCounts& of, const ThetaBounds& within,
                         std::optional<double> anchor = std::nullopt) const {
@@ -46,7 +46,7 @@ struct Replicator {
   Likelihood::Maximum fit(const AxisCounts& drawn) const {
     const auto of = likelihood(drawn, bounds);
     const auto first = of.climb(best);
-    // A second start from the middle of the box guards against a local maximum on the lapse bound.
+    // A second start in the middle of the box guards against a local maximum on the lapse bound.
     Theta other = best;
     other[0] = (bounds.low[0] + bounds.high[0]) / 2;
     other[2] = (bounds.low[2] + bounds.high[2]) / 2;
@@ -54,7 +54,7 @@ struct Replicator {
     return second.negative_log < first.negative_log - 1e-9 ? second : first;
   }
 
-  /// The smallest negative log-likelihood with one quantity held at a value, climbing from `start`.
+  /// The smallest negative log-likelihood with one quantity fixed at a value, climbing from `start`.
   Likelihood::Maximum held(const AxisCounts& of, const Quantity& quantity, double value, Theta start) const {
     ThetaBounds narrowed = bounds;
     narrowed.low[quantity.parameter] = narrowed.high[quantity.parameter] = value;
@@ -88,14 +88,14 @@ Replicator replicator(const PsychometricFit& fit) {
   return result;
 }
 
-/// Where the profile reaches `critical` on one side of the estimate, or the bound where it does not.
+/// The point where the profile reaches `critical` on one side of the estimate; the bound if it never does.
 double profile_end(const Replicator& base, const Quantity& quantity, Theta start, double bound,
                    double best_cost, double critical) {
   double inside = start[quantity.parameter], outside = bound;
   auto at_bound = base.held(base.counts, quantity, bound, start);
   if (2 * (at_bound.negative_log - best_cost) <= critical) return bound;
   for (int i = 0; i < 40 && std::abs(outside - inside) > 1e-5 * (1 + std::abs(inside)); ++i) {
-    // Most of the box is far away: the first steps approach the estimate faster than by halves.
+    // Most of the box is far away, so the first steps move towards the estimate faster than bisection.
     const double middle = i < 3 ? inside + (outside - inside) / 4 : (inside + outside) / 2;
     const auto found = base.held(base.counts, quantity, middle, start);
     if (2 * (found.negative_log - best_cost) <= critical) {
@@ -110,7 +110,8 @@ double profile_end(const Replicator& base, const Quantity& quantity, Theta start
 
 ParameterInterval profile(const Replicator& base, const Quantity& quantity, const Theta& start,
                           double best_cost, std::vector<double> ratios, double confidence) {
-  // Replicates of a fit whose slope came out too steep hardly vary: chi-square's value is the floor.
+  // If the fitted slope is too steep, its replicates hardly vary. The chi-square value is therefore a lower
+  // limit.
   const double z = normal_quantile(0.5 + confidence / 2);
   const double critical = std::max(quantile(std::move(ratios), confidence), z * z);
   const double low = base.bounds.low[quantity.parameter], high = base.bounds.high[quantity.parameter];
@@ -130,7 +131,7 @@ ParameterInterval percentile(std::vector<double> values, double confidence, doub
   return result;
 }
 
-/// A monotone map of both ends; a falling one swaps them.
+/// Applies a monotone map to both ends. A decreasing map swaps them.
 template <class Map>
 ParameterInterval mapped(const ParameterInterval& from, Map map) {
   auto result = from;
@@ -158,8 +159,8 @@ void add_band(PsychometricIntervals& result, const Replicator& base, const std::
   }
 }
 
-/// The replicates of one fit: their estimates, deviances beyond the fit's, and likelihood ratios of the
-/// fit's own values of each quantity.
+/// The replicates of one fit: their estimates, how many deviances exceed the fit's, and for each
+/// quantity the likelihood ratio of the fitted value.
 struct Replicates {
   std::vector<Theta> thetas;
   std::vector<std::vector<double>> ratios;

@@ -32,7 +32,7 @@ void check(const std::vector<LevelCount>& data, const FitOptions& options) {
     throw std::invalid_argument("guess " + text::number(options.guess_value) + ": from 0 to below 1");
 }
 
-/// Levels in order, one entry each, those without trials dropped.
+/// Sorts the levels, merges equal ones and drops those without trials.
 std::vector<LevelCount> merged(const std::vector<LevelCount>& data) {
   std::map<double, LevelCount> by_level;
   for (const auto& point : data) {
@@ -47,10 +47,10 @@ std::vector<LevelCount> merged(const std::vector<LevelCount>& data) {
   return result;
 }
 
-/// The z statistic of a linear trend of positive answers over the axis (Cochran-Armitage); 0 where all
-/// answers or all levels are the same.
+/// The z statistic of a linear trend in the proportion of positive answers along the axis (Cochran-Armitage);
+/// 0 if all answers or all levels are the same.
 double trend(AxisCounts counts) {
-  // Noise stands as far below the signals as they reach.
+  // For this test, place noise trials below the lowest signal by the range of the signals.
   if (counts.u.front() == kNoise)
     counts.u.front() = counts.lowest() - std::max(counts.u.back() - counts.lowest(), 1.0);
   double n = 0, k = 0, sum_u = 0;
@@ -69,7 +69,7 @@ double trend(AxisCounts counts) {
   return variance > 0 ? covariance / std::sqrt(variance) : 0;
 }
 
-/// Why no maximum can be found, or none.
+/// The reason why no maximum can be found; empty if one can.
 std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitOptions& options) {
   int trials = 0, positive = 0;
   for (const auto& point : data) {
@@ -110,7 +110,8 @@ double deviance(const PsychometricFit& fit, const Likelihood& likelihood, const 
 void note_bounds(PsychometricFit& fit, const Theta& theta, const ThetaBounds& bounds) {
   const auto at = [](double value, double bound) { return std::abs(value - bound) < 1e-6; };
   const bool rate_low = at(theta[1], bounds.low[1]), rate_high = at(theta[1], bounds.high[1]);
-  const bool falling = fit.options.function == Function::normal;  // its slope is a spread
+  // for this function the slope parameter is a spread
+  const bool falling = fit.options.function == Function::normal;
   fit.at_bound.slope_low = falling ? rate_high : rate_low;
   fit.at_bound.slope_high = falling ? rate_low : rate_high;
   if (bounds.low[2] < bounds.high[2]) {
@@ -126,7 +127,7 @@ void note_bounds(PsychometricFit& fit, const Theta& theta, const ThetaBounds& bo
   if (rate_low)
     fit.statements.push_back({"slope-bound", "The function is so shallow that its slope is only limited."});
   if (fit.at_bound.lapse_high)
-    fit.statements.push_back({"lapse-bound", "The lapse rate stands on its upper bound, " +
+    fit.statements.push_back({"lapse-bound", "The lapse rate is at its upper bound, " +
                                                  text::number(bounds.high[2]) +
                                                  ": attention or the response mapping may be the reason."});
 }

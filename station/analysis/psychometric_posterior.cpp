@@ -12,11 +12,11 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// Rates times the range of the levels.
+/// In units of rate times the range of the levels.
 constexpr double kShallow = 1.5, kSteep = 24;
-/// Estimates in this share of a prior's range at either end are pointed out.
+/// Estimates in this share of the prior's range at either end get a statement.
 constexpr double kOuter = 0.25;
-/// Of the flat part of a prior, beyond either end; and the same of the whole range.
+/// The falling part of a prior at either end, as a share of its flat part and of the whole range.
 constexpr double kBeyond = 0.25, kFallingShare = kBeyond / (1 + 2 * kBeyond);
 
 void check(const Prior& prior) {
@@ -46,7 +46,7 @@ Box box_of(const FitOptions& options, const Prior& prior) {
   return box;
 }
 
-/// What a fit and its intervals are made from.
+/// The data and settings from which a fit and its intervals are made.
 class Reading {
  public:
   Reading(PosteriorFit& into, const Prior& prior)

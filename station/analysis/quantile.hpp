@@ -5,8 +5,8 @@
 
 namespace turnpoint::analysis {
 
-/// Linear interpolation between order statistics (type 7 of Hyndman & Fan 1996). `sorted` ascending and not
-/// empty, p in [0, 1]; else std::invalid_argument.
+/// Linear interpolation between order statistics (type 7 of Hyndman & Fan 1996). `sorted` must be ascending
+/// and not empty, and p in [0, 1]; otherwise throws std::invalid_argument.
 double sorted_quantile(const std::vector<double>& sorted, double p);
 
 /// The same for values in any order.
@@ -15,7 +15,7 @@ double quantile(std::vector<double> values, double p);
 /// The central interval of bootstrap replicates.
 Interval percentile_interval(std::vector<double> replicates, double confidence = 0.95);
 
-double mean(const std::vector<double>& values);      ///< of at least one value
-double variance(const std::vector<double>& values);  ///< divisor n - 1; at least two values
+double mean(const std::vector<double>& values);      ///< needs at least one value
+double variance(const std::vector<double>& values);  ///< divisor n - 1; needs at least two values
 
 }  // namespace turnpoint::analysis

@@ -28,7 +28,8 @@ double student(double degrees) { return boost::math::quantile(boost::math::stude
 
 Estimate around(double value, double half) { return {value, {value - half, value + half, 0.95}}; }
 
-/// Least squares of settings on starts; none where the starts do not differ or nothing is left to judge by.
+/// Least-squares slope of settings over starts; empty if all starts are equal or no degrees of freedom are
+/// left.
 std::optional<Estimate> slope_on_starts(const Settings& s) {
   const double n = static_cast<double>(s.values.size());
   const double start = mean_of(s.starts), mean = mean_of(s.values), spread = squares_about(s.starts, start);

@@ -53,7 +53,7 @@ YesNoCounts operator+(const YesNoCounts& a, const YesNoCounts& b) {
           a.correct_rejections + b.correct_rejections};
 }
 
-/// Variance of z of a log-linear proportion of so many trials.
+/// Variance of z of a log-linear proportion from this number of trials.
 double variance_of_z(double p, int trials) {
   const double density = normal_density(normal_quantile(p));
   return p * (1 - p) / (trials + 1) / (density * density);
@@ -74,7 +74,7 @@ void estimate(Detection& detection, double scale) {
 }
 
 struct Collected {
-  YesNoCounts noise;  ///< of every level
+  YesNoCounts noise;  ///< noise trials of all levels together
   std::map<double, YesNoCounts> levels;
 };
 

@@ -20,7 +20,7 @@ struct Scored {
 };
 using Cell = std::vector<Scored>;
 
-/// The trials that count, by instruction and difficulty.
+/// The included trials, by instruction and difficulty.
 struct Group {
   std::vector<double> difficulty;
   std::vector<Cell> cells;
@@ -61,7 +61,8 @@ Cell pooled(const Group& group) {
   return all;
 }
 
-/// BIS of each group: the mean over its cells of the scores over all cells.
+/// Adds the BIS of each group: scores are standardised over all cells, then averaged over the cells of the
+/// group.
 void add_balanced(const std::vector<Group>& groups, std::vector<Measures>& result) {
   if (groups.size() < 2) return;
   std::vector<double> proportion, time;
@@ -130,7 +131,7 @@ std::optional<Estimate> estimate(const std::optional<double>& value, std::vector
   return Estimate{*value, percentile_interval(std::move(replicates), options.confidence)};
 }
 
-/// Fills what the trials of one instruction say without a bootstrap, and its cells.
+/// Fills in the results of one instruction that need no bootstrap. Also returns its trials by difficulty.
 Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& options,
               InstructionResult& result) {
   std::vector<const TrialRecord*> scored;
@@ -241,7 +242,7 @@ constexpr MeasureName kNames[measures] = {{"proportion correct", "proportion"},
                                           {"inverse efficiency", "s"},
                                           {"BIS", "SD"}};
 
-/// What the conditions measure, and again in each replicate of the session.
+/// The measures of each condition in the session, and in each of its replicates.
 struct Sessions {
   std::vector<Measures> values;
   std::vector<std::vector<Measures>> replicates;

@@ -15,26 +15,27 @@ struct DifficultyCell {
   double difficulty = 0;
   int answered = 0, correct = 0;
   double proportion_correct = 0;
-  Interval accuracy;                     ///< Wilson
-  std::optional<double> mean_correct_s;  ///< none where nothing was right
-  std::optional<double> drift;           ///< of the shared fit
+  Interval accuracy;                     ///< Wilson interval
+  std::optional<double> mean_correct_s;  ///< empty if no answer was correct
+  std::optional<double> drift;           ///< from the shared fit
 };
 
-/// What one condition did: an instruction, or what else TrialRecord::instruction says. Accuracy and times are
-/// of answered experimental trials that the time rule keeps; scores whose value cannot be had are none.
+/// The results of one condition, which is an instruction or whatever else TrialRecord::instruction contains.
+/// Accuracy and times cover the answered experimental trials that the time rule keeps. Scores that cannot be
+/// computed are empty.
 struct InstructionResult {
   std::string instruction;
   int presented = 0, answered = 0, timeouts = 0, anticipations = 0, excluded = 0, correct = 0;
-  std::optional<Estimate> proportion_correct;  ///< Wilson
+  std::optional<Estimate> proportion_correct;  ///< Wilson interval
   std::optional<ResponseTimes> times, correct_times;
-  std::vector<double> times_s;  ///< those summarised, in order of presentation
+  std::vector<double> times_s;  ///< times of the included trials, in order of presentation
   std::vector<CafBin> caf;
-  std::vector<DifficultyCell> cells;  ///< by rising difficulty
+  std::vector<DifficultyCell> cells;  ///< in order of increasing difficulty
   std::optional<Estimate> median_s, boundary, nondecision_s, lisas_s, inverse_efficiency_s, balanced;
   std::vector<Statement> statements;
 };
 
-/// Of two conditions, second minus first.
+/// The difference between two conditions, second minus first.
 struct Difference {
   std::string first, second;
   std::string measure;  ///< "proportion correct", "median response time", ...
@@ -44,12 +45,13 @@ struct Difference {
 
 struct Trade {
   std::vector<InstructionResult> instructions;  ///< in the order of the options
-  std::vector<Difference> differences;          ///< of all pairs, the first before the second in that order
+  /// for all pairs, with the first before the second in that order
+  std::vector<Difference> differences;
   std::vector<Statement> statements;
 };
 
 struct TradeOptions {
-  std::vector<std::string> order;  ///< of conditions; others follow in the order first met
+  std::vector<std::string> order;  ///< order of conditions; others follow in the order of first occurrence
   TimeExclusion exclusion;
   int caf_bins = 5;
   int replicates = 1000;
@@ -57,12 +59,12 @@ struct TradeOptions {
   std::uint64_t seed = 1;
 };
 
-/// Speed and accuracy by instruction, the diffusion fitted within equal difficulty with shared boundary and
-/// Ter. Intervals are percentiles of a bootstrap that draws trials anew within instruction and difficulty,
-/// but the boundary's, which is normal in its logarithm with the standard deviation of shared_ez_diffusion();
-/// where more than 5 % of the replicates cannot be fitted there is no interval, and then no number. The score
-/// LISAS uses the standard deviations of all trials of the session, BIS those over its cells; a single
-/// condition has no BIS, since the scores of its cells average 0 whatever was answered.
+/// Speed and accuracy by instruction. The diffusion model is fitted within equal difficulty, with shared
+/// boundary and Ter. Intervals are percentiles of a bootstrap that resamples trials within instruction and
+/// difficulty. Only the boundary's interval is different: it is normal in the logarithm, with the standard
+/// deviation of shared_ez_diffusion(). If more than 5 % of the replicates cannot be fitted, there is neither
+/// an interval nor a number. LISAS uses the standard deviations of all trials of the session, BIS those over
+/// its cells. A single condition has no BIS, because the scores of its cells always average 0.
 Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options);
 
 }  // namespace turnpoint::analysis

@@ -61,7 +61,7 @@ std::string newest_for(const std::string& rig_path) {
   std::error_code unreadable;
   for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
     const auto name = entry.path().filename().string();
-    // Dates of this form sort as they follow each other.
+    // Dates in this form sort chronologically.
     if (name.starts_with(begins) && name.ends_with(".toml") && name.size() == begins.size() + 15)
       newest = std::max(newest, name);
   }

@@ -16,7 +16,7 @@ struct Line {
   double rms = 0;
 };
 
-// x = a - c f^-p, weighted.
+// Weighted fit of x = a - c f^-p.
 Line fit_line(const std::vector<BoundaryPoint>& points, const std::vector<double>& weights, double exponent) {
   std::vector<std::vector<double>> rows;
   std::vector<double> values;
@@ -35,7 +35,7 @@ Line fit_line(const std::vector<BoundaryPoint>& points, const std::vector<double
   return line;
 }
 
-// A quadratic term in 1/f beside the line: its estimate over its standard error.
+// Adds a quadratic term in 1/f to the line. Returns its estimate divided by its standard error.
 std::optional<double> curvature(const std::vector<BoundaryPoint>& points,
                                 const std::vector<double>& weights) {
   if (points.size() < 4) return std::nullopt;
@@ -45,7 +45,7 @@ std::optional<double> curvature(const std::vector<BoundaryPoint>& points,
   std::vector<std::vector<double>> rows;
   std::vector<double> values;
   for (const BoundaryPoint& point : points) {
-    const double u = 1 / point.frequency_Hz / mean - 1;  // scaled, so that the equations are well conditioned
+    const double u = 1 / point.frequency_Hz / mean - 1;  // scaled so that the equations are well conditioned
     rows.push_back({1, u, u * u});
     values.push_back(point.boundary_m);
   }

@@ -15,10 +15,10 @@ struct SoundPoint {
   double level_dB = 0;
 };
 
-/// What was measured on a rig on one day, fitted: the file that sessions refer to by its SHA-256.
+/// The fitted measurements of a rig on one day. Sessions refer to this file by its SHA-256.
 struct Calibration {
   std::string rig_name;
-  std::string rig_sha256;  ///< of the rig file it belongs to
+  std::string rig_sha256;  ///< hash of the rig file to which it belongs
   std::string made_on;     ///< YYYY-MM-DD
   int valid_days = 90;
   std::string note;
@@ -34,34 +34,38 @@ struct Calibration {
   std::optional<PanelLatency> panel;
 };
 
-/// Files with measurements; "" where there is none. Columns: sweep `frequency_Hz,displacement_um,phase_deg`
-/// taken at `sweep_full_scale`; boundaries `frequency_Hz,boundary_mm,sd_mm`; friction
-/// `displacement_um,relative_friction`; sound `frequency_Hz,level_dB` at full scale.
+/// Files with measurements; "" if there is none. Their columns are:
+/// sweep: `frequency_Hz,displacement_um,phase_deg`, measured at `sweep_full_scale`
+/// boundaries: `frequency_Hz,boundary_mm,sd_mm`
+/// friction: `displacement_um,relative_friction`
+/// sound: `frequency_Hz,level_dB` at full scale
 struct Measurements {
   struct Sweep {
     std::string transducer, csv;
-    double full_scale = 1;  ///< drive amplitude during the sweep, full scale
+    double full_scale = 1;  ///< drive amplitude during the sweep, as a fraction of full scale
   };
   std::vector<Sweep> sweeps;
   std::string boundaries_csv, friction_csv, sound_csv;
   std::optional<BoundaryFit::Law> law;
 };
 
-/// Reads and fits. Throws text::BadInput with every problem of every file, terms::UsageError for points
-/// that do not determine a fit.
+/// Reads the files and fits. Throws text::BadInput with all problems of all files, or terms::UsageError for
+/// points that do not determine a fit.
 Calibration fit_measurements(const Measurements& measurements);
 
-/// The file's text (format "friction-calibration/1"), and back. load throws text::BadInput,
-/// std::system_error.
+/// Convert to the text of a calibration file (format "friction-calibration/1") and back. load() throws
+/// text::BadInput or std::system_error.
 std::string to_toml(const Calibration& calibration);
 Calibration load(const std::string& path);
-/// The same from text already in memory (a resumed session); `path` only names it in messages.
+/// The same for text that is already in memory (a resumed session); `path` is only used in messages.
 Calibration parse(const std::string& text, const std::string& path);
 
-/// Days that it is still valid on a date (YYYY-MM-DD); negative once it has expired, the count of days since.
+/// The number of days that it is still valid on a date (YYYY-MM-DD). Negative once it has expired: minus the
+/// number of days since.
 int days_left(const Calibration& calibration, const std::string& today);
 
-/// Why sessions on that rig must not use it on that day: another rig, expired, nothing measured; empty: none.
+/// The reasons why sessions on that rig must not use it on that day: another rig, expired, or nothing
+/// measured. Empty if there are none.
 std::vector<std::string> problems(const Calibration& calibration, const std::string& rig_sha256,
                                   const std::string& today);
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-
 #include "station/calibration/calibration.hpp"
 #include "station/text/number.hpp"
 #include "station/text/reader.hpp"
@@ -22,7 +21,7 @@ std::string quoted(const std::string& plain) {
   return out + "\"";
 }
 
-// One array of numbers a key, from a member of each point.
+// Writes one array of numbers per key, from a member of each point.
 template <typename Points, typename Get>
 std::string numbers(const char* key, const Points& points, Get&& get) {
   std::string out = fmt::format("{} = [", key);
@@ -89,7 +88,7 @@ PanelLatency read_panel(const text::Value& table, text::Findings& findings) {
   return panel;
 }
 
-// Columns of equal length, or a problem.
+// Reports a problem unless the columns have equal length.
 bool same_length(text::TableReader& reader, const char* key, std::size_t length, std::size_t wanted) {
   if (length == wanted) return true;
   reader.problem(key, fmt::format("{} values", length), fmt::format("{}, as in the other columns", wanted));

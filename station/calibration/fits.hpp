@@ -6,39 +6,39 @@
 
 namespace turnpoint::calibration {
 
-/// One degree in radians: files have degrees, the program radians.
+/// Files give angles in degrees, the program uses radians.
 constexpr double kDegree_rad = std::numbers::pi / 180;
 
-/// A boundary that was seen or felt: where, for which frequency; `sd_m` is its standard uncertainty (0: not
-/// known).
+/// The position of a boundary that was seen or felt at a frequency. `sd_m` is its standard uncertainty (0:
+/// not known).
 struct BoundaryPoint {
   double frequency_Hz = 0;
   double boundary_m = 0;
   double sd_m = 0;
 };
 
-/// x = apex - constant f^-exponent: every lossless feature of a linear taper moves along it, with exponent 1
-/// on a membrane and 1/2 on a plate; in between, tension and bending both matter.
+/// x = apex - constant f^-exponent. Every lossless feature of a linear taper follows this law, with exponent
+/// 1 on a membrane and 1/2 on a plate. In between, both tension and bending matter.
 struct BoundaryFit {
   double apex_m = 0, apex_sd_m = 0;
   double constant = 0, constant_sd = 0;  ///< m Hz^exponent
   double exponent = 1;
   double residual_m = 0;            ///< rms; 0 with two points
-  std::vector<double> residuals_m;  ///< of each point
-  /// Residual with the exponents 1 and 1/2; with three points or more the smaller one tells membrane from
+  std::vector<double> residuals_m;  ///< for each point
+  /// Residuals with the exponents 1 and 1/2. With three or more points, the smaller one tells membrane from
   /// plate.
   double membrane_residual_m = 0, plate_residual_m = 0;
   enum class Law { membrane, plate } law = Law::membrane;
-  /// Curvature against 1/f in standard errors (four points or more): above 2 bending shows.
+  /// Curvature against 1/f in standard errors (needs four points or more). A value above 2 indicates bending.
   std::optional<double> curvature_z;
 };
 
-/// Least squares, weighted where all uncertainties are known. `law` says which surface it is; without it
-/// three points decide. Throws terms::UsageError: fewer than two points (three without a law), equal
-/// frequencies.
+/// Least squares, weighted if all uncertainties are known. `law` gives the type of the surface; without it,
+/// at least three points are needed to determine it. Throws terms::UsageError for fewer than two points
+/// (three without a law) and for equal frequencies.
 BoundaryFit fit_boundaries(const std::vector<BoundaryPoint>& points, std::optional<BoundaryFit::Law> law);
 
-/// Where the fitted law puts the boundary.
+/// The boundary according to the fitted law.
 double boundary_at(const BoundaryFit& fit, double frequency_Hz);
 
 /// One frequency of a sweep: displacement of the drive edge at full scale and its phase.
@@ -48,36 +48,39 @@ struct ResponsePoint {
   double phase_rad = 0;
 };
 
-/// A response for use: smoothed locally (quadratic in frequency over `window` points, in log amplitude and
-/// unwrapped phase).
+/// A transducer's smoothed response: local quadratic in frequency over `window` points, in log amplitude and
+/// unwrapped phase.
 struct ResponseFit {
   std::vector<ResponsePoint> points;
-  double residual_dB = 0;  ///< rms of the measured points about it
+  double residual_dB = 0;  ///< rms deviation of the measured points
   double residual_rad = 0;
-  double low_Hz = 0, high_Hz = 0;  ///< where equalisation stays within the cap
+  double low_Hz = 0, high_Hz = 0;  ///< band in which equalisation stays within the cap
 };
 
-/// Highest equalisation: a drive that needs more than this above its best frequency is outside the band.
+/// The largest equalisation. A frequency that needs more than this, relative to the best frequency, is
+/// outside the band.
 inline constexpr double equalisation_cap_dB = 20;
 
-/// Throws terms::UsageError: fewer than 5 points, not rising, an amplitude that is not above 0.
+/// Throws terms::UsageError for fewer than 5 points, frequencies that do not ascend, or an amplitude that is
+/// not above 0.
 ResponseFit fit_response(const std::vector<ResponsePoint>& sweep, int window = 5);
 
-/// A resonance of the surface seen in a sweep.
+/// A resonance of the surface found in a sweep.
 struct Resonance {
   double frequency_Hz = 0;
   double quality_factor = 0;
 };
 
-/// Resonances by a straight line: about a peak 1/|u|^2 is a parabola in f, whose width is f0/2Q. Peaks with
-/// fewer than five points above half power are left out, and those where the phase does not turn: they are
-/// the transducer's, not the surface's.
+/// Finds resonances by a linear fit: near a peak, 1/|u|^2 is a parabola in f whose width is f0/2Q. Leaves out
+/// peaks with fewer than five points above half power. Also leaves out peaks at which the phase does not
+/// turn, because they belong to the transducer and not to the surface.
 std::vector<Resonance> find_resonances(const std::vector<ResponsePoint>& sweep);
 
-/// Median quality factor; none without resonances.
+/// Median quality factor; empty without resonances.
 std::optional<double> quality_of(const std::vector<Resonance>& resonances);
 
-/// Relative friction against displacement, made monotone (falling) by pooling adjacent violators.
+/// Relative friction as a function of displacement, made monotonically decreasing by pooling adjacent
+/// violators.
 struct FrictionPoint {
   double displacement_m = 0;
   double relative_friction = 0;
@@ -87,7 +90,7 @@ struct FrictionFit {
   double residual = 0;  ///< rms
 };
 
-/// Throws terms::UsageError: fewer than two displacements, values outside 0 to 1.5.
+/// Throws terms::UsageError for fewer than two displacements, or values outside 0 to 1.5.
 FrictionFit fit_friction(std::vector<FrictionPoint> measured);
 
 }  // namespace turnpoint::calibration

@@ -9,7 +9,7 @@ namespace {
 
 using Matrix = std::vector<std::vector<double>>;
 
-// Inverse of a symmetric positive definite matrix of a few rows, by Gauss and Jordan.
+// Inverse of a small symmetric positive definite matrix, by Gauss-Jordan elimination.
 Matrix inverse(Matrix a) {
   const std::size_t n = a.size();
   Matrix b(n, std::vector<double>(n, 0));

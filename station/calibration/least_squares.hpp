@@ -6,12 +6,12 @@ namespace turnpoint::calibration {
 /// A linear fit with few parameters.
 struct LeastSquares {
   std::vector<double> value;
-  std::vector<double> sd;        ///< standard errors from the scatter; 0 without degrees of freedom
-  std::vector<double> known_sd;  ///< standard errors where the weights are 1 / variance
+  std::vector<double> sd;        ///< standard errors from the residuals; 0 without degrees of freedom
+  std::vector<double> known_sd;  ///< standard errors if the weights are 1 / variance
 };
 
 /// Minimises sum w (y - row . value)^2 by the normal equations (columns scaled to unit length), for up to
-/// about five parameters. Throws terms::UsageError where the columns are not independent.
+/// about five parameters. Throws terms::UsageError if the columns are linearly dependent.
 LeastSquares least_squares(const std::vector<std::vector<double>>& rows, const std::vector<double>& values,
                            const std::vector<double>& weights);
 

@@ -11,8 +11,8 @@
 namespace turnpoint::calibration {
 namespace {
 
-// Between its half-power points a resonance turns the phase by 90 degrees, a hump of the drive's response by
-// little.
+// Between its half-power points, a resonance turns the phase by 90 degrees. A hump in the transducer's
+// response turns it only a little.
 constexpr double least_turn_rad = std::numbers::pi / 4;
 
 void check(const std::vector<ResponsePoint>& sweep, int window) {
@@ -39,7 +39,7 @@ std::vector<double> unwrapped(const std::vector<ResponsePoint>& sweep) {
   return phase;
 }
 
-// Local quadratic about point k, tricube weights over the nearest `window` points (Cleveland 1979).
+// Local quadratic fit around point k with tricube weights over the nearest `window` points (Cleveland 1979).
 double smoothed(const std::vector<ResponsePoint>& sweep, const std::vector<double>& values, std::size_t k,
                 std::size_t window) {
   const std::size_t first = std::min(k > window / 2 ? k - window / 2 : 0, sweep.size() - window);
@@ -78,7 +78,7 @@ ResponseFit fit_response(const std::vector<ResponsePoint>& sweep, int window) {
   fit.residual_dB = std::sqrt(fit.residual_dB);
   fit.residual_rad = std::sqrt(fit.residual_rad);
   const double least = best * std::pow(10, -equalisation_cap_dB / 20);
-  // The band about the best frequency in which no point falls below the cap.
+  // The band around the best frequency in which no point falls below the cap.
   std::size_t peak = 0;
   for (std::size_t k = 0; k < fit.points.size(); ++k)
     if (fit.points[k].m_per_full_scale == best) peak = k;
@@ -102,8 +102,8 @@ std::vector<Resonance> find_resonances(const std::vector<ResponsePoint>& sweep) 
     while (high + 1 < sweep.size() && sweep[high + 1].m_per_full_scale >= peak / std::numbers::sqrt2) ++high;
     if (high - low + 1 < 5) continue;
     if (std::abs(phases[high] - phases[low]) < least_turn_rad) continue;
-    // With a line f = f_k + u f_k the parabola 1/|u|^2 ~ a + b u + c u^2 has its bottom at -b/2c, half
-    // width^2 a/c - (b/2c)^2.
+    // With f = f_k + u f_k, fit the parabola 1/|u|^2 ~ a + b u + c u^2. Its minimum is at -b/2c, and its
+    // squared half width is a/c - (b/2c)^2.
     std::vector<std::vector<double>> rows;
     std::vector<double> values;
     for (std::size_t i = low; i <= high; ++i) {

@@ -8,8 +8,8 @@ namespace turnpoint::cli {
 void add_amplifier_off(CommandLine& app, Context& context) {
   auto* command = app.add_subcommand(
       "amplifier-off",
-      "Drive the amplifier's enable line low, after a station that died. Takes the options that the station "
-      "was started with; only --rig matters");
+      "Switch the amplifier's enable line low after the station has died. Accepts the options that the "
+      "station was started with; only --rig is used");
   auto request = add_station_options(*command);
   command->footer("Example: turnpoint amplifier-off --rig /etc/turnpoint/rig.toml");
   command->callback([request, &context] {

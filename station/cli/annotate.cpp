@@ -28,7 +28,7 @@ void annotate(const Options& options, Context& context) {
 
 void add_annotate(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("annotate", "Add a note to a session; the trials stay as they are");
+  auto* command = app.add_subcommand("annotate", "Add a note to a session; its trials do not change");
   command->add_option("--db", options->database, "Database")->required();
   command->add_option("--session", options->session, "Session id; `turnpoint sessions` lists them")
       ->required();

@@ -37,7 +37,8 @@ void back_up(const Options& options, Context& context) {
              report.sessions, report.trials, report.bytes);
   for (const auto& path : report.removed) fmt::print(context.out, "rotated out: {}\n", path);
   if (!report.unrecorded.empty())
-    fmt::print(context.out, "this backup could not be noted beside the database: {}\n", report.unrecorded);
+    fmt::print(context.out, "the note about this backup could not be written beside the database: {}\n",
+               report.unrecorded);
 }
 
 void drill(const Options& options, Context& context) {
@@ -97,15 +98,15 @@ void restore(const Options& options, Context& context) {
 
 void add_backup(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
-  auto* command =
-      app.add_subcommand("backup", "Copy a database, also a running one, check the copy, keep the newest");
+  auto* command = app.add_subcommand(
+      "backup", "Copy a database (even while it is in use), check the copy, remove the oldest copies");
   command->add_option("--db", options->database, "Database")->required();
-  command->add_option("--dir", options->backup.directory, "Folder of the backups")->required();
-  command->add_option("--keep", options->backup.keep, "How many stay; 0 keeps all")
+  command->add_option("--dir", options->backup.directory, "Folder for the backups")->required();
+  command->add_option("--keep", options->backup.keep, "How many backups to keep; 0 keeps all")
       ->check(not_negative())
       ->capture_default_str();
   command->add_flag("--restore", options->restore,
-                    "Put the newest good backup in the place of a damaged, empty or missing database");
+                    "Replace a damaged, empty or missing database by its newest good backup");
   command->add_option("--database-id", options->database_id,
                       "With --restore: whose backups, where the folder holds those of several databases");
   command

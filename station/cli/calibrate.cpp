@@ -84,7 +84,7 @@ void print(std::ostream& out, const calibration::Calibration& c) {
                b.law == BoundaryFit::Law::plate ? "plate" : "membrane", number(1e3 * b.apex_m, 5),
                number(1e3 * b.apex_sd_m, 2), number(b.constant, 6), number(1e3 * b.residual_m, 2));
     if (b.curvature_z && *b.curvature_z > 2)
-      fmt::print(out, "  bending shows: curvature of {} standard errors\n", number(*b.curvature_z, 2));
+      fmt::print(out, "  bending is visible: curvature of {} standard errors\n", number(*b.curvature_z, 2));
   }
   if (c.friction)
     fmt::print(out, "friction: {} points, residual {}\n", c.friction->points.size(),
@@ -179,10 +179,10 @@ void add_calibrate(CommandLine& app, Context& context) {
       ->check(one_of({"membrane", "plate"}));
   command->add_option("--friction", options->friction, "File: displacement_um,relative_friction");
   command->add_option("--sound", options->sound, "File: frequency_Hz,level_dB (SPL at full scale)");
-  command->add_option("--valid-days", options->valid_days, "Until it expires")
+  command->add_option("--valid-days", options->valid_days, "Days until the calibration expires")
       ->capture_default_str()
       ->check(range(1, 3650));
-  command->add_option("--note", options->note, "Kept in the file: instruments, temperature, who");
+  command->add_option("--note", options->note, "Note kept in the file: instruments, temperature, operator");
   command->add_option("--out", options->out,
                       "File; otherwise beside the rig, with the date, where `run` finds it");
   command->add_option("--plots", options->plots, "SVG of fits and residuals; otherwise beside the file");
@@ -191,16 +191,17 @@ void add_calibrate(CommandLine& app, Context& context) {
   command
       ->add_option(
           "--reference", options->reference,
-          "button: under the tapping finger, tells the way in | photodiode: on the flash, the way out")
+          "button: pressed by the tapping finger, measures input latency | photodiode: on the flashing "
+          "square, measures display latency")
       ->capture_default_str()
       ->check(one_of({"button", "photodiode"}));
-  command->add_flag("--sweep", options->sweep, "Print the stepped sweep to measure with, as CSV");
-  command->add_option("--sweep-out", options->sweep_out, "With --sweep: play it to wav:FILE or alsa:NAME");
-  command->add_flag("--arm", options->arm,
-                    "With --sweep-out alsa:...: the operator arms the amplifier by this");
-  command->add_option("--points", options->plan.points, "Of the sweep, per transducer")
+  command->add_flag("--sweep", options->sweep, "Print the tones of the measuring sweep as CSV");
+  command->add_option("--sweep-out", options->sweep_out,
+                      "With --sweep: play the sweep to wav:FILE or alsa:NAME");
+  command->add_flag("--arm", options->arm, "With --sweep-out alsa:...: arm the amplifier");
+  command->add_option("--points", options->plan.points, "Number of tones in the sweep, for each transducer")
       ->capture_default_str();
-  command->add_option("--amplitude", options->plan.full_scale, "Of the sweep, 1 is full scale")
+  command->add_option("--amplitude", options->plan.full_scale, "Amplitude of the sweep, 1 is full scale")
       ->capture_default_str();
   add_json(*command, context);
   command->footer(

@@ -23,7 +23,7 @@ struct Options {
   int sessions = 21;
 };
 
-// Above chance by this much, a cue is named: what 20 trials could just show.
+// Report a cue if its accuracy exceeds chance by this margin (about what 20 trials can detect).
 constexpr double noticeable = 0.1;
 
 Json problems_json(const std::vector<text::Problem>& problems) {
@@ -99,7 +99,7 @@ Json to_json(const app::Check& check) {
   return {
       {"problems", problems_json(check.problems)},
       {"warnings", problems_json(check.warnings)},
-          {"notes", problems_json(check.notes)},
+      {"notes", problems_json(check.notes)},
       {"id", check.id},
       {"rig", check.rig_name},
       {"trials", json_number(check.trials.median)},
@@ -172,7 +172,7 @@ void print(std::ostream& out, const app::Check& check, const std::string& path) 
       number(1e-3 * extremes.lowest_Hz, 4), number(1e-3 * extremes.highest_Hz, 4),
       number(extremes.displacement_um, 3), models, check.survey.sights.size(), check.survey.combinations);
   print_cues(out, check.cues);
-  if (!check.protocol_defaults.empty()) fmt::print(out, "Defaults that stood in:\n");
+  if (!check.protocol_defaults.empty()) fmt::print(out, "Defaults used:\n");
   for (const auto& line : check.protocol_defaults) fmt::print(out, "  {}\n", line);
   for (const auto& line : check.rig_defaults) fmt::print(out, "  rig: {}\n", line);
 }
@@ -195,11 +195,12 @@ void check(const Options& options, Context& context) {
 void add_check(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
-      app.add_subcommand("check", "All mistakes in a protocol file at once, or what the session will be");
+      app.add_subcommand("check", "List all mistakes in a protocol file, or describe the session");
   command->add_option("protocol", options->protocol, "Protocol file")->required();
   command->add_option("--rig", options->rig, "Rig file");
   command
-      ->add_option("--sessions", options->sessions, "Simulated sessions for trials and duration; 0 for none")
+      ->add_option("--sessions", options->sessions,
+                   "Number of simulated sessions for trials and duration; 0 for none")
       ->check(range(0, 1000));
   add_json(*command, context);
   command->footer("Example: turnpoint check protocols/demo.toml --rig deploy/rigs/simulated.toml");

@@ -8,21 +8,23 @@
 
 namespace turnpoint::cli {
 
-struct Screens;  // screens.hpp
+struct Screens;  // defined in screens.hpp
 
-/// What every sub-command gets: where its document and its messages go, and whether JSON was asked for.
+/// What every sub-command gets: the streams for its result and its messages, and the common options.
 struct Context {
   std::ostream& out;  ///< the result: text for people, or one JSON document
   std::ostream& err;  ///< messages
   bool json = false;
-  int exit_code = 0;                 ///< what a command sets when it is neither 0 nor an exception
-  std::vector<char*> arguments;      ///< the command line as given, null at the end, for handing over
-  const Screens* screens = nullptr;  ///< null in the program without a screen
+  int exit_code = 0;  ///< set by a command if its status is neither 0 nor an exception
+  /// the command line as given, ending in null, to pass on to another program
+  std::vector<char*> arguments;
+  const Screens* screens = nullptr;  ///< null in a program without a screen
 };
 
 using terms::UsageError;
 
-/// Does work in which physics takes the user's numbers as they are: what it refuses is wrong usage.
+/// Runs work that passes the user's numbers directly to the physics library. If the library refuses them,
+/// that is a usage error.
 template <class Work>
 auto with_users_numbers(Work work) {
   try {
@@ -34,8 +36,8 @@ auto with_users_numbers(Work work) {
   }
 }
 
-/// Each adds one sub-command: its options, an example in the footer, and the callback that does it. One file
-/// each; the table in commands.cpp lists them.
+/// Each function adds one sub-command: its options, an example in the footer, and the callback that runs it.
+/// Each is in its own file; the table in commands.cpp lists them all.
 void add_map(CommandLine& app, Context& context);
 void add_field(CommandLine& app, Context& context);
 void add_plan(CommandLine& app, Context& context);
@@ -67,11 +69,11 @@ void add_operator_code(CommandLine& app, Context& context);
 /// Adds `--json` to a sub-command.
 void add_json(Command& command, Context& context);
 
-/// Does the work, explains on `err` whatever it throws, and returns the exit status: 0 done, 1 failed at run
-/// time, 2 bad input or usage, 70 a fault of the program itself. The only catch-all of the program.
+/// Runs the work, explains any exception on `err` and returns the exit status: 0 done, 1 failed at run time,
+/// 2 bad input or usage, 70 a fault of the program itself.
 int exit_status(std::ostream& err, const std::function<int()>& work);
 
-/// Parses and does what the command line says, and returns the exit status.
+/// Parses the command line, runs the command and returns the exit status.
 int run(int argc, char** argv, std::ostream& out, std::ostream& err, const Screens* screens = nullptr);
 
 }  // namespace turnpoint::cli

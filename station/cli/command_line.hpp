@@ -15,10 +15,10 @@ class Option;
 
 namespace turnpoint::cli {
 
-/// A condition on the text of an option's value, and how the help describes what is allowed.
+/// A check of an option's value, and the description of allowed values in the help.
 struct Check {
   std::string allowed;
-  std::function<std::string(const std::string& value)> problem;  ///< returns "" where the value is allowed
+  std::function<std::string(const std::string& value)> problem;  ///< returns "" if the value is allowed
 };
 Check range(std::int64_t least, std::int64_t most);  ///< whole numbers
 Check between(double least, double most);            ///< any numbers
@@ -32,18 +32,17 @@ class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
   Option* required();
-  Option* capture_default_str();  ///< shows the target's present value in the help
+  Option* capture_default_str();  ///< shows the target's current value in the help
   Option* check(Check check);
 
  private:
   CLI::Option* option_;
 };
 
-/// One sub-command: its options, the example under its help, and what it does. An option writes into its
+/// One sub-command: its options, the example below its help, and its action. An option writes into its
 /// target, which must outlive the parsing. Names without leading dashes are positional.
-///
-/// CLI11 does the work, compiled once in command_line.cpp: included by every command, its inline code took
-/// ten seconds of compilation for each of them.
+/// CLI11 is compiled only once, in command_line.cpp. When every command included it, its inline code took ten
+/// seconds to compile for each of them.
 class Command {
  public:
   explicit Command(CLI::App* app) : app_(app) {}
@@ -65,16 +64,16 @@ class Command {
   std::vector<std::unique_ptr<Option>> options_;
 };
 
-/// The whole command line: its sub-commands, of which one must be given.
+/// The whole command line. It requires exactly one of its sub-commands.
 class CommandLine {
  public:
   CommandLine(const std::string& description, const std::string& program, const std::string& version);
   ~CommandLine();
   Command* add_subcommand(const std::string& name, const std::string& help);
 
-  /// Parses, and runs the callback of the sub-command that was given, whose exceptions pass through.
-  /// Empty when it ran; otherwise the exit status: 0 after --help or --version (printed on `out`), 2 after
-  /// wrong usage (explained on `err`).
+  /// Parses, then runs the callback of the sub-command; its exceptions pass through. Returns nothing if it
+  /// ran. Otherwise returns the exit status: 0 after --help or --version (printed on `out`), 2 after wrong
+  /// usage (explained on `err`).
   std::optional<int> parse(int argc, char** argv, std::ostream& out, std::ostream& err);
 
  private:

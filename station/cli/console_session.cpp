@@ -14,7 +14,7 @@ namespace turnpoint::cli {
 
 namespace {
 
-/// While it lives, the first signal to end the program is the session's stop.
+/// While this object exists, the first termination signal stops the session instead of the program.
 class StopOnSignal {
  public:
   explicit StopOnSignal(session::Inputs& inputs) {
@@ -36,13 +36,15 @@ class StopOnSignal {
   }
 
   app::StopSignals signals_;
-  std::jthread waiter_;  // last: joined before what it uses goes
+  // The last member, so that the thread is joined before the objects that it uses are destroyed.
+  std::jthread waiter_;
 };
 
 }  // namespace
 
 void run_without_screen(Context& context, const session::Setup& setup) {
-  // Ctrl-C ends what the messages are piped into as well, and then the next message would end the session.
+  // Ctrl-C also ends the program that the messages are piped into. Without this, the next message would then
+  // end the session.
   ::signal(SIGPIPE, SIG_IGN);
   session::Inputs inputs;
   const StopOnSignal stop(inputs);

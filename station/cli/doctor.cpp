@@ -45,13 +45,13 @@ void doctor(const std::string& rig_path, const std::string& data_path, Context& 
 }  // namespace
 
 void add_doctor(CommandLine& app, Context& context) {
-  auto* command = app.add_subcommand(
-      "doctor", "Check the hardware that a rig names; exit status 1 where something is wrong");
+  auto* command =
+      app.add_subcommand("doctor", "Check the hardware of a rig; exit status 1 if something is wrong");
   auto rig = std::make_shared<std::string>();
   auto data =
       std::make_shared<std::string>(std::filesystem::path(app::default_database()).parent_path().string());
   command->add_option("--rig", *rig, "Rig file; otherwise the installed one, else the simulated one");
-  command->add_option("--data", *data, "Folder that databases go to")->capture_default_str();
+  command->add_option("--data", *data, "Folder for databases")->capture_default_str();
   add_json(*command, context);
   command->footer("Example: turnpoint doctor --rig deploy/rigs/raspberry-pi-aluminium.toml");
   command->callback([rig, data, &context] { doctor(*rig, *data, context); });

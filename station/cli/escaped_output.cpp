@@ -6,7 +6,7 @@ namespace turnpoint::cli {
 
 namespace {
 
-constexpr char kLead = '\xc2';  // of U+0080 to U+00BF in UTF-8
+constexpr char kLead = '\xc2';  // first UTF-8 byte of U+0080 to U+00BF
 
 }  // namespace
 

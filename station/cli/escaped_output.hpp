@@ -4,10 +4,10 @@
 
 namespace turnpoint::cli {
 
-/// A stream in front of another that shows control characters instead of sending them: titles, keys and names
-/// come from files, and an escape sequence in one must not reach the terminal. All but line ends and tabs are
-/// written as "\x1b", the controls that Unicode adds (U+0080 to U+009F) as "\u009b". Flushes the other stream
-/// when it is flushed.
+/// A stream that passes text on to another one but shows control characters instead of sending them. Titles,
+/// keys and names come from files, and an escape sequence in one of them must not reach the terminal. All
+/// control characters but line ends and tabs are written like "\x1b"; those of Unicode (U+0080 to U+009F)
+/// like "\u009b". Flushing it flushes the other stream too.
 class EscapedOutput : public std::ostream {
  public:
   explicit EscapedOutput(std::ostream& to) : std::ostream(nullptr), buffer_(*to.rdbuf()) { rdbuf(&buffer_); }
@@ -25,7 +25,7 @@ class EscapedOutput : public std::ostream {
     bool escape(const char* form, unsigned character);
 
     std::streambuf& to_;
-    bool lead_ = false;  ///< the byte C2, which may begin a control character, is held back
+    bool lead_ = false;  ///< true while a byte C2, which may begin a control character, is held back
   };
   Buffer buffer_;
 };

@@ -16,7 +16,7 @@ namespace {
 struct Options {
   std::string database, out, format = "csv", separator = ",", decimal = ".";
   store::ExportOptions selection;
-  std::string sign;  ///< key file; "" signs nothing
+  std::string sign;  ///< SSH key file; "" for no signature
 };
 
 char single(const std::string& option, const std::string& text) {
@@ -25,7 +25,7 @@ char single(const std::string& option, const std::string& text) {
   return text.front();
 }
 
-/// Rows of the trial tables alone: what people count.
+/// Number of rows in the trial tables only, because people count trials.
 std::size_t trial_rows(const std::vector<store::ExportedFile>& files) {
   std::size_t rows = 0;
   for (const auto& file : files)
@@ -63,12 +63,13 @@ void add_export(CommandLine& app, Context& context) {
   command->add_option("--db", options->database, "Database")->required();
   command->add_option("--out", options->out, "Folder to write to")->required();
   command->add_option("--session", options->selection.session_id, "Only this session");
-  command->add_option("--participant", options->selection.participant, "Only this participant: CODE or CODE@STATION");
+  command->add_option("--participant", options->selection.participant,
+                      "Only this participant: CODE or CODE@STATION");
   command->add_option("--protocol", options->selection.protocol_id, "Only this protocol");
   command->add_option("--format", options->format, "csv | bids")
       ->check(one_of({"csv", "bids"}))
       ->capture_default_str();
-  command->add_option("--separator", options->separator, "Between columns: , ; | or tab")
+  command->add_option("--separator", options->separator, "Column separator: , ; | or tab")
       ->capture_default_str();
   command->add_option("--decimal", options->decimal, "Decimal mark: . or ,")->capture_default_str();
   command->add_option("--sign", options->sign,

@@ -37,7 +37,7 @@ Choice choose(const physics::Surface& surface, const std::vector<physics::Tone>&
   request.points = points;
   request.normalise = physics::parse_normalise(options.normalise);
   if (options.tolerance > 0) request.tolerance.amplitude = options.tolerance;
-  // Without a tolerance the best one-mode profile is meant, not the cheapest caricature of it.
+  // Without a tolerance use the best one-mode profile. The cheapest model would be too inaccurate.
   if (options.tolerance <= 0) return {physics::Model::mode, "no tolerance was stated: the one-mode equation"};
   auto choice = physics::choose_model(surface, request);
   return {choice.model, choice.reason};
@@ -111,7 +111,7 @@ void field(const Options& options, Context& context) {
   const auto choice = choose(surface, tones, static_cast<int>(x_m.size()), options);
   const auto result =
       physics::evaluate(surface, tones, x_m, choice.model, physics::parse_normalise(options.normalise));
-  // Friction needs metres, whatever the profile is normalised to.
+  // Friction requires metres, whatever the profile is normalised to.
   const auto metres = physics::evaluate(surface, tones, x_m, choice.model, physics::Normalise::none);
   const auto map = scene::friction_of(rig);
   std::vector<double> friction;
@@ -130,12 +130,14 @@ void add_field(CommandLine& app, Context& context) {
   command->add_option("--rig", options->rig, "Rig file")->required();
   command->add_option("--tone", options->tones, "HZ[:UM[:DEG]]: frequency, drive-edge displacement, phase")
       ->required();
-  command->add_option("--points", options->points, "So many points from 0 to the length, inclusive")
+  command
+      ->add_option("--points", options->points,
+                   "Number of evenly spaced points along the surface, ends included")
       ->check(range(2, 10'000'000));
   command->add_option("--at", options->at, "Points in mm, with commas between");
   command->add_option("--model", options->model, "auto | airy | seed | uniform | mode | modes")
       ->capture_default_str();
-  command->add_option("--tolerance", options->tolerance, "Relative error of the amplitude that is allowed")
+  command->add_option("--tolerance", options->tolerance, "Allowed relative error of the amplitude")
       ->check(positive());
   command->add_option("--normalise", options->normalise, "drive | peak | none")->capture_default_str();
   add_json(*command, context);

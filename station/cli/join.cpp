@@ -39,7 +39,7 @@ void add_join(CommandLine& app, Context& context) {
       ->required();
   command->add_option("second", options->second, "CODE@STATION, or a code that only one person has")
       ->required();
-  command->add_flag("--undo", options->undo, "Take it back: they are two people");
+  command->add_flag("--undo", options->undo, "Undo: they are two people");
   add_json(*command, context);
   command->footer("Example: turnpoint join --db lab.sqlite P01@station-a P07@station-b");
   command->callback([options, &context] { join(*options, context); });

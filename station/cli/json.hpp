@@ -11,7 +11,7 @@ namespace turnpoint::cli {
 /// Keys keep the order in which they were written.
 using Json = nlohmann::ordered_json;
 
-/// JSON knows neither NaN nor infinity: null.
+/// JSON has no NaN and no infinity; they become null.
 inline Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 /// The value times `factor` (a unit), or null.

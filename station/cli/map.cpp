@@ -70,15 +70,16 @@ void map(const Options& options, Context& context) {
 
 void add_map(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("map", "Boundary to frequency, or frequency to boundary");
+  auto* command =
+      app.add_subcommand("map", "Convert boundaries to frequencies, or frequencies to boundaries");
   command->add_option("--rig", options->rig, "Rig file")->required();
   command->add_option("--boundary", options->boundaries_mm, "Boundaries in mm from the wide end");
   command->add_option("--frequency", options->frequencies_Hz, "Frequencies in Hz");
   command->add_option("--edge", options->edge, "turning | peak | p70 | p50 | p25 | p10 | friction=0.7")
       ->capture_default_str();
-  command->add_option("--model", options->model, "Model to use; otherwise the cheapest that is enough");
-  command->add_option("--tolerance-mm", options->tolerance_mm, "Error that is allowed, in mm")
-      ->check(positive());
+  command->add_option("--model", options->model,
+                      "Model to use; otherwise the cheapest that meets the tolerance");
+  command->add_option("--tolerance-mm", options->tolerance_mm, "Allowed error in mm")->check(positive());
   add_json(*command, context);
   command->footer("Example: turnpoint map --rig deploy/rigs/simulated.toml --boundary 150 200 --edge p50");
   command->callback([options, &context] { with_users_numbers([&] { map(*options, context); }); });

@@ -55,9 +55,8 @@ void merge(const Options& options, Context& context) {
 
 void add_merge(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("merge", "Bring the sessions of other stations' databases into one");
-  command->add_option("--db", options->database, "Database that they come into; made where it is not there")
-      ->required();
+  auto* command = app.add_subcommand("merge", "Merge the sessions of other stations' databases into one");
+  command->add_option("--db", options->database, "Database to merge into; created if missing")->required();
   command->add_option("source", options->sources, "Databases or backups of other stations; only read")
       ->required();
   add_json(*command, context);

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a researcher wants to know, in words, and the shipped protocol that measures it.
+// A goal of a researcher in words, and the shipped protocol that measures it.
 struct Goal {
   const char* word;
   const char* what;
@@ -56,7 +56,7 @@ std::string goal_words() {
   return all;
 }
 
-// Asks on standard error, so that standard output stays the command's result.
+// Asks on standard error, because standard output is for the command's result.
 const Goal& ask(Context& context) {
   fmt::print(context.err, "What is to be measured?\n");
   int number = 1;
@@ -73,7 +73,8 @@ const Goal& ask(Context& context) {
   }
 }
 
-// The study's own id in place of the shipped one, and version 0.1.0: nothing was measured with it yet.
+// Replaces the shipped id by the study's own, and the version by 0.1.0, because nothing was measured with
+// this protocol yet.
 std::string own(std::string source, const std::string& shipped_id, const std::string& id) {
   const auto replace = [&source](const std::string& from, const std::string& to) {
     const auto at = source.find(from);
@@ -92,7 +93,7 @@ void make(const Options& options, Context& context) {
   const auto from = fs::path(app::shipped("protocols")) / (std::string(goal->file) + ".toml");
   const auto id = options.id.empty() ? fs::path(options.file).stem().string() : options.id;
   const auto source = own(text::read_file(from.string()), goal->file, id);
-  protocol::parse(source, options.file);  // an id that is no name is refused before anything is written
+  protocol::parse(source, options.file);  // refuses an invalid id before anything is written
   text::write_file(options.file, source);
   fmt::print(context.out, "{}\n", options.file);
   fmt::print(context.err, "It begins as a copy of {}. Change levels and texts, then: turnpoint check {}\n",

@@ -13,8 +13,8 @@ namespace turnpoint::cli {
 
 namespace {
 
-/// What is typed on standard input stays invisible for as long as this lives, where that is a terminal.
-/// Ctrl-C is an ordinary character meanwhile, so that the terminal is never left without its echo.
+/// While this object exists, typing on the terminal (if there is one) is invisible. Ctrl-C is an ordinary
+/// character meanwhile, so that it cannot leave the terminal without echo.
 class NoEcho {
  public:
   NoEcho() {
@@ -41,7 +41,7 @@ std::string line_from(std::istream& in) {
   return line;
 }
 
-/// Typed twice on a terminal; else one line of standard input.
+/// On a terminal asks twice; otherwise reads one line of standard input.
 std::string entered(Context& context) {
   const NoEcho silent;
   if (!silent.terminal()) return line_from(std::cin);

@@ -75,7 +75,7 @@ void OperatorConsole::show(const session::Page& page) {
   std::string text = name(page.kind);
   if (page.kind == PageKind::fault) {
     text += ": " + page.text + (page.detail.empty() ? "" : " (" + page.detail + ")");
-    text += page.amplifier.empty() ? "; next goes on" : "; amplifier " + page.amplifier + ": arm or stop";
+    text += page.amplifier.empty() ? "; next continues" : "; amplifier " + page.amplifier + ": arm or stop";
   }
   if (page.kind == PageKind::feedback && page.correct) text += *page.correct ? ": right" : ": wrong";
   if (text == std::exchange(last_, text)) return;
@@ -84,7 +84,7 @@ void OperatorConsole::show(const session::Page& page) {
 
 void OperatorConsole::say(const std::string& text) {
   const std::lock_guard lock(writing_);
-  messages_ << text << std::endl;  // at once: somebody may be waiting for it
+  messages_ << text << std::endl;  // flush at once: somebody may be waiting for this line
 }
 
 void OperatorConsole::run(const std::stop_token& stop) {
@@ -93,7 +93,8 @@ void OperatorConsole::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     if (::poll(&input, 1, 100) <= 0) continue;
     char letter = 0;
-    if (::read(STDIN_FILENO, &letter, 1) != 1) return;  // closed: nobody is there; the session goes on
+    // standard input is closed: no operator, the session continues
+    if (::read(STDIN_FILENO, &letter, 1) != 1) return;
     if (letter == '\n')
       take(std::exchange(line, ""));
     else

@@ -10,12 +10,12 @@
 
 namespace turnpoint::cli {
 
-/// The operator's side of a session without a screen: what happens is written line by line, and lines typed
-/// on standard input act: arm, disarm, next, pause, repeat, stop, note TEXT. On simulated buttons and a
-/// simulated contact so do left, right, third, finger on and finger off.
+/// The operator's console of a session without a screen. It prints events line by line. Lines typed on
+/// standard input are commands: arm, disarm, next, pause, repeat, stop, note TEXT. With simulated buttons and
+/// contact there are also left, right, third, finger on and finger off.
 class OperatorConsole : public session::Display {
  public:
-  /// Begins to read standard input; both must outlive it.
+  /// Starts reading standard input. Both references must outlive this object.
   OperatorConsole(const rig::Rig& rig, session::Inputs& inputs, std::ostream& messages);
 
   void show(const session::Page& page) override;
@@ -30,8 +30,9 @@ class OperatorConsole : public session::Display {
   session::Inputs& inputs_;
   std::ostream& messages_;
   std::mutex writing_;
-  std::string last_;     ///< session thread only: what was said of the page before
-  std::jthread reader_;  // last: joined before what it uses goes
+  std::string last_;  ///< session thread only: the last message printed about a page
+  // The last member, so that the thread is joined before the objects that it uses are destroyed.
+  std::jthread reader_;
 };
 
 }  // namespace turnpoint::cli

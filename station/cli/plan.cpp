@@ -128,7 +128,7 @@ void plan(const Options& options, Context& context) {
 void add_plan(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
-      app.add_subcommand("plan", "What a scene of a protocol becomes: tones, model, reason, cues");
+      app.add_subcommand("plan", "Show how a scene of a protocol is presented: tones, model, reason, cues");
   command->add_option("protocol", options->protocol, "Protocol file")->required();
   command->add_option("--scene", options->scene, "Name of the scene")->required();
   command->add_option("--set", options->set,

@@ -52,7 +52,7 @@ Json to_json(const app::Recovery& recovery) {
           {"interval_width", json_number(recovery.interval_width)}};
 }
 
-// Above chance by this much, a cue is named: what 20 trials could just show.
+// Report a cue if its accuracy exceeds chance by this margin (about what 20 trials can detect).
 constexpr double noticeable = 0.1;
 
 Json to_json(const std::vector<app::CueReport>& cues) {
@@ -89,7 +89,7 @@ void print(std::ostream& out, const app::Power& power) {
   fmt::print(out, line, "source", "number", "truth", "mean", "bias", "SD", "median", "quartiles", "width",
              "coverage", "sessions");
   for (const auto& r : power.recoveries) {
-    // Digits are those that the spread between sessions leaves.
+    // Print only digits that the spread between sessions justifies.
     const double spread = r.upper_quartile - r.lower_quartile;
     const auto shown = [spread](const std::optional<double>& value) {
       return value ? text::estimated(*value, spread) : std::string("n/a");
@@ -119,7 +119,7 @@ void print(std::ostream& out, const std::vector<app::CueReport>& cues) {
                number(100 * cue.chance, 3), cue.accuracy > cue.chance + noticeable ? ", above chance" : "");
 }
 
-/// One line that rewrites itself, only where somebody watches.
+/// A progress line that rewrites itself; only on a terminal.
 std::function<void(int, int)> progress() {
   if (::isatty(STDERR_FILENO) == 0) return {};
   return [](int done, int of) {
@@ -166,19 +166,20 @@ void power(const Options& options, Context& context) {
 void add_power(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
-      "power", "What a study would find: bias, spread and interval coverage by simulated sessions");
+      "power", "Predict what a study would find: bias, spread and interval coverage from simulated sessions");
   command->add_option("protocol", options->protocol, "Protocol file")->required();
-  command->add_option("--rig", options->rig, "Rig file, for the cues that an observer could use instead");
+  command->add_option("--rig", options->rig, "Rig file, for the unwanted cues that an observer could use");
   command->add_option("--observers", options->observers, "Simulated sessions")
       ->capture_default_str()
       ->check(range(1, 1'000'000));
-  command->add_option("--intervals", options->intervals, "Sessions that also get 95 % intervals")
+  command->add_option("--intervals", options->intervals, "Number of sessions that also get 95 % intervals")
       ->capture_default_str()
       ->check(range(0, 1'000'000));
   command
-      ->add_option("--observer", options->observer,
-                   "sim[:threshold=...,slope=...,lapse=...,bias=...,criterion=...,bound=...]: who answers; "
-                   "protocols/README.md lists all keys")
+      ->add_option(
+          "--observer", options->observer,
+          "sim[:threshold=...,slope=...,lapse=...,bias=...,criterion=...,bound=...]: the simulated observer; "
+          "protocols/README.md lists all keys")
       ->capture_default_str();
   command->add_option("--seed", options->seed, "Seed of the first session, 0 to 2^53")
       ->check(range(0, 9007199254740992));

@@ -29,7 +29,8 @@ void write(const std::filesystem::path& path, const std::string& text, std::ostr
   fmt::print(messages, "{}\n", path.string());
 }
 
-/// Every scene asked for as files; what cannot be presented is said, and is a failure at the end.
+/// Writes files for every requested scene. A scene that cannot be presented is reported, and the command
+/// fails at the end.
 void preview_to_files(const Options& options, Context& context) {
   app::Preview preview(options.protocol, options.rig);
   std::vector<std::string> assumed;
@@ -59,7 +60,7 @@ void preview_to_files(const Options& options, Context& context) {
 
 void add_preview(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("preview", "The scenes of a protocol before anyone is in the room");
+  auto* command = app.add_subcommand("preview", "Show the scenes of a protocol without a session");
   command->add_option("protocol", options->protocol, "Protocol file")->required();
   command->add_option("--scene", options->scene, "Name of the scene; otherwise every scene");
   command->add_option("--set", options->set,

@@ -34,11 +34,13 @@ void report_session(Options options, Context& context) {
 
 void add_report(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("report", "One page about a session: fits, bias, the trade, health");
+  auto* command = app.add_subcommand(
+      "report", "Write a report of a session: fits, bias, speed-accuracy trade-off, health");
   command->add_option("--db", options->database, "Database")->required();
   command->add_option("--session", options->filter.session_id, "This session; otherwise the newest");
-  command->add_option("--participant", options->filter.participant, "The newest of this participant: CODE or CODE@STATION");
-  command->add_option("--protocol", options->filter.protocol_id, "The newest of this protocol");
+  command->add_option("--participant", options->filter.participant,
+                      "The newest session of this participant: CODE or CODE@STATION");
+  command->add_option("--protocol", options->filter.protocol_id, "The newest session of this protocol");
   command->add_option("--out", options->out, "HTML file; otherwise report-SESSION.html, with --json none");
   add_json(*command, context);
   command->footer("Example: turnpoint report --db lab.sqlite --participant P07 --out P07.html");

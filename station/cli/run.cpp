@@ -78,10 +78,10 @@ void print_summary(std::ostream& out, const session::Summary& s) {
   fmt::print(out, "  checksum {}\n", s.checksum);
 }
 
-/// A session without a trial is none to go on with.
+/// A session without a trial cannot be resumed.
 void print_how_to_resume(std::ostream& out, const session::Summary& s, const std::string& options) {
   if (store::interrupted_session(s.database, s.session_id))
-    fmt::print(out, "  to go on: turnpoint resume --db {} --session {}{}\n", s.database, s.session_id,
+    fmt::print(out, "  to continue: turnpoint resume --db {} --session {}{}\n", s.database, s.session_id,
                options);
 }
 
@@ -103,8 +103,8 @@ std::shared_ptr<app::RunRequest> add_run_options(Command& command) {
   command.add_option("protocol", request->protocol, "Protocol file")->required();
   command.add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
   command.add_option("--participant", request->participant,
-                     "Participant code (never a name); the screen asks for it where it is left out");
-  command.add_option("--db", request->database, "Database file; made if it does not exist")->required();
+                     "Participant code (never a name); if it is left out, the screen asks for it");
+  command.add_option("--db", request->database, "Database file; created if missing")->required();
   command.add_option("--mode", request->mode, "live | pilot")
       ->capture_default_str()
       ->check(one_of({"live", "pilot"}));

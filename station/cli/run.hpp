@@ -8,17 +8,19 @@
 
 namespace turnpoint::cli {
 
-/// Adds the options of `turnpoint run` to a command; turnpoint-ui takes the same ones.
+/// Adds the options of `turnpoint run` to a command. turnpoint-ui accepts the same options.
 std::shared_ptr<app::RunRequest> add_run_options(Command& command);
 
-/// Adds the options of `turnpoint station`; amplifier-off takes the same ones.
+/// Adds the options of `turnpoint station`. amplifier-off accepts the same options.
 std::shared_ptr<app::StationRequest> add_station_options(Command& command);
 
-/// Hands the whole command line to turnpoint-ui beside this program; comes back only by an exception.
+/// Replaces this process by turnpoint-ui from the same folder, with the whole command line. Returns only by
+/// an exception.
 void become_ui(const Context& context);
 
-/// The summary as text, with the command that goes on with an interrupted session, or as JSON. A session that
-/// was interrupted sets exit status 1. `resume_options`: what that command needs besides (" --headless").
+/// Prints the summary as JSON, or as text with the command that continues an interrupted session. An
+/// interrupted session sets exit status 1. `resume_options` are further options for that command ("
+/// --headless").
 void show_summary(Context& context, const session::Summary& summary, const std::string& resume_options = "");
 
 }  // namespace turnpoint::cli

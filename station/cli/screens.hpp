@@ -9,17 +9,17 @@
 
 namespace turnpoint::cli {
 
-/// What only a program with a screen can do; turnpoint hands over to turnpoint-ui. Each comes back when its
-/// window is closed.
+/// Functions that only a program with a screen provides; turnpoint starts turnpoint-ui for them. Each returns
+/// when its window is closed.
 struct Screens {
-  /// Runs a session, asking on the screen for what the request leaves open (language, participant's code). A
-  /// session that is already prepared (one that goes on) comes whole, and its request is not looked at.
+  /// Runs a session and asks on the screen for what the request leaves open (language, participant's code).
+  /// If an already prepared session is given (a resumed one), the request is ignored.
   std::function<session::Summary(app::RunRequest, std::optional<session::Setup>)> session;
-  /// The operator's start page, and the sessions begun there, one after another.
+  /// Shows the operator's start page and runs the sessions started there, one after another.
   std::function<void(const app::StationRequest&)> station;
-  /// The scenes of a protocol with sliders for their factors.
+  /// Shows the scenes of a protocol with sliders for their factors.
   std::function<void(const app::PreviewRequest&)> preview;
-  /// Taps against a reference, until the operator keeps what was measured; none where nothing was.
+  /// Measures taps against a reference until the operator accepts the result; empty if none was accepted.
   std::function<std::optional<calibration::PanelLatency>(const app::LatencyRequest&)> latency;
 };
 

@@ -17,7 +17,7 @@ namespace turnpoint::cli {
 
 namespace {
 
-/// Runs a program without a shell, on this terminal. Returns its exit status.
+/// Runs a program without a shell on this terminal. Returns its exit status.
 int run_program(std::vector<std::string> words) {
   std::vector<char*> arguments;
   for (auto& word : words) arguments.push_back(word.data());
@@ -42,7 +42,7 @@ std::vector<std::string> sign_files(const std::string& folder, const std::vector
   const auto list = (std::filesystem::path(folder) / "SHA256SUMS").string();
   const auto signature = list + ".sig";
   store::write_file(list, sums);
-  std::filesystem::remove(signature);  // ssh-keygen would ask whether to overwrite it
+  std::filesystem::remove(signature);  // otherwise ssh-keygen would ask whether to overwrite it
   if (const int status = run_program({"ssh-keygen", "-q", "-Y", "sign", "-n", "turnpoint", "-f", key, list}))
     throw std::runtime_error(
         fmt::format("export: ssh-keygen did not sign {} with {} (exit status {}); the exported files are "

@@ -17,7 +17,7 @@ std::shared_ptr<app::StationRequest> add_station_options(Command& command) {
   command.add_option("--db", request->database, "Database; otherwise one in the user's data folder");
   command.add_flag(
       "--locked", request->locked,
-      "Ask for the operator's code before the first page too: where a participant may stand at the screen");
+      "Ask for the operator's code even before the first page, for a screen that participants can reach");
   return request;
 }
 
@@ -28,9 +28,8 @@ void add_station(CommandLine& app, Context& context) {
   command->callback([request, &context] {
     if (request->locked && app::operator_code().is_built_in())
       throw UsageError(
-          "station: --locked would open with the built-in code, which everybody can look up; store one of "
-          "your "
-          "own: sudo turnpoint operator-code");
+          "station: --locked would open with the built-in code, which is public; store your own: sudo "
+          "turnpoint operator-code");
     if (!context.screens) return become_ui(context);
     request->rig = app::rig_or_default(request->rig, context.err);
     if (request->protocols.empty()) request->protocols = app::shipped("protocols");

@@ -69,7 +69,7 @@ Json to_json(const drive::PlayReport& report, const Options& options) {
             {"device_losses", c.device_losses}}}};
 }
 
-/// Without `--arm` the amplifier is left alone: off, as it is without a station.
+/// Without `--arm` the amplifier is not touched and stays off.
 drive::PlayReport play(const rig::Rig& rig, const Options& options) {
   const auto burst = burst_for(rig, options);
   if (!options.arm) {
@@ -106,16 +106,14 @@ void add_synth(CommandLine& app, Context& context) {
   command->add_option("--rig", options->rig, "Rig file: rate, depth, transducers")->required();
   command->add_option("--tone", options->tones, "HZ[:UM[:DEG]]: frequency, drive-edge displacement, phase")
       ->required();
-  command->add_option("--seconds", options->seconds, "Length, both ramps included")
+  command->add_option("--seconds", options->seconds, "Duration, including both ramps")
       ->required()
       ->check(between(0.001, 3600.0));
   command->add_option("--ramp-ms", options->ramp_ms, "Length of each ramp")
       ->capture_default_str()
       ->check(not_negative());
   command->add_option("--out", options->out, "null: | wav:FILE | alsa:NAME")->required();
-  command->add_flag(
-      "--arm", options->arm,
-      "With --out alsa:...: the operator arms the rig's amplifier by this, for as long as it plays");
+  command->add_flag("--arm", options->arm, "With --out alsa:...: arm the rig's amplifier while it plays");
   add_json(*command, context);
   command->footer(
       "Example: turnpoint synth --rig deploy/rigs/simulated.toml --tone 30000:0.5 --seconds 2 --out "

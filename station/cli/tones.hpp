@@ -6,12 +6,12 @@
 
 namespace turnpoint::cli {
 
-/// `HZ[:UM[:DEG]]`: frequency, peak displacement of the drive edge (1 um when left out) and phase. Throws
+/// Parses `HZ[:UM[:DEG]]`: frequency, peak displacement of the drive edge (default 1 um) and phase. Throws
 /// UsageError naming the text and what is allowed.
 physics::Tone parse_tone(const std::string& text);
 std::vector<physics::Tone> parse_tones(const std::vector<std::string>& texts);
 
-/// `1,2.5,3` as numbers; throws UsageError naming the option.
+/// Parses `1,2.5,3`. Throws UsageError naming the option.
 std::vector<double> parse_list(const std::string& text, const std::string& option);
 
 }  // namespace turnpoint::cli

@@ -28,7 +28,7 @@ const procedure::Spec& find(const protocol::Protocol& protocol, const std::strin
   throw UsageError(fmt::format("--procedure {}: the protocol has {}", name, known));
 }
 
-/// What the procedure must know of the protocol, the other factors at their first levels.
+/// What the procedure needs to know about the protocol, with the other factors at their first levels.
 procedure::Context context_of(const protocol::Protocol& protocol, const procedure::Spec& spec) {
   procedure::Context context;
   protocol::Factors factors;
@@ -78,7 +78,7 @@ void trace(const Options& options, Context& context) {
 
 void add_trace(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("trace", "The levels that a procedure gives for given answers");
+  auto* command = app.add_subcommand("trace", "Show the levels that a procedure chooses for given answers");
   command->add_option("protocol", options->protocol, "Protocol file")->required();
   command->add_option("--procedure", options->procedure, "Name of the procedure")->required();
   command->add_option("--answers", options->answers, "1 (correct, or the tracked answer) and 0, as in 1011")

@@ -59,7 +59,7 @@ void verify(const Options& options, Context& context) {
 void add_verify(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("verify", "Check that the stored data are as they were recorded");
-  command->add_option("--db", options->database, "Database or backup; it is only read")->required();
+  command->add_option("--db", options->database, "Database or backup; only read")->required();
   command->add_option("--session", options->verify.session_id, "Only this session");
   command->add_option("--against", options->verify.against,
                       "A sessions.csv exported earlier: its checksums must still be in the database");

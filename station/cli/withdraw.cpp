@@ -42,7 +42,7 @@ Json to_json(const store::Withdrawal& gone, const Options& options) {
           {"remaining_copies", gone.remaining_copies}};
 }
 
-/// What there is to delete, or was deleted.
+/// Prints what would be deleted, or was deleted.
 void print(std::ostream& out, const store::Withdrawal& gone, const std::string& verb) {
   for (const auto& s : gone.sessions)
     fmt::print(out, "{}: session {} of {} at {}, {} of {}, {} trials\n", verb, s.session_id,
@@ -54,14 +54,14 @@ void print(std::ostream& out, const store::Withdrawal& gone, const std::string& 
 
 void print_what_stays(std::ostream& out, const store::Withdrawal& gone, const Options& options) {
   for (const auto& path : gone.remaining_copies)
-    fmt::print(out, "holds these data as well or cannot be read, and stays: {}; remove it by hand\n", path);
+    fmt::print(out, "{} still contains these data or cannot be read; remove it by hand\n", path);
   if (options.withdraw.backup_directory.empty())
     fmt::print(out,
                "Earlier backups and exports are not searched: give --backups FOLDER, and remove exports by "
                "hand.\n");
 }
 
-/// Lists what would go, and asks. Nothing is deleted on anything but the word itself.
+/// Lists what would be deleted and asks. Only the participant's code is accepted as agreement.
 bool agreed(const Options& options, Context& context) {
   const auto plan = store::plan_withdrawal(options.database, options.withdraw);
   print(context.err, plan, "would be deleted");
@@ -89,7 +89,7 @@ void withdraw(const Options& options, Context& context) {
     print(context.out, gone, options.dry_run ? "would be deleted" : "deleted");
     print_what_stays(context.out, gone, options);
   }
-  // Not withdrawn as long as a copy stays.
+  // The withdrawal is incomplete as long as a copy remains.
   if (!options.dry_run && !gone.remaining_copies.empty()) context.exit_code = 1;
 }
 
@@ -108,7 +108,7 @@ void add_withdraw(CommandLine& app, Context& context) {
   command->add_option("--session", options->withdraw.session_id, "Only this session; the code stays in use");
   command->add_option(
       "--backups", options->withdraw.backup_directory,
-      "Folder of the backups: a new one is made, this database's that hold the data are removed");
+      "Folder of the backups: makes a new backup and removes this database's backups that contain the data");
   command->add_flag("--dry-run", options->dry_run, "List what would be deleted, and delete nothing");
   command->add_flag("--yes", options->yes, "Do not ask: for scripts");
   add_json(*command, context);

@@ -9,12 +9,13 @@ namespace turnpoint::observer {
 
 namespace {
 
-/// Beyond this product of drift and bound nobody errs, and the exponentials need not go there.
+/// If the product of drift and bound is larger than this, nobody makes an error, and the exponentials can be
+/// limited to it.
 constexpr double kSurest = 300;
 
-/// The density of the passage through -1 or +1 without drift, over twice that through +1 alone (whose walks
-/// may have been below -1): the share of inverse Gaussian times to keep. Each of the two forms of the series
-/// is taken where a few of its terms are enough.
+/// The share of inverse Gaussian times to keep. It is the density of the passage through -1 or +1 without
+/// drift, divided by twice that through +1 alone (whose paths may have been below -1). The series has two
+/// forms; use the one for which a few terms are enough.
 double kept_share(double time) {
   double sum = 0, term = 1;
   if (time < 0.7) {
@@ -33,7 +34,8 @@ double kept_share(double time) {
   return sum * pi * std::sqrt(0.5 * pi * time * time * time);
 }
 
-/// Time from 0 to -1 or +1 with this drift, at least 0. Proposals are kept at least every second time.
+/// Time from 0 to -1 or +1 with this drift, which must be at least 0. At least half of the proposals are
+/// kept.
 double unit_passage(double drift, random::Draws& draws) {
   for (;;) {
     const double normal = draws.normal(), y = normal * normal;

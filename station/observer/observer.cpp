@@ -13,16 +13,17 @@ namespace turnpoint::observer {
 
 namespace {
 
-constexpr double kLogStrongest = 4.6;         // 99 times the threshold: nobody errs
+constexpr double kLogStrongest = 4.6;         // 99 times the threshold, where nobody makes errors
 constexpr double kZ75 = 0.67448975019608171;  // 75 % point of the normal
 constexpr double kLn2 = 0.69314718055994531;
-constexpr double kSurest_sd = 6;        // beyond it the normal's tail is 1e-9, and its logarithm loses digits
-constexpr double kRatingStep_sd = 0.5;  // between the criteria of neighbouring ratings
+// beyond it the normal's tail is below 1e-9, and its logarithm loses precision
+constexpr double kSurest_sd = 6;
+constexpr double kRatingStep_sd = 0.5;  // distance between the criteria of neighbouring ratings
 constexpr int kMoves = 5;
-constexpr double kLook_s = 1.6;       // one slide of the finger across the surface and back
-constexpr double kLookSpread = 0.25;  // SD of its logarithm
+constexpr double kLook_s = 1.6;       // time to slide the finger across the surface and back
+constexpr double kLookSpread = 0.25;  // SD of the logarithm of that time
 
-/// Half the log odds of a normal variable being above -x.
+/// Half the log odds that a standard normal variable is above -x.
 double half_logit_of_normal(double x) {
   const double inside = std::clamp(x, -kSurest_sd, kSurest_sd);
   const double rarer = random::normal_cdf(-std::fabs(inside));
@@ -30,14 +31,14 @@ double half_logit_of_normal(double x) {
   return inside < 0 ? -half : half;
 }
 
-/// Of `answers` the right one, where a diffusion ends at its upper boundary with probability `upper`:
-/// Weibull's core is what two answers have beyond guessing, and more answers have the same beyond theirs.
+/// The proportion correct with `answers` answers if a diffusion ends at its upper boundary with probability
+/// `upper`. The part beyond guessing (Weibull's core) is the same for any number of answers.
 double share_right(double upper, int answers) {
   const double chance = 1.0 / answers;
   return std::max(0.0, chance + (1 - chance) * (2 * upper - 1));
 }
 
-/// The mean of a function of the drift over its normal distribution, by the trapezoidal rule.
+/// The mean of a function of the drift over the drift's normal distribution, by the trapezoidal rule.
 template <class Function>
 double mean_over_drift(double drift, double sd, Function function) {
   if (sd == 0) return function(drift);
@@ -49,8 +50,8 @@ double mean_over_drift(double drift, double sd, Function function) {
   return sum / weights;
 }
 
-/// The criterion above rating `rating` of so many, in SDs from the mean of noise: the yes/no criterion is in
-/// the middle of them.
+/// The criterion above rating `rating`, in SDs from the mean of noise. The yes/no criterion lies in the
+/// middle of all criteria.
 double rating_criterion(const Parameters& p, int rating, int ratings) {
   return p.criterion + kRatingStep_sd * (rating - 0.5 * (ratings - 2));
 }
@@ -67,11 +68,11 @@ double Observer::strength(const Question& q, double from) const {
 
 double Observer::sensitivity(const Question& q) const { return q.absent ? 0 : 2 * kZ75 * strength(q, 0); }
 
-/// Per square root of a second, towards the right, positive or "yes" answer.
+/// Drift per square root of a second, towards the right, positive or "yes" answer.
 double Observer::drift(const Question& q) const {
   double half_logit = 0;
   switch (q.decides) {
-    case Decides::right_answer:  // 1 - 2^-(1 + strength) of two answers are right
+    case Decides::right_answer:  // of two answers, a share of 1 - 2^-(1 + strength) is right
       half_logit = 0.5 * random::log(2 * random::exp(kLn2 * strength(q, 0)) - 1);
       break;
     case Decides::side:
@@ -132,8 +133,8 @@ Reply Observer::answer(const Question& q) const {
   const auto passage = first_passage(pull, limit, start, draws);
   Reply reply;
   if (q.decides == Decides::right_answer) {
-    // Of three answers or more some at the upper boundary are wrong too, so that as many are right as
-    // share_right() says.
+    // With three or more answers, some walks that end at the upper boundary must give a wrong answer, so that
+    // the proportion correct equals share_right().
     const double upper = upper_probability(pull, limit, p.start_range);
     const bool found = passage.upper && u * upper < share_right(upper, q.answers);
     const int right = q.correct.value_or(any);
@@ -164,7 +165,8 @@ Setting Observer::adjust(const Adjustment& a) const {
   Setting setting;
   double time_s = parameters_.residual_s;
   for (int k = 1; k <= kMoves; ++k) {
-    // Past the aim and back, each time by half as much: people bracket what they look for.
+    // Overshoot the target and come back, each time by half as much, as people do when they bracket a
+    // setting.
     const double overshoot = k == kMoves ? 0 : (a.start - wanted) * (k % 2 == 1 ? -0.5 : 0.5) / k;
     time_s += kLook_s * random::exp(kLookSpread * draws.normal());
     setting.moves.push_back({time_s, std::clamp(wanted + overshoot, a.low, a.high)});

@@ -8,30 +8,32 @@
 
 namespace turnpoint::observer {
 
-/// How a simulated observer decides. Each answer is the first passage of a diffusion (first_passage.hpp)
-/// whose drift is such that, with the full bound, answers follow a psychometric function of the level:
-///  - where one answer is right: a Weibull function with the exponent `slope`;
-///  - where the sign of the level decides: a normal distribution about `bias` (of |level - bias|^slope);
-///  - yes/no and ratings: d' grows as level^slope, and the criterion lies at `criterion`.
-/// The threshold is in the unit of the level. Lapses are answers at random.
+/// The parameters of a simulated observer. Each answer is the first passage of a diffusion
+/// (first_passage.hpp). Its drift is chosen so that, with the full bound, answers follow a psychometric
+/// function of the level:
+/// - if one answer is right: a Weibull function with the exponent `slope`;
+/// - if the sign of the level decides: a normal distribution around `bias` (of |level - bias|^slope);
+/// - yes/no and ratings: d' grows as level^slope, and the criterion lies at `criterion`.
+/// The threshold is in the unit of the level. Lapses are random answers.
 struct Parameters {
-  /// The |level| (of a signed level: the distance from the bias) at which 75 % of two alternatives are right,
-  /// and yes/no answers have d' = 1.349, which is 75 % right with the default criterion. None: the middle of
-  /// the levels that the protocol presents.
+  /// The |level| (for a signed level: the distance from the bias) at which 75 % of answers between two
+  /// alternatives are right. For yes/no it gives d' = 1.349, which is 75 % right with the default criterion.
+  /// Empty: the middle of the levels that the protocol presents.
   std::optional<double> threshold;
-  double slope = 1;  ///< exponent of level over threshold; for levels in dB, of the amplitude ratio
+  double slope = 1;  ///< exponent of level / threshold; for levels in dB, of the amplitude ratio
   double lapse = 0.02;
   double bias = 0;  ///< the level at which a signed task seems balanced
-  double criterion =
-      0.67448975019608171;   ///< yes/no: SDs above the mean of noise; false alarms Phi(-criterion)
-  double bound = 0.85;       ///< half the separation, square root of s: EZ's a is 0.2 times it
-  double residual_s = 0.35;  ///< time outside the decision, without `travel_s`
-  double travel_s = 0.15;    ///< from the surface to the answer
-  // Variability between trials (Ratcliff & McKoon 2008); none as a rule.
-  double drift_sd = 0;          ///< normal, per square root of a second: EZ's eta is 0.1 times it
-  double start_range = 0;       ///< uniform about the middle, as a share of the separation, 0 to below 1
-  double residual_range_s = 0;  ///< uniform about residual_s; at most twice that
-  double anticipation = 0;      ///< share of trials answered before anything could be felt
+  /// yes/no: in SDs above the mean of noise; the false-alarm rate is Phi(-criterion)
+  double criterion = 0.67448975019608171;
+  double bound = 0.85;       ///< half the boundary separation, square root of s; EZ's a is 0.2 times this
+  double residual_s = 0.35;  ///< non-decision time, without `travel_s`
+  double travel_s = 0.15;    ///< time to move from the surface to the answer
+  // Variability between trials (Ratcliff & McKoon 2008); usually none.
+  double drift_sd = 0;  ///< normal, per square root of a second; EZ's eta is 0.1 times this
+  /// uniform around the middle, as a fraction of the separation, from 0 to below 1
+  double start_range = 0;
+  double residual_range_s = 0;  ///< uniform around residual_s; at most twice residual_s
+  double anticipation = 0;      ///< share of trials answered before anything can be felt
 };
 
 /// Reads `sim` or `sim:threshold=6,slope=1.2,lapse=0.02,bias=0,...`. Throws terms::UsageError naming the
@@ -40,62 +42,63 @@ Parameters parse(const std::string& text);
 
 /// What an answer depends on.
 enum class Decides {
-  right_answer,  ///< there is a right answer, easier to find with a stronger level
+  right_answer,  ///< one answer is right, and a stronger level makes it easier to find
   side,          ///< two answers, one on each side of the bias
-  presence,  ///< two answers, whether there was a signal; or ratings, from the surest no to the surest yes
+  presence,      ///< two answers: was there a signal; or ratings, from the surest no to the surest yes
 };
 
-/// What is asked, without what only the station knows but the level.
+/// The question in a trial. It contains the level, but nothing else that only the station knows.
 struct Question {
   double level = 0;
-  bool decibel = false;  ///< the level is 20 log10 of a strength
+  bool decibel = false;  ///< true if the level is 20 log10 of a strength
   Decides decides = Decides::right_answer;
   int positive = 1;            ///< side: the answer that fits a level above zero; presence of two: "yes"
   bool absent = false;         ///< presence: this trial has no signal, whatever its level
-  std::optional<int> correct;  ///< right_answer: the right one; none: there is none
+  std::optional<int> correct;  ///< right_answer: the right one; empty if there is none
   int answers = 2;
-  double default_threshold = 1;  ///< where the parameters have none
-  double deadline_s = 0;  ///< 0: none; an observer decides sooner, and worse, when there is little time
-  random::Key key;        ///< of the trial; the stream is the observer's
+  double default_threshold = 1;  ///< used if the parameters have no threshold
+  double deadline_s = 0;         ///< 0: none; with little time an observer decides sooner and less accurately
+  random::Key key;               ///< key of the trial; the stream is always the observer's
 };
 
 struct Reply {
   std::optional<int> choice;
-  double response_time_s = 0;  ///< from the moment that counts; may be negative for an anticipation
+  double response_time_s = 0;  ///< from response_zero; may be negative for an anticipation
 };
 
-/// A slider to be set: where it starts, and what it can be set to.
+/// A slider to adjust: its start and its range.
 struct Adjustment {
   double start = 0, low = 0, high = 1;
   random::Key key;
 };
 
 struct Move {
-  double time_s = 0;  ///< from the moment that counts
+  double time_s = 0;  ///< from response_zero
   double value = 0;
 };
 
 struct Setting {
-  std::vector<Move> moves;  ///< in time; the last one is the setting
-  double done_s = 0;        ///< when Done is pressed
+  std::vector<Move> moves;  ///< in order of time; the last one is the setting
+  double done_s = 0;        ///< time at which Done is pressed
 };
 
-/// A simulated participant. Stateless: the same question gets the same reply, on every machine.
+/// A simulated participant. Stateless: the same question gets the same answer on every machine.
 class Observer {
  public:
   explicit Observer(const Parameters& parameters) : parameters_(parameters) {}
   const Parameters& parameters() const { return parameters_; }
-  /// Probability that an answer (not anticipated) is `choice`, lapses included: what answer() does on the
-  /// mean.
+  /// Probability that an answer (not anticipated) is `choice`, lapses included. This is the average of what
+  /// answer() does.
   double share(const Question& question, int choice) const;
   Reply answer(const Question& question) const;
-  /// The bound with this deadline (0: none), square root of s. Where time is short it is so low that even
-  /// with nothing felt all but 4 % of the decisions are made in time.
+  /// The bound with this deadline (0: none), square root of s. With little time it is so low that, even if
+  /// nothing is felt, only 4 % of the decisions are late.
   double bound(double deadline_s) const;
-  /// Mean time outside the decision, s.
+  /// Mean non-decision time, s.
   double nondecision_s() const { return parameters_.residual_s + parameters_.travel_s; }
-  /// Moves the slider to where things seem equal, in ever smaller steps: settings scatter about the bias with
-  /// the normal whose 75 % point is the threshold (none: a tenth of the range), a lapse sets it anywhere.
+  /// Moves the slider in ever smaller steps to where things seem equal. Settings scatter around the bias with
+  /// the normal distribution whose 75 % point is the threshold (without a threshold: a tenth of the range). A
+  /// lapse sets the slider anywhere.
   Setting adjust(const Adjustment& adjustment) const;
 
  private:

@@ -10,7 +10,8 @@ namespace turnpoint::plot {
 
 namespace {
 
-/// A smaller part of a number than this is rounding, not a difference: ticks could not be counted along it.
+/// Differences smaller than this fraction of a number are rounding errors. Ticks that close could not be
+/// counted.
 constexpr double kRounding = 1e-9;
 
 bool differ(double low, double high) {
@@ -25,7 +26,7 @@ void check(const Axis& axis) {
                                 ": needs finite limits, the low one below, above 0 on a log axis");
 }
 
-/// A label with a true minus sign.
+/// A label with a typographic minus sign.
 std::string label(double value) {
   auto result = text::number(std::abs(value) < 1e-12 ? 0 : value, 6);
   if (result[0] == '-') result = "\u2212" + result.substr(1);
@@ -46,7 +47,7 @@ std::vector<Tick> linear_ticks(const Axis& axis, int wanted) {
   return result;
 }
 
-/// 10 to a power, its digits raised.
+/// A power of ten with a raised exponent.
 std::string power_of_ten(int exponent) {
   static const char* const raised[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                        "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
@@ -60,7 +61,7 @@ std::vector<Tick> log_ticks(const Axis& axis, int wanted) {
   const int last = static_cast<int>(std::ceil(std::log10(axis.high)));
   const bool decades_only = 2 * (last - first) > wanted;
   const bool powers = decades_only && (first < -4 || last > 4);
-  // Over many decades each has its tick, and every second, third, ... its label.
+  // Over many decades each decade has a tick, but only every second, third, ... has a label.
   const int labelled = (last - first) / std::max(1, 2 * wanted) + 1;
   std::vector<Tick> result;
   for (int decade = first; decade <= last; ++decade)

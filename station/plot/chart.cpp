@@ -86,7 +86,7 @@ struct Draw {
       }
   }
 
-  /// The line alone; its label comes when all that it has to avoid is drawn.
+  /// Draws only the line. Its label is placed after everything that it has to avoid has been drawn.
   void operator()(const Rule& rule) const {
     if (!is_shown(rule, frame)) return;
     const bool flat = rule.direction == Rule::Direction::horizontal;
@@ -131,7 +131,7 @@ struct Draw {
   }
 };
 
-/// What the legend shows of one series: the layers of equal name and series make one entry.
+/// One entry of the legend. Layers of equal name and series share an entry.
 struct Entry {
   std::string name;
   int series = 0;
@@ -163,7 +163,7 @@ std::vector<Entry> legend_of(const Panel& panel) {
   return entries;
 }
 
-/// Rows of entries that fit the width; the legend stands between title and data.
+/// Draws the legend between title and data, in rows that fit the width.
 double draw_legend(Svg* svg, const std::vector<Entry>& entries, double left, double top, double width) {
   constexpr double sample = 24, gap = 18, row = 18;
   double x = left, y = top;
@@ -216,7 +216,7 @@ void draw_axes(Svg& svg, const Frame& frame, const std::vector<Tick>& across, co
     const double x = frame.at(tick.value, frame.up->low).first;
     svg.line({x, bottom}, {x, bottom + kTick}, {kInk, "", 1, "", 1});
     const double half = text_width(tick.label, kText) / 2;
-    if (x - half < free_from) continue;  // labels never run into each other
+    if (x - half < free_from) continue;  // skip labels that would touch the previous one
     svg.text({x, bottom + kTick + 13}, tick.label, kText, Anchor::middle, kInk);
     free_from = x + half + 6;
   }
@@ -224,7 +224,7 @@ void draw_axes(Svg& svg, const Frame& frame, const std::vector<Tick>& across, co
   svg.text({frame.x + frame.width / 2, bottom + 37}, frame.across->label, kText, Anchor::middle, kInk);
 }
 
-/// As many ticks across as have room for all their labels; on a log axis some go without.
+/// As many horizontal ticks as there is room for their labels. On a log axis some have no label.
 std::vector<Tick> ticks_with_room(const Axis& axis, double width) {
   for (int wanted = 7; wanted > 2 && axis.scale == AxisScale::linear; --wanted) {
     const auto some = ticks(axis, wanted);
@@ -244,9 +244,9 @@ struct Place {
   double left = 0, top = 0, width = 0, height = 0;
 };
 
-/// What a panel's place is divided into.
+/// How a panel's area is divided.
 struct Division {
-  double left = 0, width = 0, legend_top = 0;  ///< of title, legend and data
+  double left = 0, width = 0, legend_top = 0;  ///< for title, legend and data
   std::vector<Tick> up;
   std::vector<Entry> entries;
   Labelled labelled;
@@ -268,7 +268,7 @@ Division divided(const Panel& panel, const Place& place, VerticalLabels where, i
   return d;
 }
 
-/// With as many ticks up as stand a line of text and a half apart.
+/// Chooses as many vertical ticks as fit with a spacing of one and a half lines of text.
 Division divided(const Panel& panel, const Place& place, VerticalLabels where) {
   for (int wanted = 5;; --wanted) {
     auto d = divided(panel, place, where, wanted);
@@ -295,7 +295,7 @@ void draw_panel(Svg& svg, const Panel& panel, const Place& place, VerticalLabels
   if (const auto* map = heat_map(panel)) draw_colour_bar(svg, frame, d.left + d.width, *map);
 }
 
-/// Small multiples are compared with each other: where one has to put a label above its data, all do.
+/// Small multiples are compared with each other: if one panel has to put a label above its data, all do.
 VerticalLabels labels_of(const std::vector<Panel>& panels, const std::vector<Place>& places) {
   for (std::size_t i = 0; i < panels.size(); ++i)
     for (const auto& label : divided(panels[i], places[i], VerticalLabels::beside).labelled.labels)
@@ -303,7 +303,7 @@ VerticalLabels labels_of(const std::vector<Panel>& panels, const std::vector<Pla
   return VerticalLabels::beside;
 }
 
-/// The caption in lines that fit the width.
+/// Breaks the caption into lines that fit the width.
 std::vector<std::string> caption_lines(const std::string& caption, double width) {
   std::vector<std::string> lines;
   std::istringstream words(caption);
@@ -358,7 +358,7 @@ Figure laid_out(Figure figure, double width_px, double height_px) {
     figure.panel_width_px = width / columns;
     figure.panel_height_px = std::max(
         least_height, (height_px * larger - (caption > 0 ? kPad + kCaptionLine * caption : 0)) / rows);
-    // What has to be made smaller to fit counts as much as what is drawn out of proportion.
+    // Shrinking a panel to make it fit counts as much as distorting its proportions.
     const double off =
         std::abs(std::log(figure.panel_width_px / figure.panel_height_px / best)) + 2 * std::log(larger);
     if (off < nearest) nearest = off, chosen = figure;

@@ -9,7 +9,7 @@ namespace turnpoint::plot {
 namespace {
 
 constexpr double kAscent = 9.5, kDescent = 3, kRow = 13, kBeside = 4;
-constexpr double kOver = 6;  // of what is drawn over the frame
+constexpr double kOver = 6;  // how far drawing may extend beyond the frame
 
 Box box_of(const std::string& text, Svg::Point at, Anchor anchor) {
   const double width = text_width(text, kLabelText_px);
@@ -23,7 +23,8 @@ RuleLabel label_at(const Rule& rule, Svg::Point at, Anchor anchor) {
 
 bool is_flat(const Rule& rule) { return rule.direction == Rule::Direction::horizontal; }
 
-/// A straight piece in boxes of a few px, since one box around a slope would cover much that is free.
+/// Covers a straight line with boxes of a few px. A single box around a slope would also cover much free
+/// space.
 void cover(std::vector<Box>& boxes, Svg::Point a, Svg::Point b, double half) {
   const double length = std::max(std::abs(b.first - a.first), std::abs(b.second - a.second));
   const int pieces = std::max(1, static_cast<int>(std::ceil(length / 4)));
@@ -84,7 +85,7 @@ struct Cover {
   }
 };
 
-/// Places beside a rule, the best first.
+/// Possible places beside a rule, the best first.
 std::vector<RuleLabel> places_beside(const Rule& rule, const Frame& frame) {
   std::vector<RuleLabel> places;
   const double right = frame.x + frame.width, bottom = frame.y + frame.height;
@@ -101,7 +102,8 @@ std::vector<RuleLabel> places_beside(const Rule& rule, const Frame& frame) {
       places.push_back(label_at(rule, {x - kBeside, base}, Anchor::end));
     }
   }
-  // Inside, but for what a line of text is higher than the space above a rule at the very top.
+  // The label must be inside the frame. Only for a rule at the very top, it may extend above by what a line
+  // of text needs.
   std::erase_if(places, [&](const RuleLabel& place) {
     return place.box.left < frame.x || place.box.right > right || place.box.top < frame.y - 1 ||
            place.box.bottom > bottom;
@@ -116,7 +118,7 @@ RuleLabel lower(RuleLabel label) {
   return label;
 }
 
-/// What is left of a frame where these labels stand outside.
+/// The rest of a frame after these labels were placed outside the data.
 Frame without_labels(Frame frame, const std::set<const Rule*>& rules) {
   double right = 0;
   for (const auto* rule : rules) {
@@ -131,7 +133,7 @@ Frame without_labels(Frame frame, const std::set<const Rule*>& rules) {
   return frame;
 }
 
-/// Above the data in the given row, or to the right of it.
+/// Places a label above the data in the given row, or to the right of the data.
 RuleLabel outside(const Rule& rule, const Frame& frame, int row) {
   if (is_flat(rule)) {
     const auto at = frame.at(frame.across->high, rule.at);

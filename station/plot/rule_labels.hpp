@@ -6,22 +6,22 @@
 
 namespace turnpoint::plot {
 
-/// Where a panel's data rectangle lies in px, and what its axes show.
+/// The data rectangle of a panel in px, and its axes.
 struct Frame {
   double x = 0, y = 0, width = 0, height = 0;
   const Axis *across, *up;
 
-  /// Far outside of the axes it stays within a few widths of the panel.
+  /// Points far outside the axes are kept within a few widths of the panel.
   Svg::Point at(double value_x, double value_y) const;
 };
 
-/// False for what has no place on the axis: not finite, or not positive on a log axis.
+/// False for a value without a position on the axis: not finite, or not positive on a log axis.
 bool drawable(const Axis& axis, double value);
 
 /// False for a rule beyond the panel's axes.
 bool is_shown(const Rule& rule, const Frame& frame);
 
-/// Nominal radii in px of markers, by their weights; no marker reaches further than 1.3 radii and its
+/// Nominal radii of markers in px, from their weights. No marker extends further than 1.3 radii plus its
 /// outline.
 std::vector<double> marker_radii_px(const Points& dots);
 
@@ -33,14 +33,14 @@ struct Box {
 };
 bool overlap(const Box& a, const Box& b);
 
-/// Nothing of the data is drawn outside of this: markers at the upper and right end reach over the frame.
+/// The area outside of which no data are drawn. Markers at the upper and right end extend beyond the frame.
 Box drawn_in(const Frame& frame);
 
-/// What the panel's curves, markers, bars, cells and rules cover, in small boxes. Bands do not count: they
-/// let text show through.
+/// The area covered by the panel's curves, markers, bars, cells and rules, as small boxes. Bands are ignored,
+/// because text remains readable on them.
 std::vector<Box> covered(const Panel& panel, const Frame& frame);
 
-/// A rule's label as it stands: a baseline's end, and the box that the text keeps within.
+/// A placed label of a rule: the end of its baseline, and the box around its text.
 struct RuleLabel {
   std::string text;
   Svg::Point at;
@@ -48,10 +48,11 @@ struct RuleLabel {
   Box box;
 };
 
-/// The labels of the panel's rules, and the frame that they leave. Each stands beside its rule where nothing
-/// is covered, as near to the upper right end as it can. One that finds no such place goes out of the data:
-/// a vertical rule's above it, in a row of its own, a horizontal one's to the right; the frame gets smaller
-/// by that. `above`: vertical rules' labels all go there, so that panels side by side stay of one height.
+/// The labels of the panel's rules, and the frame that is left for the data. Each label is placed beside its
+/// rule where nothing is covered, as near to the upper right end as possible. If there is no such place, it
+/// goes outside the data, and the frame becomes smaller: above it for a vertical rule (in a row of its own),
+/// to the right for a horizontal one. With `above`, the labels of all vertical rules go there, so that panels
+/// side by side keep the same height.
 struct Labelled {
   Frame frame;
   std::vector<RuleLabel> labels;

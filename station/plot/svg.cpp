@@ -58,7 +58,7 @@ std::string escaped(const std::string& text) {
 double text_width(const std::string& utf8, double size_px) {
   double ems = 0;
   for (const unsigned char byte : utf8) {
-    if ((byte & 0xC0) == 0x80) continue;      // a continuation of the character before
+    if ((byte & 0xC0) == 0x80) continue;      // a continuation byte of the previous character
     ems += byte >= 0xE3 && byte < 0xF0 ? 1.0  // from U+3000 on: CJK
            : byte >= 0xF0              ? 1.0
                                        : 0.62;
@@ -67,7 +67,7 @@ double text_width(const std::string& utf8, double size_px) {
 }
 
 Svg::Svg(double width, double height, const std::string& title) {
-  // Clip ids must differ between the documents that one HTML page holds.
+  // Clip ids must be unique among the documents that one HTML page contains.
   prefix_ = "c" + text::sha256(title + px(width) + px(height)).substr(0, 8);
   body_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + px(width) + "\" height=\"" + px(height) +
           "\" viewBox=\"0 0 " + px(width) + " " + px(height) +

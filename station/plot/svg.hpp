@@ -5,11 +5,11 @@
 
 namespace turnpoint::plot {
 
-/// Text of an SVG or HTML document: & < > and quotes replaced.
+/// Escapes text for an SVG or HTML document: replaces & < > and quotes.
 std::string escaped(const std::string& text);
 
-/// Width in px that a text needs at this size, never less than a common sans-serif takes: wide characters
-/// (CJK) count a full em, others 0.62.
+/// An upper estimate of a text's width in px at this size in common sans-serif fonts. Wide characters (CJK)
+/// count as a full em, others as 0.62.
 double text_width(const std::string& utf8, double size_px);
 
 /// Stroke and fill of a shape; "" is none. Dash as in SVG ("6 3").
@@ -22,7 +22,7 @@ struct Paint {
 
 enum class Anchor { start, middle, end };
 
-/// Builds one SVG document: coordinates in px, y downward, written with two decimals, so that equal input
+/// Builds one SVG document. Coordinates are in px, y downward, written with two decimals, so that equal input
 /// gives equal bytes.
 class Svg {
  public:
@@ -34,10 +34,10 @@ class Svg {
   void polygon(const std::vector<Point>& points, const Paint& paint);
   void rectangle(Point corner, double width, double height, const Paint& paint);
   void circle(Point centre, double radius, const Paint& paint);
-  /// Baseline at `at`; weight 400 or 600; degrees turn counter-clockwise about `at`.
+  /// The baseline starts at `at`; weight is 400 or 600; degrees turn counter-clockwise about `at`.
   void text(Point at, const std::string& text, double size, Anchor anchor, const std::string& colour,
             int weight = 400, double degrees = 0);
-  /// Shapes until end_clip() are cut at this rectangle.
+  /// Until end_clip(), shapes are clipped to this rectangle.
   void begin_clip(Point corner, double width, double height);
   void end_clip();
 

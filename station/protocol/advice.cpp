@@ -11,13 +11,11 @@ namespace {
 
 using text::number;
 
-// Just noticeable Weber fractions of friction are reported between 0.11
-// (Gueorguiev et al. 2017) and 0.2 (Fehlberg et al. 2022); above the larger one
-// everybody feels the difference.
+// Reported just noticeable Weber fractions of friction range from 0.11 (Gueorguiev et al. 2017) to 0.2
+// (Fehlberg et al. 2022). Everybody feels a difference above the larger one.
 constexpr double felt_by_all = 0.2;
 
-// By how much the scene's boundary (mm) and zone friction change for one unit
-// of the factor.
+// How much the scene's boundary (mm) and zone friction change per unit of the factor.
 double coefficient(const std::optional<Linear>& expression, const std::string& factor) {
   if (!expression || expression->absolute) return 0;
   for (const auto& [name, value] : expression->terms)
@@ -38,8 +36,8 @@ double largest(const std::vector<double>& levels) {
   return most;
 }
 
-// A level must stand out from what the planner may get wrong: four times the tolerance. Where none does, the
-// tolerance is to blame.
+// A level must be well above the planner's possible error: four times the tolerance. If no level is, the
+// tolerance is reported instead.
 void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
   if (spec.kind != procedure::Kind::constant_stimuli || smallest(spec.values) == 0) return;
   for (const auto& name : scenes_used(advice.protocol)) {
@@ -60,7 +58,7 @@ void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
   }
 }
 
-// A threshold cannot be found among levels that everybody feels.
+// No threshold can be found if everybody feels every level.
 void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
   auto levels = spec.values;
   levels.insert(levels.end(), spec.stimuli.values.begin(), spec.stimuli.values.end());
@@ -83,9 +81,8 @@ void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
   }
 }
 
-// Where both staircase steps are stated, a run settles where p(down) times the
-// step down equals p(up) times the step up (Kaernbach 1991, generalised by
-// Garcia-Perez 1998).
+// With separate steps up and down, a run converges where p(down) times the step down equals p(up) times the
+// step up (Kaernbach 1991, generalised by Garcia-Perez 1998).
 void check_unequal_steps(AdviceList& advice, const procedure::Spec& spec) {
   if (spec.kind != procedure::Kind::up_down || spec.step_down.empty() || spec.step_up.empty()) return;
   const double down = spec.step_down.back(), up = spec.step_up.back();

@@ -6,10 +6,10 @@
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/sources.hpp"
 
-// Inside of advice(): one function a subject.
+// Internal to advice(): one function per subject.
 namespace turnpoint::protocol {
 
-/// Advice on a protocol, each piece at the line of its key.
+/// Collects advice on a protocol, each piece at the line of its key.
 struct AdviceList {
   explicit AdviceList(const Protocol& of) : protocol(of), places(of.source, of.path) {}
 
@@ -22,10 +22,10 @@ struct AdviceList {
   std::vector<text::Problem> found;
 };
 
-/// Nobody answers faster: the fastest answers to a touch take about 0.15 s.
+/// The fastest responses to touch take about 0.15 s, so nobody can meet a shorter deadline than this.
 constexpr double shortest_deadline_s = 0.2;
 
-/// `procedure.levels.start`: a key of a procedure for KeyPlaces.
+/// `procedure.levels.start`: the name of a procedure's key in KeyPlaces.
 inline std::string key_of(const procedure::Spec& spec, const std::string& key) {
   return "procedure." + spec.name + "." + key;
 }
@@ -33,16 +33,18 @@ inline std::string key_of(const procedure::Spec& spec, const std::string& key) {
 /// `block.main.trials` or `sequence.main.block.trials`.
 std::string key_of(const std::variant<Block, Sequence>& part, const std::string& key);
 
-/// The key that states the levels of a procedure.
+/// The key that gives the levels of a procedure.
 std::string levels_key(const procedure::Spec& spec);
 
-/// The share of right answers of somebody who guesses.
+/// The proportion correct of somebody who guesses.
 double chance(const Protocol& protocol);
 
-void advise_on_levels(AdviceList& advice);   ///< against tolerances, steps and limits; what nothing uses
-void advise_on_answers(AdviceList& advice);  ///< which are right, and how often; practice and catch trials
-void advise_on_times(AdviceList& advice);    ///< units mixed up, deadlines, what comes too late
-void advise_on_grids(AdviceList& advice);    ///< rates, thresholds and rules that end a procedure
-void advise_on_plan(AdviceList& advice);     ///< blocks, instructions, words, the analysis
+/// levels against tolerances, steps and limits; procedures that nothing uses
+void advise_on_levels(AdviceList& advice);
+/// which answers are right and how often; practice and catch trials
+void advise_on_answers(AdviceList& advice);
+void advise_on_times(AdviceList& advice);  ///< mistaken units, deadlines, events that come too late
+void advise_on_grids(AdviceList& advice);  ///< rates, thresholds and rules that end a procedure
+void advise_on_plan(AdviceList& advice);   ///< blocks, instructions, words, the analysis
 
 }  // namespace turnpoint::protocol

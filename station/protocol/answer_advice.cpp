@@ -14,14 +14,14 @@ namespace {
 using procedure::Spec;
 using text::number;
 
-/// In how many cases each answer is right, and in how many one is; of how many.
+/// Counts over all cases: how often each answer is right, how often any answer is, and the number of cases.
 struct Right {
   std::map<std::string, int> times;
   int scored = 0, all = 0;
 };
 
-// Every level, with every level of the factors that the comparisons need and the procedure does not set. A
-// design with more cases than this is not looked through.
+// The cases combine every level with every level of the other factors in the comparisons. Designs with more
+// cases than this are not checked.
 constexpr std::size_t most_cases = 20000;
 
 std::vector<Factors> cases_of(const Protocol& protocol, const std::string& level,
@@ -62,7 +62,7 @@ Right& operator+=(Right& sum, const Right& other) {
   return sum;
 }
 
-// An answer that is never right, or always, makes scoring pointless.
+// If an answer is never right, or always, scoring is pointless.
 void check_each_answer(AdviceList& advice) {
   const auto& protocol = advice.protocol;
   Right right;
@@ -79,7 +79,7 @@ void check_each_answer(AdviceList& advice) {
   }
 }
 
-// Where one answer is right throughout a block, whoever always gives it is perfect.
+// If the same answer is right throughout a block, always giving it scores 100 %.
 void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) {
   const auto& protocol = advice.protocol;
   const auto& block = block_of(part);
@@ -98,7 +98,7 @@ void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) 
     if (spec && spec->tracks.empty() && !spec->values.empty())
       count(levels_key(*spec), spec->level, spec->values);
     else
-      return;  // an adaptive procedure goes where the answers lead it
+      return;  // an adaptive procedure goes wherever the answers lead it
   }
   if (!block.level.empty()) count(key_of(part, "levels"), block.level, block.levels);
   if (right.scored > 0 && right.times.size() == 1 && !block.pass)
@@ -106,7 +106,7 @@ void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) 
                "levels with each answer right equally often");
 }
 
-// A staircase or a posterior goes by one direction only: easier is always up, or always down.
+// A staircase or a posterior assumes one direction: easier is always up, or always down.
 void check_followed(AdviceList& advice, const Source& source) {
   const auto* spec = source.spec;
   if (!spec || !spec->tracks.empty() || !spec->values.empty()) return;
@@ -118,7 +118,8 @@ void check_followed(AdviceList& advice, const Source& source) {
                "\"tracks\" = the answer that it follows, or levels on one side");
 }
 
-// Runs are broken by trials with another right answer.
+// Checks that the trials allow the requested limit on runs: only trials with another right answer can end a
+// run.
 void check_runs(AdviceList& advice, const Spec& spec) {
   if (!spec.max_run || spec.values.empty()) return;
   const auto right = right_at(advice.protocol, spec.level, spec.values);
@@ -130,7 +131,7 @@ void check_runs(AdviceList& advice, const Spec& spec) {
                         "a larger \"max_run\", or levels with each answer right equally often");
 }
 
-// The share of practice trials that one key, always pressed, gets right.
+// The share of practice trials that a participant gets right by always pressing the same key.
 double one_key_share(const Protocol& protocol, const Block& block) {
   const auto& task = protocol.task;
   if (task.kind != TaskKind::single_interval || block.levels.empty()) return chance(protocol);
@@ -170,9 +171,10 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
                         "the catch trials of \"" + block_of(part).name + "\" have " +
                             (right.times.empty() ? "no right answer" : "one right answer only"),
                         easy_on_both_sides(protocol, trials->factor));
-    if (answer_rule(protocol, trials->factor).kind == AnswerKind::presence) return;  // nothing is easy too
+    // a level without a signal is easy too
+    if (answer_rule(protocol, trials->factor).kind == AnswerKind::presence) return;
   }
-  // Larger is easier: with its sign in dB, else by its size.
+  // Larger levels are easier. A factor in dB is compared with its sign, any other by magnitude.
   const bool decibel = trials->factor.ends_with("_dB");
   const auto sources = sources_of(protocol);
   const auto sets = [&](const Source& source) { return source.spec && source.level == trials->factor; };

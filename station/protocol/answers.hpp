@@ -5,24 +5,26 @@
 
 namespace turnpoint::protocol {
 
-/// What the answers of a task say of the level.
+/// How the answers of a task relate to the level.
 enum class AnswerKind {
-  right_answer,  ///< one of them is right; the level says how easily it is found
+  right_answer,  ///< one of the choices is right; the level determines how easy it is to find
   side,          ///< two answers: the level is below zero, or above
-  presence,      ///< two answers: the level is zero (same-different: the pair is the same), or it is not
+  presence,      ///< two answers: the level is zero (same-different: the scenes are the same), or it is not
 };
 
 struct AnswerRule {
   AnswerKind kind = AnswerKind::right_answer;
-  int positive = 1;  ///< side: the answer that is right above zero; presence: the one that is right off zero
+  /// side: the answer that is right above zero; presence: the answer that is right unless the level is zero
+  int positive = 1;
 };
 
-/// How the answers relate to this factor, from the comparisons of `correct` at its ends and at zero.
+/// Derives how the answers relate to this factor by evaluating the comparisons in `correct` at its ends and
+/// at zero.
 AnswerRule answer_rule(const Protocol& protocol, const std::string& level);
 
-/// The middle of the levels that the protocol's procedures present of this factor (without procedures: its
-/// blocks): for a factor in dB their median, for any other that of their magnitudes without zero. A staircase
-/// counts with everything between its limits. 1 where there are none.
+/// A typical level of this factor among the protocol's procedures (or, without procedures, its blocks): the
+/// median for a factor in dB, otherwise the median magnitude of all nonzero levels. A staircase counts with
+/// all levels between its limits. Returns 1 if there are no levels.
 double middle_level(const Protocol& protocol, const std::string& level);
 
 }  // namespace turnpoint::protocol

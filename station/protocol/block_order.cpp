@@ -7,8 +7,8 @@ namespace turnpoint::protocol {
 
 namespace {
 
-// A Williams square (1949): row r is the zig-zag 0, n-1, 1, n-2, ... shifted by r, so that each condition
-// follows each other equally often. Odd n needs the mirrored rows too.
+// A Williams square (1949): row r is the zig-zag 0, n-1, 1, n-2, ... shifted by r, so that every condition
+// follows every other one equally often. If n is odd, the mirrored rows are needed too.
 std::vector<int> williams_row(int n, int row) {
   const bool reversed = n % 2 == 1 && row % (2 * n) >= n;
   std::vector<int> order;

@@ -14,7 +14,7 @@ namespace {
 
 using text::Findings;
 
-// A factor that nothing sets is said once, at the factor.
+// Reports a factor that nothing sets once, at the factor itself.
 void check_values(const std::vector<Source>& sources, const std::string& name, const Reading& reading) {
   const auto* factor = find_factor(reading.protocol.factors, name);
   if (factor && !factor->levels.empty()) return;
@@ -30,7 +30,7 @@ void check_values(const std::vector<Source>& sources, const std::string& name, c
   }
 }
 
-// A level at which two answers are right cannot be scored.
+// Reports levels at which two answers are right, because such trials cannot be scored.
 void check_answers(const std::vector<Source>& sources, const Reading& reading) {
   const auto& answers = reading.protocol.task.correct_answer;
   for (const auto& source : sources) {
@@ -47,7 +47,7 @@ void check_answers(const std::vector<Source>& sources, const Reading& reading) {
   }
 }
 
-// What has no right answer cannot drive a procedure by correctness, nor be passed.
+// If no answer is correct, a procedure cannot follow correctness and practice cannot be passed.
 void check_scored(text::TableReader& file, const Reading& reading) {
   const auto& protocol = reading.protocol;
   const auto& task = protocol.task;
@@ -95,13 +95,14 @@ bool has_change(const Task& task) {
                      [](const auto& scenes) { return scenes.size() > 1; });
 }
 
-// Each block takes the deadline of its instruction, else that of [timing].
+// Each block uses the deadline of its instruction, else that of [timing].
 std::optional<std::string> block_without_deadline(const Protocol& protocol) {
   for (const auto& block : all_blocks(protocol)) {
     const auto fixed = block.fixed.find("instruction");
     const auto* name = fixed == block.fixed.end() ? nullptr : std::get_if<std::string>(&fixed->second);
     const auto found = name ? protocol.instructions.find(*name) : protocol.instructions.end();
-    const bool unknown = name && found == protocol.instructions.end();  // reported where it is named
+    // an unknown instruction is reported where it is named
+    const bool unknown = name && found == protocol.instructions.end();
     if (!unknown && (!name || !found->second.deadline_s)) return block.name;
   }
   return std::nullopt;
@@ -133,7 +134,7 @@ void check_timing(text::TableReader& file, const Reading& reading) {
     if (const auto block = block_without_deadline(protocol))
       findings.add(table->place, "block \"" + *block + "\" has no deadline: [timing] has no \"deadline_s\"",
                    "\"deadline_s\" here, or in the block's [instructions.NAME]");
-  // Of the two the odd one is to blame: no deadline is as short as the usual anticipation_s of 0.15.
+  // If the two conflict, blame the unusual one: no deadline is as short as the usual anticipation_s of 0.15.
   const auto check_anticipation = [&](const std::string& key, double deadline_s) {
     if (timing.anticipation_s >= deadline_s)
       findings.add(deadline_s < shortest_deadline_s ? reading.places.of(key) : place("anticipation_s"),

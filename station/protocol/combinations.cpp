@@ -10,7 +10,8 @@ namespace turnpoint::protocol {
 
 namespace {
 
-// The values that a factor takes in the trials of a source: its level, what the block fixes, else any level.
+// The values that a factor takes in the trials of a source: the source's level, the value that the block
+// fixes, or else any level.
 std::vector<FactorValue> values_of(const Factor& factor, const Source& source) {
   if (factor.name == source.level) return {source.levels.begin(), source.levels.end()};
   const auto fixed = source.block->fixed.find(factor.name);
@@ -31,7 +32,7 @@ void cross(const Protocol& protocol, const Source& source, const std::string& sc
         next.push_back(std::move(combination));
       }
     product = std::move(next);
-    // A design with more is thinned anyway; what is dropped here lies between values that are kept.
+    // A larger design is thinned anyway, and what is dropped here lies between values that are kept.
     if (product.size() > 20000) product.resize(20000);
   }
   all.insert(all.end(), product.begin(), product.end());
@@ -46,8 +47,8 @@ std::vector<T> evenly(const std::vector<T>& sorted, std::size_t most) {
   return chosen;
 }
 
-// So many values of each factor that their product stays within `most`: first the two extremes of each, then
-// one more of the factor that is thinned most.
+// Chooses values of each factor so that their product has at most `most` combinations: first both extremes of
+// each factor, then repeatedly one more value of the factor that is thinned most.
 std::map<std::string, std::set<FactorValue>> grid_of(
     const std::map<std::string, std::set<FactorValue>>& values, std::size_t most) {
   std::map<std::string, std::size_t> counts;

@@ -16,7 +16,7 @@ using procedure::Kind;
 using text::number;
 using text::Problem;
 
-/// Weaker than any finger feels by far, and stronger than rounding.
+/// Far weaker than any finger feels, but larger than rounding errors.
 constexpr double least_displacement_um = 0.001;
 
 std::string trimmed(const std::string& text) {
@@ -105,7 +105,7 @@ void check_task(AdviceList& advice) {
                  "feedback = \"none\"");
 }
 
-/// At most so many trials, catch trials included; none where answers alone end the block.
+/// The largest number of trials, including catch trials; empty if only the answers end the block.
 std::optional<double> most_trials(const Protocol& protocol, const Block& block) {
   if (block.trials) return *block.trials;
   double trials = static_cast<double>(block.levels.size());
@@ -227,10 +227,11 @@ void advise_on_plan(AdviceList& advice) {
 
 namespace {
 
-constexpr std::size_t most_repeats = 10000;            // that a protocol may ask for
-constexpr std::size_t most_cells = 1'000'000'000'000;  // counted: a hundred long factors have more than fit
+constexpr std::size_t most_repeats = 10000;  // largest number that a protocol may ask for
+// limit for counting: a hundred long factors would overflow
+constexpr std::size_t most_cells = 1'000'000'000'000;
 
-/// Says how often each level meets each of these cells, unless that is equally often.
+/// Reports how often each level is combined with each of these cells, unless that is equally often.
 void note_uneven(AdviceList& notes, const procedure::Spec& spec, std::size_t cells, const std::string& what) {
   const auto repeats = static_cast<std::size_t>(spec.repeats), least = repeats / cells;
   if (repeats % cells == 0) return;

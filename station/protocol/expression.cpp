@@ -15,7 +15,7 @@ struct SyntaxError {
   std::string what, allowed;
 };
 
-// Recursive descent over one side. Every node is linear, so a product needs one constant factor.
+// A recursive-descent parser for one side. Every node is linear, so one factor of a product must be constant.
 class Parser {
  public:
   Parser(const std::string& source, std::size_t begin, std::size_t end, const std::vector<Factor>& factors)
@@ -158,7 +158,7 @@ class Parser {
   int depth_ = 0;
 };
 
-// The text starts one column after its opening quote; columns count characters, not bytes.
+// The text starts one column after its opening quote. Columns count characters, not bytes.
 text::Place inside(const text::Place& place, const std::string& source, std::size_t at) {
   const auto end = source.begin() + static_cast<std::ptrdiff_t>(std::min(at, source.size()));
   const auto characters = std::count_if(

@@ -10,25 +10,27 @@
 namespace turnpoint::protocol {
 
 /// Parses linear arithmetic on numeric factors: numbers, factor names, + - * / and parentheses, and abs()
-/// around the whole. Problems carry the column inside the text and name the nearest factor.
+/// around the whole expression. Problems give the column inside the text and suggest the nearest factor name.
 std::optional<Linear> parse_linear(const std::string& source, const text::Place& place,
                                    const std::vector<Factor>& factors, text::Findings& findings);
 
-/// Two linear sides and one of < <= == >= >.
+/// Parses two linear sides with one of < <= == >= > between them.
 std::optional<Comparison> parse_comparison(const std::string& source, const text::Place& place,
                                            const std::vector<Factor>& factors, text::Findings& findings);
 
-/// A number or a text with linear arithmetic. Over all values of its factors the result must stay in `range`.
+/// Reads a number or a text with linear arithmetic. For all values of its factors the result must be within
+/// `range`.
 std::optional<Linear> linear_from(const text::Value& value, const std::string& key, const text::Range& range,
                                   const std::vector<Factor>& factors, text::Findings& findings);
 
-/// The least and greatest value while each factor runs over its range or levels independently.
+/// The smallest and largest value if each factor varies over its range or levels independently.
 std::pair<double, double> bounds(const Linear& expression, const std::vector<Factor>& factors);
 
-/// The least and greatest value of a numeric factor; nullopt for a text factor.
+/// The smallest and largest value of a numeric factor; empty for a text factor.
 std::optional<std::pair<double, double>> span(const Factor& factor);
 
-/// The factor's values could not be read: that was reported, and nothing that follows from it needs to be.
+/// True if the factor's values could not be read. That was already reported, so do not report problems that
+/// follow from it.
 bool is_broken(const Factor& factor);
 
 const Factor* find_factor(const std::vector<Factor>& factors, const std::string& name);

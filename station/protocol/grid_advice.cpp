@@ -31,7 +31,7 @@ void check_level(AdviceList& advice, const Spec& spec) {
              "a scene with \"" + spec.level + "\" in its arithmetic");
 }
 
-// Levels that differ by no more than rounding are one level that was meant.
+// Levels that differ only by rounding were meant to be the same level.
 void check_values(AdviceList& advice, const Spec& spec) {
   auto values = spec.values;
   std::sort(values.begin(), values.end());
@@ -54,7 +54,8 @@ void check_steps(AdviceList& advice, const Spec& spec) {
     advice.add(key, "the steps grow from reversal to reversal", "steps that become smaller, [4.0, 2.0, 1.0]");
 }
 
-// As many wrong answers as right ones move a staircase to where half of the answers are right, or below.
+// If as many wrong answers as right ones move a staircase, it converges where at most half of the answers are
+// right.
 void check_target(AdviceList& advice, const Spec& spec) {
   const double guessing = chance(advice.protocol);
   if (spec.target && *spec.target <= guessing + 1e-9)
@@ -103,7 +104,8 @@ void check_grids(AdviceList& advice, const Spec& spec) {
     advice.add(key_of(spec, "prior.threshold"),
                "the prior's mean of " + number(prior->first) + " is far outside the grid",
                number(*from) + " to " + number(*to));
-  // Whatever lies between two values of a grid has at least the standard deviation of an even spread.
+  // Even a value that lies between two grid points has at least the standard deviation of a uniform
+  // distribution between them.
   const double finest = threshold.size() < 2 ? 0 : (*to - *from) / static_cast<double>(threshold.size() - 1);
   const double least_sd = finest / std::sqrt(12.0);
   if (spec.stop.threshold_sd && spec.scale == procedure::Scale::linear && *spec.stop.threshold_sd < least_sd)

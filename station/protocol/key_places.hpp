@@ -7,14 +7,14 @@
 
 namespace turnpoint::protocol {
 
-/// Where each key of a protocol file stands: `task.correct.left`, `procedure.levels.values` (tables that have
-/// a name go by it), `task.choices.1` (others by their number).
+/// The place of each key in a protocol file: `task.correct.left`, `procedure.levels.values` (named tables are
+/// listed by name), `task.choices.1` (others by number).
 class KeyPlaces {
  public:
   KeyPlaces(const std::string& source, const std::string& path);
   KeyPlaces(const text::Value& document, const std::string& path);
 
-  /// The place of the key or, where the file leaves it out, of the table that would hold it.
+  /// The place of the key. If the file does not contain it, the place of the table that would.
   text::Place of(std::string key) const;
   bool has(const std::string& key) const { return places_.count(key) > 0; }
 

@@ -32,7 +32,8 @@ struct Linear {
   bool is_constant() const { return terms.empty(); }
 };
 
-/// The value for these factors; throws std::invalid_argument naming a factor that has no number.
+/// Evaluates the expression for these factors. Throws std::invalid_argument naming a factor that has no
+/// number.
 double evaluate(const Linear& expression, const Factors& factors);
 
 enum class Relation { less, less_equal, equal, greater_equal, greater };
@@ -53,11 +54,11 @@ struct Factor {
 
 /// An edge definition: one of turning, peak, p70, p50, p25, p10, or friction = m.
 struct Edge {
-  std::string name;                ///< "friction" for a friction edge
+  std::string name;                ///< "friction" for an edge defined by friction
   std::optional<double> friction;  ///< relative friction in (0, 1)
 };
 
-/// One explicit tone of a scene: placed by boundary or by frequency.
+/// One explicit tone of a scene, placed by boundary or by frequency.
 struct SceneTone {
   std::optional<Linear> boundary_mm, frequency_Hz;
   Edge edge;
@@ -71,12 +72,13 @@ struct Zone {
   std::optional<int> tones;
 };
 
-/// What a scene must be right to; the planner uses the cheapest model inside all that are stated.
+/// The accuracy that a scene requires. The planner uses the cheapest model that meets all given tolerances.
 struct Tolerance {
   std::optional<double> boundary_mm, level_dB, friction;
 };
 
-/// A scene after `base` has been resolved: what one interval presents on the surface, in factors.
+/// A scene after its `base` has been merged in. It describes what one interval presents, with factors still
+/// as variables.
 struct Scene {
   std::string name, base;
   std::optional<Linear> boundary_mm;
@@ -84,14 +86,16 @@ struct Scene {
   std::optional<Linear> displacement_um, friction;  ///< at the last maximum; at most one is set
   std::vector<SceneTone> tones;
   std::optional<Zone> zone;
-  std::optional<Linear> friction_contrast_dB;  ///< zone friction lower than the base's by 20 log10(dmu / mu)
-  double rove_dB = 0;                          ///< uniform +-, on displacement
+  /// zone friction is lower than the base's by 20 log10(dmu / mu)
+  std::optional<Linear> friction_contrast_dB;
+  /// random change of displacement, uniform within +- this value
+  double rove_dB = 0;
   double ramp_ms = 50;
   Tolerance tolerance;
   Place place;
 };
 
-/// A fixed value, or uniform between two.
+/// A fixed value, or a uniform distribution between two values.
 struct Distribution {
   double low = 0, high = 0;
 };
@@ -109,20 +113,21 @@ struct Choice {
 struct Task {
   TaskKind kind = TaskKind::single_interval;
   std::vector<std::vector<std::string>> intervals;  ///< scene names; an interval is a sequence of scenes
-  std::string standard, target;                     ///< oddity and same-different
+  std::string standard, target;                     ///< for oddity and same-different
   Odd odd = Odd::either;
   std::optional<double> duration_s, gap_s;
-  std::optional<Distribution> foreperiod_s;  ///< from the interval's start to its second scene
+  std::optional<Distribution> foreperiod_s;  ///< time from the interval's start to its second scene
   std::optional<double> transition_ms;
   Device device = Device::touch;
   Place device_place;
-  Sound sound = Sound::none;  ///< heard while the surface moves
+  Sound sound = Sound::none;  ///< sound that is played while the surface vibrates
   Place sound_place;
   Localised question;
   std::vector<Choice> choices;
-  std::string correct_scene;  ///< 2ifc: the interval that held this scene
-  std::vector<std::pair<std::string, Comparison>> correct_answer;  ///< choice id -> when it is right
-  /// Adjustment only: the factor that the slider moves, its range and step.
+  std::string correct_scene;  ///< 2ifc: the answer is the interval with this scene
+  /// choice id -> condition under which it is right
+  std::vector<std::pair<std::string, Comparison>> correct_answer;
+  /// For adjustment only: the factor that the slider moves, its range and step.
   std::string adjusts;
   std::optional<double> step;
 };
@@ -132,8 +137,8 @@ using terms::ResponseZero;
 struct Timing {
   ResponseZero response_zero = ResponseZero::go_cue;
   Place response_zero_place;
-  std::optional<double> explore_s;   ///< single interval: the tones last at most this long
-  std::optional<double> deadline_s;  ///< from response_zero; absent where instructions state it
+  std::optional<double> explore_s;   ///< single interval: the longest time that the tones last
+  std::optional<double> deadline_s;  ///< counted from response_zero; empty if the instructions give it
   Distribution iti_s;
   double anticipation_s = 0;
 };
@@ -157,12 +162,12 @@ struct Break {
   double min_s = 0;
 };
 
-/// A block as it will run: `sequence` tables are unrolled for a participant by block_order().
+/// A block as it will run. block_order() makes such blocks from `sequence` tables for a given participant.
 struct Block {
   std::string name;
   std::vector<std::string> procedures;
-  std::string level;           ///< practice with fixed levels: the factor they set
-  std::vector<double> levels;  ///< shown in turn, shuffled
+  std::string level;           ///< for practice with fixed levels: the factor that they set
+  std::vector<double> levels;  ///< the levels, presented in shuffled order
   std::optional<int> trials;
   Feedback feedback = Feedback::none;
   bool practice = false;
@@ -170,13 +175,13 @@ struct Block {
   Interleave interleave = Interleave::none;
   std::optional<Catch> catch_trials;
   std::optional<Break> break_after;
-  Factors fixed;  ///< factors that the sequence sets for the whole block: instruction = "speed"
+  Factors fixed;  ///< factors that the sequence sets for the whole block, such as instruction = "speed"
   Place place;
 };
 
 struct Sequence {
   std::string name;
-  std::string over;  ///< the factor
+  std::string over;  ///< the factor that differs between the blocks
   int cycles = 1;
   bool mirror = false;
   Block block;
@@ -189,9 +194,9 @@ struct Instruction {
 };
 
 struct Analysis {
-  std::vector<std::string> by;  ///< factors with levels: each combination of them is analysed by itself
+  std::vector<std::string> by;  ///< factors with levels: each combination of them is analysed separately
   std::optional<Linear> difficulty;
-  std::optional<std::vector<std::string>> show;  ///< none: all that suits the task
+  std::optional<std::vector<std::string>> show;  ///< empty: everything that suits the task
   double exclude_below_s = 0;
   std::optional<double> exclude_mad;
 };
@@ -205,13 +210,13 @@ struct Resume {
   std::string restart_unit;  ///< "" or "block"
 };
 
-/// A protocol file, whole and checked; every reference inside it resolves.
+/// A complete and checked protocol file; every reference inside it resolves.
 struct Protocol {
   std::string path, source, sha256;
   std::string id, version;
   std::string title;
   std::vector<std::string> languages;
-  std::optional<std::uint64_t> seed;  ///< none: "per-session"
+  std::optional<std::uint64_t> seed;  ///< empty for "per-session"
   std::vector<Factor> factors;        ///< in file order
   std::map<std::string, Scene> scenes;
   Task task;
@@ -225,14 +230,14 @@ struct Protocol {
 };
 
 /// Reads and checks a protocol file (format "friction-protocol/1"): syntax, keys, types, ranges, references.
-/// Throws text::BadInput with every problem at once, std::system_error where the file cannot be read.
+/// Throws text::BadInput with all problems at once, or std::system_error if the file cannot be read.
 Protocol load(const std::string& path);
 
-/// The same from text already in memory (a resumed session); `path` only names it in messages.
+/// The same for text that is already in memory (a resumed session); `path` is only used in messages.
 Protocol parse(const std::string& source, const std::string& path);
 
-/// The blocks in the order that the participant with this sequence index (from 0) runs them: sequences are
-/// unrolled by their Williams square, cycles and mirror.
+/// The blocks in the order for the participant with this sequence index (from 0): the Williams square, cycles
+/// and mirror of each sequence are applied.
 std::vector<Block> block_order(const Protocol& protocol, int sequence_index);
 
 }  // namespace turnpoint::protocol

@@ -39,10 +39,10 @@ void read_by(TableReader& reader, Reading& reading) {
   }
 }
 
-/// Why a value of `show` would have no effect on the report of this protocol; "" where it has one.
+/// The reason why a value of `show` would have no effect on the report of this protocol; "" if it has one.
 std::string without_effect(const std::string& word, const Protocol& protocol) {
   const auto& task = protocol.task;
-  if (word == "trace" || task.choices.empty()) return "";  // a task without choices is a problem of its own
+  if (word == "trace" || task.choices.empty()) return "";  // a task without choices is reported elsewhere
   if (task.kind == TaskKind::adjustment) return "an adjustment has settings, no answers";
   if (word == "psychometric") return "";
   if (task.kind == TaskKind::single_interval && task.correct_answer.empty())

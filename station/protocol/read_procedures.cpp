@@ -17,7 +17,8 @@ using text::Value;
 
 namespace {
 
-// A copy's keys lie over those of the procedure that it copies; grids and priors axis by axis.
+// Puts a procedure's own keys over those of the procedure that it copies; grids and priors are merged axis by
+// axis.
 Value overlay(Value below, const Value& own) {
   for (const auto& entry : own.entries) {
     const auto found = std::find_if(below.entries.begin(), below.entries.end(),
@@ -60,7 +61,7 @@ void check_tracks(TableReader& reader, const Spec& spec, const Reading& reading)
                    suggestion(spec.tracks, ids));
 }
 
-// Every level that the procedure can present must be a value of its factor.
+// Checks that every level that the procedure can present is a value of its factor.
 void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
   const auto check = [&](const char* key, double level) {
     const auto& levels = factor.levels;
@@ -76,7 +77,7 @@ void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
   };
   const auto check_all = [&](const char* key, const std::vector<double>& levels) {
     for (const double level : levels)
-      if (!check(key, level)) break;  // one of a list is told
+      if (!check(key, level)) break;  // report only one problem per list
   };
   check_all(spec.kind == Kind::adjustment ? "start" : "values", spec.values);
   check_all("stimuli", spec.stimuli.values);
@@ -85,7 +86,7 @@ void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
   if (spec.max) check("max", *spec.max);
 }
 
-// The procedures' own rules; a fault names its key, dotted for a key of an inner table.
+// Checks the procedure's own rules. A problem names its key, with dots for a key of an inner table.
 void check_spec(const Value& table, const Spec& spec, text::Findings& findings) {
   for (const auto& fault : procedure::validate(spec)) {
     const Value* at = &table;
@@ -125,7 +126,7 @@ std::string name_of(const Value& table) {
   return name && name->value.kind == Value::Kind::string ? name->value.string : "";
 }
 
-// The table with the procedures that it copies below it, which stand above it in the file.
+// Merges the table with the procedures that it copies. Those must be above it in the file.
 Value with_copies(const Value& table, const std::map<std::string, Value>& above, text::Findings& findings) {
   const auto* copy = table.find("copy");
   if (!copy) return table;
@@ -150,7 +151,7 @@ void read_procedures(TableReader& file, Reading& reading) {
     const bool broken_copy = !found.problems.empty();
     Spec spec;
     if (!broken_copy) spec = read_procedure(whole, reading, found);
-    // What a copied procedure has wrong stands in the copy too: report each place once.
+    // A problem of a copied procedure also occurs in the copy, so report each place once.
     for (auto& problem : found.problems)
       if (places.insert({problem.place.line, problem.place.column}).second)
         reading.findings.problems.push_back(std::move(problem));

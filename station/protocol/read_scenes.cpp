@@ -18,7 +18,7 @@ using Ends = Range::Ends;
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// Less than a millimetre is a place in metres.
+// A value below one millimetre is probably in metres.
 const Range position_mm{1, 1e5, Ends::closed, "mm"};
 const Range displacement_um{0, 1000, Ends::open_low, "um"};
 const Range relative_friction{0, 1, Ends::open};
@@ -89,7 +89,7 @@ Tolerance read_tolerance(const Value& table, const std::string& name, Findings& 
   return tolerance;
 }
 
-// What a scene shows comes in three forms; exactly one may be there.
+// A scene can be given in three forms. Checks that exactly one is used.
 void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
   const auto form =
       "one boundary (\"boundary_mm\", \"edge\" and \"displacement_um\" or \"friction\"), a \"zone\" with "
@@ -166,7 +166,7 @@ void erase(Value& table, const std::string& key) {
   std::erase_if(table.entries, [&](const auto& entry) { return entry.key == key; });
 }
 
-// A base's keys with the scene's own on top; `zone` and `tolerance` are laid over key by key.
+// Puts the scene's own keys over those of its base; `zone` and `tolerance` are merged key by key.
 Value laid_over(Value base, const Value& own) {
   const auto states = [&](const char* key) { return own.find(key) != nullptr; };
   if (states("displacement_um")) erase(base, "friction");
@@ -192,7 +192,7 @@ class Resolver {
  public:
   Resolver(const Value& scenes, Reading& reading) : scenes_(scenes), reading_(reading) {}
 
-  /// The scene's table with its bases below it; reads it on the way. nullptr after a problem with a base.
+  /// Merges the scene's table with its bases, which it also reads. Returns nullptr if a base has a problem.
   const Value* resolve(const std::string& name) {
     if (const auto done = resolved_.find(name); done != resolved_.end()) return &done->second;
     const auto& own = scenes_.find(name)->value;
@@ -232,7 +232,7 @@ class Resolver {
     return nullptr;
   }
 
-  // What a base has wrong stands in the merged table too: report each place once.
+  // A problem of a base also occurs in the merged table, so report each place once.
   void read(const std::string& name, const Value& table, const Value& own) {
     Findings found;
     auto scene = read_scene(table, name, own, found, reading_);

@@ -23,7 +23,7 @@ scene::ToneTarget tone_of(const SceneTone& tone, const Factors& factors) {
   return target;
 }
 
-/// The friction of the scene's base, for which the tones are designed; of the scene itself without a base.
+/// The friction for which the scene's tones are designed: that of its base, or its own if it has no base.
 double design_friction(const Protocol& protocol, const Scene& scene, const Factors& factors) {
   const Scene* design = &scene;
   if (!scene.base.empty()) design = &protocol.scenes.at(scene.base);

@@ -6,13 +6,13 @@
 
 namespace turnpoint::protocol {
 
-/// A scene of the protocol for these factors, in numbers: arithmetic done, the contrast turned into friction,
-/// `rove_dB` (already drawn, within the scene's own limits) put in. Throws std::out_of_range for an unknown
-/// scene and std::invalid_argument for a factor without a number.
+/// A scene of the protocol as numbers for these factors: evaluates the arithmetic, converts the contrast to
+/// friction and applies `rove_dB` (already drawn, within the scene's limits). Throws std::out_of_range for an
+/// unknown scene and std::invalid_argument for a factor without a number.
 scene::Scene resolve(const Protocol& protocol, const std::string& scene, const Factors& factors,
                      double rove_dB);
 
-/// Friction lower than `reference` by a contrast of 20 log10(difference / reference).
+/// The friction that is lower than `reference` by a contrast of 20 log10(difference / reference).
 double friction_at_contrast(double reference, double contrast_dB);
 
 }  // namespace turnpoint::protocol

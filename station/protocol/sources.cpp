@@ -16,8 +16,8 @@ void add_steps(double low, double high, int steps, std::vector<double>& levels) 
   for (int i = 0; i <= steps; ++i) levels.push_back(low + (high - low) * i / steps);
 }
 
-// A staircase can reach everything between its limits, and a slider the whole range of its factor: even steps
-// stand for them.
+// A staircase can reach everything between its limits, and a slider the whole range of its factor. Evenly
+// spaced levels represent them.
 std::vector<double> levels_of(const Protocol& protocol, const procedure::Spec& spec) {
   auto levels = spec.values;
   levels.insert(levels.end(), spec.stimuli.values.begin(), spec.stimuli.values.end());
@@ -107,7 +107,7 @@ Factors any_factors(const Protocol& protocol) {
     else if (factor.range)
       factors[factor.name] = 0.5 * (factor.range->first + factor.range->second);
     else
-      factors[factor.name] = 0.0;  // a factor with a problem of its own
+      factors[factor.name] = 0.0;  // a factor that has a problem, which is reported elsewhere
   }
   return factors;
 }

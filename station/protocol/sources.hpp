@@ -8,20 +8,20 @@
 
 namespace turnpoint::protocol {
 
-/// One origin of trials in a block: a procedure, fixed levels, or catch trials.
+/// One source of trials in a block: a procedure, fixed levels, or catch trials.
 struct Source {
   const Block* block = nullptr;
-  std::string what;            ///< `procedure "levels"`, `fixed levels`, `catch trials`: for messages
+  std::string what;            ///< name for messages: `procedure "levels"`, `fixed levels`, `catch trials`
   std::string level;           ///< the factor that it sets
-  std::vector<double> levels;  ///< every value that it can set, as far as the file states them
-  std::set<std::string> sets;  ///< factors that have a value in its trials without being drawn
+  std::vector<double> levels;  ///< every value that it can set, as far as the file says
+  std::set<std::string> sets;  ///< factors that it sets in its trials, so that they are not drawn
   const procedure::Spec* spec = nullptr;
 };
 
-/// All origins of trials; pointers are into the protocol.
+/// All sources of trials. The pointers point into the protocol.
 std::vector<Source> sources_of(const Protocol& protocol);
 
-/// All arithmetic of a scene; pointers are into it.
+/// All expressions of a scene. The pointers point into it.
 std::vector<const Linear*> expressions_of(const Scene& scene);
 
 /// The factors on which the task's scenes and its right answers depend.
@@ -30,13 +30,13 @@ std::set<std::string> factors_used(const Protocol& protocol);
 /// The scenes that the task presents, each once.
 std::vector<std::string> scenes_used(const Protocol& protocol);
 
-/// A value for each factor: its first level, else the middle of its range.
+/// A value for each factor: its first level, or else the middle of its range.
 Factors any_factors(const Protocol& protocol);
 
 const procedure::Spec* find_procedure(const Protocol& protocol, const std::string& name);
 const Block& block_of(const std::variant<Block, Sequence>& part);
 
-/// The blocks of every participant: a sequence gives one for each level of its factor.
+/// The blocks of all participants: a sequence gives one block for each level of its factor.
 std::vector<Block> all_blocks(const Protocol& protocol);
 
 }  // namespace turnpoint::protocol

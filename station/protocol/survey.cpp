@@ -20,12 +20,11 @@ namespace turnpoint::protocol {
 
 namespace {
 
-// A zone's design takes some 15 ms, a boundary's less than 2: together a check
-// should feel immediate. A zone that depends on one sum of factors is
-// interpolated between few plans, others need a grid of them.
+// Designing a zone takes about 15 ms, a boundary less than 2, and a check should feel immediate. A zone that
+// depends on a single sum of factors is interpolated between a few plans; others need a grid of plans.
 constexpr std::size_t most_plans_of_a_scene = 120, most_plans_of_a_zone = 6, most_plans_of_a_zone_grid = 36;
 
-// Where the edges of a boundary can be put with this rig's bands, for messages.
+// For messages: the range in which this rig can place a boundary with each edge.
 std::string reach(const scene::Scene& scene, const rig::Rig& rig, const scene::Planner& planner) {
   if (!scene.boundary_m) return "";
   physics::MapOptions options;
@@ -66,8 +65,8 @@ Sight sight_of(const Combination& combination, const scene::DrivePlan& plan) {
   return sight;
 }
 
-// The same trouble in many combinations is one problem, with its first case and
-// the number of the others.
+// The same problem in many combinations is reported once, with its first case and the number of further
+// cases.
 struct Trouble {
   std::string first, allowed;
   Place place = {};
@@ -100,17 +99,16 @@ std::vector<Combination> planned(const Protocol& protocol, const std::vector<Com
   return chosen;
 }
 
-// What the rig makes of one combination: a plan, or why there is none and what
-// there could be.
+// The planner's answer for one combination: a plan, or why there is none and what would be possible.
 struct Answer {
   std::optional<scene::DrivePlan> plan;
   std::optional<scene::Cues> cues_roved_down;
   std::string refused, allowed;
-  Place place;  ///< of what the rig cannot do
+  Place place;  ///< place of the key that the rig cannot satisfy
 };
 
-// Whether the same scene could be had with a thousandth of its strength: then
-// the strength is to blame.
+// True if the same scene could be planned with a thousandth of its strength, which means that the strength is
+// the problem.
 bool can_plan(const scene::Scene& scene, scene::Planner& planner) {
   try {
     planner.plan(scene);
@@ -125,7 +123,7 @@ bool is_too_strong(scene::Scene scene, scene::Planner& planner) {
   return can_plan(scene, planner);
 }
 
-// The place of a key of a scene, or of the base that states it.
+// The place of a scene's key, or of the same key in the base that gives it.
 Place place_of(const Protocol& protocol, const KeyPlaces& places, const Scene& scene,
                const std::string& key) {
   const auto* at = &scene;
@@ -134,7 +132,7 @@ Place place_of(const Protocol& protocol, const KeyPlaces& places, const Scene& s
   return places.of("scene." + at->name + "." + key);
 }
 
-// Where the file says how strong the scene is.
+// The key that gives the scene's strength.
 Place strength_place(const Scene& scene) {
   if (scene.displacement_um) return scene.displacement_um->place;
   if (scene.friction_contrast_dB) return scene.friction_contrast_dB->place;
@@ -146,8 +144,8 @@ Place strength_place(const Scene& scene) {
   return strongest ? strongest->displacement_um.place : scene.place;
 }
 
-// What of a scene cannot be had: its strength, one of its tones, the edge or the beginning of its zone, else
-// its boundary.
+// The key to blame if a scene cannot be planned: its strength, one of its tones, the edge or the start of its
+// zone, or else its boundary.
 Place blamed_place(const Protocol& protocol, const KeyPlaces& places, const Scene& from,
                    const scene::Scene& scene, scene::Planner& planner) {
   if (is_too_strong(scene, planner)) return strength_place(from);
@@ -172,8 +170,7 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
   for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
     const auto& combination = combinations[i];
     const auto& from = protocol.scenes.at(combination.scene);
-    // Roving upwards: the limits must hold for the strongest stimulus that can
-    // be drawn.
+    // Rove upwards, because the limits must hold for the strongest stimulus that can be drawn.
     const auto scene = resolve(protocol, combination.scene, combination.factors, from.rove_dB);
     try {
       answers[i].plan = planner.plan(scene);
@@ -186,15 +183,14 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
       if (explained.insert(combination.scene).second) try {
           answers[i].place = blamed_place(protocol, places, from, scene, planner);
           answers[i].allowed = reach(scene, rig, planner);
-        } catch (const std::domain_error&) {  // no boundary at all has this edge
+        } catch (const std::domain_error&) {  // no boundary at all can have this edge
         }
     }
   }
 }
 
-// Combinations side by side differ least, and a planner remembers: so each of
-// two threads takes a half, after the first combination has made the maps that
-// all need.
+// Neighbouring combinations are similar, and a planner caches its maps. So two threads take one half each,
+// after the first combination has made the maps that all need.
 std::vector<Answer> plan_all(const Protocol& protocol, const rig::Rig& rig,
                              const std::vector<Combination>& combinations, const std::stop_token& stop) {
   std::vector<Answer> answers(combinations.size());
@@ -216,7 +212,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   const auto combinations = planned(protocol, all);
   const auto answers = plan_all(protocol, rig, combinations, stop);
   std::map<std::string, Trouble> unreachable, inexact;
-  std::map<std::string, std::string> told;  // warnings of the planner by code
+  std::map<std::string, std::string> told;  // the planner's warnings by code, each reported once
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto& combination = combinations[i];
     if (!answers[i].plan) {
@@ -239,7 +235,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   for (const auto& [name, trouble] : inexact)
     survey.warnings.push_back(
         {protocol.scenes.at(name).place, counted(trouble), "no model is known to be inside its tolerance"});
-  if (rig.reproduction) return;  // a historical rig's impossibilities are known
+  if (rig.reproduction) return;  // a historical rig is known to be unable to do this
   for (const auto& [code, warning] : told) survey.warnings.push_back({{protocol.path, 0, 0}, warning, ""});
 }
 

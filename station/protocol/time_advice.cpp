@@ -9,7 +9,7 @@ namespace {
 
 using text::number;
 
-// No part of a trial takes minutes: such a number was meant in milliseconds.
+// No part of a trial takes minutes. A larger number was probably meant in milliseconds.
 constexpr double longest_s = 120;
 
 void check_length(AdviceList& advice, const std::string& key, double seconds) {
@@ -31,7 +31,7 @@ void check_deadline(AdviceList& advice, const std::string& key, double seconds) 
                "well below every deadline");
 }
 
-// The second scene of an interval begins after the foreperiod.
+// Checks that the change of scene can end before the tones do. The second scene begins after the foreperiod.
 void check_change(AdviceList& advice) {
   const auto& task = advice.protocol.task;
   if (!task.foreperiod_s) return;

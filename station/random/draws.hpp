@@ -7,7 +7,7 @@
 
 namespace turnpoint::random {
 
-/// What a draw is for. Numbers are part of the data's meaning: never renumber, only add.
+/// The purpose of a draw. The numbers are part of the meaning of recorded data: never renumber, only add.
 enum class Stream : std::uint32_t {
   level_order = 1,
   factor_level = 2,
@@ -25,8 +25,8 @@ enum class Stream : std::uint32_t {
   masking_noise = 14,
 };
 
-/// The place of a draw: the same key gives the same numbers, whatever was drawn elsewhere, so that a repeated
-/// or void trial shifts nothing.
+/// Identifies a draw. The same key always gives the same numbers, whatever was drawn elsewhere, so a repeated
+/// or void trial does not shift other draws.
 struct Key {
   std::uint64_t seed = 0;
   Stream stream = Stream::level_order;
@@ -34,25 +34,25 @@ struct Key {
   int trial = 0;
 };
 
-/// Ten rounds of Philox 4x32 (Salmon et al., SC 2011): counter and key to 128 random bits.
+/// Ten rounds of Philox 4x32 (Salmon et al., SC 2011): turn counter and key into 128 random bits.
 std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
 
-/// The numbers at one key, in turn. Only integer arithmetic and exact scaling: the same bits on every
-/// machine, with and without fused multiply-add.
+/// A sequence of random numbers for one key. It uses only integer arithmetic and exact scaling, so it gives
+/// the same bits on every machine, with and without fused multiply-add.
 class Draws {
  public:
   explicit Draws(const Key& key) : key_(key) {}
 
   std::uint64_t bits();
-  /// In [0, 1), a multiple of 2^-53.
+  /// Uniform in [0, 1); a multiple of 2^-53.
   double uniform();
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// In 0 ... n - 1, each equally likely (rejection, no modulo bias). n > 0.
+  /// Uniform in 0 ... n - 1 (by rejection, without modulo bias). n > 0.
   std::uint64_t below(std::uint64_t n);
-  /// Standard normal: Marsaglia's polar method on the logarithm of elementary.hpp.
+  /// Standard normal, by Marsaglia's polar method with the logarithm of elementary.hpp.
   double normal();
 
-  /// Fisher-Yates.
+  /// Shuffles in place (Fisher-Yates).
   template <typename T>
   void shuffle(std::vector<T>& items) {
     for (std::size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[below(i)]);

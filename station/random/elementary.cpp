@@ -7,7 +7,7 @@ namespace turnpoint::random {
 
 namespace {
 
-// ln 2 in two parts, the first with so few bits that its product with an exponent is exact.
+// ln 2 in two parts. The first has so few bits that its product with an exponent is exact.
 constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
 
 }  // namespace
@@ -16,10 +16,10 @@ double log(double x) {
   if (!(x > 0) || !(x <= 1.7976931348623157e308))
     throw std::domain_error("log: the argument must be above 0 and finite");
   int exponent = 0;
-  double m = std::frexp(x, &exponent);  // exact: moves bits
+  double m = std::frexp(x, &exponent);  // exact: only moves bits
   if (m < 0.70710678118654752) m *= 2, --exponent;
   const double z = (m - 1) / (m + 1), z2 = z * z;  // |z| < 0.1716
-  // 2 atanh(z) = 2 z (1 + z^2/3 + z^4/5 + ...); 11 terms leave 1e-18.
+  // 2 atanh(z) = 2 z (1 + z^2/3 + z^4/5 + ...); the remainder after 11 terms is 1e-18.
   double sum = 0;
   for (int k = 11; k >= 1; --k) sum = z2 * (1.0 / (2 * k + 1) + sum);
   return exponent * kLn2High + (2 * z + (2 * z * sum + exponent * kLn2Low));
@@ -37,7 +37,7 @@ double exp(double x) {
 
 double normal_cdf(double x) {
   if (!(std::fabs(x) < 8)) return x > 0 ? 1 : 0;
-  // x + x^3 / 3 + x^5 / (3 5) + ..., of one sign throughout (Marsaglia 2004).
+  // x + x^3 / 3 + x^5 / (3 5) + ..., all terms of the same sign (Marsaglia 2004).
   double sum = x, term = x;
   for (int k = 1; std::fabs(term) > 1e-17; ++k) term *= x * x / (2 * k + 1), sum += term;
   return 0.5 + 0.39894228040143267794 * exp(-0.5 * x * x) * sum;

@@ -11,7 +11,8 @@ namespace turnpoint::report {
 
 namespace {
 
-/// A cell of fewer trials shows nothing but its interval; more cells than this are not joined by a line.
+/// For a cell with fewer trials only the interval is shown. If there are more cells than kMostJoined, no line
+/// joins them.
 constexpr int kFewestOfCell = 5;
 constexpr std::size_t kMostJoined = 8;
 
@@ -47,7 +48,7 @@ plot::Line curve(const NamedFit& named, int series, const plot::Axis& axis, cons
   return line;
 }
 
-/// The share of "yes" where there was no signal.
+/// The share of "yes" answers when there was no signal.
 std::optional<double> false_alarms(const NamedFit& named) {
   for (const auto& point : named.fit.data)
     if (point.level == analysis::kNoise) return static_cast<double>(point.positive) / point.trials;
@@ -127,7 +128,8 @@ std::optional<plot::Figure> trace_figure(const Summary& summary) {
     panel.title = or_default(trace.procedure, "all trials");
     panel.x = plot::fitted("Trial (number in the session)", line.x, 0.03);
     panel.y = plot::fitted(summary.data.level_label, line.y, 0.1);
-    // Shuffled levels joined by a line would only cross: lines are for procedures that move step by step.
+    // A line through shuffled levels would only zigzag, so lines are drawn for procedures that move step by
+    // step.
     double steps = 0;
     for (std::size_t i = 1; i < line.y.size(); ++i) steps += std::abs(line.y[i] - line.y[i - 1]);
     const bool smooth = line.y.size() > 1 &&
@@ -238,7 +240,7 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
     bin_line.x = bins.x, bin_line.y = bins.y;
     cell_line.x = by_difficulty.x, cell_line.y = by_difficulty.y;
     caf.layers.insert(caf.layers.end(), {bin_line, bins});
-    // An adaptive procedure leaves many levels: joined by a line they would only cross.
+    // An adaptive procedure leaves many levels. A line through them would only zigzag.
     if (cell_line.x.size() <= kMostJoined) cells.layers.push_back(cell_line);
     cells.layers.push_back(by_difficulty);
   }

@@ -6,17 +6,19 @@
 
 namespace turnpoint::report {
 
-/// The pictures of a report. Each is none where there is nothing to show.
+/// The figures of a report. Each function returns nothing if there is nothing to show.
 
-/// Proportions by level with Wilson bars and marker area by trials, fitted curves with their bands.
+/// Proportions by level with Wilson bars, fitted curves with their bands. The area of a marker shows its
+/// number of trials.
 std::optional<plot::Figure> psychometric_figure(const Summary& summary);
-/// Levels in order of presentation, one panel a procedure; open markers are wrong answers.
+/// Levels in order of presentation, one panel per procedure; open markers are wrong answers.
 std::optional<plot::Figure> trace_figure(const Summary& summary);
-/// Response-time histograms, one panel an instruction on a common axis.
+/// Histograms of response times, one panel per instruction on a common axis.
 std::optional<plot::Figure> response_time_figure(const Summary& summary);
-/// Settings of a slider in order of presentation beside where it started, with their mean.
+/// Settings of a slider in order of presentation with their starting points and their mean.
 std::optional<plot::Figure> settings_figure(const Summary& summary);
-/// Accuracy against response time: conditional accuracy functions, and the trade by difficulty.
+/// Accuracy against response time: conditional accuracy functions, and the speed-accuracy trade-off by
+/// difficulty.
 std::optional<plot::Figure> trade_figure(const Summary& summary);
 
 }  // namespace turnpoint::report

@@ -5,10 +5,11 @@
 
 namespace turnpoint::report {
 
-/// One self-contained page: inline SVG, no script, nothing fetched, laid out for the screen and for A4.
+/// A single self-contained page: inline SVG, no script, no external files, laid out for the screen and for
+/// A4.
 std::string to_html(const Summary& summary);
 
-/// The same numbers as one JSON document; what is not there is null.
+/// The same numbers as one JSON document; missing values are null.
 std::string to_json(const Summary& summary);
 
 }  // namespace turnpoint::report

@@ -34,8 +34,8 @@ Json value(const std::vector<analysis::Statement>& statements) {
   return list;
 }
 
-/// What each parameter of a posterior was uniform over, and where the prior of some ends that falls beyond;
-/// null for a bootstrap.
+/// The prior as JSON: the range in which each parameter was uniform, and, if the prior falls off beyond that
+/// range, where it ends. Null for a bootstrap.
 Json prior_json(const NamedFit& named) {
   const auto& prior = named.intervals.prior;
   if (!prior) return nullptr;

@@ -14,7 +14,7 @@ using analysis::TrialRecord;
 
 constexpr int kBandPoints = 61;
 
-/// For a signed level the choice that is right above zero; falls back on the second choice.
+/// For a signed level, the choice that is right above zero; if unknown, the second choice.
 int rising_choice(const std::vector<TrialRecord>& trials) {
   std::map<int, std::pair<double, int>> sums;
   for (const auto& trial : trials) {
@@ -35,7 +35,7 @@ int rising_choice(const std::vector<TrialRecord>& trials) {
   return best;
 }
 
-/// Trials that are noise go below every level.
+/// Noise trials are counted below every level.
 std::vector<analysis::LevelCount> count_yes(const std::vector<TrialRecord>& trials, int positive) {
   auto marked = trials;
   for (auto& trial : marked)
@@ -86,7 +86,7 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
   return result;
 }
 
-/// Takes out what the protocol does not want to see.
+/// Removes the measures that the protocol does not ask for.
 void hide(const SessionData& data, analysis::Trade& trade) {
   for (auto& entry : trade.instructions) {
     if (!shows(data, "ez")) {

@@ -11,15 +11,15 @@
 
 namespace turnpoint::report {
 
-/// One psychometric fit: of all trials, or of a condition's.
+/// One psychometric fit: to all trials, or to those of one condition.
 struct NamedFit {
-  std::string name;      ///< "" for all
-  std::string positive;  ///< what the curve is the probability of
+  std::string name;      ///< name of the condition; "" for all trials
+  std::string positive;  ///< the answer whose probability the curve shows
   analysis::PsychometricFit fit;
   analysis::PsychometricIntervals intervals;
 };
 
-/// What a report says; whatever could not be had is none, and a statement stands in its place.
+/// The content of a report. A value that could not be computed is empty, and a statement says why.
 struct Summary {
   SessionData data;
   analysis::OutcomeCounts outcomes;
@@ -29,25 +29,27 @@ struct Summary {
   std::optional<analysis::Proportion> catch_trials;
   analysis::Fatigue fatigue;
   analysis::Trade trade;
-  std::vector<analysis::Detection> detections;  ///< d' and criterion, where they are shown
-  std::vector<analysis::Settings> settings;     ///< of an adjustment, one for each procedure and condition
+  std::vector<analysis::Detection> detections;  ///< d' and criterion, if the report shows them
+  /// for an adjustment task: one entry for each procedure and condition
+  std::vector<analysis::Settings> settings;
 };
 
-/// The psychometric fits alone: of all trials, or of each instruction where there are several. With
-/// data.replicates = 0 they come without bootstraps and without bands.
+/// Only the psychometric fits: to all trials, or to each instruction if there are several. With
+/// data.replicates = 0 there are no bootstraps and no bands.
 std::vector<NamedFit> fits_of(const SessionData& data);
 
-/// Whether the slope is more than limited: no bound of a maximum-likelihood fit, determined in a posterior.
+/// False if the data only limit the slope: it lies on a bound of a maximum-likelihood fit, or a posterior
+/// does not determine it.
 bool slope_estimated(const NamedFit& named);
 
-/// Which intervals a fit has, and with which prior, in a sentence or two for people.
+/// Explains in a sentence or two which intervals a fit has, and with which prior.
 std::string describe_intervals(const NamedFit& named, const SessionData& data);
 
-/// How the trade of these data is analysed.
+/// The options for analysing the speed-accuracy trade-off of these data.
 analysis::TradeOptions trade_options(const SessionData& data);
 
-/// Analyses one session as far as the protocol wants to see it: deterministic for its seed, about 0.3 s with
-/// 1000 replicates.
+/// Analyses one session and computes the parts that the protocol asks for. Deterministic for its seed; takes
+/// about 0.3 s with 1000 replicates.
 Summary summarise(const SessionData& data);
 
 }  // namespace turnpoint::report

@@ -6,9 +6,9 @@
 
 namespace turnpoint::rig {
 
-/// Rows of numbers from a comma-separated file whose first line must name exactly `columns`; lines that start
-/// with # and empty lines are skipped. Problems (with the line in that file) go to `findings`; the rows that
-/// could be read are returned. `needed_by` is where the rig file names it.
+/// Reads rows of numbers from a comma-separated file whose first line must name exactly `columns`. Empty
+/// lines and lines that start with # are skipped. Problems (with the line in that file) go to `findings`; the
+/// readable rows are returned. `needed_by` is the place in the rig file that names this file.
 std::vector<std::vector<double>> read_table(const std::string& path, const std::vector<std::string>& columns,
                                             const text::Place& needed_by, text::Findings& findings);
 

@@ -22,7 +22,8 @@ std::string read_uri(TableReader& reader, const std::vector<std::string>& scheme
 
 namespace {
 
-// gpio:name=LINE,name=LINE with exactly the names in `needed` plus any of `optional`.
+// Checks a URI gpio:name=LINE,name=LINE: it must have exactly the names in `needed`, and may have those in
+// `optional`.
 void check_gpio(TableReader& reader, const std::string& uri, const std::vector<std::string>& needed,
                 const std::vector<std::string>& optional) {
   if (uri.rfind("gpio:", 0) != 0) return;
@@ -72,9 +73,9 @@ void read_devices(TableReader& file, Rig& rig) {
   rig.buttons_uri =
       read_device(file, "buttons", {"sim:", "gpio:*"}, "\"sim:\" or \"gpio:left=LINE,right=LINE\"",
                   {"left", "right"}, {"third", "active", "hold_ms", "refractory_ms"});
-  rig.contact_uri =
-      read_device(file, "contact", {"sim:", "gpio:*", "evdev:*"},
-                  "\"sim:\", \"gpio:line=LINE\" or \"evdev:DEVICE\"", {"line"}, {"active", "hold_ms", "refractory_ms"});
+  rig.contact_uri = read_device(file, "contact", {"sim:", "gpio:*", "evdev:*"},
+                                "\"sim:\", \"gpio:line=LINE\" or \"evdev:DEVICE\"", {"line"},
+                                {"active", "hold_ms", "refractory_ms"});
   rig.touch_uri =
       read_device(file, "touch", {"sim:", "qt:", "evdev:*"}, "\"sim:\", \"qt:\" or \"evdev:DEVICE\"", {});
 }

@@ -7,7 +7,7 @@
 
 namespace turnpoint::rig {
 
-/// Reads the key "uri" of a table. `schemes` ends each scheme that needs something after it with "*".
+/// Reads the key "uri" of a table. In `schemes`, a scheme that must be followed by something ends with "*".
 std::string read_uri(text::TableReader& reader, const std::vector<std::string>& schemes,
                      const std::string& allowed);
 

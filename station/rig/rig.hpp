@@ -9,12 +9,12 @@
 
 namespace turnpoint::rig {
 
-/// The taper of the surface as the file states it; exactly one form is set. Half-widths, SI units.
+/// The taper of the surface as given in the file; exactly one form is set. Half-widths, SI units.
 struct Taper {
-  double half_width_m = 0;               ///< at the driven wide end; from the table for a profile
-  std::optional<double> slope;           ///< linear: W(x) = half_width_m - slope x
-  std::optional<double> decay_length_m;  ///< exponential: W(x) = half_width_m exp(-x / decay_length_m)
-  std::vector<std::pair<double, double>> profile_m;  ///< tabulated (x, W), monotone interpolation
+  double half_width_m = 0;               ///< at the driven wide end; for a profile, taken from its table
+  std::optional<double> slope;           ///< linear taper: W(x) = half_width_m - slope x
+  std::optional<double> decay_length_m;  ///< exponential taper: W(x) = half_width_m exp(-x / decay_length_m)
+  std::vector<std::pair<double, double>> profile_m;  ///< tabulated taper: (x, W) with monotone interpolation
 };
 
 enum class Edges { supported, clamped };
@@ -23,20 +23,20 @@ enum class WideEnd { left, right };
 
 /// The vibrating surface: material, tension (as a stress), geometry and loss.
 struct Surface {
-  std::string material;  ///< "" where the file gives the constants itself
+  std::string material;  ///< "" if the file gives the constants itself
   double density_kg_m3 = 0;
   std::optional<double> modulus_Pa;
   std::optional<double> poisson;
   std::optional<double> yield_Pa;
-  double tension_Pa = 0;  ///< stress; 0 is a plate
+  double tension_Pa = 0;  ///< as a stress; 0 means a plate
   double thickness_m = 0;
   double length_m = 0;
-  double quality_factor = std::numeric_limits<double>::infinity();  ///< infinity is lossless
+  double quality_factor = std::numeric_limits<double>::infinity();  ///< infinity means lossless
   Edges edges = Edges::supported;
   Bending bending = Bending::automatic;
   WideEnd wide_end = WideEnd::left;
   Taper taper;
-  /// Standard uncertainties of what was measured, from the optional keys `*_sd`; 0 where not given.
+  /// Standard uncertainties of measured values, from the optional keys `*_sd`; 0 if not given.
   double tension_sd_Pa = 0, thickness_sd_m = 0, half_width_sd_m = 0, slope_sd = 0, density_sd_kg_m3 = 0,
          modulus_sd_Pa = 0;
 };
@@ -46,57 +46,58 @@ struct Transducer {
   std::string name;
   int channel = 0;
   double low_Hz = 0, high_Hz = 0;
-  std::optional<double> m_per_full_scale;  ///< constant response; else `response`
+  std::optional<double> m_per_full_scale;  ///< constant response; if empty, use `response`
   struct ResponsePoint {
     double frequency_Hz, m_per_full_scale, phase_rad;
   };
-  std::vector<ResponsePoint> response;  ///< from response_csv, rising in frequency
+  std::vector<ResponsePoint> response;  ///< from response_csv, in order of frequency
 };
 
-/// The audio thread gives the amplifier's guard a sign of life once a period, and the guard expects one every
-/// 100 ms: two periods have to fit.
+/// The audio thread reports to the amplifier's guard once per period, and the guard expects a report every
+/// 100 ms. Two periods must fit into that time.
 inline constexpr double longest_period_s = 0.05;
 
-/// Where the drive goes: `null:`, `wav:FILE` or `alsa:NAME`.
+/// The output of the drive: `null:`, `wav:FILE` or `alsa:NAME`.
 struct Output {
   std::string uri;
   int rate_Hz = 0;
   int bits = 24;
   int period_frames = 384;
   int periods = 4;
-  double converter_delay_s = 0;  ///< from the last sample's way out of the buffer to the analog output
-  int device_channels = 0;  ///< of an ALSA device with more channels than are used; 0: as many as are used
+  double converter_delay_s = 0;  ///< time from the moment a sample leaves the buffer to the analog output
+  /// channels of an ALSA device that has more than are used; 0: the number that is used
+  int device_channels = 0;
   std::vector<std::string> allow_plugin;
 };
 
-/// A mark for recording equipment at each onset and change, on a channel that drives no transducer.
+/// A signal for recording equipment at each onset and change, on a channel that drives no transducer.
 struct Marker {
   enum class Kind { pulse, tone };
   int channel = 1;
   Kind kind = Kind::pulse;
   double amplitude = 0.5;  ///< 1 is full scale
   double duration_s = 1e-3;
-  double frequency_Hz = 1000;  ///< of a tone
+  double frequency_Hz = 1000;  ///< frequency, if the marker is a tone
 };
 
-/// Headphones that mask what can be heard of a stimulus, for protocols that ask for it.
+/// Headphones that mask the audible part of a stimulus, for protocols that require it.
 struct MaskingNoise {
   int channel = 1;
   double rms = 0;  ///< 1 is full scale
   double low_Hz = 100, high_Hz = 8000;
 };
 
-/// Amplitude to relative friction: the illustrative load-sharing curve or a measured table.
+/// The map from amplitude to relative friction: the illustrative load-sharing curve or a measured table.
 struct Friction {
   bool stated = false;    ///< the file has a [friction] table
-  bool measured = false;  ///< a table was given; otherwise load sharing, refused in live mode
+  bool measured = false;  ///< true for a measured table; false for load sharing, which live mode refuses
   double pressure_Pa = 5000;
   double floor = 0.1;
   double fingertip_m = 0.010;
-  std::vector<std::pair<double, double>> table;  ///< (displacement_m, relative_friction)
+  std::vector<std::pair<double, double>> table;  ///< pairs of (displacement_m, relative_friction)
 };
 
-/// What must never be exceeded.
+/// Limits that must never be exceeded.
 struct Limits {
   double displacement_m = 0;
   double continuous_s = 30;
@@ -104,7 +105,7 @@ struct Limits {
   double session_minutes = 60;
 };
 
-/// A station's hardware as its rig file states it; valid once loaded.
+/// A station's hardware as described in its rig file; valid once loaded.
 struct Rig {
   std::string path, source, sha256;
   std::string name;
@@ -118,20 +119,21 @@ struct Rig {
   std::optional<MaskingNoise> noise;
   Friction friction;
   Limits limits;
-  std::vector<std::string> defaults_used;  ///< `key = value` for each default that stood in
+  std::vector<std::string> defaults_used;  ///< `key = value` for each default that was used
 };
 
-/// Reads and checks a rig file (format "friction-rig/1"). Throws text::BadInput with every problem at once,
-/// std::system_error where the file cannot be read.
+/// Reads and checks a rig file (format "friction-rig/1"). Throws text::BadInput with all problems at once, or
+/// std::system_error if the file cannot be read.
 Rig load(const std::string& path);
 
-/// The same from text already in memory (a resumed session); files that it names are looked up beside `path`.
+/// The same for text that is already in memory (a resumed session). Files named in it are searched beside
+/// `path`.
 Rig parse(const std::string& source, const std::string& path);
 
-/// Channels of the stream: at least two, and as many as the rig uses.
+/// The number of channels of the stream: at least two, and as many as the rig uses.
 int channels(const Rig& rig);
 
-/// The materials that fill density, modulus, Poisson ratio and yield strength.
+/// Names of the materials for which density, modulus, Poisson ratio and yield strength are built in.
 std::vector<std::string> materials();
 
 }  // namespace turnpoint::rig

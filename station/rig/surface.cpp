@@ -11,8 +11,8 @@ using text::Range;
 using Ends = text::Range::Ends;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Handbook values for common tempers; a rig that matters states its own. The yield strength only serves
-// the warning about a tension that the material cannot carry.
+// Handbook values for common tempers. A rig used for research should give its own. The yield strength is only
+// used to warn about a tension that the material cannot carry.
 struct Material {
   const char* name;
   double density_kg_m3, modulus_GPa, poisson, yield_MPa;

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kWideEnd_m = 0.030;
 
-/// Mean and rms deviation of friction, fingertip averaged, over the zone of the scene.
+/// Mean friction, averaged over the fingertip, in the zone of the scene, and its rms deviation.
 struct ZoneFriction {
   double mean = 1, rms = 0;
 };
@@ -37,8 +37,8 @@ ZoneFriction zone_friction(const std::vector<double>& x_m, const std::vector<dou
   return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean))};
 }
 
-/// Where the profile last falls through `share` of its last maximum, by linear interpolation; the end if
-/// never.
+/// The last position at which the profile falls through `share` of its last maximum (linear interpolation),
+/// or the end of the profile if there is none.
 double last_crossing(const std::vector<double>& x_m, const std::vector<double>& a, std::size_t peak,
                      double share) {
   const double level = share * a[peak];
@@ -74,7 +74,7 @@ Cues cues_of(const physics::Surface& surface, const std::vector<physics::Tone>& 
     cues.wide_end_amplitude_m += amplitude[i];
   cues.wide_end_amplitude_m /= std::max(n, 1.0);
   const auto& profile = fields[strongest].v;
-  // Half a wavelength is the distance of the first two zeros of the strongest tone's displacement.
+  // Half a wavelength is the distance between the first two zeros of the strongest tone's displacement.
   std::vector<double> nodes;
   for (std::size_t i = 1; i < profile.size() && nodes.size() < 2; ++i) {
     const double from = profile[i - 1].real(), to = profile[i].real();
@@ -132,7 +132,7 @@ double scale_to_friction(const physics::Surface& surface, const physics::Frictio
                       text::number(scene.zone->friction, 4), text::number(mean_at(high), 4)));
     low = high, high *= 2;
   }
-  // Regula falsi (Illinois): the mean falls smoothly with the scale, so a few steps are enough.
+  // Regula falsi (Illinois): the mean falls smoothly with the scale, so a few steps suffice.
   double at_low = low == 0 ? 1 - scene.zone->friction : mean_at(low) - scene.zone->friction;
   double at_high = mean_at(high) - scene.zone->friction;
   for (int i = 0; i < 60 && high - low > 1e-10 * high; ++i) {

@@ -30,15 +30,15 @@ static_assert(terms::kAudible_Hz == physics::audible_limit_Hz);
 
 constexpr std::size_t kRemembered = 512, kSolutions = 128;
 
-// Planned tones lie on a grid: processors and C libraries differ in the last bits of sines and logarithms,
-// and the same session must give the same samples on all of them. It is far below what matters: 1 uHz, 1 fm
-// (-180 dB of 1 um), 1 nrad.
+// Planned tones are rounded to a grid, because processors and C libraries differ in the last bits of sines
+// and logarithms, and the same session must give the same samples everywhere. The grid is far finer than what
+// matters: 1 uHz, 1 fm (-180 dB re 1 um), 1 nrad.
 constexpr double kGridPerHz = 1e6, kGridPerMetre = 1e15, kGridPerRadian = 1e9;
 double on_grid(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
 double mm(double m) { return m * 1e3; }
 
-/// Everything in a scene that its plan depends on.
+/// A text with everything in a scene that affects its plan, used as the cache key.
 std::string key_of(const Scene& scene) {
   const auto maybe = [](const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : "-";
@@ -56,9 +56,9 @@ std::string key_of(const Scene& scene) {
   return key;
 }
 
-/// What a set of frequencies does on this rig's surface, however strong its tones are: what roving leaves as
-/// it is. `fields` are per metre at the drive edge, by the chosen model but never by less than `mode`: a
-/// limit must not rest on a coarse one.
+/// The displacement that a set of frequencies causes on this rig's surface, independent of the tones'
+/// strength, so roving does not change it. `fields` are per metre at the drive edge. They use the chosen
+/// model, but at least `mode`: a limit must not be checked with a coarse model.
 struct Solution {
   physics::PlanChoice choice;
   std::vector<physics::ToneField> fields;
@@ -97,8 +97,8 @@ struct Planner::State {
   void refuse_beyond_limits(const DrivePlan& plan) const;
 };
 
-/// Percent, peak and turning edges depend on the surface alone: one map each, over the tones that this rig
-/// can play.
+/// Percent, peak and turning edges depend only on the surface, so one map for each is enough. It covers the
+/// tones that this rig can play.
 const physics::BoundaryMap& Planner::State::map_for(const physics::Edge& edge) {
   const auto key = physics::format(edge);
   auto found = maps.find(key);
@@ -116,14 +116,14 @@ double Planner::State::frequency_for(double boundary_m, const physics::Edge& edg
   physics::MapOptions options;
   options.edge = edge;
   if (edge.kind == physics::Edge::Kind::friction) {
-    // Such an edge moves with the displacement, which roving draws anew for every trial: a map would be used
-    // once.
+    // An edge defined by friction depends on the displacement, which roving changes in every trial, so a map
+    // would be used only once.
     options.friction = physics::FrictionContext{friction, displacement_m, rig.friction.fingertip_m};
     if (const auto frequency = physics::solve_frequency_Hz(surface, options, boundary_m)) return *frequency;
   } else if (const auto frequency = map_for(edge).frequency_Hz(boundary_m)) {
     return *frequency;
   }
-  // Outside the rig's tones the whole map says what could be.
+  // The position is out of the rig's range. A map over all frequencies tells the user what would be possible.
   const physics::BoundaryMap whole(surface, options);
   if (const auto frequency = whole.frequency_Hz(boundary_m)) return *frequency;
   throw Unreachable(fmt::format("no frequency puts the {} edge at {} mm: {}", physics::format(edge),
@@ -228,8 +228,8 @@ const Solution& Planner::State::solution_for(const Scene& scene, const std::vect
   return solutions.emplace(key, solve(scene, tones)).first->second;
 }
 
-/// Tones are levelled by `mode`. Where only `modes` is exact enough, the drive edge's share of the first mode
-/// is not all that reaches the last maximum: the amplitudes become those that give the same level by `modes`.
+/// Tones are set to equal level by the model `mode`. If only `modes` is accurate enough, other modes
+/// contribute to the last maximum as well, so the amplitudes are corrected to give the same level by `modes`.
 void Planner::State::equalise(std::vector<Tone>& tones, const Solution& solution) const {
   if (solution.choice.model != Model::modes) return;
   for (std::size_t i = 0; i < tones.size(); ++i) {
@@ -237,7 +237,8 @@ void Planner::State::equalise(std::vector<Tone>& tones, const Solution& solution
     if (!info.last_peak_m) continue;
     try {
       tones[i].amplitude_m /= info.gain * physics::drive_amplitude_m(surface, tones[i].frequency_Hz, 1);
-    } catch (const std::domain_error&) {  // no last maximum by `mode`: there was nothing to be equal at
+      // The model `mode` has no last maximum here, so there is no level to match.
+    } catch (const std::domain_error&) {
     }
   }
 }
@@ -290,10 +291,10 @@ DrivePlan Planner::plan(const Scene& scene) {
   auto& plans = state_->plans;
   const auto key = key_of(scene);
   if (const auto found = plans.find(key); found != plans.end()) return found->second;
-  // Roving makes nearly every scene new: what is remembered must not grow with the session.
+  // With roving almost every scene is new, so the cache must not grow with the session.
   if (plans.size() >= kRemembered) plans.clear();
-  // What physics refuses is the scene's fault: an edge that this surface does not have, a zone behind the
-  // strip.
+  // If the physics library refuses, the scene is at fault: the surface does not have this edge, or the zone
+  // is beyond the strip.
   try {
     return plans.emplace(key, make(scene)).first->second;
   } catch (const std::domain_error& error) {
@@ -306,8 +307,8 @@ DrivePlan Planner::plan(const Scene& scene) {
 DrivePlan Planner::make(const Scene& scene) {
   DrivePlan plan;
   plan.scene = scene;
-  // Positions come from the validated table, which is both the cheapest and the most exact there is; the
-  // choice of a model is about the profile.
+  // Positions come from the validated table, which is both the fastest and the most accurate. The choice of a
+  // model only affects the profile.
   auto tones = state_->tones_for(scene, plan);
   for (auto& tone : tones) tone.frequency_Hz = on_grid(tone.frequency_Hz, kGridPerHz);
   const Solution& solution = state_->solution_for(scene, tones);

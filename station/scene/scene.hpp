@@ -11,34 +11,35 @@ namespace turnpoint::scene {
 struct ToneTarget {
   std::optional<double> boundary_m, frequency_Hz;
   physics::Edge edge;
-  double displacement_m = 0;  ///< peak, at the tone's last maximum
+  double displacement_m = 0;  ///< peak at the tone's last maximum
   double phase_rad = 0;
 };
 
-/// A zone of even friction from `from_m` to the scene's boundary.
+/// A zone of uniform friction from `from_m` to the scene's boundary.
 struct ZoneTarget {
   double from_m = 0;
-  double friction = 1;  ///< wanted mean over the zone, relative to the surface at rest
-  int tones = 1;        ///< at most so many
+  double friction = 1;  ///< desired mean over the zone, relative to the surface at rest
+  int tones = 1;        ///< largest number of tones
   std::optional<double>
-      design_friction;  ///< tones are chosen for this one and then only scaled to `friction`
+      design_friction;  ///< tones are designed for this friction and then only scaled to `friction`
 };
 
-/// What a scene must be right to; what is absent is not asked for.
+/// The accuracy that a scene requires. An empty value means no requirement.
 struct Tolerance {
   std::optional<double> boundary_m, level_dB, friction;
 };
 
-/// What one interval presents on the surface, in numbers: exactly one of boundary alone, explicit tones, or a
-/// zone (which has a boundary too). SI units.
+/// What one interval presents on the surface, in SI units. It is exactly one of: a boundary alone, explicit
+/// tones, or a zone (which has a boundary too).
 struct Scene {
   std::string name;
   std::optional<double> boundary_m;
   physics::Edge edge;
-  std::optional<double> displacement_m, friction;  ///< at the last maximum; for a boundary alone, one is set
+  /// at the last maximum; for a boundary alone, one of them is set
+  std::optional<double> displacement_m, friction;
   std::vector<ToneTarget> tones;
   std::optional<ZoneTarget> zone;
-  double rove_dB = 0;  ///< drawn for this trial, added to every displacement
+  double rove_dB = 0;  ///< random value of this trial, added to every displacement
   double ramp_s = 0.050;
   Tolerance tolerance;
 };

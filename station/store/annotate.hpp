@@ -5,12 +5,12 @@
 
 namespace turnpoint::store {
 
-/// Adds a researcher's note to a session that is not running; rows of trials stay as they are. Throws
-/// StoreError, terms::UsageError for an empty note.
+/// Adds a researcher's note to a session that is not running; the rows of its trials do not change. Throws
+/// StoreError, or terms::UsageError for an empty note.
 void annotate(const std::string& database, const std::string& session_id, const std::string& text);
 
-/// Closes an interrupted session that nobody shall go on with (status abandoned), with the reason. Throws
-/// StoreError: refused where it is not interrupted.
+/// Closes an interrupted session that nobody will continue (status abandoned) and stores the reason. Throws
+/// StoreError (refused) if the session is not interrupted.
 void abandon(const std::string& database, const std::string& session_id, const std::string& reason);
 
 }  // namespace turnpoint::store

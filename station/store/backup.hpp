@@ -9,83 +9,85 @@
 namespace turnpoint::store {
 
 enum class Destination {
-  folder,  ///< any folder, made where it is missing
-  disk,    ///< a folder on a disk, stick or share of its own: refused where none is mounted
+  folder,  ///< any folder; created if missing
+  disk,    ///< a folder on a separate disk, stick or share; refused if none is mounted
 };
 
 struct BackupOptions {
   std::string directory;
-  int keep = 10;  ///< newest backups of this database that stay, the one just made among them; 0 keeps all
+  int keep = 10;  ///< number of newest backups of this database to keep, including the new one; 0 keeps all
   Destination destination = Destination::folder;
 };
 
 struct BackupReport {
   std::string path;
-  std::string sha256;  ///< of the file; stands beside it in FILE.sha256
+  std::string sha256;  ///< checksum of the file, also stored beside it in FILE.sha256
   std::uint64_t bytes = 0;
-  std::int64_t number = 0;  ///< rises with each backup made into the folder, whatever the clock says
+  std::int64_t number = 0;  ///< increases with each backup made into the folder, even if the clock goes back
   std::int64_t sessions = 0, trials = 0;
-  std::vector<std::string> removed;  ///< older backups that rotation took
-  std::string unrecorded;            ///< why last_backup() does not know of it; "" where it does
+  std::vector<std::string> removed;  ///< older backups that rotation removed
+  std::string unrecorded;            ///< why last_backup() will not find this backup; "" if it will
 };
 
-/// Copies a database, also one that a session is writing, to `directory`/NAME-NUMBER-TIME.sqlite: durable,
-/// read back and checked before it gets its name, and only then are older ones of the same database rotated
-/// out. A damaged database is not copied over good backups. Throws StoreError.
+/// Copies a database to `directory`/NAME-NUMBER-TIME.sqlite, even while a session is writing to it. The copy
+/// is synced, read back and checked before it gets its name. Only then does rotation remove older backups of
+/// the same database, so a damaged database never replaces good backups. Throws StoreError.
 BackupReport backup(const std::string& database, const BackupOptions& options);
 
-/// The newest backup of a database that was read back and checked, wherever it lies now.
+/// The newest backup of a database that was read back and checked, wherever it is now.
 struct LastBackup {
   std::string path;
-  std::int64_t realtime_ns = 0;  ///< wall clock when it was made
+  std::int64_t realtime_ns = 0;  ///< wall-clock time at which it was made
 };
 
-/// What the last backup of this database has noted beside it (FILE.last-backup); none where none was made.
-/// Reads two small files and nothing on the disk of the backups.
+/// The note that the last backup left beside this database (FILE.last-backup); empty if none was made. Reads
+/// two small files and does not touch the disk that holds the backups.
 std::optional<LastBackup> last_backup(const std::string& database);
 
-/// The backups of this database (by its id, whatever they are called) in a folder, oldest first. Throws
-/// StoreError.
+/// The backups of this database in a folder, oldest first. They are recognised by the database's id, not by
+/// file name. Throws StoreError.
 std::vector<std::string> backups_in(const std::string& directory, const std::string& database);
 
 struct RestoreOptions {
   std::string directory;
-  std::string database_id;  ///< whose backups; "" takes what is known of the lost database
+  /// id of the database whose backups to use; "" finds it from what is left of the lost database
+  std::string database_id;
 };
 
 struct Restoration {
-  std::string from;  ///< the backup that was taken
+  std::string from;  ///< the backup that was used
   std::string database_id;
-  std::string quarantined;  ///< where the damaged file is now; "" where there was none
+  std::string quarantined;  ///< where the damaged file is now; "" if there was none
   std::int64_t sessions = 0, trials = 0;
-  std::vector<std::string> rejected;  ///< backups of it that failed their check
-  /// Sessions whose rows are not as they were recorded (checksum.hpp): the backup holds them so, since they were
-  /// changed before it was made.
+  std::vector<std::string> rejected;  ///< its backups that failed their check
+  /// Sessions whose rows differ from what was recorded (see checksum.hpp). They were changed before the
+  /// backup was made, so the backup contains the change.
   std::vector<std::string> changed;
 };
 
-/// Puts the newest good backup in the place of a missing, empty or damaged database, which is moved aside
-/// with its log and never overwritten. Whose backups: those with the database's id, which the damaged file or
-/// its lock file still tells; otherwise those that were made of a database of this name, if that is only one.
-/// Throws StoreError: refused where the database is good, conflict where several databases come into
-/// question, and whatever keeps a database from being opened that is not known to be damaged.
+/// Replaces a missing, empty or damaged database by its newest good backup. The old file and its log are
+/// moved aside and never overwritten. The backups are chosen by the database's id, which is read from the
+/// damaged file or its lock file. If neither tells, the backups made of a database with this file name are
+/// used, provided that they all have the same id. Throws StoreError: refused if the database is good,
+/// conflict if the backups belong to several databases, and the original error if the database cannot be
+/// opened but is not known to be damaged.
 Restoration restore_backup(const std::string& database, const RestoreOptions& options);
 
-/// What restoring the newest backup into a temporary file has shown.
+/// The result of restoring the newest backup into a temporary file.
 struct Drill {
   std::string from;
   std::int64_t number = 0;
-  double age_s = 0;  ///< by the time in its name
+  double age_s = 0;  ///< age according to the time in its name
   std::int64_t sessions = 0, trials = 0, live_sessions = 0, live_trials = 0;
-  std::vector<std::string> problems;  ///< empty where a restore would bring back what was recorded
+  std::vector<std::string> problems;  ///< empty if a restore would bring back everything that was recorded
 };
 
-/// Restores the newest backup of a database into a temporary file beside that, checks pages, references and
-/// every checksum, and compares its sessions with those of the database. Leaves nothing behind. Throws
-/// StoreError where the newest backup cannot be restored at all.
+/// Restores the newest backup of a database into a temporary file beside it. Checks pages, references and
+/// every checksum, and compares its sessions with those of the database. Leaves no file behind. Throws
+/// StoreError if the newest backup cannot be restored at all.
 Drill drill_restore(const std::string& database, const std::string& directory);
 
-/// Throws StoreError (corrupt) where FILE.sha256 stands beside a file and does not agree with it.
+/// Throws StoreError (corrupt) if a FILE.sha256 exists beside the file and does not match it.
 void verify_checksum_file(const std::string& path);
 
 }  // namespace turnpoint::store

@@ -16,7 +16,7 @@ namespace turnpoint::store {
 
 namespace {
 
-/// STEM-TIME.sqlite in older releases, STEM-NUMBER-TIME.sqlite since.
+/// Older releases wrote STEM-TIME.sqlite; the name is now STEM-NUMBER-TIME.sqlite.
 const std::regex kName(R"((.*?)(?:-(\d{6,12}))?-(\d{8}T\d{6})\.\d{3}Z\.sqlite)");
 
 /// "20240229T120000", UTC.
@@ -100,7 +100,7 @@ std::string drill_file(const std::string& backup) { return backup + ".drill"; }
 
 namespace {
 
-/// The file system that a folder is on. With "/." behind it a disk that is mounted at need is mounted now.
+/// The file system that a folder is on. Appending "/." makes an automounter mount the disk.
 dev_t file_system_of(const std::string& folder) {
   struct stat status {};
   if (::stat((folder + "/.").c_str(), &status) == 0) return status.st_dev;

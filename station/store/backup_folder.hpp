@@ -7,34 +7,36 @@
 
 namespace turnpoint::store {
 
-/// A backup as it stands in a folder. What it is a backup of it says itself, in its meta table, not by its
-/// name.
+/// A backup found in a folder. Its meta table, not its file name, says which database it is a backup of.
 struct StoredBackup {
   std::string path;
-  std::string database_id;  ///< "" where it cannot be read
-  std::string station;      ///< of one of its sessions, "" where it has none
-  std::string stem;         ///< name of the database without folder and ending, when the backup was made
-  std::int64_t number = 0;  ///< rises with each backup made into the folder; 0 in those of older releases
-  std::int64_t made_realtime_ns = 0;  ///< by its name
-  std::string trouble;  ///< what kept it from being read, where that is not known to be damage; "" otherwise
+  std::string database_id;  ///< "" if it cannot be read
+  std::string station;      ///< station of one of its sessions; "" if it has no session
+  std::string stem;         ///< file name of the database when the backup was made, without folder and ending
+  /// increases with each backup made into the folder; 0 for backups of older releases
+  std::int64_t number = 0;
+  std::int64_t made_realtime_ns = 0;  ///< time given in its name
+  std::string trouble;  ///< why it could not be read, unless it is known to be damaged; otherwise ""
   bool readable() const { return !database_id.empty(); }
 };
 
-/// All backups in a folder, of whatever database, oldest first: by number, then by name. Files with other
-/// names are not among them. Throws StoreError where the folder cannot be listed.
+/// All backups in a folder, of any database, ordered by number and then by name (oldest first). Files with
+/// other names are ignored. Throws StoreError if the folder cannot be listed.
 std::vector<StoredBackup> stored_backups(const std::string& folder);
 
-/// Above the number of every backup in the folder, of whatever database.
+/// A number greater than that of every backup in the folder, of any database.
 std::int64_t next_backup_number(const std::string& folder);
 
-/// Writes into a copy what a StoredBackup says; clear_backup_note() takes it away from a restored database.
+/// Writes the values of a StoredBackup into a copy. clear_backup_note() removes them from a restored
+/// database.
 void write_backup_note(Database& copy, const std::string& stem, std::int64_t number);
 void clear_backup_note(Database& copy);
 
-/// Removes a backup with its checksum.
+/// Removes a backup and its checksum file.
 void remove_backup(const std::string& path);
 
-/// Held by the one process that changes a folder of backups; others wait. Not on file systems without locks.
+/// A lock for the one process that changes a folder of backups; others wait. Has no effect on file systems
+/// without locks.
 class BackupFolderLock {
  public:
   explicit BackupFolderLock(const std::string& folder);
@@ -46,14 +48,15 @@ class BackupFolderLock {
   int descriptor_ = -1;
 };
 
-/// Throws StoreError (missing) unless a disk other than the database's is mounted at the folder or at the one
-/// above it: without its disk a mount point is an empty folder on the system's.
+/// Throws StoreError (missing) unless a disk other than the database's is mounted at the folder or at its
+/// parent folder. Without its disk, a mount point is just an empty folder on the system disk.
 void require_disk(const std::string& folder, const std::string& database);
 
-/// Where a drill restores a backup to: its leftovers are removed as those of an interrupted backup.
+/// The file into which a drill restores a backup. If it is left behind, it is removed like the files of an
+/// interrupted backup.
 std::string drill_file(const std::string& backup);
 
-/// Removes what interrupted backups have left in a folder: files that never got their name. Under its lock.
+/// Removes the unfinished files of interrupted backups from a folder, while holding the folder's lock.
 /// Returns what was removed.
 std::vector<std::string> remove_interrupted_backups(const std::string& folder);
 

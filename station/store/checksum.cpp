@@ -15,7 +15,7 @@ namespace turnpoint::store {
 
 namespace {
 
-/// Each value with its kind and length, so that no two different rows look the same.
+/// Hashes each value with its type and length, so that no two different rows produce the same bytes.
 void add_row(text::Sha256& hash, const Statement& row) {
   std::string bytes;
   for (int i = 0; i < row.columns(); ++i) {
@@ -34,14 +34,15 @@ void add_row(text::Sha256& hash, const Statement& row) {
 
 }  // namespace
 
-/// The rows of one session as the bytes that are hashed, in one of the encodings. Statements are prepared
-/// once, since a session has two links a trial.
+/// Turns the rows of one session into the bytes that are hashed, in a given encoding. Statements are prepared
+/// once, because every trial of a session adds two links.
 class Encoder {
  public:
   Encoder(Database& database, std::string schema, std::string session_id, std::int64_t encoding = kEncoding)
       : database_(database), schema_(std::move(schema)), id_(std::move(session_id)), encoding_(encoding) {}
 
-  /// What the session was begun with. Its status changes later: the links cover that.
+  /// Hashes the data that the session started with. The session's status changes later and is covered by the
+  /// links.
   void add_provenance(text::Sha256& hash) const {
     auto session = session_table();
     session.fields.resize(session.fields.size() - 2);
@@ -57,7 +58,7 @@ class Encoder {
     while (row.step()) add_row(hash, row);
   }
 
-  /// The rows after `from` up to `to`, table by table.
+  /// Hashes the rows after `from` up to `to`, table by table.
   void add_rows(text::Sha256& hash, const Extent& from, const Extent& to) {
     add(hash, segment_, segment_table(), "segment_index", "segment_index", from.segment, to.segment);
     add(hash, block_, block_table(), "run_order", "run_order", from.block, to.block);
@@ -86,7 +87,7 @@ class Encoder {
     return last;
   }
 
-  /// Whether each tone belongs to a trial that a link covers.
+  /// True if some tone belongs to a trial that no link covers.
   bool tone_beyond(std::int64_t last_trial) const {
     Statement row(database_,
                   "SELECT 1 FROM " + schema_ + ".tone WHERE session_id = ? AND trial_index > ? LIMIT 1");
@@ -141,7 +142,8 @@ Link link_from(const Statement& row) {
   return link;
 }
 
-/// What opening a database does to sessions whose process died needs no link: these words and no others.
+/// When a database is opened, sessions of a dead process get a new status without a new link. Only these
+/// exact words are accepted.
 bool follows(const Link& last, const std::string& status, const std::string& reason) {
   if (status == last.status && reason == last.status_reason) return true;
   const std::string running = name(SessionStatus::running), interrupted = name(SessionStatus::interrupted);
@@ -165,7 +167,7 @@ std::string place(const Link& previous, const Link& link) {
   return rows.empty() ? "the session's status" : rows;
 }
 
-/// Checks each link against its rows, and counts them. Returns the last.
+/// Checks each link against its rows and counts the links. Returns the last one.
 Link check_links(Database& database, const std::string& schema, VerifiedSession& verified) {
   std::map<std::int64_t, Encoder> encoders;
   Statement rows(database, fmt::format("SELECT {} FROM {}.link WHERE session_id = ? ORDER BY link_index",
@@ -191,9 +193,10 @@ Link check_links(Database& database, const std::string& schema, VerifiedSession&
   return previous;
 }
 
-/// The sessions, or the one of `session_id`, whose place in the counterbalancing is their participant's. It
-/// was given by the station of one of the participant's sessions, unless that session has been withdrawn. One
-/// query for all: asked session by session it would read all sessions for each of them.
+/// The sessions (or the one given by `session_id`) whose place in the counterbalancing is the one enrolled
+/// for their participant. The place was assigned by the station of one of the participant's sessions, unless
+/// that session has been withdrawn. One query answers for all sessions; a query for each session would read
+/// all sessions every time.
 std::set<std::string> enrolled(Database& database, const std::string& schema,
                                const std::string& session_id = "") {
   std::set<std::string> ids;

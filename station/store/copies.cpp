@@ -15,7 +15,8 @@ enum class Holds { no, yes, unreadable };
 Holds holds(const std::string& path, const std::vector<std::string>& session_ids) {
   try {
     for (const auto* suffix : {"-wal", "-journal"})
-      if (file_size(path + suffix) > 0) return Holds::unreadable;  // what is in a log is not in the file
+      // data in a log are not in the database file yet
+      if (file_size(path + suffix) > 0) return Holds::unreadable;
     Database copy(path, Database::Access::immutable);
     Statement rows(copy, "SELECT 1 FROM session WHERE session_id = ?");
     return std::any_of(session_ids.begin(), session_ids.end(),

@@ -6,19 +6,20 @@
 
 namespace turnpoint::store {
 
-/// Files that hold some of the sessions asked for, or that cannot be read and so may hold them.
+/// Files that contain some of the requested sessions, or that cannot be read and may contain them.
 struct Copies {
-  std::vector<std::string> own;      ///< this database's backups, and its copies before a migration
-  std::vector<std::string> foreign;  ///< not to be removed without asking: backups of other databases,
-                                     ///< damaged files that were set aside, files that cannot be read
+  std::vector<std::string> own;  ///< this database's backups, and its copies from before a migration
+  /// Not to be removed without asking: backups of other databases, damaged files that were set aside, and
+  /// files that cannot be read.
+  std::vector<std::string> foreign;
 };
 
-/// Looks beside the database and, unless it is "", into a folder of backups. Throws StoreError where a folder
-/// cannot be listed.
+/// Searches the folder of the database and, unless it is "", a folder of backups. Throws StoreError if a
+/// folder cannot be listed.
 Copies copies_of(const std::string& path, Database& database, const std::string& backup_folder,
                  const std::vector<std::string>& session_ids);
 
-/// Removes `own`, and what interrupted backups have left in the folder.
+/// Removes `own`, and the leftovers of interrupted backups in the folder.
 void remove_copies(const Copies& copies, const std::string& backup_folder);
 
 }  // namespace turnpoint::store

@@ -18,8 +18,8 @@ namespace {
 std::int64_t sessions_in(Database& database) { return database.integer("SELECT count(*) FROM session"); }
 std::int64_t trials_in(Database& database) { return database.integer("SELECT count(*) FROM trial"); }
 
-/// The newest of this database. One that cannot be read is not passed over: it may be the one a restore
-/// needs.
+/// The newest backup of this database. An unreadable one is not skipped, because it may be the one that a
+/// restore needs.
 StoredBackup newest_backup(const std::string& directory, const std::string& path, const std::string& id) {
   const auto stem = std::filesystem::path(path).stem().string();
   StoredBackup newest;
@@ -35,7 +35,7 @@ StoredBackup newest_backup(const std::string& directory, const std::string& path
   return newest;
 }
 
-/// A restored backup, as long as the drill lasts.
+/// A restored backup that exists for the duration of the drill.
 class Restored {
  public:
   explicit Restored(const StoredBackup& backup) : path_(drill_file(backup.path)) {
@@ -54,14 +54,14 @@ class Restored {
     }
   }
   const std::string& path() const { return path_; }
-  /// Throws where it cannot be removed: a drill that leaves something behind must not say that it does not.
+  /// Throws if the file cannot be removed, because a drill must not leave files behind without saying so.
   void remove() { remove_database(std::exchange(path_, "")); }
 
  private:
   std::string path_;
 };
 
-/// What the database holds may have grown since, or been withdrawn, and nothing else.
+/// Since the backup, sessions in the database may have grown or been withdrawn. Returns any other difference.
 std::string difference(Database& live, const VerifiedSession& session) {
   Statement withdrawn(live, "SELECT 1 FROM tombstone WHERE session_id = ?");
   Statement there(live, "SELECT 1 FROM session WHERE session_id = ?");
@@ -94,7 +94,8 @@ Drill drill_restore(const std::string& name, const std::string& folder) {
     drill.sessions = sessions_in(database);
     drill.trials = trials_in(database);
     for (auto& session : verify_database(database)) {
-      if (const auto differs = difference(live, session); !differs.empty()) session.problems.push_back(differs);
+      if (const auto differs = difference(live, session); !differs.empty())
+        session.problems.push_back(differs);
       for (const auto& problem : session.problems)
         drill.problems.push_back(fmt::format("session {}: {}", session.session_id, problem));
     }

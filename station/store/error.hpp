@@ -4,23 +4,23 @@
 
 namespace turnpoint::store {
 
-/// What went wrong with a database, as far as the caller can do something about it.
+/// The kind of database error, by what the caller can do about it.
 enum class Fault {
-  disk_full,       ///< earlier rows are intact; the same call may be repeated once there is space
-  read_only,       ///< file, folder or disk cannot be written
-  corrupt,         ///< the file is damaged; it is left untouched
-  not_a_database,  ///< empty, or something else than a Turnpoint database
+  disk_full,       ///< earlier rows are intact; repeat the same call once there is space
+  read_only,       ///< the file, folder or disk cannot be written
+  corrupt,         ///< the file is damaged; it was not changed
+  not_a_database,  ///< empty, or not a Turnpoint database
   newer_schema,    ///< written by a newer release
-  cannot_open,     ///< it is there and cannot be opened: its permissions, or a folder where a file should be
-  busy,            ///< another station process has it
+  cannot_open,     ///< the file exists but cannot be opened: wrong permissions, or it is a folder
+  busy,            ///< another station process is using it
   missing,         ///< no such file, session or participant
-  conflict,        ///< rows contradict what is there
-  refused,         ///< the rules of the data forbid it
-  io,              ///< anything else that the disk reports
+  conflict,        ///< rows contradict existing ones
+  refused,         ///< the store's rules forbid it
+  io,              ///< any other disk error
 };
 
 /// Every failure of the store. The message says what was tried, on which file, what SQLite or the system
-/// said, and what to do.
+/// reported, and what to do.
 class StoreError : public std::runtime_error {
  public:
   StoreError(Fault fault, const std::string& message) : std::runtime_error(message), fault_(fault) {}

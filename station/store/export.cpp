@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Protocol ids are the researchers' words; a folder's name is not theirs to escape from.
+/// Protocol ids are free text by the researchers, so anything that could leave the folder must be replaced.
 std::string folder_name(const std::string& protocol_id) {
   std::string name = protocol_id.empty() || protocol_id.front() == '.' ? "_" : "";
   for (const char c : protocol_id) {
@@ -80,10 +80,10 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
 
 namespace {
 
-/// Text that a table gathers before it is written.
+/// Size of the text that a table collects before it is written.
 constexpr std::size_t kPieceBytes = 1U << 18U;
 
-/// What `write` fails with, in the words of an export.
+/// Calls `write` and turns its failure into an export error.
 template <class Write>
 auto writing(const std::string& path, Write write) {
   try {
@@ -165,7 +165,7 @@ std::vector<ExportedFile> export_data(const std::string& path, const std::string
   check_style(options);
   auto database = open_reader(path);
   check_pages(database);
-  // One snapshot for all files, whatever a running session adds meanwhile.
+  // All files come from one snapshot, even if a running session adds rows meanwhile.
   database.execute("BEGIN");
   const auto selections = select(database, directory, options);
   if (selections.empty())
@@ -174,7 +174,7 @@ std::vector<ExportedFile> export_data(const std::string& path, const std::string
                                                  path, path));
   std::vector<ExportedFile> files;
   for (const auto& selection : selections) {
-    // Files of an earlier export may stand beside new ones until the last is written.
+    // Until the last file is written, files of an earlier export may exist beside new ones.
     const auto mark = selection.folder + "/EXPORT-INCOMPLETE.txt";
     write_file(mark, "An export into this folder has not ended. Export again.\n");
     if (options.format == ExportFormat::bids)

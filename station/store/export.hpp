@@ -9,7 +9,7 @@ namespace turnpoint::store {
 enum class ExportFormat { csv, bids };
 
 struct ExportOptions {
-  std::string session_id, participant, protocol_id;  ///< "" takes all
+  std::string session_id, participant, protocol_id;  ///< "" selects all
   ExportFormat format = ExportFormat::csv;
   char separator = ',';
   char decimal = '.';
@@ -20,10 +20,10 @@ struct ExportedFile {
   std::size_t rows = 0;
 };
 
-/// Writes one folder a protocol below `directory`: trials.csv, intervals.csv, events.csv, sessions.csv and
-/// codebook.json (or the BIDS set). Reads SQLite only, through a read-only connection; the same data give the
-/// same bytes. While it lasts, and after one that was interrupted, a folder holds EXPORT-INCOMPLETE.txt.
-/// Throws StoreError.
+/// Writes one folder per protocol below `directory`: trials.csv, intervals.csv, events.csv, sessions.csv and
+/// codebook.json (or the BIDS set). Only reads the database, through a read-only connection; the same data
+/// give the same bytes. During the export, and after an interrupted one, the folder contains
+/// EXPORT-INCOMPLETE.txt. Throws StoreError.
 std::vector<ExportedFile> export_data(const std::string& database, const std::string& directory,
                                       const ExportOptions& options);
 

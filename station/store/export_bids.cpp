@@ -31,9 +31,9 @@ struct Labels {
   std::map<std::string, std::string> sessions;      ///< session_id -> label
 };
 
-/// Labels for names that BIDS and the file systems it is kept on must be able to tell apart: letters and
-/// digits only, and not by case alone. Whoever shares what is left of a name gets a piece of its hash, the
-/// same in every export.
+/// Makes labels that BIDS and any file system can tell apart: only letters and digits, and distinct
+/// regardless of case. If two names would get the same label, part of the name's hash is appended, which is
+/// the same in every export.
 std::map<std::string, std::string> labels_for(const std::set<std::string>& names) {
   std::map<std::string, int> users;
   const auto folded = [](std::string text) {
@@ -49,7 +49,8 @@ std::map<std::string, std::string> labels_for(const std::set<std::string>& names
   return labels;
 }
 
-/// A person's sessions are numbered; where two stations have each numbered theirs, by station as well.
+/// A person's sessions are numbered. If two stations have each numbered theirs, the label also contains the
+/// station.
 Labels label_all(const ProtocolSelection& selection) {
   Labels labels;
   std::set<std::string> persons;
@@ -72,7 +73,7 @@ Labels label_all(const ProtocolSelection& selection) {
   return labels;
 }
 
-/// What is left there of an earlier export would be taken for part of this one.
+/// Files left by an earlier export would be mistaken for part of this one.
 void refuse_leftovers(const std::string& folder, const Labels& labels) {
   std::error_code ignored;
   std::set<std::string> expected;

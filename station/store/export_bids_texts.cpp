@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A text of the protocol: plain, or one a language.
+/// A text of the protocol: a plain string, or one string per language.
 std::string text_of(const text::Value* value, const std::string& language) {
   if (value == nullptr) return "";
   if (value->kind == text::Value::Kind::string) return value->string;
@@ -27,7 +27,7 @@ const text::Value* at(const text::Value& table, const std::string& key) {
   return entry == nullptr ? nullptr : &entry->value;
 }
 
-/// What the newest session of the protocol ran.
+/// The texts of the protocol's newest session.
 struct Texts {
   std::string title, instructions;
 };
@@ -44,7 +44,7 @@ Texts texts_of(const SessionStart& start) {
       if (!question.empty()) texts.instructions += (texts.instructions.empty() ? "" : "\n") + question;
     }
   } catch (const text::BadInput&) {
-    // A text that cannot be read any longer explains nothing; the data are there all the same.
+    // If a text can no longer be read, leave out the explanation: the data are exported anyway.
   }
   if (texts.title.empty()) texts.title = start.protocol_id;
   return texts;

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The field of `table` that is exported under this name, as a column.
+/// Makes a column from the field of `table` that is exported under this name.
 template <class Record>
 ExportColumn exported(const Table<Record>& table, const std::string& csv, const Record* ExportRow::*record) {
   for (const auto& field : table.fields)
@@ -48,8 +48,8 @@ ExportColumn participant_id() {
       [](const ExportRow& row) { return cell(row.session->person); }};
 }
 
-/// Version 2: onset and duration are the stimulus', as in BIDS; the zero of the response time and the length
-/// of the trial have columns of their own; a participant is a person.
+/// Version 2: onset and duration describe the stimulus, as in BIDS. The zero of the response time and the
+/// length of the trial have their own columns. The participant column names a person.
 ExportColumn columns_version() {
   return {{"columns_version", "Version of this set of columns", "", ""},
           [](const ExportRow&) { return cell(std::string("2")); }};
@@ -116,7 +116,7 @@ ExportColumn factor_value(const std::string& factor, const std::string& name) {
           }};
 }
 
-/// Two columns of one name are read differently by every program.
+/// Programs disagree on how to read two columns with the same name.
 void add_factors(ExportColumns& columns, std::ptrdiff_t at, const std::vector<std::string>& factors) {
   const auto fixed = names_of(columns);
   ExportColumns own;

@@ -9,14 +9,14 @@
 
 namespace turnpoint::store {
 
-/// All sessions of one protocol that an export takes, and the columns of its factors.
+/// All sessions of one protocol that are exported, and the columns of its factors.
 struct ProtocolSelection {
-  std::string protocol_id, folder;  ///< folder: where its files go, ends without a slash
+  std::string protocol_id, folder;  ///< folder: where its files are written; ends without a slash
   std::vector<std::string> factors;
   std::vector<SessionRecord> sessions;
 };
 
-/// Writes the bytes by way of a temporary file, so that a reader sees the old or the new ones. Makes the
+/// Writes a file by way of a temporary one, so that readers see either the old or the new bytes. Creates the
 /// folder. Throws StoreError.
 void write_file(const std::string& path, const std::string& bytes);
 
@@ -25,7 +25,7 @@ class TableFile {
  public:
   TableFile(const std::string& path, const TableStyle& style, const std::vector<std::string>& columns);
   void row(const std::vector<Cell>& cells);
-  /// The file appears under its name; notes it in `files`.
+  /// Gives the file its final name and adds it to `files`.
   void finish(std::vector<ExportedFile>& files);
 
  private:

@@ -16,7 +16,7 @@ struct Optional : std::false_type {};
 template <class Value>
 struct Optional<std::optional<Value>> : std::true_type {};
 
-/// How a C++ type is kept in SQLite.
+/// How a C++ type is stored in SQLite.
 template <class Value>
 constexpr const char* sql_type() {
   if constexpr (Optional<Value>::value)
@@ -74,7 +74,8 @@ Cell cell_of(const Value& value) {
   if constexpr (Optional<Value>::value)
     return value ? cell_of(*value) : Cell{};
   else if constexpr (std::is_same_v<Value, std::uint64_t>)
-    return cell(std::to_string(value));  // all 64 bits are used: digits, whatever the sign in the database
+    // all 64 bits are used: print as unsigned, even if the number in the database is negative
+    return cell(std::to_string(value));
   else if constexpr (std::is_integral_v<Value>)
     return cell(static_cast<std::int64_t>(value));
   else if constexpr (std::is_enum_v<Value>)
@@ -92,7 +93,7 @@ struct MemberOf<Value Class::*> {
   using Record = Class;
 };
 
-/// The member that a path of member pointers leads to.
+/// Follows a path of member pointers to a member.
 template <auto First, auto... Rest, class Record>
 auto& member(Record& record) {
   if constexpr (sizeof...(Rest) == 0)
@@ -101,7 +102,7 @@ auto& member(Record& record) {
     return member<Rest...>(record.*First);
 }
 
-/// What is fixed about a field besides its member.
+/// The fixed properties of a field besides its member.
 struct About {
   const char* name;
   const char* csv = "";
@@ -132,7 +133,7 @@ Field<SessionRecord> start(const About& about) {
   return field<&SessionRecord::start, Member>(about);
 }
 
-/// NULL where there is no response time: the quality of a time that is absent is absent too.
+/// NULL if there is no response time, because a missing time has no quality.
 Field<TrialRow> response_time_quality() {
   auto quality = field<&TrialRow::response_time_quality>({"response_time_quality", "response_time_quality",
                                                           "Whose time stamp the answer bears", "",

@@ -14,27 +14,27 @@
 
 namespace turnpoint::store {
 
-/// One column of a record: where it is kept in the database, in the C++ struct and in the exports, and what
-/// it means. Everything that handles a record goes by these: the statements that write and read it, the
-/// exports, the codebook and the checksum. The SQL itself stands in schema.cpp, since a released schema never
-/// changes; a test holds both against each other.
+/// One column of a record: its place in the database, in the C++ struct and in the exports, and its meaning.
+/// All code that handles a record uses these descriptions: the statements that write and read it, the
+/// exports, the codebook and the checksum. The SQL itself is in schema.cpp, because a released schema never
+/// changes; a test compares the two.
 template <class Record>
 struct Field {
-  const char* name;         ///< column of the database
-  const char* csv;          ///< column of the export; "" where it is not exported
+  const char* name;         ///< column in the database
+  const char* csv;          ///< column in the export; "" if it is not exported
   const char* description;  ///< for the codebook
-  const char* unit;         ///< "" where there is none
-  const char* values;       ///< allowed words, "" where there is nothing to list
+  const char* unit;         ///< "" if it has none
+  const char* values;       ///< allowed words; "" if there is no list
   const char* type;         ///< INTEGER, REAL or TEXT
   bool nullable;
   void (*bind)(Statement&, int index, const Record&);
   void (*read)(const Statement&, int column, Record&);
   Cell (*cell)(const Record&);
-  int since = 1;  ///< first encoding of the checksum that covers it (checksum.hpp)
+  int since = 1;  ///< first encoding of the checksum that covers this column (see checksum.hpp)
 };
 
-/// A table of the database. Each row begins with its place (keys and what else only the log knows), then come
-/// the fields of its record.
+/// A table of the database. Each row begins with its place (keys and other values that only the log knows),
+/// followed by the fields of its record.
 template <class Record>
 struct Table {
   const char* name;
@@ -48,14 +48,14 @@ const Table<TrialRow>& trial_table();
 const Table<ToneRow>& tone_table();
 const Table<EventRow>& event_table();
 
-/// A session's row is spread over four tables, since many sessions share a protocol, a rig and a calibration.
-/// Status and its reason are at the end: they are the only columns that change.
+/// A session's row is spread over four tables, because many sessions share a protocol, a rig and a
+/// calibration. Status and its reason are at the end: only these columns ever change.
 const Table<SessionRecord>& session_table();
 const Table<SessionRecord>& protocol_table();
 const Table<SessionRecord>& rig_table();
 const Table<SessionRecord>& calibration_table();
 
-/// "a, b, c": the columns in order, place first, each with `prefix` before it.
+/// "a, b, c": the columns in order, beginning with the place, each preceded by `prefix`.
 template <class Record>
 std::string column_list(const Table<Record>& table, const std::string& prefix = "") {
   std::string list;
@@ -65,7 +65,7 @@ std::string column_list(const Table<Record>& table, const std::string& prefix = 
   return list;
 }
 
-/// The table with only the fields that an encoding of the checksum covers.
+/// A copy of the table with only the fields that the given encoding of the checksum covers.
 template <class Record>
 Table<Record> covered(Table<Record> table, std::int64_t encoding) {
   std::erase_if(table.fields, [&](const auto& field) { return field.since > encoding; });
@@ -79,7 +79,7 @@ std::string insert_sql(const Table<Record>& table) {
   return std::string("INSERT INTO ") + table.name + " (" + column_list(table) + ") VALUES (" + marks + ")";
 }
 
-/// Binds a whole row: the values of its place, then its fields. Returns the statement, to be run.
+/// Binds a whole row: the values of its place, then its fields. Returns the statement, ready to run.
 template <class Record, class... Place>
 Statement& bind_row(Statement& statement, const Table<Record>& table, const Record& record,
                     const Place&... place) {
@@ -96,7 +96,7 @@ void read_fields(const Statement& row, const Table<Record>& table, int column, R
   for (const auto& field : table.fields) field.read(row, column++, record);
 }
 
-/// Reads a record from a row that has the columns of column_list().
+/// Reads a record from a row with the columns of column_list().
 template <class Record>
 Record record_of(const Statement& row, const Table<Record>& table) {
   Record record;
@@ -104,7 +104,8 @@ Record record_of(const Statement& row, const Table<Record>& table) {
   return record;
 }
 
-/// Factor values as the JSON object of the `factors` column, and back; the same for a list of names.
+/// Converts factor values to the JSON object of the `factors` column, and back. The other pair does the same
+/// for a list of names.
 std::string to_json(const std::map<std::string, FactorValue>& factors);
 std::string to_json(const std::vector<std::string>& list);
 void from_json(const std::string& text, std::map<std::string, FactorValue>& factors);

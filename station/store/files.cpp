@@ -42,7 +42,7 @@ struct stat status_of(int descriptor, const std::string& path) {
   return status;
 }
 
-/// What is somebody's already stays theirs.
+/// A file that already belongs to somebody keeps its owner.
 void give_to_owner_of_folder(int descriptor, const std::string& path) {
   if (::geteuid() != 0 || status_of(descriptor, path).st_uid != 0) return;
   struct stat folder {};
@@ -80,7 +80,8 @@ std::uint64_t file_size(const std::string& path) {
 
 namespace {
 
-/// Gives all bytes of a file to `take`, piece by piece. Opening a pipe does not wait for a writer.
+/// Passes all bytes of a file to `take`, piece by piece. Opening is non-blocking: on a pipe it would
+/// otherwise wait for a writer.
 void read_pieces(const std::string& path, const std::function<void(std::string_view)>& take) {
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() >= 0 && !fs::is_regular_file(path))
@@ -93,7 +94,8 @@ void read_pieces(const std::string& path, const std::function<void(std::string_v
   while (size > 0) {
     do size = ::read(file.get(), piece.data(), piece.size());
     while (size < 0 && errno == EINTR);
-    if (size == 0 && taken < expected) size = -1, errno = EIO;  // shorter than the system said
+    // the file is shorter than the system reported
+    if (size == 0 && taken < expected) size = -1, errno = EIO;
     if (size > 0) {
       take(std::string_view(piece).substr(0, static_cast<std::size_t>(size)));
       taken += static_cast<std::uint64_t>(size);
@@ -170,7 +172,7 @@ void permit_as(const std::string& original, const std::string& path) {
   struct stat status {};
   status.st_mode = 0640;  // the station's group may read a new database
   if (!original.empty() && ::stat(original.c_str(), &status) != 0) return;
-  // A disk without permissions has its own for all files.
+  // A disk without Unix permissions uses the same ones for all files.
   if (::chmod(path.c_str(), (status.st_mode & 0666) | 0600) != 0 && errno != EPERM)
     fail_system(fault_of_errno(errno), "permissions of " + path, errno, "check the disk");
 }

@@ -18,14 +18,14 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A table that merges: its key, columns that belong to one database only, and which rows come along.
+/// A table that is merged: its key, the columns that belong to one database only, and which rows are taken.
 struct Part {
   std::string table, key, own_columns, incoming;
 };
 
 const std::string kBySession = "s.session_id IN (SELECT session_id FROM temp.incoming)";
 
-/// In the order of their references.
+/// Ordered so that each table comes after the tables that it refers to.
 const std::vector<Part>& parts() {
   static const std::vector<Part> all = {
       {"participant", "code", "", "s.code IN (SELECT participant FROM temp.incoming)"},
@@ -69,7 +69,8 @@ std::string same_key(const Part& part, const std::vector<std::string>& columns) 
   return condition;
 }
 
-/// The first row that both have and that differs, if any. All columns in one pass over the table.
+/// Throws for the first row that both databases have with different values. One pass over the table compares
+/// all columns.
 void refuse_conflicts(Database& database, const Part& part) {
   const auto columns = columns_of(database, part.table);
   std::string key, differs, values;
@@ -83,7 +84,8 @@ void refuse_conflicts(Database& database, const Part& part) {
     values += fmt::format(", m.{0} IS NOT s.{0}, m.{0}, s.{0}", column);
   }
   if (compared.empty()) return;
-  // The rows that come in lead, by the other's key: the table here may be many times as large.
+  // Look up the incoming rows by their key here, and not the other way round: the table here may be far
+  // larger.
   Statement rows(
       database,
       fmt::format("SELECT {}{} FROM source.{} s CROSS JOIN main.{} m ON {} WHERE {} AND ({}) LIMIT 1", key,
@@ -94,12 +96,12 @@ void refuse_conflicts(Database& database, const Part& part) {
       throw StoreError(
           Fault::conflict,
           fmt::format("merge: table {}, {}: {} is {} here and {} there; nothing was merged; one of the "
-                      "two databases was changed by hand, or the session was gone on with in both",
+                      "two databases was changed by hand, or the session was continued on both stations",
                       part.table, rows.text(0), compared[static_cast<std::size_t>(i)], rows.text(3 * i + 2),
                       rows.text(3 * i + 3)));
 }
 
-/// One place in the counterbalancing given to two people: two databases call themselves the same station.
+/// If one place in the counterbalancing was given to two people, two databases use the same station name.
 void refuse_shared_places(Database& database) {
   Statement rows(
       database,
@@ -151,7 +153,7 @@ std::vector<MergedSession> list_incoming(Database& database) {
   return sessions;
 }
 
-/// What was changed behind the store's back must not spread.
+/// Rows that somebody changed behind the store's back must not spread to other databases.
 void refuse_changed(Database& database, const std::string& source) {
   for (const auto& session : verify_database(database, "source"))
     if (!session.problems.empty())
@@ -162,7 +164,7 @@ void refuse_changed(Database& database, const std::string& source) {
                       source, session.session_id, session.participant, session.problems.front(), source));
 }
 
-/// The status of a session that came in goes with its newest rows.
+/// An incoming session takes its status from the database that has its newest rows.
 void take_status(Database& database, const std::string& id) {
   Statement(
       database,
@@ -224,7 +226,8 @@ MergeReport merge_attached(Database& database, const std::string& source) {
   return report;
 }
 
-/// A private, current, checked copy of the source: neither its schema nor a session that writes it matters.
+/// A private, migrated and checked copy of the source. It makes the merge independent of the source's schema
+/// and of a session that is writing to it.
 class SourceCopy {
  public:
   SourceCopy(const std::string& source, const std::string& beside) : path_(beside + ".merging") {
@@ -239,7 +242,7 @@ class SourceCopy {
     try {
       remove_database(path_);
     } catch (const StoreError&) {
-      // Whoever next writes this database removes it.
+      // The next process that writes this database removes the copy.
     }
   }
   const std::string& path() const { return path_; }

@@ -5,7 +5,8 @@
 
 namespace turnpoint::store {
 
-/// The words of the database back into enums. Throw StoreError (corrupt) for a word that no release wrote.
+/// These functions convert the database's words back to enums. They throw StoreError (corrupt) for a word
+/// that no release wrote.
 RunMode run_mode_named(const std::string& word);
 SessionStatus session_status_named(const std::string& word);
 Outcome trial_outcome_named(const std::string& word);

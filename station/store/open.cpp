@@ -48,7 +48,7 @@ void recover_sessions(Database& database) {
   transaction.commit();
 }
 
-/// SQLite opens a file that it may not write without a word, and for reading only.
+/// SQLite silently opens a file that it may not write as read-only.
 void require_writable(Database& database) {
   if (sqlite3_db_readonly(database.handle(), "main") == 0) return;
   throw StoreError(
@@ -58,8 +58,8 @@ void require_writable(Database& database) {
                   database.path()));
 }
 
-/// Some file systems and folders leave no room for the shared memory of WAL mode: then, and only without a
-/// log that would be passed over, the file is read as it stands.
+/// Some file systems and folders do not allow the shared memory of WAL mode. Only then, and only if there is
+/// no log with data that would be missed, the file is read without it.
 Database open_plain_reader(const std::string& path) {
   try {
     Database database(path, Database::Access::read_only);
@@ -73,7 +73,8 @@ Database open_plain_reader(const std::string& path) {
   return Database(path, Database::Access::immutable);
 }
 
-/// The lock goes by name: under a second one, another station could write the same file at the same time.
+/// The lock is tied to the file name. Under a second name, another station could write the same file at the
+/// same time.
 void refuse_second_name(const std::string& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink < 2) return;
@@ -85,7 +86,7 @@ void refuse_second_name(const std::string& path) {
                   path));
 }
 
-/// A lock file holds the process that has it, and the database's id: "PID\nID\n".
+/// The content of a lock file: the process that holds it and the database's id, as "PID\nID\n".
 struct LockNote {
   std::string process, database_id;
 };
@@ -119,8 +120,8 @@ StationLock::StationLock(const std::string& database) {
 
 void StationLock::remember(const std::string& database_id) { note(database_id); }
 
-/// Only a courtesy to whoever finds the lock taken or the file lost: a full disk must not keep the station
-/// from starting here.
+/// The note only helps somebody who finds the lock taken or the file lost. A full disk must not keep the
+/// station from starting here.
 void StationLock::note(const std::string& database_id) {
   const auto text = fmt::format("{}\n{}{}", ::getpid(), database_id, database_id.empty() ? "" : "\n");
   if (::pwrite(descriptor_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()))
@@ -143,7 +144,8 @@ StationLock::~StationLock() {
 
 namespace {
 
-/// The name for the copy of a database before its migration: an earlier copy, perhaps of another, stays.
+/// The name for the copy of a database before its migration. An earlier copy, perhaps of another database, is
+/// never overwritten.
 std::string copy_before_migration(const std::string& path) {
   const auto name = fmt::format("{}.before-v{}", path, schema_version());
   if (!file_exists(name)) return name;

@@ -5,17 +5,18 @@
 
 namespace turnpoint::store {
 
-/// Held by the one process that may write a database: an flock on FILE.lock beside it, given back by the
-/// kernel however the process ends. Move-only.
+/// Held by the one process that may write a database. It is an flock on FILE.lock beside the database, which
+/// the kernel releases however the process ends. Move-only.
 class StationLock {
  public:
-  /// Throws StoreError (busy) naming the process that has it.
+  /// Throws StoreError (busy) that names the process holding the lock.
   explicit StationLock(const std::string& database);
   StationLock(StationLock&& other) noexcept;
   StationLock& operator=(StationLock&&) = delete;
   ~StationLock();
 
-  /// Notes in the lock file whose database it guards: what tells a lost file's backups from others.
+  /// Stores the database's id in the lock file. If the database is lost, the id tells which backups are its
+  /// own.
   void remember(const std::string& database_id);
 
  private:
@@ -23,29 +24,32 @@ class StationLock {
   int descriptor_ = -1;
 };
 
-/// What remember() has noted beside this database, also after the file itself is lost; "" for nothing.
+/// The id that remember() stored beside this database, available even after the file itself is lost; "" if
+/// there is none.
 std::string remembered_database_id(const std::string& database);
 
-/// A lock and the write connection under it.
+/// A lock and the write connection that it protects.
 struct Writer {
   StationLock lock;
   Database database;
 };
 
-/// What open_writer does where there is no file.
+/// What open_writer does if there is no file.
 enum class IfMissing { create, fail };
 
-/// Opens a database for writing: WAL, synchronous FULL, foreign keys; checks its ends (check_ends()), which
-/// takes as long for a large file as for a small one, and takes an older schema to the current one after a
-/// copy FILE.before-vN. A new file appears whole or not at all. What interrupted operations have left beside
-/// the database is removed. What root makes anew in another user's folder, the lock as well, is that user's.
-/// Sessions that a dead process left running become interrupted, those without trials abandoned. Throws
-/// StoreError and changes nothing for a file that is empty, damaged, not Turnpoint's or newer.
+/// Opens a database for writing (WAL, synchronous FULL, foreign keys).
+/// Checks the file with check_ends(), which takes no longer for a large file than for a small one.
+/// Migrates an older schema after making a copy FILE.before-vN.
+/// A new file appears complete or not at all.
+/// Removes what interrupted operations have left beside the database.
+/// Files that root creates in another user's folder, including the lock, are given to that user.
+/// Sessions that a dead process left running become interrupted; those without trials become abandoned.
+/// Throws StoreError and changes nothing if the file is empty, damaged, newer, or not Turnpoint's.
 Writer open_writer(const std::string& path, IfMissing if_missing);
 
-/// Opens a database for reading only, also beside a running session and on a read-only disk, and checks its
-/// ends. Whoever copies or judges the whole of it calls check_pages() as well. An older schema is read
-/// through a migrated copy in a temporary file.
+/// Opens a database for reading only, and checks it with check_ends(). This works while a session is running
+/// and on a read-only disk. If you copy or judge the whole file, call check_pages() too. An older schema is
+/// read through a migrated copy in a temporary file.
 Database open_reader(const std::string& path);
 
 }  // namespace turnpoint::store

@@ -31,7 +31,7 @@ std::vector<Pair> pairs_in(Database& database) {
   return pairs;
 }
 
-/// The name of a joined person is the code that was never said to be another's.
+/// A joined person is named after the code that nobody declared to be another person's.
 void put_name_first(std::vector<Bearer>& person, const std::vector<Pair>& pairs) {
   std::sort(person.begin(), person.end());
   const auto second = [&](const Bearer& bearer) {

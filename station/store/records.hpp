@@ -16,55 +16,56 @@ using terms::RunMode;
 using terms::TrialType;
 
 enum class SessionStatus { running, completed, interrupted, stopped, abandoned };
-/// The words that opening a database writes for a session whose process died.
+/// The status reason that opening a database writes for a session whose process died.
 inline constexpr const char* kLostReason = "the process ended without a word";
 inline constexpr const char* kAbandonedReason = "no trial was made";
 
 const char* name(SessionStatus status);
 
-/// A factor's value in a trial, for its column.
+/// The value of a factor in a trial, as exported in the factor's column.
 using FactorValue = std::variant<double, std::string>;
 
-/// All that must be known to run or explain a session later: its provenance.
+/// The provenance of a session: everything needed to run or explain it later.
 struct SessionStart {
-  std::string participant;  ///< code
+  std::string participant;  ///< participant code
   RunMode run_mode = RunMode::live;
   std::string protocol_id, protocol_version, protocol_path, protocol_text, protocol_sha256,
       protocol_canonical;
-  std::vector<std::string> factor_columns;  ///< protocol order
+  std::vector<std::string> factor_columns;  ///< in the order of the protocol
   std::string level_unit;
   std::string rig_name, rig_path, rig_text, rig_sha256;
-  std::optional<std::string> calibration_id;  ///< sha256 of the calibration file, absent on a simulated rig
-  std::string calibration_text;               ///< the file itself, kept once; "" without one
+  std::optional<std::string> calibration_id;  ///< SHA-256 of the calibration file; absent on a simulated rig
+  /// the calibration file itself, stored once; "" if there is none
+  std::string calibration_text;
   std::uint64_t seed = 0;
-  std::string language, observer;  ///< observer: "" or the text after `--observer`
+  std::string language, observer;  ///< observer: "" or the argument of `--observer`
   std::string software_version, columns_version, kernel, station_id, realtime_rights;
   std::string started_local;  ///< ISO 8601 with zone
   std::string consent_version;
 };
 
-/// A run of one process on a session: the origin of its monotonic clock. A resume opens another.
+/// One process run of a session, with the origin of its monotonic clock. Each resume opens another segment.
 struct SegmentStart {
-  std::string boot_id, reason;  ///< "start", "resume", "fault"
+  std::string boot_id, reason;  ///< reason: "start", "resume" or "fault"
   std::int64_t monotonic_ns = 0, boottime_ns = 0, realtime_ns = 0;
 };
 
 struct BlockStart {
-  int block_index = 0;  ///< from 0, in the order run
-  int attempt = 0;      ///< rises with each restart of the same block
+  int block_index = 0;  ///< from 0, in the order in which blocks are run
+  int attempt = 0;      ///< incremented with each restart of the same block
   std::string name, instruction;
   bool practice = false;
 };
 
 /// One tone of one interval, as it was driven.
 struct ToneRow {
-  int interval_index = 0;  ///< from 0, in the order presented
-  int scene_index = 0;     ///< within the interval's sequence
+  int interval_index = 0;  ///< from 0, in the order of presentation
+  int scene_index = 0;     ///< position within the interval's sequence
   int tone_index = 0;
   std::string scene;
   std::optional<double> boundary_mm;
   double frequency_Hz = 0;
-  double amplitude_um = 0;  ///< of the drive edge
+  double amplitude_um = 0;  ///< amplitude at the drive edge
   std::optional<double> displacement_um, friction;
   double rove_dB = 0;
   std::string model;
@@ -73,11 +74,11 @@ struct ToneRow {
   std::int64_t onset_frame = 0, length_frames = 0;
 };
 
-/// One trial as it ended; committed whole, before the next begins.
+/// The result of one trial, committed as a whole before the next one begins.
 struct TrialRow {
-  int segment_index = 1;   ///< from 1; set by the log, not by who appends
-  int trial_index = 0;     ///< from 0 within the session, counting every presented trial
-  int trial_in_block = 0;  ///< the key of its random draws
+  int segment_index = 1;   ///< from 1; set by the log, not by the caller
+  int trial_index = 0;     ///< from 0 within the session; counts every presented trial
+  int trial_in_block = 0;  ///< key of the trial's random draws
   TrialType type = TrialType::experimental;
   std::string procedure;
   std::optional<double> level;
@@ -86,7 +87,7 @@ struct TrialRow {
   std::optional<std::string> correct_response, response;
   std::optional<bool> correct;
   Outcome outcome = Outcome::answered;
-  std::int64_t onset_ns = 0;  ///< CLOCK_MONOTONIC (or virtual) at response_zero
+  std::int64_t onset_ns = 0;  ///< the same in seconds from the start of the segment
   double onset_s = 0;         ///< the same from the start of the segment
   double duration_s = 0;
   std::optional<double> response_time_s, decision_time_s, movement_time_s;
@@ -95,12 +96,13 @@ struct TrialRow {
   std::optional<double> deadline_s;
   int xruns = 0, extra_touches = 0;
   std::optional<double> threshold_est, threshold_sd;
-  std::optional<double> clock_slope_ns_per_frame, clock_residual_ns;  ///< frame <-> time regression
-  std::uint64_t state_hash = 0;  ///< procedures of the block after this trial
+  /// slope and residual of the regression between frames and time
+  std::optional<double> clock_slope_ns_per_frame, clock_residual_ns;
+  std::uint64_t state_hash = 0;  ///< state of the block's procedures after this trial
   std::vector<ToneRow> tones;
 };
 
-/// Anything worth a time stamp: touches, edges, xruns, presented, faults.
+/// Any event with a time stamp: touches, button edges, xruns, presentations, faults.
 struct EventRow {
   std::int64_t time_ns = 0;
   std::string kind;

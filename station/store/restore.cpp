@@ -16,8 +16,8 @@ namespace turnpoint::store {
 
 namespace {
 
-/// Nothing but a file that is known to be lost or damaged is replaced. One that cannot be opened or read just
-/// now may be whole.
+/// Only a file that is known to be lost or damaged may be replaced. One that merely cannot be opened or read
+/// right now may be intact.
 void require_lost(const std::string& path) {
   try {
     auto database = open_reader(path);
@@ -34,14 +34,14 @@ void require_lost(const std::string& path) {
                                path, path));
 }
 
-/// What the damaged file still says of itself, or its lock file; "" where neither does.
+/// The database's id according to the damaged file, or else its lock file; "" if neither has it.
 std::string id_of_lost(const std::string& path) {
   try {
     Database damaged(path, Database::Access::immutable);
     const auto id = damaged.text("SELECT value FROM meta WHERE key = 'database_id'");
     if (id.size() == 36) return id;
   } catch (const StoreError&) {
-    // It is damaged there as well.
+    // The meta table is damaged as well.
   }
   return remembered_database_id(path);
 }
@@ -64,7 +64,7 @@ bool is_damage(const StoreError& error) {
   return error.fault() == Fault::corrupt || error.fault() == Fault::not_a_database;
 }
 
-/// Throws only for what keeps the bytes from being read.
+/// Throws only if the bytes cannot be read.
 bool agrees_with_checksum(const std::string& path) {
   try {
     verify_checksum_file(path);
@@ -75,7 +75,7 @@ bool agrees_with_checksum(const std::string& path) {
   }
 }
 
-/// A backup that is not known to be damaged, and cannot be read all the same, may be the newest.
+/// A backup that cannot be read, but is not known to be damaged, may be the newest good one.
 void refuse_unread(const StoredBackup& backup) {
   if (backup.trouble.empty()) {
     if (!file_exists(backup.path + ".sha256") || !agrees_with_checksum(backup.path)) return;
@@ -88,7 +88,7 @@ void refuse_unread(const StoredBackup& backup) {
 
 struct Candidates {
   std::vector<StoredBackup> backups;    ///< newest first
-  std::vector<std::string> unreadable;  ///< with the name of this database
+  std::vector<std::string> unreadable;  ///< unreadable files that carry this database's name
 };
 
 Candidates candidates_for(const std::string& path, const RestoreOptions& options) {
@@ -108,8 +108,8 @@ Candidates candidates_for(const std::string& path, const RestoreOptions& options
   return candidates;
 }
 
-/// False for a backup that is damaged. One whose bytes are those that were written is not damaged: what goes
-/// wrong with it is the disk's, and no reason to take an older one.
+/// Returns false for a damaged backup. If its checksum matches, it is not damaged: a failure is then the
+/// disk's, and falling back to an older backup would be wrong.
 bool is_good(const StoredBackup& candidate) {
   if (!agrees_with_checksum(candidate.path)) return false;
   try {
@@ -122,7 +122,7 @@ bool is_good(const StoredBackup& candidate) {
   }
 }
 
-/// The backup as `path`.restored, checked.
+/// Makes `path`.restored from the backup and checks it.
 void prepare(const std::string& path, const StoredBackup& candidate) {
   auto good = open_reader(candidate.path);
   copy_to_file(good, path + ".restored", candidate.path, clear_backup_note);

@@ -8,13 +8,13 @@
 
 namespace turnpoint::store {
 
-/// Where in its session a trial stands.
+/// The position of a trial in its session.
 struct TrialPlace {
   std::string session_id;
   int segment_index = 1, block_index = 0, attempt = 0;
 };
 
-/// The statements that a running session repeats, prepared once.
+/// Statements that a running session uses repeatedly, prepared once.
 class RowWriter {
  public:
   explicit RowWriter(Database& database);
@@ -25,7 +25,7 @@ class RowWriter {
   Statement trial_, tone_, event_;
 };
 
-/// A session's trials by (block_index, attempt), each list in the order made, with their tones.
+/// A session's trials with their tones, by (block_index, attempt); each list in the order of storing.
 std::map<std::pair<int, int>, std::vector<TrialRow>> read_trials(Database& database,
                                                                  const std::string& session_id);
 

@@ -6,8 +6,8 @@ namespace turnpoint::store {
 
 namespace {
 
-// Version 1. Provenance is kept once per text (protocol, rig, calibration); rows below a session are keyed by
-// its UUID, so that databases of several stations merge without renumbering.
+// Version 1. Each text (protocol, rig, calibration) is stored once. Rows below a session are keyed by its
+// UUID, so that databases of several stations can be merged without renumbering.
 const char* const kStep1 = R"sql(
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT, WITHOUT ROWID;
 
@@ -200,8 +200,9 @@ CREATE TRIGGER session_keeps_its_provenance BEFORE UPDATE OF session_id, partici
   BEGIN SELECT RAISE(ABORT, 'the provenance of a session is never changed'); END;
 )sql";
 
-// Version 2: many stations. A session with a tombstone was withdrawn by its participant: its rows may go, and
-// may not come back. The code itself is kept only as a salted hash, so that it is not given out again.
+// Version 2 supports several stations. A tombstone marks a session that its participant withdrew: its rows
+// may be deleted and must never come back. The participant's code is kept only as a salted hash, so that it
+// is not assigned again.
 const char* const kStep2 = R"sql(
 CREATE TABLE tombstone (
   session_id TEXT PRIMARY KEY CHECK (length(session_id) = 36),
@@ -235,9 +236,9 @@ CREATE TRIGGER session_stays_gone BEFORE INSERT ON session
   BEGIN SELECT RAISE(ABORT, 'the session was withdrawn'); END;
 )sql";
 
-// Version 3: a chain of checksums over each session (checksum.hpp). The sessions that an earlier release
-// recorded have none until they are resumed, and are listed, so that a chain that is missing can be told from
-// them.
+// Version 3 adds a chain of checksums to each session (checksum.hpp). Sessions recorded by an earlier release
+// have no chain until they are resumed. They are listed, so that they can be told from sessions whose chain
+// was removed.
 const char* const kStep3 = R"sql(
 CREATE TABLE link (
   session_id TEXT NOT NULL REFERENCES session (session_id),
@@ -263,9 +264,9 @@ CREATE TRIGGER link_is_never_deleted BEFORE DELETE ON link
   BEGIN SELECT RAISE(ABORT, 'link is append-only'); END;
 )sql";
 
-// Version 4: a code belongs to the station that gave it out. Two of them are one person only where a row says
-// so. A tombstone's code is that of its station; '' in older ones: of any. One without a hash withdrew a
-// session only.
+// Version 4: a code belongs to the station that assigned it. Two codes are one person only if a row says so.
+// A tombstone names the station of its code; '' in older tombstones means any station. A tombstone without a
+// hash withdraws only a session.
 const char* const kStep4 = R"sql(
 CREATE TABLE same_person (
   station_a TEXT NOT NULL,

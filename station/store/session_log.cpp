@@ -21,13 +21,13 @@ namespace turnpoint::store {
 
 namespace {
 
-/// A long session writes some MiB; with less than this free it might not end as it began.
+/// A long session writes several MiB. With less free space than this, it might not be able to finish.
 constexpr std::uint64_t kFreeBytesWanted = 16U << 20U;
 
 void require_space(const std::string& database) {
   struct statvfs disk {};
   auto folder = std::filesystem::absolute(database).parent_path().string();
-  if (::statvfs(folder.c_str(), &disk) != 0) return;  // opening the file says it better
+  if (::statvfs(folder.c_str(), &disk) != 0) return;  // opening the file gives a better message
   const auto free_bytes = static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize;
   if (free_bytes >= kFreeBytesWanted) return;
   throw StoreError(
@@ -41,8 +41,8 @@ void refuse(Database& database, Fault fault, const std::string& what) {
   throw StoreError(fault, fmt::format("database {}: {}", database.path(), what));
 }
 
-/// The participant's place in the protocol's counterbalancing: kept for a code that is known, else the lowest
-/// one free, so that who withdrew leaves no hole in the design.
+/// Assigns the participant's place in the protocol's counterbalancing: the existing place of a known code,
+/// else the lowest free one, so that withdrawals leave no gaps in the design.
 int enrol(Database& database, const SessionStart& start) {
   const Bearer bearer{start.station_id, start.participant};
   if (is_withdrawn(database, bearer))
@@ -54,7 +54,7 @@ int enrol(Database& database, const SessionStart& start) {
       database,
       "SELECT sequence_index FROM enrolment WHERE protocol_id = ? AND station_id = ? AND participant = ?");
   auto same = People(database).same_as(bearer);
-  same.insert(same.begin(), bearer);  // the place that this station gave comes first
+  same.insert(same.begin(), bearer);  // prefer the place that this station assigned
   for (const auto& one : same) {
     known.bind(start.protocol_id, one.station_id, one.code);
     if (known.step()) return static_cast<int>(known.integer(0));
@@ -80,7 +80,7 @@ int enrol(Database& database, const SessionStart& start) {
   return free_index;
 }
 
-/// Keeps a text that several sessions share, once, under the hash of its fields. Returns that key.
+/// Stores a text that several sessions share, once, under the hash of its fields. Returns that key.
 std::string keep(Database& database, const Table<SessionRecord>& table, const SessionRecord& session,
                  const std::string& key) {
   auto sql = insert_sql(table);
@@ -143,12 +143,13 @@ void insert_block(Database& database, const std::string& id, const BlockStart& b
 struct SessionLog::Impl {
   explicit Impl(Writer opened) : writer(std::move(opened)), rows(writer.database) {}
 
-  /// The events gathered so far, inside the transaction of the caller.
+  /// Writes the events collected so far, inside the caller's transaction.
   void write_events() {
     auto index = next_event;
     for (const auto& event : events) rows.event(place, index++, event);
   }
-  /// Seals what the transaction wrote, and commits it. The events gathered so far are durable then.
+  /// Adds a checksum link over what the transaction wrote, and commits. The events collected so far are then
+  /// durable.
   void commit(Transaction& transaction) {
     auto link = chain->add();
     transaction.commit();
@@ -160,7 +161,7 @@ struct SessionLog::Impl {
 
   Writer writer;
   RowWriter rows;
-  std::optional<Chain> chain;  ///< from the moment on at which the session is known
+  std::optional<Chain> chain;  ///< set once the session is known
   TrialPlace place;
   SessionRecord session;
   std::vector<BlockRecord> blocks;
@@ -197,7 +198,7 @@ SessionLog SessionLog::resume(const std::string& path, const std::string& id, co
   auto stored = read_session(database, id);
   if (stored.session.status != SessionStatus::interrupted)
     refuse(database, Fault::refused,
-           fmt::format("session {} is {}; only an interrupted one can be gone on with", id,
+           fmt::format("session {} is {}; only an interrupted one can be continued", id,
                        name(stored.session.status)));
   const int index = stored.session.segments + 1;
   impl->place = {id, index, 0, 0};

@@ -8,44 +8,46 @@
 
 namespace turnpoint::store {
 
-/// What stands in a database about a session, for resume and for reports.
+/// What a database contains about a session, for resuming and for reports.
 struct SessionRecord {
   std::string session_id;  ///< UUID
-  int session_index = 0;   ///< from 1, within participant and protocol
-  int sequence_index = 0;  ///< the participant's, from 0, within the protocol
+  int session_index = 0;   ///< from 1, per participant and protocol
+  int sequence_index = 0;  ///< the participant's place in the protocol's counterbalancing, from 0
   SessionStatus status = SessionStatus::running;
   std::string status_reason;
   SessionStart start;
-  std::string person;  ///< what this participant is called in this database: the code, or CODE@STATION
+  std::string person;  ///< name of this participant in this database: the code, or CODE@STATION
   int segments = 0;
-  int trials = 0;                              ///< committed, of every type and outcome
-  std::int64_t last_activity_realtime_ns = 0;  ///< wall clock of the last commit of a trial or segment
-  std::int64_t last_trial_id = 0;        ///< rises with every trial of this database, whatever the clock says
-  bool merged = false;                   ///< came from another database
+  int trials = 0;  ///< committed trials of every type and outcome
+  /// wall-clock time at which the last trial or segment was committed
+  std::int64_t last_activity_realtime_ns = 0;
+  /// increases with every trial of this database, even if the clock goes back
+  std::int64_t last_trial_id = 0;
+  bool merged = false;                   ///< true if the session came from another database
   std::vector<std::string> annotations;  ///< oldest first
   std::string
-      checksum;  ///< the last link of its chain (checksum.hpp); "" where an earlier release recorded it
+      checksum;  ///< last link of its chain (checksum.hpp); "" if an earlier release recorded the session
 };
 
-/// A block of a stored session with its finished trials, in the order run.
+/// A block of a stored session with its finished trials, in the order in which they were run.
 struct BlockRecord {
   BlockStart start;
   std::vector<TrialRow> trials;
 };
 
-/// The writer of one session: the only write connection of the station (WAL, synchronous FULL, foreign keys,
-/// an exclusive lock against a second station). Not thread-safe; lives on the session thread.
-/// Every call that returns has made its rows durable. Throws StoreError with what was tried, on which file,
-/// SQLite's own message and what to do.
+/// Writes one session. This is the station's only write connection (WAL, synchronous FULL, foreign keys, an
+/// exclusive lock against a second station). Not thread-safe; it belongs to the session thread. When a call
+/// returns, its rows are durable. Throws StoreError with what was tried, on which file, SQLite's own message
+/// and what to do.
 class SessionLog {
  public:
-  /// Opens or creates the database (migrating an older schema) and begins a session. A participant code
-  /// that is new gets the next sequence index of the protocol.
+  /// Opens or creates the database (migrating an older schema) and begins a session. A new participant code
+  /// gets the protocol's next free sequence index.
   static SessionLog begin(const std::string& database, const SessionStart& start,
                           const SegmentStart& segment);
 
-  /// Opens a new segment of an interrupted session. A trial that was presented but never ended gets an event
-  /// `aborted`, and is the session's to present again.
+  /// Opens a new segment of an interrupted session. If a trial was presented but never ended, an event
+  /// `aborted` is added and the session has to present it again.
   static SessionLog resume(const std::string& database, const std::string& session_id,
                            const SegmentStart& segment);
 
@@ -53,20 +55,21 @@ class SessionLog {
   SessionLog& operator=(SessionLog&&) noexcept;
   ~SessionLog();
 
-  const SessionRecord& session() const;                   ///< with the checksum of the last commit
-  const std::vector<BlockRecord>& stored_blocks() const;  ///< of a resumed session; empty for a new one
+  const SessionRecord& session() const;                   ///< includes the checksum of the last commit
+  const std::vector<BlockRecord>& stored_blocks() const;  ///< for a resumed session; empty for a new one
 
-  /// A block that the log knows already (same index and attempt) goes on; it must be described the same way.
+  /// Begins a block, or continues one that is already in the log (same index and attempt). In that case the
+  /// description must be the same.
   void begin_block(const BlockStart& block);
 
-  /// Committed before a stimulus: an interrupted trial leaves this trace.
+  /// Committed before a stimulus, so that an interrupted trial leaves a trace.
   void presented(int trial_index, std::int64_t time_ns);
 
-  /// Kept in memory until the next commit of a trial or state change.
+  /// Keeps the event in memory until the next commit of a trial or state change.
   void event(EventRow event);
 
-  /// One transaction: the trial, its tones and the events gathered since the last. When it throws nothing was
-  /// written and nothing forgotten: the same call may be made again, once a full disk has space.
+  /// Commits a trial, its tones and the collected events in one transaction. If it throws, nothing was
+  /// written and nothing is lost: make the same call again, for example once a full disk has space.
   void append(const TrialRow& trial);
 
   void annotate(const std::string& text);

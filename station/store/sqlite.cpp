@@ -71,7 +71,7 @@ int flags_of(Database::Access access) {
   return common;
 }
 
-/// The path as a URI, with what a URI would read otherwise escaped.
+/// The path as a URI, with special characters escaped.
 std::string uri_of(const std::string& path, Database::Access access) {
   std::string uri = "file:";
   for (const char c : path) {
@@ -140,7 +140,7 @@ void Statement::bind_integer(int index, std::int64_t value) {
   if (const int code = sqlite3_bind_int64(statement_, index, value)) database_->fail(code, "bind");
 }
 void Statement::bind_real(int index, double value) {
-  // SQLite would turn NaN into NULL: a missing value that nobody has decided on.
+  // SQLite would silently turn NaN into NULL, that is, into a missing value.
   if (!std::isfinite(value))
     throw StoreError(Fault::refused,
                      fmt::format("database {}: parameter {} of {} is not a finite number; the row "
@@ -169,7 +169,8 @@ Database::Database(const std::string& path, Access access) : path_(path) {
                          system != 0 ? fmt::format(" ({})", std::strerror(system)) : "", advice(fault)));
 }
 
-// The statements stay behind: they know the object that made them, and are made again at need.
+// The cached statements are not moved, because they point to the old object. They are prepared again when
+// needed.
 Database::Database(Database&& other) noexcept
     : path_(std::move(other.path_)), handle_(std::exchange(other.handle_, nullptr)) {
   other.begin_.reset();
@@ -218,7 +219,7 @@ void Database::fail(int code, const std::string& what) const {
 Transaction::Transaction(Database& database) : database_(database) { database_.begin_statement().run(); }
 
 Transaction::~Transaction() {
-  // Where SQLite has rolled back by itself there is nothing left to do, and nothing to tell.
+  // If SQLite has already rolled back by itself, there is nothing left to do.
   if (open_ && sqlite3_get_autocommit(database_.handle()) == 0)
     sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
 }
@@ -232,7 +233,7 @@ void copy_database(Database& from, Database& to) {
   sqlite3_backup* backup = sqlite3_backup_init(to.handle(), "main", from.handle(), "main");
   if (backup == nullptr) to.fail(sqlite3_errcode(to.handle()), "copy " + from.path());
   int code = SQLITE_BUSY;
-  // All pages in one step: one consistent snapshot, and in WAL mode no writer waits for it.
+  // Copy all pages in one step: this gives a consistent snapshot, and in WAL mode it does not block writers.
   for (int tries = 0; tries < 1000 && (code == SQLITE_BUSY || code == SQLITE_LOCKED); ++tries) {
     if (tries > 0) sqlite3_sleep(5);
     code = sqlite3_backup_step(backup, -1);

@@ -23,7 +23,8 @@ class Statement {
   Statement& operator=(Statement&&) = delete;
   ~Statement();
 
-  /// Binds all parameters from the first on: integers, doubles, text, optionals (none is NULL).
+  /// Binds all parameters, beginning with the first: integers, doubles, text, optionals (an empty one is
+  /// NULL).
   template <class... Values>
   Statement& bind(const Values&... values) {
     reset();
@@ -32,7 +33,7 @@ class Statement {
     return *this;
   }
 
-  /// Binds one parameter; the first has index 1. The statement must have been reset.
+  /// Binds one parameter; the first has index 1. Reset the statement before.
   template <class Value>
   void bind_value(int index, const Value& value) {
     if constexpr (std::is_same_v<Value, std::nullopt_t>)
@@ -50,7 +51,7 @@ class Statement {
   }
 
   bool step();  ///< true while there is a row
-  void run();   ///< steps to the end and resets
+  void run();   ///< steps to the end, then resets
   void reset();
 
   int columns() const;
@@ -76,7 +77,7 @@ class Statement {
   sqlite3_stmt* statement_ = nullptr;
 };
 
-/// One SQLite connection, private to one thread.
+/// One SQLite connection, used by one thread only.
 class Database {
  public:
   enum class Access { read_only, immutable, read_write, create };
@@ -87,7 +88,7 @@ class Database {
   Database& operator=(Database&&) = delete;
   ~Database();
 
-  void execute(const std::string& sql);  ///< one or more statements, rows thrown away
+  void execute(const std::string& sql);  ///< one or more statements; result rows are ignored
   std::int64_t integer(const std::string& sql);
   std::string text(const std::string& sql);
   int changes() const;
@@ -95,11 +96,11 @@ class Database {
   const std::string& path() const { return path_; }
   sqlite3* handle() { return handle_; }
 
-  /// Statements that every transaction needs, prepared at first use.
+  /// Statements that every transaction needs; prepared when first used.
   Statement& begin_statement();
   Statement& commit_statement();
 
-  /// Throws the StoreError that SQLite's last result on this connection stands for.
+  /// Throws a StoreError for SQLite's last error on this connection.
   [[noreturn]] void fail(int code, const std::string& what) const;
 
  private:

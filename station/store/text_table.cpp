@@ -10,7 +10,7 @@ namespace turnpoint::store {
 
 namespace {
 
-/// The setting of a slider is kept as text, and is as harmless as the number that it is.
+/// The setting of a slider is stored as text. If it is a number, a spreadsheet cannot take it for a formula.
 bool is_number(const std::string& text) {
   double value = 0;
   const auto* end = text.data() + text.size();

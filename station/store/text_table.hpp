@@ -8,7 +8,7 @@
 
 namespace turnpoint::store {
 
-/// One field of an exported table; monostate is a value that is not there.
+/// One cell of an exported table; monostate is a missing value.
 using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
 
 inline Cell cell(std::int64_t value) { return value; }
@@ -20,23 +20,24 @@ Cell cell(const std::optional<Value>& value) {
   return value ? cell(*value) : Cell{};
 }
 
-/// How a table is written: RFC 4180 (quoted where needed, CRLF) or the tab-separated form of BIDS (never
-/// quoted, LF, tabs and line ends in text become spaces).
+/// The format of a table: RFC 4180 (quoted where needed, CRLF) or the tab-separated form of BIDS (never
+/// quoted, LF; tabs and line ends in text become spaces).
 struct TableStyle {
   enum class Kind { rfc4180, bids } kind = Kind::rfc4180;
   char separator = ',';
   char decimal = '.';
 };
 
-/// Builds the text of one table. Missing values and empty texts are `n/a`; numbers are the shortest that read
-/// back the same; a text that a spreadsheet would run as a formula (leading = + - @) gets an apostrophe.
+/// Builds the text of one table. Missing values and empty texts are `n/a`. Numbers are as short as possible
+/// while still reading back the same. A text that a spreadsheet would run as a formula (leading = + - @) gets
+/// an apostrophe.
 class TextTable {
  public:
   TextTable(const TableStyle& style, const std::vector<std::string>& columns);
-  /// As many cells as there are columns; anything else is a std::logic_error.
+  /// Throws std::logic_error unless there are as many cells as columns.
   void row(const std::vector<Cell>& cells);
   const std::string& text() const { return text_; }
-  /// The text since the last call: a large table is written piece by piece.
+  /// Returns the text added since the last call, so that a large table can be written piece by piece.
   std::string take() { return std::exchange(text_, ""); }
   std::size_t rows() const { return rows_; }
 
@@ -50,8 +51,8 @@ class TextTable {
   std::string text_;
 };
 
-/// The fields of a table in the RFC 4180 form, line by line. The separator is the first one of , ; | and tab
-/// that stands in its first line.
+/// Reads a table in the RFC 4180 form, line by line. The separator is whichever of , ; | and tab occurs first
+/// in its first line.
 std::vector<std::vector<std::string>> read_table(const std::string& text);
 
 }  // namespace turnpoint::store

@@ -18,7 +18,7 @@ struct Exported {
   std::string session_id, checksum;
 };
 
-/// Sessions and their checksums as a sessions.csv lists them.
+/// Reads the sessions and their checksums from an exported sessions.csv.
 std::vector<Exported> read_export(const std::string& path) {
   const auto refuse = [&](const std::string& why) -> std::size_t {
     throw StoreError(Fault::missing,
@@ -47,9 +47,9 @@ std::vector<Exported> read_export(const std::string& path) {
   return sessions;
 }
 
-/// What the export says of a session and the database does not hold.
+/// Reports what the export contains about a session but the database does not.
 void compare(Database& database, const Exported& exported, Verification& result) {
-  if (exported.checksum == "n/a") return;  // recorded by a release without checksums
+  if (exported.checksum == "n/a") return;  // the session was recorded by a release without checksums
   if (holds_link(database, exported.session_id, exported.checksum)) return;
   const auto problem = fmt::format("it does not hold the exported checksum {}", exported.checksum);
   for (auto& session : result.sessions)

@@ -16,7 +16,7 @@ namespace turnpoint::store {
 
 namespace {
 
-/// Opens the finished file again, past every cache of the connection that made it, and checks it.
+/// Opens the finished file again with a new connection, so that nothing comes from a cache, and checks it.
 void verify(const std::string& path) {
   for (const auto* suffix : kLogSuffixes)
     if (file_size(path + suffix) > 0)
@@ -29,7 +29,7 @@ void verify(const std::string& path) {
     copy.fail(SQLITE_CORRUPT, "the database has no id");
 }
 
-/// Makes the file `to` by way of a temporary, which `make` opens, fills and closes.
+/// Creates the file `to` by way of a temporary one, which `make` opens, fills and closes.
 void publish(const std::string& to, const std::string& original,
              const std::function<void(const std::string& temporary)>& make) {
   const auto temporary = to + ".new";
@@ -46,14 +46,15 @@ void publish(const std::string& to, const std::string& original,
     try {
       remove_database(temporary);
     } catch (const StoreError&) {
-      // What is told is why it failed. The next attempt removes what stays.
+      // Report the original failure. The next attempt removes the temporary file.
     }
     throw;
   }
   sync_path(folder_of(to));
 }
 
-/// What stands beside the name of a database that is not there, although it belongs to one; "" for nothing.
+/// Finds a file that belongs to a database of this name although the database itself does not exist; "" if
+/// there is none.
 std::string orphan_of(const std::string& path) {
   for (const auto* suffix : {"-wal", "-journal"})
     if (file_size(path + suffix) > 0) return path + suffix;
@@ -113,10 +114,10 @@ void refuse_absent(const std::string& path) {
 
 void create_file(const std::string& path) {
   if (!orphan_of(path).empty()) refuse_absent(path);
-  // An empty log or a rest of shared memory belongs to nothing any longer.
+  // An empty log or leftover shared memory is of no use to any database.
   for (const auto* suffix : kLogSuffixes) remove_file(path + suffix);
   publish(path, "", [](const std::string& temporary) {
-    // In rollback mode: all of it is in the one file when the transaction has ended.
+    // Use rollback mode, so that all data are in the one file when the transaction has ended.
     Database database(temporary, Database::Access::read_write);
     database.execute("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA");
     create_schema(database, schema_version());
@@ -129,7 +130,7 @@ void copy_to_file(Database& from, const std::string& to, const std::string& orig
   publish(to, original, [&](const std::string& temporary) {
     Database copy(temporary, Database::Access::read_write);
     copy_database(from, copy);
-    // A copy is one file: out of WAL mode it can be read from any medium.
+    // Take the copy out of WAL mode: a single file can be read from any medium.
     if (copy.text("PRAGMA journal_mode = DELETE") != "delete")
       throw StoreError(Fault::io, "copy " + temporary + ": it cannot leave WAL mode; check the disk");
     copy.execute("PRAGMA synchronous = EXTRA");
@@ -140,8 +141,9 @@ void copy_to_file(Database& from, const std::string& to, const std::string& orig
 std::string replace_by_restored(const std::string& path) {
   const auto aside = path + ".damaged-" + time_stamp();
   bool moved = false;
-  // The file first. From then on the name has no database, which every program refuses; a log without its
-  // file, or the new file with the old log, never passes for a database.
+  // Move the database file first. If this is interrupted, the name has no database, which every program
+  // refuses. A log without its file, or the new file with the old log, can then never be mistaken for a
+  // database.
   for (const auto* suffix : {"", "-wal", "-journal", "-shm"}) {
     if (!file_exists(path + suffix)) continue;
     rename_file(path + suffix, aside + suffix);

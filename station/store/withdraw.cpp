@@ -22,7 +22,7 @@ std::string digest(const std::string& salt, const std::string& code) {
   return text::sha256(salt + "/" + code);
 }
 
-/// Tombstones of this code; of any station where none is given.
+/// Looks for tombstones of this code at this station, or at any station if none is given.
 bool has_tombstone(Database& database, const std::string& station, const std::string& code) {
   Statement rows(
       database,
@@ -33,7 +33,7 @@ bool has_tombstone(Database& database, const std::string& station, const std::st
   return false;
 }
 
-/// Nobody of that name has sessions: fine where they were withdrawn before.
+/// Nobody of that name has sessions. That is an error unless they were withdrawn before.
 void require_withdrawn_before(Database& database, const WithdrawOptions& options) {
   const auto at = options.participant.rfind('@');
   const auto code = options.participant.substr(0, at);
@@ -45,7 +45,7 @@ void require_withdrawn_before(Database& database, const WithdrawOptions& options
                   options.participant, options.station.empty() ? "" : " at station " + options.station));
 }
 
-/// The person's bearers, of one station where one is asked for.
+/// The person's bearers, limited to one station if one is given.
 std::vector<Bearer> chosen_bearers(const People& people, const WithdrawOptions& options) {
   auto persons = people.named(options.participant);
   for (auto& person : persons)
@@ -139,7 +139,7 @@ void remove_sessions(Database& database, const Withdrawal& withdrawal) {
   transaction.commit();
 }
 
-/// Deleted rows live on in free pages and in the log until the file is rewritten and the log cut to nothing.
+/// Deleted rows survive in free pages and in the log. Rewriting the file and truncating the log removes them.
 void scrub(Database& database) {
   database.execute("PRAGMA wal_checkpoint(TRUNCATE)");
   database.execute("PRAGMA temp_store = MEMORY; VACUUM");
@@ -179,7 +179,8 @@ Withdrawal withdraw(const std::string& name, const WithdrawOptions& options) {
   auto withdrawal = choose(database, options);
   count_rows(database, withdrawal);
   const auto ids = ids_of(database, withdrawal);
-  copies_of(path, database, options.backup_directory, ids);  // a folder that cannot be read stops it here
+  // if a folder cannot be read, this throws before anything is deleted
+  copies_of(path, database, options.backup_directory, ids);
   database.execute("PRAGMA secure_delete = ON");
   remove_sessions(database, withdrawal);
   scrub(database);

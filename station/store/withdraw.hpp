@@ -7,38 +7,41 @@
 
 namespace turnpoint::store {
 
-/// Whose sessions go. A participant is a code that only one person has, or CODE@STATION; all codes of a
-/// joined person go. `station` and `session_id` ("" for all) take only the sessions there, or that one; the
-/// code stays in use where only a session was withdrawn.
+/// Whose sessions to remove. A participant is a code that only one person has, or CODE@STATION; for a joined
+/// person all codes are included. `station` and `session_id` limit it to the sessions of that station, or to
+/// that session ("" means all). If only one session is withdrawn, the code stays in use.
 struct WithdrawOptions {
   std::string participant, station, session_id;
   std::string backup_directory;  ///< "" for none
 };
 
-/// What a withdrawal takes away, or would take away.
+/// What a withdrawal removes, or would remove.
 struct Withdrawal {
   std::string participant;
-  std::vector<SessionRecord> sessions;  ///< as they stood; empty where only the scrubbing was done again
-  std::vector<Bearer> bearers;          ///< codes that are not given out again
+  /// the sessions before removal; empty if only the cleaning of free space was repeated
+  std::vector<SessionRecord> sessions;
+  std::vector<Bearer> bearers;  ///< codes that will not be assigned again
   std::int64_t trials = 0, tones = 0, events = 0, annotations = 0;
-  std::vector<std::string> removed_copies;  ///< backups and copies before a migration that held the sessions
-  std::vector<std::string> remaining_copies;  ///< still hold them, or cannot be read: to be removed by hand
+  /// backups, and copies from before a migration, that contained the sessions
+  std::vector<std::string> removed_copies;
+  /// files that still contain the sessions or cannot be read; to be removed by hand
+  std::vector<std::string> remaining_copies;
 };
 
-/// What withdraw() would do; reads only. Throws StoreError: missing for a participant that the database never
-/// had, refused where several people have the code, and whatever keeps the folder of backups from being
-/// listed.
+/// Says what withdraw() would do; only reads. Throws StoreError: missing for a participant whom the database
+/// never had, refused if several people have the code, and the original error if the folder of backups cannot
+/// be listed.
 Withdrawal plan_withdrawal(const std::string& database, const WithdrawOptions& options);
 
-/// The one sanctioned delete: the sessions, from every table, then from the file's free pages and its log
-/// (secure_delete, VACUUM, checkpoint), then what holds them of the database's own copies: those that
-/// interrupted operations and migrations have left beside it, and with a folder of backups, where a new one
-/// is made first, its backups. Tombstones keep merge from bringing the sessions back and the code from being
-/// given out again. Repeating it is harmless, and finishes what was interrupted. Throws StoreError as
-/// plan_withdrawal() does, before anything is deleted.
+/// The only function that deletes data. It deletes the sessions from every table, then from the file's free
+/// pages and its log (secure_delete, VACUUM, checkpoint), then the database's own copies that contain them:
+/// those left beside it by interrupted operations and migrations, and, if a folder of backups is given, its
+/// backups after a new one was made there. Tombstones keep a merge from bringing the sessions back, and keep
+/// the code from being assigned again. Repeating it is harmless and finishes an interrupted withdrawal.
+/// Throws StoreError like plan_withdrawal(), before anything is deleted.
 Withdrawal withdraw(const std::string& database, const WithdrawOptions& options);
 
-/// Whether the code was withdrawn here.
+/// True if the code was withdrawn here.
 bool is_withdrawn(Database& database, const Bearer& bearer);
 
 }  // namespace turnpoint::store

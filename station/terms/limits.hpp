@@ -3,19 +3,20 @@
 
 namespace turnpoint::terms {
 
-/// Below, a tone may be heard, and falls into the stricter band of exposure limits: the lower end of the
-/// third-octave band around 25 kHz.
+/// A tone below this frequency may be heard and falls into the stricter band of exposure limits. It is the
+/// lower end of the third-octave band around 25 kHz.
 inline constexpr double kAudible_Hz = 22400;
 
 /// Highest frequency of a tone as a share of the sampling rate: the pass band of common converters.
 inline constexpr double kHighestShareOfRate = 0.45;
 
-/// Fingers of one hand land within some 30 ms of each other: a touch is an answer only if no other comes
-/// within this.
+/// Fingers of one hand land within about 30 ms of each other. A touch is therefore an answer only if no other
+/// touch follows within this time.
 inline constexpr std::int64_t kOneTouch_ns = 40'000'000;
-/// How long the page keeps a touch before it goes to the session: that time, and the slack of a timer.
+/// How long the page holds a touch back before it passes it to the session: kOneTouch_ns and some margin for
+/// timers.
 inline constexpr std::int64_t kTouchToAnswer_ns = 60'000'000;
-/// How long the session waits before it believes that no touch with an earlier stamp is still on its way.
+/// How long the session waits for touches with an earlier time stamp that may still arrive.
 inline constexpr std::int64_t kWatermark_ns = 80'000'000;
 static_assert(kOneTouch_ns < kTouchToAnswer_ns && kTouchToAnswer_ns < kWatermark_ns);
 

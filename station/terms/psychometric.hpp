@@ -2,7 +2,7 @@
 
 namespace turnpoint::terms {
 
-/// The form of a psychometric function, from floor to ceiling.
+/// The shape of a psychometric function between its lower and upper asymptotes.
 enum class Function { weibull, normal, logistic };
 
 }  // namespace turnpoint::terms

@@ -7,14 +7,14 @@ namespace turnpoint::terms {
 /// How a trial ended.
 enum class Outcome { answered, timeout, anticipation, aborted, fault };
 
-/// What a trial is for. Only experimental trials are fitted; catch trials have an answer that is plain to
+/// The purpose of a trial. Only experimental trials are fitted. A catch trial has an answer that is easy to
 /// feel.
 enum class TrialType { experimental, catch_trial, practice, warmup };
 
-/// From when on response times count.
+/// The moment from which response times are measured.
 enum class ResponseZero { go_cue, change, interval_off, first_contact, lift_off };
 
-/// live: a person, and data that count. pilot: a person, but not for the study. simulated: an observer.
+/// live: a person, for the study. pilot: a person, but not for the study. simulated: a simulated observer.
 enum class RunMode { live, pilot, simulated };
 
 inline constexpr std::array outcomes{Outcome::answered, Outcome::timeout, Outcome::anticipation,
@@ -26,7 +26,7 @@ inline constexpr std::array response_zeros{ResponseZero::go_cue, ResponseZero::c
                                            ResponseZero::lift_off};
 inline constexpr std::array run_modes{RunMode::live, RunMode::pilot, RunMode::simulated};
 
-/// The words of protocols, databases and exports: "answered", "catch", "go_cue", "live", ...
+/// The words used in protocols, databases and exports: "answered", "catch", "go_cue", "live", ...
 const char* name(Outcome outcome);
 const char* name(TrialType type);
 const char* name(ResponseZero zero);

@@ -24,7 +24,7 @@ std::string quoted(const std::string& plain) {
   return out + "\"";
 }
 
-/// JSON knows no infinity.
+/// JSON has no infinity.
 std::string number_text(double number) {
   if (number - number == 0) return exact(number);
   return number > 0 ? "\"inf\"" : number < 0 ? "\"-inf\"" : "\"nan\"";

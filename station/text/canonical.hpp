@@ -5,9 +5,9 @@
 
 namespace turnpoint::text {
 
-/// A document in its one canonical form: JSON without spaces, keys sorted, numbers in the shortest text that
-/// reads back as the same double. Two files that say the same in another order, spacing or notation have the
-/// same form; comments are not part of it.
+/// The canonical form of a document: JSON without spaces, with sorted keys and with numbers in the shortest
+/// text that reads back as the same double. Two files that differ only in order, spacing, notation or
+/// comments have the same canonical form.
 std::string canonical(const Value& value);
 
 }  // namespace turnpoint::text

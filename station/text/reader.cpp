@@ -112,7 +112,7 @@ std::optional<double> TableReader::number_from(const Value* value, const std::st
 }
 
 namespace {
-// Stands in for a value that was reported as wrong; reading goes on with it, but never a session.
+// A valid value to continue reading with after a wrong one was reported. It never reaches a session.
 double harmless(const Range& range) {
   if (std::isfinite(range.low) && std::isfinite(range.high)) return 0.5 * (range.low + range.high);
   if (std::isfinite(range.low)) return range.low + 1;

@@ -9,44 +9,44 @@
 
 namespace turnpoint::text {
 
-/// What a number in a file may be. `open` ends are excluded; the unit is for messages only ("mm").
+/// The allowed range of a number in a file. `open` ends are excluded; the unit is only for messages ("mm").
 struct Range {
   double low = 0, high = 0;
   enum class Ends { closed, open_low, open_high, open } ends = Ends::closed;
   const char* unit = "";
 };
 
-/// `from 0 to 1 mm`, `above 0 um`, ...: a range for people.
+/// Describes a range for people: `from 0 to 1 mm`, `above 0 um`, ...
 std::string describe(const Range& range);
-/// Finite and within the range.
+/// True if the value is finite and within the range.
 bool inside_range(double value, const Range& range);
 
-/// Collects problems and the defaults that stood in, so that a reader reports everything in one go.
+/// Collects problems and the defaults that were used, so that a reader reports everything in one go.
 struct Findings {
   std::vector<Problem> problems;
-  std::vector<std::string> defaults_used;  ///< `timing.anticipation_s = 0`
+  std::vector<std::string> defaults_used;  ///< entries such as `timing.anticipation_s = 0`
   void add(const Place& place, std::string what, std::string allowed = "");
-  /// Throws BadInput, problems in file order, if there is any.
+  /// Throws BadInput with the problems in file order, if there are any.
   void throw_if_any();
 };
 
-/// `block.practice`: the title of a table in a list of tables, from its "name".
+/// The title of a table in a list of tables, from its "name": `block.practice`.
 std::string titled(const std::string& list, const Value& table);
 
-/// `"a", "b" or "c"`.
+/// Joins words: `"a", "b" or "c"`.
 std::string quoted_list(const std::vector<std::string>& words);
 
-/// Reads one table key by key. Each getter marks its key as known; finish() reports the keys that nobody
-/// asked for with the nearest known one. A value of the wrong kind or outside its range is a problem, and the
-/// getter then returns a harmless value, so that reading goes on. The table must outlive the reader.
+/// Reads one table key by key. Each getter marks its key as known; finish() reports all other keys and
+/// suggests the nearest known one. If a value has the wrong type or is out of range, the getter reports a
+/// problem and returns a harmless value, so that reading can continue. The table must outlive the reader.
 class TableReader {
  public:
   /// `name` is the dotted path for messages and defaults; empty for the whole file.
   TableReader(const Value& table, std::string name, Findings& findings);
 
-  /// The raw value, marked as known; nullptr where absent.
+  /// The raw value, marked as known; nullptr if absent.
   const Value* take(const std::string& key);
-  /// The same; absence is a problem that says what the key is (`what`).
+  /// The same, but an absent key is a problem. The message uses `what` to say what the key is.
   const Value* require(const std::string& key, const std::string& what);
   bool has(const std::string& key) const { return table_->find(key) != nullptr; }
 
@@ -63,13 +63,13 @@ class TableReader {
   std::optional<std::string> maybe_string(const std::string& key);
   std::string string(const std::string& key, const std::string& what);
 
-  /// One of `words`; the fallback, where given, is one of them too.
+  /// One of `words`. The fallback, if given, must be one of them too.
   std::optional<std::string> maybe_word(const std::string& key, const std::vector<std::string>& words);
   std::string word(const std::string& key, const std::vector<std::string>& words);
   std::string word(const std::string& key, const std::vector<std::string>& words,
                    const std::string& fallback);
 
-  /// A list of numbers in range with at least `at_least` of them; empty where absent.
+  /// A list of at least `at_least` numbers within a range; empty if absent.
   std::vector<double> maybe_numbers(const std::string& key, const Range& range, std::size_t at_least = 1);
   std::vector<double> numbers(const std::string& key, const Range& range, std::size_t at_least = 1);
   /// A list of two numbers, the first below the second.
@@ -77,21 +77,21 @@ class TableReader {
   std::vector<std::string> maybe_strings(const std::string& key);
   std::vector<std::string> strings(const std::string& key, const std::string& what);
 
-  /// A sub-table; nullptr where absent or not a table.
+  /// A sub-table; nullptr if absent or not a table.
   const Value* maybe_table(const std::string& key);
   const Value* table(const std::string& key, const std::string& what);
-  /// The tables of `[[key]]`; empty where absent.
+  /// The tables of `[[key]]`; empty if absent.
   std::vector<const Value*> tables(const std::string& key);
 
-  /// A problem about this key's value (or the table where it is absent).
+  /// Reports a problem with this key's value (or with the table if the key is absent).
   void problem(const std::string& key, const std::string& what, const std::string& allowed = "");
-  /// Records that `key = value` stood in for an absent key.
+  /// Records that the default `key = value` was used because the key is absent.
   void defaulted(const std::string& key, const std::string& value);
-  /// `[timing]`, or `the file`: this table in messages.
+  /// This table in messages: `[timing]`, or `the file`.
   std::string title() const;
   std::string path(const std::string& key) const;
   const Place& place() const { return table_->place; }
-  /// Where the key's value stands; the table's place where it is absent.
+  /// The place of the key's value, or of the table if the key is absent.
   Place place(const std::string& key) const;
   Findings& findings() { return *findings_; }
 

@@ -6,17 +6,17 @@
 
 namespace turnpoint::text {
 
-/// SHA-256 (FIPS 180-4) of bytes that come piece by piece; sha256() in number.hpp takes them all at once.
+/// SHA-256 (FIPS 180-4) of data that arrive in pieces. For data in one piece use sha256() in number.hpp.
 class Sha256 {
  public:
   Sha256();
   void add(std::string_view bytes);
-  /// Lower-case hexadecimal; nothing may be added afterwards.
+  /// Lower-case hexadecimal. Nothing may be added after this call.
   std::string hex();
 
  private:
   std::array<std::uint32_t, 8> state_;
-  std::string rest_;  ///< bytes that do not fill a block yet
+  std::string rest_;  ///< bytes that do not yet fill a block
   std::uint64_t size_ = 0;
 };
 

@@ -12,9 +12,9 @@
 
 #include "station/text/toml_scan.hpp"
 
-// Some malformed files trip assertions of toml++ 3.3 (a key that begins with a
-// byte that begins none); an abort would take the station down, so they become
-// exceptions. With NDEBUG toml++ would take the conditions for granted instead.
+// Some malformed files trip assertions of toml++ 3.3 (for example a key that begins with an invalid byte). An
+// abort would take the station down, so assertions become exceptions. NDEBUG must be undefined, because with
+// it toml++ would assume that the conditions hold.
 #undef NDEBUG
 namespace turnpoint::text {
 namespace {
@@ -26,8 +26,7 @@ constexpr void parser_assert(bool holds) {
 }  // namespace turnpoint::text
 #define TOML_ASSERT(condition) ::turnpoint::text::parser_assert(static_cast<bool>(condition))
 
-// The only file that sees toml++: the rest of the station works on plain Values
-// and compiles faster.
+// No other file includes toml++: the rest of the station uses plain Values and compiles faster.
 #include <toml++/toml.h>
 
 namespace turnpoint::text {
@@ -46,7 +45,7 @@ Value convert_table(const toml::table& table, const std::string& path) {
   Value value;
   for (const auto& [key, child] : table)
     value.entries.push_back({std::string(key.str()), place_of(key.source(), path), convert(child, path)});
-  // toml++ sorts keys by name; people read the file from top to bottom.
+  // toml++ sorts keys by name, but people read a file from top to bottom.
   std::stable_sort(value.entries.begin(), value.entries.end(), [](const Entry& a, const Entry& b) {
     return std::tie(a.place.line, a.place.column) < std::tie(b.place.line, b.place.column);
   });
@@ -135,11 +134,11 @@ std::string describe(const Value& value) {
 
 namespace {
 
-/// A file that is open for reading, and closed at the end.
+/// A file open for reading. The destructor closes it.
 class OpenFile {
  public:
   explicit OpenFile(const std::string& path) : path_(path) {
-    // Without O_NONBLOCK a pipe that nobody writes to would be waited for.
+    // Without O_NONBLOCK, opening a pipe would wait for a writer.
     descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor_ < 0) fail(errno);
     struct stat status {};
@@ -155,7 +154,7 @@ class OpenFile {
   OpenFile& operator=(const OpenFile&) = delete;
   ~OpenFile() { ::close(descriptor_); }
 
-  /// The next bytes, none at the end.
+  /// The next bytes; empty at the end of the file.
   std::string_view read() {
     for (;;) {
       const auto count = ::read(descriptor_, buffer_.data(), buffer_.size());

@@ -9,7 +9,7 @@ namespace turnpoint::text {
 
 struct Entry;
 
-/// One value of a TOML document with its place. Tables keep the order of the file, which toml++ does not.
+/// One value of a TOML document with its place. Unlike toml++, tables keep the order of the file.
 struct Value {
   enum class Kind { boolean, integer, number, string, date, array, table };
   Kind kind = Kind::table;
@@ -18,35 +18,35 @@ struct Value {
   std::int64_t integer = 0;
   double number = 0;           ///< also set for an integer
   std::string string;          ///< UTF-8
-  std::vector<Value> items;    ///< of an array
-  std::vector<Entry> entries;  ///< of a table, in file order
+  std::vector<Value> items;    ///< for an array
+  std::vector<Entry> entries;  ///< for a table, in file order
 
   /// The entry of a table, or nullptr.
   const Entry* find(const std::string& key) const;
 };
 
-/// A key of a table: where the key stands, and its value.
+/// A key of a table: its place and its value.
 struct Entry {
   std::string key;
   Place place;
   Value value;
 };
 
-/// The document in `source`; `path` names it in places. Throws BadInput with the place of a syntax error, of a
-/// list with more than 10 000 items, or of a key with more than 16 parts.
+/// Parses `source`; `path` is used in places. Throws BadInput with the place of a syntax error, of a list
+/// with more than 10 000 items, or of a key with more than 16 parts.
 Value parse_toml(const std::string& source, const std::string& path);
 
-/// `a number`, `text`, `a table`, ...: what a value is, for messages.
+/// The type of a value, for messages: `a number`, `text`, `a table`, ...
 std::string describe(const Value& value);
 
-/// The bytes of a file. Throws std::system_error naming it where it cannot be opened or read to its end, where
-/// it is no regular file (a folder, a pipe, a device), and where it has more than `most_bytes`.
+/// The bytes of a file. Throws std::system_error naming the file if it cannot be opened or read to its end,
+/// if it is not a regular file (a folder, a pipe, a device), or if it has more than `most_bytes`.
 std::string read_file(const std::string& path, std::size_t most_bytes = std::size_t{256} << 20);
 
-/// Files that people write (protocols, rigs, calibrations) have at most so many bytes.
+/// Size limit for files that people write (protocols, rigs, calibrations).
 constexpr std::size_t most_text_bytes = 4 << 20;
 
-/// The same of a file that people write. Throws BadInput where it is longer than `most_text_bytes`.
+/// Reads a file that people write. Throws BadInput if it is longer than `most_text_bytes`.
 std::string read_text_file(const std::string& path);
 
 }  // namespace turnpoint::text

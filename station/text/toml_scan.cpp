@@ -15,7 +15,7 @@ struct Character {
   std::size_t bytes = 1;
 };
 
-// The character at `at`; a broken one counts as a byte and is left to the parser, which refuses it.
+// The character at `at`. An invalid one counts as a single byte; the parser will report it.
 Character character_at(std::string_view text, std::size_t at) {
   const auto lead = static_cast<unsigned char>(text[at]);
   const std::size_t bytes = lead < 0x80 ? 1 : lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
@@ -32,8 +32,8 @@ std::string printed(const char* format, std::uint32_t code) {
   return buffer;
 }
 
-// Walks through the source and knows whether it is in a string or a comment. Only as exact as needed: a
-// string that is not closed is the parser's to report.
+// Goes through the source and keeps track of strings and comments. It is only as exact as needed: the parser
+// reports strings that are not closed.
 class Scanner {
  public:
   Scanner(std::string_view source, const std::string& path) : source_(source), path_(path) {}
@@ -84,7 +84,7 @@ class Scanner {
     }
   }
 
-  // The parser calls itself once for each part of a key: a long enough one would exhaust the stack.
+  // The parser recurses for each part of a key, so a very long key would exhaust the stack.
   void count_parts(char c) {
     if (c == '.')
       ++parts_;
@@ -99,7 +99,7 @@ class Scanner {
   void inside(const Character& character) {
     if (!escaped_ && source_.substr(at_).starts_with(quote_)) {
       copy(quote_.size());
-      // Up to two more quotes may belong to the text of a multi-line string.
+      // Up to two further quotes may belong to the text of a multi-line string.
       while (quote_.size() == 3 && at_ < source_.size() && source_[at_] == quote_[0]) copy(1);
       quote_ = {};
       trimming_ = false;
@@ -107,7 +107,7 @@ class Scanner {
     }
     const bool blank = character.code == ' ' || character.code == '\t' || character.code == '\r';
     const bool was_escaped = escaped_;
-    // White space between a backslash and the end of its line keeps it a line-ending one.
+    // A backslash remains a line-ending one if only white space follows it on its line.
     escaped_ = quote_[0] == '"' && ((!was_escaped && character.code == '\\') || (was_escaped && blank));
     if (was_escaped && character.code >= 0x80)
       throw BadInput(
@@ -133,9 +133,9 @@ class Scanner {
   static constexpr int most_parts = 16;
 
   std::string_view source_;
-  int parts_ = 1;  ///< of the key at hand
+  int parts_ = 1;  ///< parts of the current key
   std::string path_, out_;
-  std::string_view quote_;  // the quotes that close the string we are in, else empty
+  std::string_view quote_;  // the quotes that close the current string; empty outside strings
   std::size_t at_ = 0;
   int line_ = 1, column_ = 1;
   bool comment_ = false, escaped_ = false, trimming_ = false;

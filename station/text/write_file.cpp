@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
   throw std::system_error(code, std::generic_category(), "writing " + path);
 }
 
-/// Where the bytes belong: the file behind the user's own or the system's links. Throws for a link that
+/// The file to write after following links that belong to this user or to the system. Throws for a link that
 /// another user has made.
 std::string destination(const std::string& path) {
   struct stat status {};
@@ -46,7 +46,7 @@ FileWriter::FileWriter(const std::string& path, mode_t mode) : path_(destination
     return;
   }
   draft_ = path_ + ".new";
-  ::unlink(draft_.c_str());  // of a writer that was killed, or somebody's link
+  ::unlink(draft_.c_str());  // left by a killed process, or somebody's link
   descriptor_ = ::open(draft_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
   if (descriptor_ < 0) fail(std::exchange(draft_, ""), errno);
 }

@@ -6,17 +6,17 @@
 
 namespace turnpoint::text {
 
-/// Writes a whole file or changes nothing: the bytes go to PATH.new, which commit() makes durable and puts in
-/// the place of PATH. `mode` is reduced by the process's umask. A device or a pipe is written to as it is. A
-/// symbolic link that another user has made is refused, and nothing in the place of PATH.new is followed or
-/// kept, so that root can write into a folder of somebody else's. All throw std::system_error naming the
-/// file.
+/// Writes a whole file or changes nothing. The bytes go to PATH.new; commit() syncs it and renames it to
+/// PATH. `mode` is reduced by the process's umask. A device or a pipe is written directly. A symbolic link
+/// that another user has made is refused, and anything that already exists as PATH.new is replaced and never
+/// followed, so that root can safely write into another user's folder. All functions throw std::system_error
+/// naming the file.
 class FileWriter {
  public:
   explicit FileWriter(const std::string& path, mode_t mode = 0666);
   FileWriter(FileWriter&& other) noexcept;
   FileWriter& operator=(FileWriter&&) = delete;
-  ~FileWriter();  ///< removes PATH.new, unless it was committed
+  ~FileWriter();  ///< removes PATH.new unless it was committed
 
   void write(std::string_view bytes);
   void commit();
@@ -26,7 +26,7 @@ class FileWriter {
   int descriptor_ = -1;
 };
 
-/// The same for bytes that are all there.
+/// The same for bytes that are already complete.
 void write_file(const std::string& path, std::string_view bytes, mode_t mode = 0666);
 
 }  // namespace turnpoint::text

@@ -51,7 +51,8 @@ std::vector<Action> Machine::start(std::int64_t now_ns) {
 
 std::vector<Action> Machine::handle(const Event& event) {
   if (phase_ == Phase::idle || phase_ == Phase::done) return {};
-  // What lies before the event happens first. An onset tells of the future: it moves no time.
+  // Process everything that is due before this event. An onset may lie in the future, so it does not advance
+  // the time.
   if (event.kind != EventKind::onset) now_ns_ = std::max(now_ns_, event.time_ns);
   advance(now_ns_);
   if (phase_ == Phase::done) return std::exchange(actions_, {});
@@ -90,7 +91,8 @@ std::vector<Action> Machine::handle(const Event& event) {
 
 std::optional<std::int64_t> Machine::wake_ns() const {
   if (phase_ == Phase::idle || phase_ == Phase::done) return std::nullopt;
-  if (phase_ == Phase::interval && !decided()) return std::nullopt;  // it ends with the last heard event
+  // the interval ends with the last heard event
+  if (phase_ == Phase::interval && !decided()) return std::nullopt;
   const bool answering = phase_ == Phase::stimulus || phase_ == Phase::response;
   const auto deadline = answering ? deadline_at() : kNever;
   const auto wake = deadline == kNever ? until_ns_ : std::min(until_ns_, deadline + plan_.watermark_ns);
@@ -113,7 +115,7 @@ void Machine::enter(Phase phase, std::int64_t until_ns) {
   actions_.push_back({ActionKind::enter, static_cast<int>(phase), until_ns});
 }
 
-// The first one ends the cue, and the others their gaps.
+// The first onset ends the cue, later ones end the gaps.
 void Machine::onset(const Event& event) {
   onsets_ns_.at(static_cast<std::size_t>(event.value)) = event.time_ns;
   if (phase_ == Phase::cue && event.value == 0) until_ns_ = event.time_ns;
@@ -233,7 +235,8 @@ void Machine::conclude(Outcome outcome, std::int64_t at_ns) {
   const bool cut = outcome == Outcome::aborted || outcome == Outcome::fault;
   if (cut && !concluded_) return end(outcome, at_ns);
   if (cut) {
-    // The outcome is there, and stands if what was presented turns out whole. A fault leaves nobody to tell.
+    // The outcome is known, but becomes final only if everything was presented without loss. After a fault
+    // there is nobody to give feedback to.
     if (outcome == Outcome::fault && !decided()) return end(outcome, at_ns);
     return enter(Phase::interval, at_ns);
   }
@@ -243,7 +246,7 @@ void Machine::conclude(Outcome outcome, std::int64_t at_ns) {
   settle(at_ns);
 }
 
-// At once, and without a response.
+// Ends the trial at once and without a response.
 void Machine::end(Outcome outcome, std::int64_t at_ns) {
   if (phase_ == Phase::cue || phase_ == Phase::stimulus || phase_ == Phase::gap)
     actions_.push_back({ActionKind::silence, interval_, at_ns});
