@@ -59,7 +59,8 @@ reference::Samples sampled(const PosteriorFit& fit) {
       1'500'000, 3);
 }
 
-/// Both tails hold 2.5 % of the samples, and the estimate half of them, as far as samples can tell.
+/// Checks that 2.5 % of the samples lie beyond either end of the interval and half of them below the
+/// estimate, within sampling error.
 void check_interval(const std::vector<double>& samples, double estimate, const ParameterInterval& found) {
   CHECK(reference::share_inside(samples, -1e300, estimate) == Approx(0.5).margin(0.03));
   CHECK(reference::share_inside(samples, -1e300, found.interval.low) == Approx(0.025).margin(0.01));
@@ -68,7 +69,7 @@ void check_interval(const std::vector<double>& samples, double estimate, const P
   CHECK(width < 1.1 * (reference::quantile(samples, 0.975) - reference::quantile(samples, 0.025)));
 }
 
-/// What the checks above would say of an interval nine tenths as wide.
+/// Negative control: the checks above must reject an interval that is a tenth narrower.
 bool too_narrow_is_seen(const std::vector<double>& samples, const Interval& found) {
   const double cut = 0.05 * (found.high - found.low);
   return reference::share_inside(samples, found.low + cut, found.high - cut) < 0.94;
@@ -105,8 +106,8 @@ TEST_CASE("Posterior intervals are those of an independent sampler", "[analysis]
 }
 
 TEST_CASE("Posterior intervals agree with a dense grid in NumPy", "[analysis]") {
-  // 1200 x 900 x 61 points (threshold, ln slope, lapse; trapezoids), NumPy 2, the prior below; the data are
-  // those of the reference fit of test_psychometric_fit.cpp.
+  // Computed with NumPy 2 on 1200 x 900 x 61 points (threshold, ln slope, lapse; trapezoidal rule) with the
+  // prior below. The data are those of the reference fit in test_psychometric_fit.cpp.
   const std::vector<LevelCount> data = {{-30, 40, 20}, {-26, 40, 22}, {-22, 40, 27},
                                         {-18, 40, 34}, {-14, 40, 38}, {-10, 40, 39}};
   const auto fit = fit_posterior(data, {}, {-37, 4, 0.25, 15}, 0);

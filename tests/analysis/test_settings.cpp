@@ -33,7 +33,7 @@ TEST_CASE("Settings have their mean, scatter and intervals by Student and chi sq
   CHECK(all[0].sd->value == Approx(sd));
   CHECK(all[0].sd->interval.low == Approx(std::sqrt(32 / 16.012764)).epsilon(1e-6));
   CHECK(all[0].sd->interval.high == Approx(std::sqrt(32 / 1.689869)).epsilon(1e-6));
-  CHECK_FALSE(all[0].start_slope);  // every slider began at one place
+  CHECK_FALSE(all[0].start_slope);  // every slider began at the same place
 }
 
 TEST_CASE("Settings that follow where the slider started are said to", "[analysis]") {

@@ -79,7 +79,8 @@ TEST_CASE("The normal quantile inverts the distribution function", "[analysis]")
 
 namespace {
 
-/// Yes/no by an observer with a criterion, half of the trials noise; ratings where there are more answers.
+/// A session in which an observer with a criterion answers yes/no (or gives ratings, if there are more
+/// answers); half of the trials are noise.
 std::vector<TrialRecord> yes_no_session(const turnpoint::observer::Observer& observer, int answers,
                                         int trials, int run) {
   using namespace turnpoint;
@@ -106,7 +107,7 @@ bool holds(const std::optional<Estimate>& estimate, double value) {
 }  // namespace
 
 TEST_CASE("d' and criterion of a yes/no observer are recovered inside their intervals", "[analysis]") {
-  // d' is 1.349 at 3 and twice that at 6; c is the criterion less half of d'.
+  // d' is 1.349 at level 3 and twice that at 6; c is the criterion minus half of d'.
   const turnpoint::observer::Observer observer(
       turnpoint::observer::parse("sim:threshold=3,lapse=0,criterion=0.9"));
   const int sessions = 400;
@@ -151,7 +152,7 @@ TEST_CASE("d' of sides and of forced choice follow their definitions", "[analysi
   const auto forced = detect(trials, {}, Detecting::forced_choice, 1);
   CHECK(*forced[0].level == -12);
   CHECK(forced[0].d_prime->value == Approx(direct.d_prime / std::sqrt(2.0)));
-  trials.resize(100);  // nothing but signals
+  trials.resize(100);  // only trials with a signal
   CHECK_FALSE(detect(trials, {}, Detecting::forced_choice, 1)[0].d_prime);
 }
 
@@ -166,7 +167,7 @@ TEST_CASE("the ROC of ratings has the area that d' gives, and its interval holds
   const turnpoint::observer::Observer observer(turnpoint::observer::parse("sim:threshold=3,lapse=0"));
   int held = 0;
   const int sessions = 200;
-  double expected = 0, below = 0;  // under six ratings
+  double expected = 0, below = 0;  // the area below six ratings
   turnpoint::observer::Question question;
   question.decides = turnpoint::observer::Decides::presence, question.answers = 6;
   for (int rating = 0; rating < 6; ++rating) {

@@ -21,12 +21,12 @@ namespace {
 using protocol::TaskKind;
 using session::TrialSpec;
 
-// Half of the trials that are watched choose the rule, the others say what it reaches.
+// Half of the watched trials are used to choose the rule, the others to measure its accuracy.
 constexpr int watched_trials = 50'000, most_watched_sessions = 20'000;
 constexpr std::size_t own_sessions = 400;
 constexpr double own_trials = 25'000;
 
-/// The eight numbers of one interval: of its last scene, of its first.
+/// The eight cues of one interval, for its last and for its first scene.
 struct Numbers {
   std::vector<double> last, first;
 };
@@ -40,7 +40,7 @@ struct Seen {
   int correct = 0;
 };
 
-/// What an observer did in one session: how many answers were right, and how many each key would have had.
+/// Results of an observer in one session: its right answers, and those that each key alone would have had.
 struct Count {
   double trials = 0, right = 0;
   std::array<double, 3> keys{};
@@ -87,7 +87,8 @@ class World {
   std::map<std::string, std::map<protocol::Factors, std::optional<scene::Cues>>> known_;
 };
 
-/// Answers with -1 standing for "these are equal: guess among all that are".
+/// A rule that returns the answers. -1 means that several answers look the same, so the observer guesses
+/// among them.
 using Strategy = std::function<std::vector<int>(const std::vector<double>&)>;
 
 double seen_number(const Numbers& numbers, std::size_t cue, int feature) {
@@ -101,7 +102,7 @@ std::vector<double> seen_numbers(const std::vector<Numbers>& intervals, std::siz
   return x;
 }
 
-/// Trials that show the same, and how many: one vector with the cue of each interval and the right answer.
+/// Number of trials that look the same: the key has the cue of each interval and the right answer.
 using Shown = std::map<std::pair<std::vector<double>, int>, double>;
 
 Shown shown(const std::vector<Seen>& seen, std::size_t cue, int feature) {
@@ -132,7 +133,7 @@ Strategy band(double lowest, double highest, int inside, bool distance) {
   };
 }
 
-// Cuts between values that differ, at most 80, and the two ends.
+// Cuts between different values, at most 80, and one at either end.
 std::vector<double> cuts_of(const Shown& shown, double grain, bool distance) {
   std::vector<double> values, between;
   for (const auto& [trial, count] : shown) values.push_back(banded(trial.first, distance));
@@ -150,10 +151,10 @@ std::vector<double> cuts_of(const Shown& shown, double grain, bool distance) {
   return cuts;
 }
 
-// Every pair of cuts, and both answers inside.
+// Tries every pair of cuts, with both possible answers inside.
 Strategy best_cuts(const Shown& shown, double grain, bool distance) {
   const auto cuts = cuts_of(shown, grain, distance);
-  // How many of each answer lie below each cut.
+  // Number of trials of each answer below each cut.
   std::vector<std::array<double, 2>> below(cuts.size(), {0, 0});
   for (std::size_t c = 0; c < cuts.size(); ++c)
     for (const auto& [trial, count] : shown)
@@ -238,8 +239,8 @@ bool follows_right_answers(const protocol::Protocol& protocol) {
   return follows_answers(protocol.procedures.front()) && protocol.procedures.front().tracks.empty();
 }
 
-/// What can be seen in whole sessions; a level that follows the answers is any that its procedure can
-/// present.
+/// Collects what an observer can see in whole sessions. A level that depends on the answers is replaced by a
+/// random one that its procedure can present.
 std::vector<Seen> watch(const protocol::Protocol& protocol, World& world) {
   std::vector<Seen> seen;
   std::mt19937 random(1);
@@ -267,7 +268,7 @@ struct OwnSessions {
   double gain = 0, error = 0;
 };
 
-/// The observer goes through sessions by itself: what it has right more than guessing or one key would have.
+/// The observer does whole sessions alone. Returns by how much its accuracy exceeds guessing or a single key.
 OwnSessions do_sessions(const protocol::Protocol& protocol, World& world, std::size_t cue, int feature,
                         const Strategy& strategy) {
   std::vector<Count> each;

@@ -10,19 +10,19 @@ namespace turnpoint::tests {
 
 struct BruteForce {
   std::string cue;
-  double accuracy = 0, chance = 0, error = 0;  ///< and the standard error of the accuracy
-  /// Where levels follow right answers: how much more is right in sessions that the observer does by itself
-  /// than with one key or by guessing in the same trials, and its standard error.
+  double accuracy = 0, chance = 0, error = 0;  ///< error is the standard error of the accuracy
+  /// If levels depend on right answers: the accuracy in sessions that the observer does alone, minus that of
+  /// a single key or of guessing in the same trials, and its standard error.
   std::optional<double> own_gain = {};
   double own_error = 0;
 };
 
-/// What an observer of each cue reaches, found out by doing it: the director makes whole sessions, each scene
-/// of each trial is planned for its own factors and takes the strength that was drawn, and the observer
-/// answers them all, trying every rule. The rule is chosen on other trials than those that say what it
-/// reaches. A level that follows the answers is any that can be presented, drawn at random; where it follows
-/// right answers, sessions come after that in which the observer's own answers lead to the next level.
-/// Nothing here is shared with the guard that is tested.
+/// Measures the accuracy of an observer of each cue by simulation. The director makes whole sessions, each
+/// scene of each trial is planned for its own factors with the strength that was drawn, and the observer
+/// answers every trial with every rule. The rule is chosen on other trials than those that measure its
+/// accuracy. If levels depend on the answers, a random level that can be presented is used instead; if they
+/// depend on right answers, further sessions follow in which the observer's own answers determine the next
+/// level. This code shares nothing with the cue guard that it tests.
 std::vector<BruteForce> cue_brute_force(const protocol::Protocol& protocol, const rig::Rig& rig);
 
 }  // namespace turnpoint::tests

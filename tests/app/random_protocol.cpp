@@ -18,7 +18,7 @@ class Maker {
     single_ = task_ == "single-interval";
     two_scenes_ = single_ && chance(0.25);
     if (two_scenes_) use("an interval of two scenes");
-    marks_ = below(3);  // 0: no factor but the level
+    marks_ = below(3);  // 0: the level is the only factor
     if (marks_ > 0) use("a drawn factor");
     return header() + factors() + scenes() + task() + procedures() + blocks();
   }
@@ -166,7 +166,7 @@ class Maker {
              "[[sequence]]\nname = \"main\"\ndesign = \"latin-square\"\nover = \"mark_mm\"\nblock = { " +
              block + " }\n";
     }
-    // The same keys, one a line.
+    // The same keys, one per line.
     std::string lines = "[[block]]\nname = \"main\"\n";
     int depth = 0;
     for (std::size_t i = 0; i < block.size(); ++i) {

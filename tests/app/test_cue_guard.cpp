@@ -1,5 +1,5 @@
-// The guard against an observer that does whole sessions (cue_brute_force.hpp), and what it must say of
-// protocols whose leak is known.
+// Compares the cue guard with an observer that does whole sessions (cue_brute_force.hpp), and tests its
+// report on protocols with a known leak.
 #include "station/app/cue_guard.hpp"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::string replaced(std::string where, const std::string& from, const std::stri
 
 std::string source(const std::string& name) { return text::read_file(root + "/protocols/" + name); }
 
-/// In closed form, so that a survey is quick.
+/// A rig with a closed-form model, so that a survey is fast.
 rig::Rig quick() {
   auto text = text::read_file(root + "/deploy/rigs/simulated.toml");
   text = replaced(text, "edges = \"clamped\"", "edges = \"supported\"");
@@ -97,7 +97,7 @@ TEST_CASE(
     "random protocols",
     "[app][cues]") {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  constexpr int count = 8;  // the release leg has them all; here it is the memory that is watched
+  constexpr int count = 8;  // the release build tests all of them; this build only watches the memory
 #else
   constexpr int count = 200;
 #endif
@@ -133,7 +133,7 @@ TEST_CASE(
 
 namespace {
 
-/// A pair whose standard depends on one factor and whose target on that factor and on the level.
+/// A pair of scenes: the standard depends on one factor, the target on that factor and on the level.
 const std::string pair_text = R"(format = "friction-protocol/1"
 [protocol]
 id = "pair"
@@ -238,7 +238,7 @@ TEST_CASE("practice is kept apart: its levels neither count nor take those of th
     INFO(one.cue);
     CHECK(report(other, one.cue).accuracy == Approx(one.accuracy).epsilon(0).margin(1e-12));
   }
-  // Practice that runs the main procedure, as in this file.
+  // As in this file, practice runs the main procedure.
   CHECK(accuracy(source("speed-accuracy.toml"), "amplitude at the wide end") > 0.9);
 }
 
@@ -247,12 +247,12 @@ TEST_CASE("trials are weighted by how often they come, catch trials too", "[app]
       replaced(source("boundary-constant.toml"), "values = [-28.0, -16.0, -8.0, -3.0, 3.0, 8.0, 16.0, 28.0]",
                "values = [-3.0, 3.0, 8.0, 16.0]");
   CHECK(accuracy(text, "always the same key") == Approx(0.75));
-  // Where the right answer is drawn four times in ten and once in catch trials of their own.
+  // The left answer is right in all catch trials.
   const std::string block = "procedures = [\"levels\"]";
   const auto caught = replaced(text, block, block + "\ncatch = { rate = 0.5, offset_mm = -28.0 }");
-  // Half as many catch trials as there are trials: P(right) = 0.5 x 0.75.
+  // Half of all trials are catch trials: P(right) = 0.5 x 0.75.
   CHECK(accuracy(caught, "always the same key") == Approx(0.625));
-  // Twelve of 40 trials, by chance any of them.
+  // The session ends after 12 of 40 trials, and chance decides which ones.
   const auto cut = replaced(text, block, block + "\ntrials = 12");
   CHECK(accuracy(cut, "always the same key") == Approx(0.75));
 }
@@ -267,7 +267,7 @@ TEST_CASE("of a list that is not shuffled and cut short only the first levels co
 
 namespace {
 
-/// Loudness and amplitude are roved by more than all but the largest levels change them.
+/// Roving changes loudness and amplitude more than all but the largest levels do.
 std::string roved_staircase(int trials) {
   auto text = replaced(pair_text, "kind = \"constant-stimuli\"", "kind = \"up-down\"");
   text = replaced(text, "values = [4.0, 8.0, 16.0]\nrepeats = 8",
@@ -291,7 +291,7 @@ TEST_CASE("a cue that helps only with the easiest levels is found in sessions th
   // The staircase converges on 71 %.
   CHECK(amplitude.whole_sessions->accuracy == Approx(0.72).margin(0.03));
   CHECK(amplitude.accuracy >= amplitude.whole_sessions->accuracy);
-  // Duration says nothing at any level: no session is needed to know that.
+  // Duration is uninformative at every level, so the guard need not simulate sessions.
   CHECK(report(guard, "duration").accuracy == Approx(0.5));
   CHECK(report(guard, "duration").whole_sessions->error == 0);
 }
@@ -309,12 +309,13 @@ TEST_CASE("easy practice adds nothing to what a cue reaches in sessions that it 
     REQUIRE(own);
     return own->accuracy;
   };
-  // Counted in, sixty trials that the cue always finds would take 0.72 to 0.86.
+  // If they were counted, sixty trials in which the cue is always right would raise 0.72 to 0.86.
   CHECK(reached(practised) == Approx(reached(roved_staircase(60))).margin(0.03));
 }
 
 TEST_CASE("what a rule reaches is counted on other draws than those that chose it", "[app][cues]") {
-  // Roving hides the amplitude, which the level does not change: the best band of many only fits the draws.
+  // Roving hides the amplitude, which does not depend on the level. The best of many bands only fits random
+  // draws.
   std::map<std::string, int> features;
   const auto guard = guard_of(tests::random_protocol(20076, features));
   const auto& amplitude = report(guard, "amplitude at the wide end");

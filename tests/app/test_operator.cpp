@@ -48,7 +48,7 @@ app::LiveTrial answered(bool correct, double response_time_s) {
   return trial;
 }
 
-/// Hands on the beginnings of the first trials, and cuts the session off after them.
+/// Passes on the beginnings of the first trials, then ends the session.
 struct FirstTrials : session::Monitor {
   session::Monitor& to;
   int left;
@@ -62,7 +62,7 @@ struct FirstTrials : session::Monitor {
   }
 };
 
-/// The drive of each tone that is shown, as "0.512 um on", in order.
+/// The drive of each displayed tone, such as "0.512 um on", in order.
 std::vector<std::string> drives_shown(const app::LiveState& state) {
   std::vector<std::string> drives;
   for (const auto& [label, value] : state.scene) {
@@ -114,7 +114,7 @@ TEST_CASE("limits used look back one minute", "[operator]") {
   }
   const auto facts = app::limits_used(trials, 2e-6, rig);
   CHECK(value_of(facts, "Displacement") == "2 of 8 \u00b5m (25 %)");
-  // Of the minute up to 140 s only the trial from 120 s on is inside.
+  // The minute before 140 s contains only the trial that starts at 120 s.
   CHECK(value_of(facts, "Stimulus time, last minute") == "25 % (limit 80 %)");
 }
 
@@ -184,7 +184,7 @@ TEST_CASE("the live view shows what is played: each scene of each interval, with
       CHECK(state.surfaces.size() == static_cast<std::size_t>(scenes));
     }
   CHECK(trial == trials);
-  CHECK((roved > 0 || scenes > 1));  // otherwise the first look at a scene's plan would have been enough
+  CHECK((roved > 0 || scenes > 1));  // otherwise the first request of a scene's plan would have been enough
 }
 
 TEST_CASE("a slider that moves fast is shown a few times a second, and in the end where it stands",
@@ -215,7 +215,7 @@ TEST_CASE("a slider that moves fast is shown a few times a second, and in the en
     return !states.empty() && states.back().heading.find(", now 24.5:") != std::string::npos;
   }));
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - from;
-  CHECK(states.size() <= 2 + took / std::chrono::milliseconds(200));  // the beginning, and settings
+  CHECK(states.size() <= 2 + took / std::chrono::milliseconds(200));  // the beginning, and slider settings
   const auto plan = plans.take(spec).plans.front().back();
   CHECK(drives_shown(states.back()) ==
         std::vector<std::string>{text::number(1e6 * plan.tones.front().amplitude_m, 3) + " \u00b5m on"});

@@ -14,7 +14,7 @@ TEST_CASE("the screen's card is the first that has a connector", "[app]") {
   listed("card0");
   listed("renderD128");
   listed("version");
-  CHECK(app::screen_card(folder / "") == "");  // cards that only draw
+  CHECK(app::screen_card(folder / "") == "");  // cards without a screen
   listed("card10");
   listed("card10-HDMI-A-1");
   CHECK(app::screen_card(folder / "") == "/dev/dri/card10");
@@ -24,5 +24,5 @@ TEST_CASE("the screen's card is the first that has a connector", "[app]") {
   CHECK(app::screen_card(folder / "") == "/dev/dri/card2");
   std::ofstream(folder / "card2-DSI-1/status") << "disconnected\n";
   std::ofstream(folder / "card10-HDMI-A-1/status") << "connected\n";
-  CHECK(app::screen_card(folder / "") == "/dev/dri/card10");  // the only one with a screen
+  CHECK(app::screen_card(folder / "") == "/dev/dri/card10");  // the only card with a screen
 }

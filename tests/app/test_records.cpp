@@ -8,7 +8,7 @@
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
-// From a protocol file and its rows to what a report says.
+// Tests the way from a protocol file and its rows to a report.
 
 using namespace turnpoint;
 
@@ -38,7 +38,7 @@ nlohmann::json report_of(const report::SessionData& data) {
   return nlohmann::json::parse(report::to_json(report::summarise(data)));
 }
 
-/// A change of friction that is there in half of the trials; `sign` -1: as a fall.
+/// A change of friction that is present in half of the trials; `sign` -1 makes it a decrease.
 std::string yes_no(const std::string& analysis, int sign = 1, int repeats = 40) {
   auto source = shipped("speed-accuracy");
   source.erase(source.find("[[sequence]]"));
@@ -90,7 +90,7 @@ TEST_CASE("the order of conditions is the file's, whatever block came first", "[
   const auto began = [](int index) {
     return data_of(shipped("speed-accuracy"), "sim", index).trials.back().instruction;
   };
-  CHECK(began(0) != began(1));  // counterbalanced
+  CHECK(began(0) != began(1));  // the order is counterbalanced
   for (const auto& report : {first, second}) {
     REQUIRE(report["instructions"].size() == 2);
     CHECK(report["instructions"][0]["instruction"] == "speed");
@@ -109,7 +109,7 @@ TEST_CASE("by that names another factor takes the instructions together", "[app]
 }
 
 TEST_CASE("yes/no is analysed as yes/no", "[app]") {
-  // d' grows in proportion to the change, 1.349 at .1; 15 % false alarms.
+  // d' grows in proportion to the change, with 1.349 at .1; 15 % false alarms.
   const auto* observer = "sim:threshold=0.1,lapse=0,criterion=1.036";
   for (const int sign : {1, -1}) {
     const auto data = data_of(yes_no("", sign, 120), observer);
@@ -183,7 +183,7 @@ TEST_CASE("a report has the ids of answers, and the reversals that a staircase a
   const auto html = report::to_html(report::summarise(data));
   CHECK(html.find("reversals 5 to 10 of 10") != std::string::npos);
   CHECK(html.find("Threshold (dB)") != std::string::npos);
-  CHECK(html.find("BIS") == std::string::npos);  // one condition has none
+  CHECK(html.find("BIS") == std::string::npos);  // a single condition has no BIS
   const auto demo =
       data_of(replaced(shipped("demo"), "[\"en\", \"de\", \"ja\"]", "[\"en\", \"de\", \"ja\"]"));
   CHECK(demo.choices == std::vector<std::string>{"left", "right"});

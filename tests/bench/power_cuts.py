@@ -26,9 +26,9 @@ class Entry:
 
 @dataclasses.dataclass
 class Cut:
-    files: pathlib.Path  # the files of the disk after the cut and the file system's own repair; gone at the next one
-    marked: int          # the number of the last mark that the disk had taken
-    position: int        # of the cut in the record
+    files: pathlib.Path  # the files on the disk after the cut and the file system's own repair; replaced at the next cut
+    marked: int          # number of the last mark that the disk had accepted
+    position: int        # position of the cut in the record
 
 
 def read_record(path):
@@ -96,7 +96,7 @@ def cuts(name, count, seed):
     draw = random.Random(seed)
     positions = sorted(draw.randrange(marked[0][0], marked[-1][0]) for _ in range(count))
     flushed = bytearray((out / "disk.start.img").read_bytes())
-    done = 0  # entries that are in `flushed`
+    done = 0  # number of entries that are in `flushed`
     memory = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
     with tempfile.TemporaryDirectory(dir=memory, prefix="power-cut-") as directory:
         for position in positions:

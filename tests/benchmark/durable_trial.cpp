@@ -18,7 +18,7 @@ using namespace store;
 
 namespace {
 
-constexpr int kEvents = 4;  // touches and answers of a usual trial
+constexpr int kEvents = 4;  // touches and answers in a usual trial
 
 SessionStart bench_session() {
   SessionStart start;
@@ -30,7 +30,7 @@ SessionStart bench_session() {
   return start;
 }
 
-/// A two-interval trial of three tones each.
+/// A two-interval trial with three tones in each interval.
 TrialRow bench_trial(int index) {
   TrialRow row;
   row.trial_index = row.trial_in_block = index;
@@ -75,7 +75,7 @@ std::function<void(int)> through_the_log(const std::string& path) {
   };
 }
 
-/// The tables of the schema without anything that guards them.
+/// The tables of the schema without triggers, checks and keys.
 struct Bare {
   Bare(const std::string& path, const char* synchronous) : database(path, Database::Access::create) {
     database.execute(std::string("PRAGMA journal_mode = WAL; PRAGMA synchronous = ") + synchronous);
@@ -118,7 +118,7 @@ double at_quantile(std::vector<double> values, double q) {
   return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
 }
 
-/// Removes its folder at the end, whatever happens.
+/// A folder that is always removed at the end.
 struct Folder {
   std::string path;
   ~Folder() {
@@ -138,7 +138,7 @@ std::vector<DurableTrial> time_durable_trials(const std::string& directory, int 
   ways.emplace_back("session log", through_the_log(folder.path + "/log.sqlite"));
   ways.emplace_back("bare SQLite, OFF (not durable)", bare(folder.path + "/off.sqlite", "OFF"));
   std::vector<std::vector<double>> times_ms(ways.size());
-  // By turns, so that whatever else the disk does falls on all of them alike.
+  // Take turns, so that other activity on the disk affects all methods equally.
   for (int trial = 0; trial < trials; ++trial)
     for (std::size_t way = 0; way < ways.size(); ++way) {
       const auto start = std::chrono::steady_clock::now();

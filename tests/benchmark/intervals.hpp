@@ -3,8 +3,8 @@
 
 namespace turnpoint::benchmark {
 
-/// The intervals of a psychometric function after sessions of a QUEST+ procedure: from the posterior, and by
-/// the bootstrap that constant stimuli have, on one core; each with its band, as for a report. Takes some
+/// Times the intervals of a psychometric function after sessions of a QUEST+ procedure: from the posterior,
+/// and by the bootstrap for constant stimuli, on one core, each with its band as in a report. Takes some
 /// seconds.
 Report bench_intervals();
 

@@ -20,23 +20,24 @@ namespace {
 constexpr std::size_t block = 384;
 constexpr double kTwoPi = 2 * std::numbers::pi;
 
-// What a method fills, each in the width that it works in, so that no conversion is timed with it.
+// The buffers that methods fill, one for each number type, so that no conversion is timed.
 struct Block {
   std::array<double, block> wide;
   std::array<float, block> narrow;
 };
 
-// Fills a block that begins at a frame.
+// A method that fills a block beginning at a given frame.
 struct Method {
   std::string name;
   std::function<void(std::int64_t frame, Block& out)> render;
   bool free_running =
-      false;  ///< its error grows with the frames that it has made, not with the frame's number
+      false;  ///< its error grows with the number of frames computed, not with the frame's number
   bool narrow = false;
 };
 
-// The frequency that the increment stands for, so that methods are judged by their arithmetic, not by the
-// last bit of the frequency: exact phase of a frame as a fraction of a cycle, 64 bits.
+// The exact sine for the frequency that the increment represents, so that methods are judged by their
+// arithmetic and not by the rounding of the frequency. The phase of a frame is an exact 64-bit fraction of a
+// cycle.
 double exact_sine(std::uint64_t increment, std::int64_t frame) {
   const auto phase = static_cast<std::int64_t>(increment * static_cast<std::uint64_t>(frame));
   return static_cast<double>(
@@ -164,8 +165,8 @@ SynthBenchmark benchmark_synthesis(double frequency_Hz, int rate_Hz) {
     std::int64_t made = 0;
     for (const double time_s : result.times_s) {
       const std::int64_t frame = std::llround(time_s * rate_Hz) / block * block;
-      // A free-running method has to be run; a day of that would take minutes, so it is run for a minute at
-      // most.
+      // A free-running method has to compute every frame. A day of that would take minutes, so stop at one
+      // minute.
       if (method.free_running && time_s > 60) break;
       for (; method.free_running && made < frame; made += block) method.render(made, samples);
       method.render(frame, samples);

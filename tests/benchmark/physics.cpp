@@ -43,7 +43,7 @@ std::vector<Scene> scenes() {
           {"aluminium plate 30 kHz, Q = 60", physics::aluminium_plate(), 30000, true}};
 }
 
-/// |v| at the points, last maximum at one.
+/// |v| at the points, scaled so that the last maximum is one.
 std::vector<double> amplitudes(const CentreLine& line, const std::vector<double>& x) {
   const double unit = line.value(line.last_peak_m().value_or(0)).ln_magnitude();
   Solution v(x.size());
@@ -62,7 +62,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return worst / most;
 }
 
-/// `modes` from coarse to fine; an empty setting is the default.
+/// Resolutions of `modes` from coarse to fine; an empty setting means the default.
 struct Resolution {
   const char* setting;
   physics::ModalResolution resolution;
@@ -93,7 +93,7 @@ void bench_field(const Scene& scene, double budget_s, std::vector<PhysicsRow>& r
       const double error = largest_difference(amplitudes(*make(), x), truth);
       const double took = best_time(budget_s, [&] { make()->evaluate(x, 1.0, 0.0, v, ln); });
       rows.push_back({Task::field, scene.name, std::string(physics::name(model)), "", kPoints, took, error});
-    } catch (const std::domain_error&) {  // this rung does not exist here
+    } catch (const std::domain_error&) {  // this model does not exist here
     }
   }
   for (const auto& [setting, resolution] : resolutions()) {
@@ -123,7 +123,7 @@ OneModeProblem problem_of(const Scene& scene, const std::vector<double>& x) {
   return problem;
 }
 
-/// |v| with the reference's largest value at one at the same point.
+/// |v| scaled to one at the point where the reference has its largest value.
 std::vector<double> scaled(const Solution& v, std::size_t top) {
   std::vector<double> a;
   for (const auto& one : v) a.push_back(std::abs(one) / std::abs(v[top]));
@@ -160,7 +160,7 @@ void bench_equation(const Scene& scene, double budget_s, std::vector<PhysicsRow>
   for (const ScipyRun& run : run_scipy(problem)) add(run.name, run.setting, run.seconds, run.v);
 }
 
-/// The seed's closed profile: our Airy function beside Boost.Math's, at the same arguments.
+/// The closed Airy profile: compares our Airy function with Boost.Math's at the same arguments.
 void bench_airy(const Scene& scene, double budget_s, std::vector<PhysicsRow>& rows) {
   const auto scale = physics::airy_scale(scene.surface, scene.frequency_Hz);
   std::vector<double> arguments, ours(kPoints);
@@ -180,7 +180,7 @@ void bench_airy(const Scene& scene, double budget_s, std::vector<PhysicsRow>& ro
                     best_time(budget_s, [&] { boost_airy(arguments); }), error});
 }
 
-/// Look-ups in a map, both ways, and the round trip's largest error in metres.
+/// Times look-ups in a map in both directions, and measures the largest error of a round trip in metres.
 void bench_map(const std::string& name, const physics::Surface& surface, double budget_s,
                std::vector<PhysicsRow>& rows) {
   const auto build = [&] { return physics::BoundaryMap(surface, {physics::Edge::percent(0.5), {}, {}, {}}); };

@@ -7,11 +7,11 @@ namespace turnpoint::benchmark {
 
 namespace {
 
-/// What makes one series, in the order of the legend: the solvers whose names begin with one of these.
+/// A series in the figure, in the order of the legend: all solvers whose names begin with one of these.
 struct Series {
   const char* label;
   std::vector<std::string> beginnings;
-  bool joined = true;  ///< several settings of one solver: a line
+  bool joined = true;  ///< draw a line through several settings of one solver
 };
 
 const std::vector<Series> kRungs{{"airy", {"airy"}},
@@ -32,7 +32,7 @@ bool belongs(const std::string& solver, const Series& series) {
   });
 }
 
-/// `floor`: smaller errors stand on it; a logarithmic axis needs an end.
+/// Errors below `floor` are drawn at `floor`, because a logarithmic axis needs an end.
 plot::Panel panel_of(const std::string& scene, const std::vector<PhysicsRow>& rows,
                      const std::vector<Series>& series, double floor) {
   plot::Panel panel;

@@ -3,8 +3,8 @@
 
 namespace turnpoint::benchmark {
 
-/// A trial of QUEST+ (choose a stimulus, learn from the answer) on a usual and on a fine grid, on one core,
-/// with questplus for Python (PyPI) in the same run where python3 can import it. Takes some seconds.
+/// Times a trial of QUEST+ (choose a stimulus, learn from the answer) on a usual and on a fine grid, on one
+/// core. If python3 can import questplus (PyPI), measures it in the same run. Takes some seconds.
 Report bench_procedures();
 
 }  // namespace turnpoint::benchmark

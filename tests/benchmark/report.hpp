@@ -7,32 +7,32 @@
 
 namespace turnpoint::benchmark {
 
-/// A cell of a table: nothing measured, a text, or a number.
+/// A cell of a table: empty (not measured), a text, or a number.
 using Cell = std::variant<std::monostate, std::string, double>;
 
-/// What was measured, one row a measurement; each row has as many cells as there are columns.
+/// A table of results. Each row has as many cells as there are columns.
 struct Table {
-  std::vector<std::string> columns;  ///< with the unit: "time_us"
+  std::vector<std::string> columns;  ///< including the unit: "time_us"
   std::vector<std::vector<Cell>> rows;
 };
 
 struct Picture {
-  std::string name;  ///< of its file, without ending
+  std::string name;  ///< file name without ending
   plot::Figure figure;
 };
 
-/// The outcome of one benchmark: a table, and pictures of it.
+/// The result of one benchmark: a table and figures.
 struct Report {
-  std::string name;   ///< "physics", ...; also the table's file
-  std::string title;  ///< one line: what was measured, on what
+  std::string name;   ///< "physics", ...; also the name of the table's file
+  std::string title;  ///< one line that says what was measured and on what
   Table table;
   std::vector<Picture> pictures;
 };
 
-/// Columns aligned, numbers with three digits, "-" where nothing was measured.
+/// Text with aligned columns, numbers with three digits, "-" for cells that were not measured.
 std::string to_text(const Table& table);
 
-/// RFC 4180: quotes where a text needs them, an empty cell where nothing was measured.
+/// RFC 4180: quotes where needed, an empty cell if nothing was measured.
 std::string to_csv(const Table& table);
 
 }  // namespace turnpoint::benchmark

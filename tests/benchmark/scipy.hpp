@@ -13,8 +13,8 @@ struct ScipyRun {
   Solution v;
 };
 
-/// solve_ivp (DOP853, three tolerances) on the same equation and, on a wedge, special.jv (complex argument);
-/// empty where python3 has no SciPy.
+/// Runs solve_ivp (DOP853, three tolerances) on the same equation and, on a wedge, special.jv (complex
+/// argument). Empty if python3 has no SciPy.
 std::vector<ScipyRun> run_scipy(const OneModeProblem& problem);
 
 }  // namespace turnpoint::benchmark

@@ -6,9 +6,8 @@
 
 namespace turnpoint::benchmark {
 
-/// The one-mode equation g'' + [k^2 - (b + c W'^2)/W^2] g = 0, v = g / sqrt(W), g = 0 at x = length, on
-/// W = w0 - slope x or, with `decay_m` above 0, W = w0 exp(-x / decay_m): what a user would hand to a general
-/// solver.
+/// The one-mode equation g'' + [k^2 - (b + c W'^2)/W^2] g = 0, v = g / sqrt(W), g = 0 at x = length, on W =
+/// w0 - slope x or, with `decay_m` above 0, W = w0 exp(-x / decay_m), in the form for a general solver.
 struct OneModeProblem {
   std::complex<double> k_squared;
   double b = 0, c = 0;
@@ -18,24 +17,25 @@ struct OneModeProblem {
   double half_width_m(double x) const;
   double width_slope(double x) const;
   bool wedge() const { return decay_m == 0; }
-  double bessel_order() const;  ///< of the wedge's exact solution J_mu(k s), s from the apex
+  /// order of the wedge's exact solution J_mu(k s), with s measured from the apex
+  double bessel_order() const;
 };
 
-/// Complex displacement at each point, up to one constant factor.
+/// Complex displacement at each point, up to a constant factor.
 using Solution = std::vector<std::complex<double>>;
 
 struct Solver {
   std::string name;     ///< "Boost.Odeint dopri5", ...
-  std::string setting;  ///< tolerance or steps; "" where there is none
+  std::string setting;  ///< tolerance or number of steps; "" if there is none
   std::function<Solution(const OneModeProblem&)> solve;
 };
 
-/// A plain Numerov scheme; Boost.Odeint and, without loss on a wedge, Boost.Math's Bessel function, where
-/// this build found Boost.
+/// A plain Numerov scheme. If Boost was found at build time, also Boost.Odeint and, on a wedge without loss,
+/// Boost.Math's Bessel function.
 std::vector<Solver> general_solvers(const OneModeProblem& problem);
 
-/// The same equation in extended precision, by a method that shares nothing with the library's: what errors
-/// are measured against. Empty where this build has no Boost.
+/// The reference for errors: the same equation in extended precision, by a method that shares nothing with
+/// the library's. Empty if this build has no Boost.
 Solution reference_solution(const OneModeProblem& problem);
 
 /// Ai at each argument by Boost.Math; empty without Boost.

@@ -5,7 +5,7 @@
 
 namespace turnpoint::benchmark {
 
-/// Best time (s) of as many runs as fit the budget, two at least.
+/// Best time (s) of all runs that fit into the budget, but at least two.
 template <class Work>
 double best_time(double budget_s, Work work) {
   using clock = std::chrono::steady_clock;

@@ -5,7 +5,7 @@
 
 namespace turnpoint::benchmark {
 
-/// A durable trial through the session log beside bare SQLite, below `directory`: its disk is what is
+/// Compares durable trials through the session log with plain SQLite below `directory`, whose disk is what is
 /// measured.
 Report bench_store(const std::string& directory, int trials);
 

@@ -29,9 +29,10 @@ plot::Panel panel_of(const char* title, const SynthBenchmark& measured, std::siz
   return panel;
 }
 
-/// Error against the time since the start; cost per tone and frame in the legend.
+/// Error against the time since the start, with the cost per tone and frame in the legend.
 Picture picture_of_synth(const SynthBenchmark& measured) {
-  constexpr std::size_t exact = 5;  // ours first, then those of others that do not age
+  // ours comes first, then other methods whose error does not grow with time
+  constexpr std::size_t exact = 5;
   plot::Figure figure;
   figure.title = "Ways of making a sinusoid";
   figure.columns = 2;

@@ -3,7 +3,7 @@
 
 namespace turnpoint::benchmark {
 
-/// Ways of making a sinusoid: error after a time against cost.
+/// Compares methods of generating a sinusoid: error after a time against cost.
 Report bench_synth();
 
 }  // namespace turnpoint::benchmark

@@ -18,7 +18,7 @@ std::vector<BoundaryPoint> brass(std::initializer_list<double> frequencies_Hz) {
   return points;
 }
 
-// |u| of a resonator behind a constant.
+// |u| of a resonator, multiplied by a constant.
 std::vector<ResponsePoint> resonator(double f0_Hz, double q, double from_Hz, double to_Hz, int count) {
   std::vector<ResponsePoint> sweep;
   for (int k = 0; k < count; ++k) {
@@ -94,7 +94,7 @@ TEST_CASE("frequency and Q of a resonance come from its width", "[calibration]")
     CHECK(found[0].quality_factor == Approx(q).epsilon(0.05));
   }
   CHECK_FALSE(quality_of(find_resonances(resonator(28000, 500, 20000, 40000, 41)))
-                  .has_value());  // too coarse a sweep
+                  .has_value());  // the sweep is too coarse
 }
 
 TEST_CASE("a hump without a turn of the phase is no resonance", "[calibration]") {

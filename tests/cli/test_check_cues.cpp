@@ -1,4 +1,5 @@
-// What `check` prints of the cue guard: for each cue its own chance, and how precise a simulated figure is.
+// Tests what `check` prints about the cue guard: the chance level of each cue, and the precision of simulated
+// figures.
 #include <fstream>
 
 #include "station/text/toml.hpp"
@@ -33,7 +34,8 @@ std::string cues_of(const std::string& protocol) {
 }  // namespace
 
 TEST_CASE("check says how precise it knows what a cue reaches in simulated sessions", "[cli]") {
-  // Roving leaves the amplitude as a hint; a staircase then makes the hint easier until it suffices.
+  // After roving the amplitude is still a hint. A staircase then makes the level easier until the hint is
+  // sufficient.
   const auto text = with(turnpoint::text::read_file(source + "/protocols/friction-staircase.toml"),
                          {{"tolerance = { level_dB = 0.1 }", "rove_dB = 2.5"},
                           {"-3.0", "-9.0"},
@@ -45,8 +47,8 @@ TEST_CASE("check says how precise it knows what a cue reaches in simulated sessi
 }
 
 TEST_CASE("check compares each cue with its own chance", "[cli]") {
-  // Three of four answers are "right": a key reaches 75 % without any cue, an amplitude is judged against
-  // that.
+  // In three of four trials the answer is "right", so a single key reaches 75 % without any cue. The
+  // amplitude must be compared with that.
   const auto text =
       with(turnpoint::text::read_file(source + "/protocols/boundary-constant.toml"),
            {{"values = [-28.0, -16.0, -8.0, -3.0, 3.0, 8.0, 16.0, 28.0]", "values = [-3.0, 3.0, 8.0, 16.0]"},

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kPatience_ms = 20000;
 
-/// `turnpoint operator-code` on a terminal of its own.
+/// Runs `turnpoint operator-code` on its own terminal.
 class Terminal {
  public:
   explicit Terminal(const std::string& config) {
@@ -47,7 +47,7 @@ class Terminal {
   const std::string& seen() const { return seen_; }
 
  private:
-  /// False once the program has closed the terminal, or says nothing for long.
+  /// Returns false if the program has closed the terminal, or has not printed anything for long.
   bool read() {
     pollfd wait{master_, POLLIN, 0};
     char bytes[512];

@@ -12,11 +12,11 @@ using namespace turnpoint;
 
 namespace {
 
-/// Enough for a machine that does much else; what is not obeyed at all takes for ever.
+/// Long enough for a busy machine. A request that is ignored would take for ever.
 constexpr int kPatience_ms = 20000;
-/// From the signal to the end of the process. A service manager kills after 5 s.
+/// Limit for the time from the signal to the end of the process. A service manager kills after 5 s.
 constexpr int kPrompt_ms = 1000;
-/// Of a whole simulated session, with a sanitizer as well.
+/// Limit for a whole simulated session, even with a sanitizer.
 constexpr int kWhole_ms = 120000;
 
 std::vector<std::string> run(const std::string& protocol, const std::string& database,
@@ -41,7 +41,7 @@ std::vector<std::string> by_buttons(const std::string& database) {
   return run("demo.toml", database, {"--buttons-only"});
 }
 
-/// 137 trials, more than a second of them even on a fast machine.
+/// A session of 137 trials, which takes more than a second even on a fast machine.
 std::vector<std::string> simulated(const std::string& database) {
   return run("boundary-adaptive.toml", database, {"--headless", "--observer", "sim"});
 }
@@ -50,14 +50,15 @@ std::vector<std::string> resume(const std::string& database) {
   return {TURNPOINT, "resume", "--db", database, "--headless"};
 }
 
-/// To the first stimulus of a session with somebody at the buttons, who never says that they have read.
+/// Advances to the first stimulus of a session with a person at the buttons. Instructions are never
+/// confirmed.
 void begin_first_stimulus(Child& child) {
   REQUIRE(child.says("instructions", kPatience_ms));
   child.type("next");
   REQUIRE(child.says("stimulus", kPatience_ms));
 }
 
-/// Until a simulated session has stored so many trials.
+/// Waits until a simulated session has stored this many trials.
 void make_trials(Child& child, const std::string& database, int wanted) {
   for (int waited_ms = 0; waited_ms < kPatience_ms; ++waited_ms) {
     if (std::filesystem::exists(database)) {
@@ -80,7 +81,7 @@ store::SessionRecord only_session(const std::string& database) {
   return sessions[0];
 }
 
-/// Without those that a session which goes on warms up with.
+/// Without the warm-up trials of a resumed session.
 std::vector<store::TrialRow> trials_of(const std::string& database) {
   std::vector<store::TrialRow> trials;
   for (const auto& block : store::read_session(database, only_session(database).session_id).blocks)
@@ -93,7 +94,7 @@ std::string reason_for(int signal) {
   return std::string("the program was told to end (SIG") + ::sigabbrev_np(signal) + ")";
 }
 
-/// What the process has said, and what its database says, of a session that `signal` ended.
+/// Checks what the process has printed about a session that `signal` ended, and what its database contains.
 void check_stopped(const Child& child, int signal, const store::SessionRecord& session) {
   CHECK(child.outcome() == 1);
   CHECK(child.said().find("interrupted: " + reason_for(signal)) != std::string::npos);
@@ -118,7 +119,7 @@ TEST_CASE("a signal to end amid a stimulus stops a session by buttons as the ope
   const auto trials = trials_of(database);
   REQUIRE(trials.size() == 1);
   CHECK(trials[0].outcome == terms::Outcome::aborted);
-  // The stimulus went through its ramp: its end is known.
+  // The stimulus was ramped down, so its end is known.
   const auto stored = store::read_session(database, only_session(database).session_id);
   int stimuli = 0;
   for (const auto& event : stored.events) stimuli += event.kind == "stimulus" ? 1 : 0;
@@ -177,7 +178,7 @@ TEST_CASE("a second signal ends at once a session whose ending hangs", "[stop]")
   Child child(by_buttons(database));
   begin_first_stimulus(child);
   auto held = sample::raw(database);
-  held.execute("BEGIN IMMEDIATE");  // what the session has to write waits for this to end
+  held.execute("BEGIN IMMEDIATE");  // the session cannot write until this transaction ends
   REQUIRE(child.handles(signal));
   child.signal(signal);
   until_first_signal_is_taken(child, signal);

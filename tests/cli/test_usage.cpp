@@ -10,7 +10,7 @@ namespace {
 constexpr int kPatience_ms = 20000;
 const std::string kRig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
 
-/// What the program says to this command line, and how it ends.
+/// Checks the program's message and exit status for this command line.
 void check_refused(std::vector<std::string> arguments, const std::string& why) {
   arguments.insert(arguments.begin(), TURNPOINT);
   Child child(arguments);
@@ -40,7 +40,7 @@ TEST_CASE("the doctor warns of a simulated panel beside a real converter", "[cli
   std::ifstream simulated(kRig);
   std::string text{std::istreambuf_iterator<char>(simulated), {}};
   const std::string warning = "simulated: answers by touch have no kernel time";
-  for (const char* output : {"null:", "alsa:hw:31"}) {  // a card that is not there
+  for (const char* output : {"null:", "alsa:hw:31"}) {  // a card that does not exist
     const auto uri = text.find("uri = \"null:\"");
     if (uri != std::string::npos) text.replace(uri, 13, std::string("uri = \"") + output + "\"");
     std::ofstream(rig) << text;

@@ -1,7 +1,7 @@
-// coverage [--folder DIR] [--sessions N] [--procedure NAME] [--references N] [--threads N] [--table]: how often
-// the report's 95 % intervals of adaptive data hold the true value. Keeps each session in DIR and continues
-// where it was stopped; prints the table of what is there. Ends with 1 where an interval breaks its promise or
-// a cell has fewer sessions than asked for.
+// coverage [--folder DIR] [--sessions N] [--procedure NAME] [--references N] [--threads N] [--table]:
+// measures how often the report's 95 % intervals for adaptive data contain the true value. Saves each session
+// in DIR and continues where it was stopped; prints the table of all saved sessions. Exits with 1 if an
+// interval does not have the promised coverage or a cell has fewer sessions than requested.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -23,7 +23,7 @@ struct Request {
   bool table_only = false;
 };
 
-/// Sessions between two writes.
+/// Number of sessions between two writes.
 constexpr std::size_t kPart = 20;
 
 std::string file_of(const Request& request, const std::string& procedure, std::size_t source) {
@@ -57,7 +57,7 @@ std::string cell(const Tally& tally, const std::string& broken) {
   return broken.empty() ? text : text + " BROKEN:" + broken;
 }
 
-/// Whether every promise is kept, by as many sessions as were asked for.
+/// Returns true if every promise is kept with the requested number of sessions.
 bool print_table(const Request& request) {
   fmt::print("| procedure | true values | trials | sessions | threshold | slope | 75 % point |\n");
   fmt::print("|---|---|---|---|---|---|---|\n");

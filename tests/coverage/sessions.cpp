@@ -17,7 +17,7 @@ using namespace turnpoint;
 
 constexpr double kMostLapses = 0.06;
 constexpr int kReferenceSteps = 20'000;
-/// Streams of this program's own draws; the observer's stream with a block that no session has.
+/// Streams of this program's own draws: the observer's stream, with block numbers that no session uses.
 constexpr int kTruthBlock = 1000, kAnswerBlock = 1001;
 
 double share_right(const Truth& truth, double level_dB) {
@@ -45,7 +45,7 @@ std::optional<Ends> ends(const std::optional<analysis::ParameterInterval>& found
   return Ends{found->interval.low, found->interval.high};
 }
 
-/// What the report prints of these trials.
+/// The values that the report prints for these trials.
 Printed printed(const report::SessionData& data) {
   const auto fits = report::fits_of(data);
   const auto& intervals = fits.front().intervals;
@@ -113,7 +113,7 @@ Session Design::run(const Source& source, std::uint64_t seed, bool with_referenc
   const auto rehearsal = app::rehearse(protocol, 0, seed, {answer, {}});
   report::SessionData data;
   app::add_trials(rehearsal.blocks, protocol_, data);
-  data.replicates = 0;  // no bands
+  data.replicates = 0;  // without bands
   const auto all = data.trials;
   for (std::size_t i = 0; i < kTrials.size(); ++i) {
     if (std::find(counts.begin(), counts.end(), kTrials[i]) == counts.end()) continue;

@@ -16,24 +16,24 @@ inline constexpr std::array kTrials{48, 96, 200};
 enum Quantity { threshold, slope, level_75 };
 inline constexpr std::array kQuantities{"threshold", "slope", "75 % point"};
 
-/// A Weibull function of the level in dB; a guess is right half the time.
+/// A Weibull function of the level in dB; guesses are right half of the time.
 struct Truth {
   double threshold_dB = 0, slope = 1, lapse = 0;
   double of(Quantity quantity) const;
 };
 
-/// Where true values come from: without `fixed` each session draws its own from the prior of the report.
+/// Where true values come from. Without `fixed`, each session draws its own from the prior of the report.
 struct Source {
   std::string name;
   std::optional<Truth> fixed;
 };
-/// The prior, and values off its centre (-16.5 dB, slope 1.9), within the middle half of its ranges.
+/// The prior, and fixed values off its centre (-16.5 dB, slope 1.9), within the middle half of its ranges.
 const std::vector<Source>& sources();
 
 using Ends = std::pair<double, double>;
 
-/// What one session printed after so many trials; an interval is none where the report abstained. `reference`
-/// is the central interval of an independent sampler, where it was asked.
+/// What a session's report prints after this many trials. An interval is empty if the report gives none.
+/// `reference` is the central interval of an independent sampler, if it was requested.
 struct Printed {
   std::array<std::optional<Ends>, 3> interval, reference;
 };
@@ -44,13 +44,13 @@ struct Session {
   std::array<Printed, kTrials.size()> after;
 };
 
-/// A procedure's protocol, whose sessions are rehearsed and analysed as `turnpoint power` does.
+/// The protocol of a procedure, whose sessions are simulated and analysed as in `turnpoint power`.
 class Design {
  public:
   explicit Design(const std::string& procedure);
 
-  /// The seed alone decides the session. It is analysed after each number of trials in `counts` (of kTrials,
-  /// ascending) and ends after the last; the other entries stay empty.
+  /// The session depends only on the seed. It is analysed after each number of trials in `counts` (which are
+  /// values of kTrials, ascending) and ends after the last; the other entries stay empty.
   Session run(const Source& source, std::uint64_t seed, bool with_reference,
               const std::vector<int>& counts = {kTrials.begin(), kTrials.end()}) const;
 

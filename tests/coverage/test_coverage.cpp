@@ -28,7 +28,7 @@ std::vector<Session> sessions_of(const std::string& procedure, const Source& sou
 
 TEST_CASE("Printed 95 % intervals after 96 trials of QUEST+ hold true values drawn from the prior",
           "[coverage]") {
-  // One cell of the table of build/release/bin/coverage: three standard errors of 2000 sessions are 1.5 %.
+  // One cell of the table of build/release/bin/coverage. Three standard errors of 2000 sessions are 1.5 %.
   const auto sessions = sessions_of("quest-plus", sources()[0], 2000, 96, 40);
   for (const auto quantity : {threshold, slope, level_75}) {
     const auto found = tally(sessions, 1, quantity);
@@ -38,7 +38,7 @@ TEST_CASE("Printed 95 % intervals after 96 trials of QUEST+ hold true values dra
     REQUIRE(found.width_ratio);
     CHECK(*found.width_ratio < 1.3);
     CHECK(*found.width_ratio > 0.8);
-    // Intervals a fifth narrower, or twice as wide, would be seen.
+    // Negative control: intervals a fifth narrower, or twice as wide, would be detected.
     CHECK(tally(sessions, 1, quantity, 0.8).coverage() < 0.935);
     CHECK(broken_promise(tally(sessions, 1, quantity, 2), sources()[0], quantity, 96) != "");
   }
@@ -47,7 +47,7 @@ TEST_CASE("Printed 95 % intervals after 96 trials of QUEST+ hold true values dra
 
 TEST_CASE("Intervals after 200 trials of QUEST+ hold the slope of a shallow function off the prior's centre",
           "[coverage]") {
-  // A prior that is flat up to its ends gives 92 %; two standard errors of 800 sessions are 1.4 %.
+  // A prior that is flat up to its ends gives 92 %. Two standard errors of 800 sessions are 1.4 %.
   const auto sessions = sessions_of("quest-plus", sources()[3], 800, 200, 0);
   CHECK(tally(sessions, 2, slope).coverage() >= 0.945);
   CHECK(tally(sessions, 2, threshold).coverage() >= 0.93);
@@ -105,7 +105,7 @@ TEST_CASE("A run of the coverage table that was cut off goes on where it stopped
   const auto path = folder / "cell.csv";
   const auto sessions = sessions_of("psi", sources()[0], 3, 48, 1);
   append(path, sessions);
-  std::ofstream(path, std::ios::app) << "4,-12.5,1";  // cut off while it was written
+  std::ofstream(path, std::ios::app) << "4,-12.5,1";  // interrupted while writing
   const auto found = read(path);
   REQUIRE(found.size() == 3);
   for (std::size_t i = 0; i < 3; ++i) {

@@ -36,7 +36,7 @@ void called() {
 FakePcm& fake_pcm() { return card; }
 void reset_fake_pcm() { card = {}; }
 
-// What was played is silenced at once, as the station asks of alsa-lib.
+// Silences played samples at once, as the station asks alsa-lib to do.
 void FakePcm::pass(std::int64_t frames) {
   for (std::int64_t n = 0; n < frames; ++n, ++now) {
     std::int32_t sample = 0;

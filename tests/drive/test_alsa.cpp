@@ -13,7 +13,7 @@ namespace {
 
 void quiet(const char*, int, const char*, int, const char*, ...) {}
 
-// Points alsa-lib at the definitions of these tests.
+// Makes alsa-lib use the definitions of these tests.
 const bool configured = [] {
   ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
   snd_lib_error_set_handler(quiet);
@@ -37,7 +37,7 @@ bool opens(const OutputConfig& config) {
   }
 }
 
-// What a program that only asks for an exact rate would conclude.
+// Whether a program that merely asks for an exact rate would accept the device.
 bool accepts_exact_rate(const char* name, unsigned rate) {
   snd_pcm_t* pcm = nullptr;
   if (snd_pcm_open(&pcm, name, SND_PCM_STREAM_PLAYBACK, SND_PCM_NONBLOCK) < 0) return false;
@@ -63,7 +63,7 @@ TEST_CASE("every plug-in of alsa-lib that resamples or mixes is refused by defau
     INFO(name);
     CHECK_FALSE(opens(config_for(name)));
   }
-  CHECK_FALSE(opens(config_for("straight")));  // not hardware either
+  CHECK_FALSE(opens(config_for("straight")));  // also not hardware
 }
 
 TEST_CASE("a resampler behind an allowed plug-in is refused as well", "[drive][alsa]") {
@@ -77,7 +77,7 @@ TEST_CASE("a resampler behind an allowed plug-in is refused as well", "[drive][a
 }
 
 TEST_CASE("asking for an exact rate is not enough: alsa-lib's plug says yes", "[drive][alsa]") {
-  // The negative control of the two tests above: the definitions do open and do claim 192 kHz.
+  // Negative control of the two tests above: these definitions can be opened and do claim 192 kHz.
   for (const char* name :
        {"rated", "rated_linear", "plugged", "file_over_rate", "copy_over_rate", "asym_over_rate",
         "empty_over_rate", "hooks_over_rate", "route_over_rate", "multi_over_rate"}) {

@@ -20,7 +20,8 @@ void steps(DeviceStream& stream, int count) {
   for (int k = 0; k < count; ++k) stream.step();
 }
 
-/// How wrong the stream's idea of now is; frames. The card plays, without a prefill of silence left over.
+/// Error of the stream's idea of the current frame, in frames. The card is playing, and the initial silence
+/// is over.
 double error_frames(DeviceStream& stream) {
   const auto& card = fake_pcm();
   const auto next = stream.counters().frames;
@@ -36,7 +37,7 @@ TEST_CASE("before the device has told its position nothing is known of its time"
   CHECK(stream.clock().pairs == 0);
   CHECK_FALSE(stream.time_of(0));
   CHECK_FALSE(stream.frame_at(1'000'000'000));
-  fake_pcm().stamps = false;  // a device that never tells
+  fake_pcm().stamps = false;  // a device that never reports its position
   steps(stream, 50);
   CHECK_FALSE(stream.time_of(0));
   fake_pcm().stamps = true;
@@ -46,11 +47,11 @@ TEST_CASE("before the device has told its position nothing is known of its time"
 
 TEST_CASE("a restart is never forgotten, however long nobody listened", "[drive][clock]") {
   DeviceStream stream(on_fake_card());
-  steps(stream, 5000);  // ten seconds: the ring of positions is long full
+  steps(stream, 5000);  // ten seconds: the ring of positions has been full for long
   fake_pcm().fail(FakePcm::State::xrun);
   fake_pcm().pass(5000);
   stream.step();
-  CHECK_FALSE(stream.time_of(0));  // all that the ring holds is from before
+  CHECK_FALSE(stream.time_of(0));  // everything in the ring is from before the restart
   steps(stream, 3);
   CHECK(std::abs(error_frames(stream)) <= 1);
   steps(stream, 200);
@@ -112,7 +113,7 @@ TEST_CASE("an underrun is told with its first lost frame and the burst that it c
   REQUIRE(told);
   CHECK(told->frame == rendered);
   CHECK(told->frames == 100 + 384);
-  CHECK(told->burst == 0);  // before the burst: it is untouched
+  CHECK(told->burst == 0);  // before the burst, which is not affected
   steps(stream, 100);
   const auto in_burst = stream.counters().frames;
   card.pass(card.queued() + 50);

@@ -25,7 +25,7 @@ TEST_CASE("the interval stretches just as far as the duty needs, and no sliding 
     const double start = exposure.earliest_start_s(time, 9.0);
     all.push_back({start, start + 9.0});
     exposure.add(all.back());
-    time = start + 9.0 + 0.6;  // asks for a duty of 0.94
+    time = start + 9.0 + 0.6;  // requests a duty cycle of 0.94
   }
   double largest = 0;
   for (double from = 0; from < all.back().end_s; from += 0.25) {
@@ -62,7 +62,7 @@ TEST_CASE("a live session needs a measured sound level below 22.4 kHz", "[drive]
   const std::vector<SoundLevel> measured{{8000, 80}, {20000, 70}, {30000, 120}};
   CHECK(sound_problem(22400, 1, {}).empty());
   CHECK_FALSE(sound_problem(22399, 1, {}).empty());
-  CHECK_FALSE(sound_problem(7000, 0.1, measured).empty());  // outside what was measured
+  CHECK_FALSE(sound_problem(7000, 0.1, measured).empty());  // outside the measured range
   CHECK_FALSE(sound_problem(8000, 1, measured).empty());
   CHECK(sound_problem(8000, 0.5, measured).empty());         // 74 dB
   CHECK_FALSE(sound_problem(15000, 0.6, measured).empty());  // the louder neighbour counts

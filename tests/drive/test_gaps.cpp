@@ -7,9 +7,9 @@
 #include "tests/drive/fake_pcm.hpp"
 #include "tests/support/catch.hpp"
 
-// The station's ALSA output, its stream and its trial machine on a sound card in memory, stepped by hand.
-// What the card really played decides whether the trial must be void: the samples are compared with those of
-// an unbroken synthesis, whatever the program believes to be where.
+// Steps the station's ALSA output, its stream and its trial machine by hand on a sound card in memory.
+// Whether a trial must be void depends on what the card really played: its samples are compared with those of
+// an uninterrupted synthesis, independent of what the program believes.
 
 using namespace turnpoint;
 using namespace turnpoint::drive;
@@ -28,7 +28,7 @@ Burst burst_of(std::int64_t length_frames) {
   return burst;
 }
 
-/// Channel 0 of frames [first, end) as a synthesis without gaps renders them.
+/// Channel 0 of frames [first, end) as rendered by a synthesis without gaps.
 std::vector<std::int32_t> unbroken(std::span<const PreparedBurst> bursts, const Format& format,
                                    std::int64_t first, std::int64_t end) {
   Synth synth(format);
@@ -42,7 +42,7 @@ std::vector<std::int32_t> unbroken(std::span<const PreparedBurst> bursts, const 
   return channel;
 }
 
-/// Where sound sets in at more than a twentieth of its amplitude within 16 frames, after silence.
+/// Number of places where, after silence, sound rises above a twentieth of its amplitude within 16 frames.
 int abrupt_onsets(const std::vector<std::int32_t>& heard) {
   int abrupt = 0;
   std::size_t silent = 0;
@@ -64,7 +64,7 @@ int abrupt_onsets(const std::vector<std::int32_t>& heard) {
 
 enum class Mishap { stall, stall_in_write, xrun, suspend, unplug };
 
-/// Two bursts with a pause on a card to which things happen, and what the stream said about them.
+/// Two bursts with a pause on a card that has mishaps, and what the stream reported about them.
 struct Run {
   std::vector<Scheduled> scheduled;
   std::vector<PreparedBurst> bursts;
@@ -73,9 +73,9 @@ struct Run {
   std::vector<Event> losses;
   bool restarted = false;
   trial::Result result;
-  bool told_after_answer = false;  ///< a loss that made it void
-  /// Time passed between a write and the look whether the device has overtaken it: nobody can tell whether it
-  /// did so before the write, so it counts as lost.
+  bool told_after_answer = false;  ///< a loss that made the trial void
+  /// Time passed between a write and the check whether the device has overtaken it. It cannot be known
+  /// whether it was overtaken before the write, so the block counts as lost.
   bool doubtful = false;
 
   bool both_heard() const { return heard.size() == 2; }
@@ -105,8 +105,9 @@ class Bench {
     config_.output.periods = pick({2, 3, 4, 8});
   }
 
-  /// A trial with `mishaps` of the kinds given, each at a moment drawn from before the first onset until
-  /// after the last end. What a void trial would silence plays on, so that the whole of it can be judged.
+  /// A trial with `mishaps` of the given kinds, each at a random moment between shortly before the first
+  /// onset and shortly after the last end. A void trial is not silenced here but keeps playing, so that all
+  /// of it can be judged.
   Run run(int mishaps, const std::vector<Mishap>& kinds) {
     DeviceStream stream(config_);
     for (int k = 0; k < 4 || stream.clock().pairs < 2; ++k) stream.step();
@@ -228,8 +229,8 @@ class Bench {
 };
 
 struct Truth {
-  bool whole = false;    ///< both bursts and the pause between them were played, sample by sample
-  bool on_time = false;  ///< and began when it was predicted
+  bool whole = false;    ///< both bursts and the pause between them were played sample by sample
+  bool on_time = false;  ///< and began at the predicted time
 };
 
 Truth truth_of(const Run& run, const OutputConfig& output) {
@@ -248,7 +249,7 @@ struct Tally {
   int whole = 0, broken = 0, late = 0, gaps = 0, told_after_answer = 0, void_in_doubt = 0;
 };
 
-/// A trial must be void exactly if the card did not play it whole and in time.
+/// A trial must be void exactly if the card did not play all of it in time.
 Tally judge(int runs, std::uint64_t seed, const std::vector<Mishap>& kinds) {
   Tally tally;
   for (int k = 0; k < runs; ++k) {
@@ -259,7 +260,7 @@ Tally judge(int runs, std::uint64_t seed, const std::vector<Mishap>& kinds) {
     const bool good = truth.whole && truth.on_time;
     if (run.both_heard() && !good) FAIL("said to be heard, and was not");
     if (run.answered() && !good) FAIL("a trial that was not felt whole counts");
-    // A device that was started anew has no relation to what was predicted, even if it happens to agree.
+    // After a restart earlier predictions are invalid, even if they happen to be right.
     const bool may_be_void = run.restarted || run.doubtful;
     if (!run.both_heard() && good && !may_be_void) FAIL("said to have lost frames, and had not");
     if (!run.answered() && good && !may_be_void) FAIL("a trial that was felt whole is void");

@@ -1,5 +1,6 @@
-// "memory locked" is recorded only where it is so: looked up in /proc/self/smaps, for the audio thread's
-// stack and for all that engine and output allocate, on a thread whose memory is not the program's heap.
+// "memory locked" may be recorded only if it is true. This test looks in /proc/self/smaps for the audio
+// thread's stack and for everything that engine and output allocate, on a thread whose memory is not the
+// program's heap.
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
@@ -20,7 +21,7 @@ using namespace turnpoint::drive;
 
 namespace {
 
-/// Says where the audio thread's stack is, as seen from that thread.
+/// Finds out where the audio thread's stack is, from inside that thread.
 struct StackProbe : Amplifier {
   std::atomic<std::uintptr_t> address{0};
 
@@ -60,7 +61,7 @@ std::vector<Mapping> mappings() {
   return all;
 }
 
-/// Bytes from `start` on that are in no locked mapping.
+/// Number of bytes from `start` on that are not in a locked mapping.
 std::size_t unlocked(const std::vector<Mapping>& all, std::uintptr_t start, std::size_t length) {
   std::size_t locked = 0;
   for (const auto& m : all)
@@ -90,7 +91,7 @@ TEST_CASE("what is recorded as locked is locked: the audio thread's stack, its b
     while (probe.address == 0) std::this_thread::yield();
     const auto all = mappings();
     CHECK(unlocked(all, probe.address - 16384, 16384) == 0);
-    // The clock's pairs, 16 kB, belong to the control side.
+    // The clock's pairs, 16 kB, belong to the control side and need no lock.
     std::size_t engine = 0, left_out = 0;
     for (const auto& allocation : allocations) {
       if (allocation.size < 1024) continue;
@@ -101,7 +102,7 @@ TEST_CASE("what is recorded as locked is locked: the audio thread's stack, its b
     }
     CHECK(engine > 150'000);
     CHECK(left_out <= 32'768);
-    std::vector<char> other(1 << 20);  // the negative control: nobody has locked this
+    std::vector<char> other(1 << 20);  // negative control: memory that nobody has locked
     CHECK(unlocked(all, reinterpret_cast<std::uintptr_t>(other.data()), other.size()) > 0);
   }).join();
 }

@@ -60,7 +60,8 @@ TEST_CASE("the audio side allocates, locks and logs nothing, whatever it is sent
 
 TEST_CASE("writing through alsa-lib allocates, locks and logs nothing", "[drive][realtime][alsa]") {
   ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
-  // alsa-lib guards plug-ins, never hardware, with a mutex of their own: off, as for hardware.
+  // alsa-lib guards plug-ins (but never hardware) with their own mutex. Switch it off to get the behaviour of
+  // hardware.
   ::setenv("LIBASOUND_THREAD_SAFE", "0", 1);
   OutputConfig config;
   config.uri = "alsa:straight";

@@ -38,7 +38,8 @@ TEST_CASE("a real-time stream to null plays bursts at their frames and tells wha
 
 TEST_CASE("a burst that takes longer to check than the buffer lasts begins after it, and is not missed",
           "[drive][realtime][threads]") {
-  // The amplitudes add up to more than full scale: that the peak stays below it is found by rendering 10 s.
+  // The amplitudes add up to more than full scale. Only rendering all 10 s shows that the peak stays below
+  // it.
   Burst burst = one_tone(20000, 0.07);
   burst.tones.count = 16;
   for (int k = 1; k < 16; ++k)
@@ -46,7 +47,7 @@ TEST_CASE("a burst that takes longer to check than the buffer lasts begins after
   burst.length_frames = 1920000;
   const auto stream = open_realtime({});
   burst.start_frame = stream->earliest_frame();
-  CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);  // gone, once it is checked
+  CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);  // its start frame is past once it has been checked
   const auto scheduled = stream->schedule_soon(burst);
   CHECK(scheduled.start_frame > burst.start_frame);
   std::optional<Event> first;

@@ -69,12 +69,12 @@ TEST_CASE("more than three underruns within a minute are too many", "[drive][rec
   CHECK_FALSE(limit.exceeded_by(0));
   CHECK_FALSE(limit.exceeded_by(20 * second));
   CHECK_FALSE(limit.exceeded_by(40 * second));
-  CHECK_FALSE(limit.exceeded_by(61 * second));  // the first is more than a minute ago
+  CHECK_FALSE(limit.exceeded_by(61 * second));  // the first one is more than a minute ago
   CHECK(limit.exceeded_by(62 * second));
 }
 
 TEST_CASE("a device that really runs at another rate is found out within seconds", "[drive][rate]") {
-  // The device says how far it is only every `tick_s`, so that frames and time belong together only roughly.
+  // The device updates its position only every `tick_s`, so that frames and times match only roughly.
   const auto measured = [](double real_rate_Hz, double tick_s, double seconds) {
     RateCheck check(192000);
     for (int i = 0; i < seconds / 0.002; ++i) {

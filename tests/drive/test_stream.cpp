@@ -179,8 +179,9 @@ TEST_CASE(
   stream->schedule(second);
   louder.at_frame = 80'000;
   louder.to.tones[0].amplitude = 0.65;
-  CHECK_THROWS_AS(stream->change(id, louder), BurstRefused);  // beside the second
-  stream->advance(200'000);                                   // once that is over it may
+  CHECK_THROWS_AS(stream->change(id, louder), BurstRefused);  // together with the second burst
+  // once that burst is over, the change is allowed
+  stream->advance(200'000);
   louder.at_frame = 250'000;
   CHECK_NOTHROW(stream->change(id, louder));
   stream->advance(400'000);
@@ -197,7 +198,7 @@ TEST_CASE("a burst that a live change made louder leaves that much less room bes
   stream->change(id, Change{30'000, 9600, one_tone(20000, 0.7).tones});
   Burst second = one_tone(20500, 0.45);
   second.start_frame = 60'000;
-  CHECK_THROWS_AS(stream->schedule(second), BurstRefused);  // there was room for it beside 0.2
+  CHECK_THROWS_AS(stream->schedule(second), BurstRefused);  // there would have been room for it beside 0.2
   second.tones.tones[0].amplitude = 0.29;
   stream->schedule(second);
   stream->advance(400'000);
@@ -221,7 +222,7 @@ TEST_CASE("bursts that are scheduled together keep their distances, or none is t
   stream->advance(384);
   while (stream->poll()) {
   }
-  bursts[1].start_frame = 2000;  // two at once are too loud
+  bursts[1].start_frame = 2000;  // two at the same time are too loud
   CHECK_THROWS_AS(stream->schedule_together(bursts), BurstRefused);
   stream->advance(400'000);
   CHECK(stream->counters().bursts == 0);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int rate = 192000;
 
-// Channel 0 of `frames` frames from `from`, in blocks of `block`.
+// Channel 0 of `frames` frames from `from` on, in blocks of `block`.
 std::vector<double> rendered(Synth& synth, std::int64_t from, std::size_t frames, std::size_t block = 384) {
   std::vector<double> out, samples;
   for (std::size_t done = 0; done < frames; done += block) {
@@ -37,7 +37,7 @@ std::vector<double> rendered(const Burst& burst, const Kernels& kernels = best_k
   return rendered(synth, 0, static_cast<std::size_t>(burst.start_frame + burst.length_frames));
 }
 
-// A long burst with eight tones, for spectra taken from its middle.
+// A long burst of eight tones. Spectra are taken from its middle.
 Burst eight_tones() {
   Burst burst;
   burst.length_frames = 300000;
@@ -115,8 +115,8 @@ TEST_CASE("samples do not depend on how the stream is cut into blocks", "[drive]
 }
 
 TEST_CASE("the phase is exact after ten days", "[drive][synth]") {
-  // 192 kHz * 10 days is 165 888 000 000 frames; 20 kHz is then on a whole cycle, to the last bit of the
-  // phase.
+  // 192 kHz * 10 days is 165 888 000 000 frames. 20 kHz has then completed whole cycles, to the last bit of
+  // the phase.
   Burst burst = one_tone(20000, 0.5, 1.0);
   Synth late({rate, 2, 24});
   burst.length_frames = 170'000'000'000;
@@ -135,7 +135,7 @@ TEST_CASE("a frequency glide keeps the phase continuous and ends on the target",
   burst.change_count = 1;
   burst.changes[0] = {40000, 9600, one_tone(21000, 0.5).tones};
   const auto samples = rendered(burst);
-  // The second difference of a sinusoid of this band is bounded by its own amplitude times (2 pi f / rate)^2.
+  // The second difference of a sinusoid in this band is at most its amplitude times (2 pi f / rate)^2.
   const double bound = 0.5 * std::pow(2 * M_PI * 21000.0 / rate, 2) * 1.001;
   double largest = 0;
   for (std::size_t k = 20001; k + 1 < 80000; ++k)
@@ -209,7 +209,7 @@ TEST_CASE("a stop ramps down and frames that were lost come back ramped", "[driv
 TEST_CASE("stops that follow one another go on from the gain that is reached, each of them sooner at its end",
           "[drive][synth]") {
   Synth synth({rate, 1, 24});
-  Burst burst = one_tone(rate / 4.0, 1 / std::sqrt(0.5) / 2, M_PI / 4);  // every sample has the magnitude 1/2
+  Burst burst = one_tone(rate / 4.0, 1 / std::sqrt(0.5) / 2, M_PI / 4);  // every sample has magnitude 1/2
   REQUIRE(synth.start(prepare(burst, {rate, 1, 24})));
   std::vector<double> samples;
   const auto render = [&](std::size_t frames) {
@@ -222,8 +222,8 @@ TEST_CASE("stops that follow one another go on from the gain that is reached, ea
   render(14'000);
   synth.stop(0, 0, {9'600});
   render(2'000);
-  synth.stop(0, 36'500, {1'000});  // from a later frame: until then the others go on
-  synth.stop(0, 0, {48'000});      // ends later: changes nothing
+  synth.stop(0, 36'500, {1'000});  // takes effect later; until then the others continue
+  synth.stop(0, 0, {48'000});      // ends later, so it changes nothing
   render(4'000);
   double largest_step = 0;
   for (std::size_t k = 20'000; k < samples.size(); ++k) {

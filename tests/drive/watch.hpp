@@ -4,13 +4,13 @@
 
 namespace turnpoint::drive {
 
-/// Counts what an audio thread must not do: memory taken or given back, mutexes locked, text written, by the
-/// calling thread while it runs `function`. Seen at the C library's door, so alsa-lib's own calls count as
-/// well.
+/// Counts what an audio thread must not do: allocate or free memory, lock mutexes, write text. Counts calls
+/// of the calling thread while it runs `function`. The C library's functions are intercepted, so alsa-lib's
+/// calls are included.
 void begin_watch() noexcept;
 int end_watch() noexcept;
 
-/// Memory that the calling thread took between the two calls and has not given back.
+/// Memory that the calling thread allocated between the two calls and has not freed.
 struct Allocation {
   const void* start = nullptr;
   std::size_t size = 0;

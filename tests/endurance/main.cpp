@@ -1,6 +1,6 @@
-// endurance [--hours H] [--seed N] [--every S] [--plant NAME]: hours of session on the virtual clock with a
-// seeded fault about every S seconds. Ends with 1 where an acknowledged trial was lost, the amplifier was on
-// when it must not be, memory grew, or a session went otherwise than one that nothing befell.
+// endurance [--hours H] [--seed N] [--every S] [--plant NAME]: runs hours of session on the virtual clock
+// with a seeded fault about every S seconds. Exits with 1 if an acknowledged trial was lost, the amplifier
+// was on when it must not be, memory grew, or a session differed from one without faults.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -59,7 +59,7 @@ struct Tally {
   int sessions = 0, lives = 0, days = 0;
 };
 
-/// A new database for each round of protocols, so that what one costs shows in memory.
+/// Use a new database for each round of protocols, so that the memory that one needs becomes visible.
 Tally run(World& world, const Request& request) {
   Tally tally;
   world.end_ns = static_cast<std::int64_t>(request.hours * 3600e9);

@@ -31,7 +31,7 @@ Room::Room(World& world, Disk disk, std::unique_ptr<session::Stage> inner, int r
 }
 
 Room::~Room() {
-  // The line falls back to its pull however the process ends.
+  // The line falls back to its pull, however the process ends.
   world_.amplifier.line(world_ns(), false);
   for (const char* what : {"amplifier line", "stop pressed", "lines gone"}) world_.amplifier.over(what);
   world_.now_ns = world_ns();
@@ -58,7 +58,7 @@ void Room::push(InputKind kind, FaultKind fault, const std::string& text) {
   inputs_.push_back(std::move(input));
 }
 
-/// What guard thread and session do in between on the real stage.
+/// Does what guard thread and session do in between on the real stage.
 void Room::attend() {
   if (disk_.dead()) throw Died("in a write");
   const auto now = now_ns();
@@ -126,7 +126,7 @@ std::int64_t Room::silence() {
   return quiet_ns_;
 }
 
-/// The loss has been told when it is over: it touches the stimulus that is on the surface.
+/// The loss is reported once it is over. It affects the stimulus that is being presented.
 void Room::strike_underrun() {
   const auto now = now_ns();
   push(InputKind::xrun, {}, "960 frames lost");
@@ -171,7 +171,7 @@ void Room::finish() {
   world_.amplifier.cause(world_ns(), "the session's end");
 }
 
-/// The operator: whoever has to arm does so after some seconds, whether the cause is gone or not.
+/// The operator: whenever arming is required, arms after some seconds, whether the cause is gone or not.
 void Room::show(const session::Page& page) {
   if (disk_.dead()) return;
   world_.amplifier.page(world_ns(), page.kind);
@@ -185,7 +185,7 @@ void Room::show(const session::Page& page) {
   });
 }
 
-// A fault of the room, told to the session as the real stage tells it: once for each that latched.
+// Reports a fault to the session as the real stage does: once for each latched fault.
 void Room::tell_guard_fault() {
   line();
   if (guard_.state() != AmplifierState::faulted || std::exchange(fault_told_, true)) return;
@@ -210,7 +210,8 @@ void Room::strike_device() {
   plan(world_.course.seconds(0.5, 10), [this] { push(InputKind::notice, {}, "the converter is back"); });
 }
 
-/// Buttons and amplifier are on one chip: it is told twice, and refused until it is back.
+/// Buttons and amplifier are on one chip, so the fault is reported twice. Arming is refused until the chip is
+/// back.
 void Room::strike_chip() {
   world_.amplifier.cause(world_ns(), "lines gone");
   world_.amplifier.lasts("lines gone");
@@ -237,7 +238,7 @@ void Room::strike(Fault fault) {
       return strike_chip();
     case Fault::audio_silent: {
       guard_.session_alive(now_ns() + 150'000'000);
-      guard_.tick(now_ns() + 150'000'000);  // the last sign of the audio thread is that old then
+      guard_.tick(now_ns() + 150'000'000);  // by then the last report of the audio thread is this old
       if (guard_.state() == AmplifierState::faulted) world_.amplifier.cause(world_ns(), "audio silent");
       return tell_guard_fault();
     }

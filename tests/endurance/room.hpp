@@ -12,15 +12,15 @@
 
 namespace endurance {
 
-/// Violations planted on purpose: the checker has to see each.
+/// Violations planted on purpose. The checker must detect each of them.
 enum class Plant { none, deaf_guard, never_off, lost_trial, careless_disk, leak };
 
-/// The process ends here: thrown out of the sitting, whose files were taken as they were at the death.
+/// Ends the process: thrown out of the sitting, after its files were copied as they were at that moment.
 struct Died : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What goes on around a station whatever happens to its process.
+/// The surroundings of a station, which continue whatever happens to its process.
 struct World {
   explicit World(Course c, Plant p) : course(std::move(c)), plant(p) {}
 
@@ -30,25 +30,26 @@ struct World {
   AmplifierWatch amplifier{violations};
   TrialWatch trials{violations};
   MemoryWatch memory;
-  std::int64_t now_ns = 0;                                  ///< since the beginning of the run; virtual
-  std::int64_t end_ns = 0;                                  ///< of session time: then the run is over
-  std::int64_t session_ns = 0;                              ///< of it, with a session running
-  std::int64_t wall_offset_ns = 1'700'000'000'000'000'000;  ///< of the wall clock, which people set
+  std::int64_t now_ns = 0;      ///< virtual time since the beginning of the run
+  std::int64_t end_ns = 0;      ///< session time at which the run ends
+  std::int64_t session_ns = 0;  ///< part of it in which a session was running
+  /// offset of the wall clock, which people can change
+  std::int64_t wall_offset_ns = 1'700'000'000'000'000'000;
   std::int64_t next_fault_ns = 0;
 };
 
-/// What the files do when the process dies or the disk fills; the station knows them.
+/// What happens to the files when the process dies or the disk is full. The station provides these functions.
 struct Disk {
-  std::function<void(Fault)> die;             ///< takes the files as this death leaves them
-  std::function<void(Fault, int)> die_later;  ///< the same, after so many operations on the files
+  std::function<void(Fault)> die;             ///< copies the files as this death leaves them
+  std::function<void(Fault, int)> die_later;  ///< the same, after a number of further file operations
   std::function<void(std::int64_t)> bytes_left;
   std::function<bool()> dead;
 };
 
-/// A room for one life of the station's process: time, drive and observer are the virtual stage's; the
-/// amplifier is the station's own guard on a line that the watch looks at; and faults come as the course has
-/// them. It is also the operator, who mends and arms (now and then too soon), and the participant who sees
-/// the pages.
+/// The room for one life of the station's process. Time, drive and observer are the virtual stage's; the
+/// amplifier is the station's own guard on a line that the watch observes; faults come as the course
+/// prescribes. It also plays the operator, who repairs and arms (sometimes too early), and the participant,
+/// who sees the pages.
 class Room : public turnpoint::session::Stage, public turnpoint::session::Display {
  public:
   using Input = turnpoint::session::Input;
@@ -110,12 +111,13 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   Disk disk_;
   std::unique_ptr<turnpoint::session::Stage> inner_;
   turnpoint::panel::Guard guard_;
-  std::string missing_;  ///< why the GPIO chip is not there
+  std::string missing_;  ///< why the GPIO chip is missing
   double ns_per_frame_;
   std::int64_t born_ns_;
   std::vector<Planned> planned_;
   std::deque<Input> inputs_;
-  std::vector<std::pair<std::int64_t, std::int64_t>> stimuli_;  ///< from when until when, of the trial
+  /// start and end of each stimulus of the trial
+  std::vector<std::pair<std::int64_t, std::int64_t>> stimuli_;
   std::int64_t quiet_ns_ = 0, opened_ns_ = 0;
   bool closing_ = false, arm_planned_ = false, fault_told_ = false;
 };

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int kLivesAtMost = 400;                     // of one session: more is a session that cannot end
+// limit for one session: beyond it the session cannot end
+constexpr int kLivesAtMost = 400;
 constexpr std::int64_t kRest_ns = 2'400'000'000'000;  // longer than the half hour that ends a sitting
 
 session::Setup prepare(const std::string& protocol, const std::string& database, std::uint64_t seed) {
@@ -34,7 +35,7 @@ session::Setup prepare(const std::string& protocol, const std::string& database,
   return app::prepare(request);
 }
 
-/// The same as a live session: an operator arms, and the finger's limits count.
+/// Makes it behave like a live session: an operator arms, and the finger's limits count.
 session::Setup as_live(session::Setup setup) {
   setup.observer.clear();
   setup.run_mode = terms::RunMode::live;
@@ -64,7 +65,7 @@ store::SessionStart start_of(const session::Setup& setup) {
   return start;
 }
 
-/// Hears of each trial that the session has stored.
+/// Receives each trial that the session has stored.
 struct Acknowledgements : session::Monitor {
   World& world;
   const Room& room;
@@ -76,7 +77,7 @@ struct Acknowledgements : session::Monitor {
   void trial_begins(const session::TrialSpec&, const protocol::Block&,
                     const session::PlanAhead::Plans&) override {}
   void trial_ended(const session::TrialSpec&, const store::TrialRow& row) override {
-    if (dead) return;  // said by a process that is no more
+    if (dead) return;  // ignore reports of a process that has died
     world.trials.acknowledged(session_id, row);
     const auto answered_ns = row.onset_ns + static_cast<std::int64_t>(row.response_time_s.value_or(0) * 1e9);
     world.amplifier.trial_ended(room.world_ns(), row.outcome == terms::Outcome::answered,
@@ -104,7 +105,7 @@ Disk Station::disk() {
           [this] { return dead_; }};
 }
 
-/// The files as they are, or as a cut of the power leaves them, into a folder of their own.
+/// Copies the files to a separate folder, as they are or as a power cut leaves them.
 void Station::take_files(Fault how) {
   if (std::exchange(dead_, true)) return;
   const auto into = folder_ / std::to_string(deaths_ + 1);
@@ -115,7 +116,7 @@ void Station::take_files(Fault how) {
     if (fs::exists(database_ + suffix)) fs::copy_file(database_ + suffix, into + "/a.sqlite" + suffix);
 }
 
-/// After the process is gone: on with the files that it left.
+/// Called after the process has died: continue with the files that it left.
 void Station::bury(const std::string& how) {
   operations_left_ = 0;
   full_.space_again();
@@ -177,7 +178,7 @@ Station::Ending Station::give_up(const std::string& why) {
   return Ending::unusable;
 }
 
-/// A life and what comes after it. What the station's own checks find is a violation as well.
+/// One life and its aftermath. A problem found by the station's own checks counts as a violation as well.
 Station::Ending Station::live_and_die(const session::Setup& setup) {
   std::string how = "its end";
   auto ending = Ending::on_the_way;
@@ -192,7 +193,7 @@ Station::Ending Station::live_and_die(const session::Setup& setup) {
     return give_up(error.what());
   }
   bury(how);
-  world_.now_ns += world_.course.seconds(5, 120);  // somebody notices
+  world_.now_ns += world_.course.seconds(5, 120);  // until somebody notices
   return ending;
 }
 

@@ -10,15 +10,15 @@
 
 namespace endurance {
 
-/// One database and the sessions of a participant in it, through every death of the station's process: what a
-/// death leaves of the files is looked at and gone on with. Built of the station's own sitting, store,
-/// procedures, planner, drive and guard.
+/// A database and a participant's sessions in it, through every death of the station's process. The files
+/// that a death leaves are checked, and the session continues with them. Uses the station's own sitting,
+/// store, procedures, planner, drive and guard.
 class Station {
  public:
   explicit Station(World& world);
 
-  /// A session of this protocol from its beginning to its end, in as many lives as it takes; then compared
-  /// with one that nothing befell. It stays as it is when the run's time is over. False where the database
+  /// Runs a session of this protocol from beginning to end, in as many lives as it takes, and compares it
+  /// with one without faults. It stops where it is when the run's time is over. Returns false if the database
   /// can no longer be used.
   bool run_session(const std::string& protocol, std::uint64_t seed);
 

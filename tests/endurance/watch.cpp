@@ -17,9 +17,9 @@ using session::PageKind;
 
 namespace {
 
-constexpr std::int64_t kAtOnce_ns = 1'000'000;  // the guard's promise
-constexpr std::int64_t kTail_ns = 250'000'000;  // ramp, converter and amplifier after the last stimulus
-constexpr std::size_t kEnough = 8;              // samples of memory that say something
+constexpr std::int64_t kAtOnce_ns = 1'000'000;  // the time that the guard guarantees
+constexpr std::int64_t kTail_ns = 250'000'000;  // for ramp, converter and amplifier after the last stimulus
+constexpr std::size_t kEnough = 8;              // number of memory samples needed for a verdict
 
 bool is_trial_page(PageKind kind) {
   return kind == PageKind::cue || kind == PageKind::stimulus || kind == PageKind::pause ||
@@ -34,7 +34,7 @@ std::string AmplifierWatch::why_low() const {
   return !present_.empty() ? *present_.begin() + " lasts" : "not armed since: " + last_cause_;
 }
 
-// Judges the time from the last look to now, in which nothing changed.
+// Judges the time since the last check, in which nothing changed.
 void AmplifierWatch::check(std::int64_t until_ns) {
   const auto from_ns = std::exchange(now_ns_, std::max(now_ns_, until_ns));
   if (!high_) return;
@@ -112,7 +112,7 @@ void AmplifierWatch::trial_ended(std::int64_t time_ns, bool answered, std::int64
 
 namespace {
 
-/// All of a trial that the data are about, as text.
+/// All research data of a trial, as text.
 std::string fingerprint(const store::TrialRow& row, bool times) {
   auto text = fmt::format("{}/{} {} {} {} {} {:016x}", row.trial_in_block, store::name(row.type),
                           row.procedure, row.level.value_or(0), store::name(row.outcome),
@@ -159,7 +159,7 @@ Prints prints_in(const std::string& database) {
 void TrialWatch::check(const std::string& database, const std::string& when) {
   Prints found;
   try {
-    found = prints_in(database);  // looks at the pages first
+    found = prints_in(database);  // also checks the pages of the file
   } catch (const store::StoreError& error) {
     violations_.push_back(fmt::format("after {}: {}", when, error.what()));
   }
@@ -170,7 +170,7 @@ void TrialWatch::check(const std::string& database, const std::string& when) {
     violations_.push_back(fmt::format("trial lost: after {}: number {} of session {} {}", when, key.second,
                                       key.first, there == found.end() ? "is gone" : "has changed"));
   }
-  kept_ = std::move(found);  // told once
+  kept_ = std::move(found);  // reported once
 }
 
 void TrialWatch::compare(const std::string& database, const std::string& session_id,
@@ -186,7 +186,7 @@ void TrialWatch::compare(const std::string& database, const std::string& session
 }
 
 void MemoryWatch::sample() {
-  ::malloc_trim(0);  // what the program holds, not what its allocator keeps for later
+  ::malloc_trim(0);  // measure memory in use, without what the allocator keeps for later
   std::ifstream statm("/proc/self/statm");
   double all = 0, resident = 0;
   statm >> all >> resident;

@@ -11,29 +11,28 @@
 
 namespace endurance {
 
-/// Collects what was found wrong; a run without any has passed.
+/// Collects violations. A run without any has passed.
 using Violations = std::vector<std::string>;
 
-/// Looks at the amplifier's line from outside, with rules of its own: it knows the line, what happened in the
-/// room, the operator's hand and the page on the screen, and nothing of the program's states. Times are of
-/// the world, ns, and never go back.
-///
-/// The line is low unless an operator has armed since the power came on and since the last fault, stop or
-/// disarming, no cause of a fault is present, and a trial is on the screen (until 250 ms after its stimuli's
-/// pages). While a stimulus sounds that is answered, it is high.
+/// Watches the amplifier's line from outside, with separate rules. It knows the line, the events in the room,
+/// the operator's actions and the page on the screen, but none of the program's states. Times are world times
+/// in ns and never go back.
+/// The line must be low unless all of these hold: an operator has armed since power-on and since the last
+/// fault, stop or disarming; no cause of a fault is present; and a trial is on the screen (until 250 ms after
+/// the pages of its stimuli). During a stimulus that is answered, it must be high.
 class AmplifierWatch {
  public:
   explicit AmplifierWatch(Violations& violations) : violations_(violations) {}
 
   void line(std::int64_t time_ns, bool high);
-  void begin(std::int64_t time_ns);  ///< of a process: low until armed, and no trial under way
+  void begin(std::int64_t time_ns);  ///< a process begins: low until armed, and no trial in progress
   void cause(std::int64_t time_ns, const std::string& what);  ///< low from now on, until armed again
   void lasts(const std::string& what) { present_.insert(what); }
   void over(const std::string& what) { present_.erase(what); }
   void armed(std::int64_t time_ns);  ///< the operator's command was accepted
   void page(std::int64_t time_ns, turnpoint::session::PageKind kind);
   void stimulus(std::int64_t on_ns, std::int64_t off_ns) { stimuli_.emplace_back(on_ns, off_ns); }
-  /// A trial has ended: with an answer, its stimuli must have been driven.
+  /// A trial has ended. If it was answered, its stimuli must have been driven.
   void trial_ended(std::int64_t time_ns, bool answered, std::int64_t answered_ns);
 
   int changes() const { return changes_; }
@@ -50,19 +49,20 @@ class AmplifierWatch {
   bool armed_ = false, high_ = false, told_ = false;
   bool trial_page_ = false;
   std::int64_t page_ns_ = 0, on_since_ns_ = 0, low_since_ns_ = 0, now_ns_ = 0, high_ns_ = 0;
-  std::vector<std::pair<std::int64_t, std::int64_t>> stimuli_, highs_;  ///< of the trial under way
+  std::vector<std::pair<std::int64_t, std::int64_t>> stimuli_, highs_;  ///< for the trial in progress
   int changes_ = 0;
 };
 
-/// Keeps every trial that was acknowledged, and looks for it again in the database.
+/// Remembers every acknowledged trial and looks for it in the database.
 class TrialWatch {
  public:
   explicit TrialWatch(Violations& violations) : violations_(violations) {}
 
   void acknowledged(const std::string& session_id, const turnpoint::store::TrialRow& row);
-  /// After each death and each ending: a sound database, and every acknowledged trial as it was.
+  /// Call after each death and each ending: the database must be sound and contain every acknowledged trial
+  /// unchanged.
   void check(const std::string& database, const std::string& when);
-  /// The trials that count of a finished session equal those of one that nothing befell.
+  /// The experimental trials of a finished session must equal those of one without faults.
   void compare(const std::string& database, const std::string& session_id, const std::string& unbroken);
   void new_database() { kept_.clear(); }
 
@@ -75,11 +75,11 @@ class TrialWatch {
   int total_ = 0, lost_ = 0;
 };
 
-/// Memory of this process over a run.
+/// Memory use of this process during a run.
 class MemoryWatch {
  public:
   void sample();
-  /// Peak in the second half above the peak in the first, MiB; 0 before there are eight samples.
+  /// Peak in the second half minus the peak in the first half, in MiB; 0 with fewer than eight samples.
   double growth_MiB() const;
   double last_MiB() const { return samples_.empty() ? 0 : samples_.back(); }
   std::size_t samples() const { return samples_.size(); }

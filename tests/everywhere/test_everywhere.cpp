@@ -8,9 +8,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// What must not depend on the machine, as hashes of its bits. They were recorded on amd64 with g++ 12 and
-// hold on arm64 and with g++ 14; a change of what is presented, drawn or rendered changes them, and is made
-// on purpose.
+// Hashes of everything that must not depend on the machine. They were recorded on amd64 with g++ 12 and also
+// hold on arm64 and with g++ 14. If a hash changes, the stimuli, draws or samples have changed: update it
+// only if that was intended.
 
 using namespace turnpoint;
 
@@ -22,7 +22,7 @@ std::string hash_of(const std::vector<Value>& values) {
       .substr(0, 16);
 }
 
-/// Two tones that glide to two others, ramped, over a second; a pulse marks onset and change.
+/// Two tones that glide to two others, with ramps, over one second; a pulse marks onset and change.
 drive::Burst burst() {
   drive::Burst burst;
   burst.start_frame = 1000;
@@ -52,7 +52,7 @@ std::string rendered(const drive::Burst& burst) {
   return hash_of(all);
 }
 
-/// A simulated session of a shipped protocol into the folder.
+/// Runs a simulated session of a shipped protocol into the folder.
 std::vector<store::TrialRow> session_of(const std::string& protocol, const TemporaryFolder& folder,
                                         const std::string& output) {
   app::RunRequest request;
@@ -73,7 +73,7 @@ std::vector<store::TrialRow> session_of(const std::string& protocol, const Tempo
   return trials;
 }
 
-/// What was asked and answered, to the last bit.
+/// Questions and answers, to the last bit.
 std::string decided(const std::vector<store::TrialRow>& trials) {
   std::ostringstream text;
   text << std::hexfloat;
@@ -88,7 +88,7 @@ std::string decided(const std::vector<store::TrialRow>& trials) {
   return text::sha256(text.str()).substr(0, 16);
 }
 
-/// What was felt and when, to the last bit.
+/// Stimuli and their times, to the last bit.
 std::string driven(const std::vector<store::TrialRow>& trials) {
   std::ostringstream text;
   text << std::hexfloat;
@@ -123,7 +123,7 @@ TEST_CASE("a burst has the same samples on every machine, bit for bit", "[everyw
   CHECK(rendered<double>(burst()) == "a63dd0d74bfd91b0");
   CHECK(rendered<std::int32_t>(burst()) == "485448f497561d34");  // dithered and quantised
   auto other = burst();
-  other.tones.tones[0].frequency_Hz += 1e-9;  // the hash sees the last digit
+  other.tones.tones[0].frequency_Hz += 1e-9;  // negative control: the hash detects a change of the last digit
   CHECK(rendered<double>(other) != rendered<double>(burst()));
 }
 

@@ -79,12 +79,11 @@ std::string absolute(const char* path) {
 
 enum class Effect {
   reads,
-  writes,    ///< needs space
-  arranges,  ///< changes something, and needs none
+  writes,    ///< calls that need space on the disk
+  arranges,  ///< calls that change something but need no space
 };
 
-/// True where the call is to fail, with errno set. `torn` does the first half of what the call would have
-/// done.
+/// Returns true, with errno set, if this call must fail. `torn` performs the first half of the call.
 template <class Torn>
 bool fails(const char* call, Effect effect, const std::string& path, Torn torn) {
   const auto& set = settings();
@@ -157,7 +156,7 @@ DIR* opendir(const char* path) {
   return fails("opendir", Effect::reads, absolute(path)) ? nullptr : the_real(path);
 }
 
-/// libstdc++ opens folders so.
+/// libstdc++ opens folders with this function.
 DIR* fdopendir(int descriptor) {
   REAL(fdopendir);
   return fails("fdopendir", Effect::reads, path_of(descriptor)) ? nullptr : the_real(descriptor);

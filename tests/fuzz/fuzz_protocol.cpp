@@ -1,5 +1,5 @@
-// Any bytes either are a protocol or are refused with at least one problem; nothing else may happen. A
-// protocol that was accepted can be asked everything that needs no rig.
+// Any bytes must either be a protocol or be refused with at least one problem. For an accepted protocol,
+// calls every function that needs no rig.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

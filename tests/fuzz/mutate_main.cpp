@@ -1,5 +1,5 @@
-// Feeds the fuzz target where libFuzzer is not to be had: fuzz_protocol RUNS FOLDER... Deterministic: run N
-// of the same folders is the same bytes, so a failure is found again by its number.
+// Drives the fuzz target if libFuzzer is not available: fuzz_protocol RUNS FOLDER... It is deterministic: run
+// N of the same folders always uses the same bytes, so a failure can be repeated by its number.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -24,7 +24,8 @@ const char* const tokens[] = {"nan",  "-inf", "[",   "]",      "{",     "}",
                               "\xff", "\x00", "''",  ".",      "grid.", "abs(",
                               "*",    "/ 0",  "1_0", "0x7f",   "\t",    "[scene.a]\n"};
 
-// One to eight small changes: a token put in, bytes cut out, a byte changed, a line moved or doubled.
+// Makes one to eight small changes: inserts a token, cuts bytes out, changes a byte, moves or duplicates a
+// line.
 std::string mutated(std::string text, const std::string& other, Draws& draws) {
   const auto position = [&] { return static_cast<std::size_t>(draws.below(text.size() + 1)); };
   const auto changes = 1 + draws.below(8);

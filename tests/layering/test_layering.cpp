@@ -45,7 +45,7 @@ std::string layer_of(const std::string& path) {
   return path.substr(0, path.find('/', first + 1));
 }
 
-/// What an include in `file` breaks, or "".
+/// The rule that an include in `file` breaks, or "".
 std::string violation(const Table& table, const std::string& file, const std::string& line) {
   const auto hash = line.find_first_not_of(' ');
   if (hash == std::string::npos || line.compare(hash, 8, "#include") != 0) return "";

@@ -18,7 +18,8 @@ struct Row {
   double time, upper;
 };
 
-/// By (drift, start): the probability of having left at the upper boundary by a time, with bound 1.
+/// For each (drift, start): the probability of having left at the upper boundary by a given time, with bound
+/// 1.
 std::map<std::pair<double, double>, std::vector<Row>> oracle() {
   std::ifstream file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/observer/first_passage.csv");
   std::map<std::pair<double, double>, std::vector<Row>> table;
@@ -34,11 +35,11 @@ std::map<std::pair<double, double>, std::vector<Row>> oracle() {
   return table;
 }
 
-/// The largest distance, in standard errors, of 200 000 draws from a row of the table.
+/// The largest deviation, in standard errors, of 200 000 draws from any row of the table.
 double distance(double drift, double start, const std::vector<Row>& rows) {
   random::Draws draws({17, random::Stream::observer, 0, 0, 0});
   const int n = 200'000;
-  const double bound = 0.7;  // times go with its square
+  const double bound = 0.7;  // times scale with the square of the bound
   std::vector<int> counts(rows.size());
   for (int i = 0; i < n; ++i) {
     const auto passage = first_passage(drift / bound, bound, start, draws);

@@ -21,7 +21,7 @@ Question at_level(double level) {
   return question;
 }
 
-/// How often each answer comes in so many trials.
+/// The share of each answer in this many trials.
 std::vector<double> shares(const Observer& observer, Question question, int trials) {
   std::vector<double> counts(static_cast<std::size_t>(question.answers));
   for (int trial = 0; trial < trials; ++trial) {
@@ -136,7 +136,8 @@ TEST_CASE("yes and no fall about the criterion", "[observer]") {
   question.decides = Decides::presence;
   for (const double criterion : {-0.5, 0.2, 1.5}) {
     const Observer observer(parse("sim:threshold=3,lapse=0,criterion=" + std::to_string(criterion)));
-    const auto z = [&](double p) {  // the inverse by bisection on another normal distribution function
+    // the inverse by bisection on a different implementation of the normal distribution
+    const auto z = [&](double p) {
       double low = -9, high = 9;
       for (int i = 0; i < 80; ++i) {
         const double middle = 0.5 * (low + high);
@@ -166,7 +167,7 @@ TEST_CASE("ratings of signal and noise overlap by d'", "[observer]") {
     const double signal = observer.share(question, rating);
     area += signal * (below + 0.5 * noise), below += noise;
   }
-  // Phi(d' / sqrt 2) is the area under the whole curve; six ratings cut its corners.
+  // Phi(d' / sqrt 2) is the area under the whole curve; with only six ratings the area is smaller.
   const double whole = 0.5 * std::erfc(-1.349 / 2);
   CHECK(area < whole);
   CHECK(area > whole - 0.02);
@@ -190,7 +191,7 @@ TEST_CASE("a deadline lowers the bound so that few decisions come too late", "[o
 }
 
 TEST_CASE("times outside the decision vary within their range", "[observer]") {
-  // A decision on 99 times the threshold takes a few hundredths of a second.
+  // A decision at 99 times the threshold takes a few hundredths of a second.
   const Observer observer(parse("sim:threshold=1,slope=4,bound=0.01,residual=0.5,residual_range=0.4"));
   auto question = at_level(100);
   std::vector<double> times;

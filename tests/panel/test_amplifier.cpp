@@ -15,7 +15,7 @@ using terms::FaultKind;
 
 namespace {
 
-// Waits for what another thread is about to do; 5 s is a failure, not a measurement.
+// Waits for something that another thread does. After 5 s the test fails; the limit is not a measurement.
 template <typename Condition>
 bool eventually(Condition&& condition) {
   const std::int64_t end = drive::monotonic_ns() + 5'000'000'000;
@@ -38,7 +38,7 @@ struct Bench {
   }
 };
 
-/// "" for what was done.
+/// "" on success, otherwise the reason.
 std::string why_not(const drive::Amplifier::Refusal& refusal) {
   return refusal ? terms::describe(*refusal) : "";
 }
@@ -57,7 +57,7 @@ TEST_CASE("the guard thread drops the enable line on a fault edge and latches it
   CHECK(why_not(bench.amplifier->enable()) == "amplifier reports a fault: latched; clear it first");
   CHECK(why_not(bench.amplifier->clear()) == "amplifier reports a fault");
   bench.lines->set(2, false, drive::monotonic_ns());
-  CHECK_FALSE(bench.amplifier->clear());  // the level is read, whether the edge has been or not
+  CHECK_FALSE(bench.amplifier->clear());  // the level is read even if no edge was seen
   CHECK(bench.amplifier->state() == AmplifierState::disarmed);
 }
 
@@ -87,10 +87,10 @@ TEST_CASE(
   CHECK(bench.amplifier->fault().kind == FaultKind::lines_gone);
   CHECK(bench.amplifier->fault().detail == "simulated gpio chip: No such device");
   bench.amplifier->disable();
-  bench.amplifier->trip(FaultKind::suspended, "another reason");  // the first is kept
+  bench.amplifier->trip(FaultKind::suspended, "another reason");  // the first fault is kept
   CHECK(bench.amplifier->fault().kind == FaultKind::lines_gone);
   CHECK(why_not(bench.amplifier->clear()) == "GPIO lines disconnected: simulated gpio chip: No such device");
-  bench.lines->set(SharedLines::stop, true, drive::monotonic_ns());  // pressed while nobody could see it
+  bench.lines->set(SharedLines::stop, true, drive::monotonic_ns());  // pressed while the chip was away
   bench.lines->put_back();
   const auto cleared = [&] { return why_not(bench.amplifier->clear()); };
   CHECK(eventually([&] { return cleared() == "emergency stop pressed"; }));

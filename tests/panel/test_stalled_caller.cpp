@@ -1,6 +1,6 @@
-// Somebody who uses the amplifier loses the processor before, inside or after a call. Meanwhile a fault or a
-// stop becomes active, with its edge or without: the guard has to take the line low all the same, and it must
-// not come up again when the caller goes on.
+// A thread that uses the amplifier loses the processor before, inside or after a call. Meanwhile a fault or a
+// stop becomes active, with or without a visible edge. The guard must still take the line low, and the line
+// must not come up again when the caller continues.
 #include <atomic>
 #include <cstdlib>
 #include <functional>
@@ -21,16 +21,16 @@ namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// The caller: a thread that makes one call at a time, and that can be held at any point of it.
+/// The caller: a thread that makes one call at a time and can be held at any point of it.
 class Caller {
  public:
   Caller() {
     thread_ = std::jthread([this](const std::stop_token& stop) {
       for (begin_.acquire(); !stop.stop_requested(); begin_.acquire()) {
         points_ = 0;
-        point();  // before
+        point();  // before the call
         call_();
-        while (points_ <= hold_at_) point();  // after; the call had fewer points
+        while (points_ <= hold_at_) point();  // after the call, if it had fewer points
         finished_.release();
       }
     });
@@ -40,7 +40,7 @@ class Caller {
     begin_.release();
   }
 
-  /// Begins the call; comes back once it is held at that point.
+  /// Begins the call. Returns once it is held at that point.
   void begin(std::function<void()> call, int hold_at) {
     call_ = std::move(call), hold_at_ = hold_at;
     begin_.release();
@@ -51,7 +51,7 @@ class Caller {
     finished_.acquire();
   }
 
-  /// Lines and orders pass here; on other threads than the caller's it does nothing.
+  /// Called by lines and commands. Holds only the caller's thread.
   void point() {
     if (std::this_thread::get_id() != thread_.get_id() || points_++ != hold_at_) return;
     held_.release();
@@ -65,14 +65,14 @@ class Caller {
   std::jthread thread_;
 };
 
-/// Lines that hold the caller, can lose edges, and count what the guard has dealt with.
+/// Lines that hold the caller, can lose edges, and count the edges that the guard has handled.
 struct WatchedLines : SharedLines {
   WatchedLines(const std::shared_ptr<SimulatedLines>& shared, Caller& caller_, std::atomic<int>& edges_done_,
                std::atomic<int>& beats_, std::atomic<bool>& loses_edges_)
       : SharedLines(shared), caller(caller_), edges_done(edges_done_), beats(beats_), loses(loses_edges_) {}
 
   std::optional<Edge> wait(std::int64_t timeout_ns, int wake) override {
-    edges_done = edges_seen;  // the guard comes back for the next one
+    edges_done = edges_seen;  // the guard has asked for the next edge
     auto edge = SharedLines::wait(timeout_ns, wake);
     if (!edge) return edge;
     ++edges_seen;
@@ -115,8 +115,8 @@ struct Bench {
 
   bool high() { return lines->level(SharedLines::enable); }
 
-  /// Until the guard has dealt with the edges so far, or with the levels in two beats where edges are lost.
-  /// Five seconds are a failure, not a measurement.
+  /// Waits until the guard has handled all edges so far, or, if edges are lost, the levels in two beats.
+  /// After five seconds the test fails; the limit is not a measurement.
   bool settled() {
     const auto end_ns = drive::monotonic_ns() + 5000 * ms;
     const int beats_before = beats;
@@ -180,10 +180,10 @@ TEST_CASE("the line is never high with an active fault or stop, wherever a calle
     bench.caller.finish();
     violations += bench.high() ? 1 : 0;
     bench.set(line, false);
-    violations += bench.high() ? 1 : 0;  // latched
+    violations += bench.high() ? 1 : 0;  // the fault is latched
   }
   CHECK(violations == 0);
-  CHECK(high_when_held > rounds() / 4);  // or there was nothing to switch off
+  CHECK(high_when_held > rounds() / 4);  // otherwise there was nothing to switch off
 }
 
 TEST_CASE("what switches the line off takes effect although its caller is held up inside the call",

@@ -20,7 +20,7 @@ constexpr std::int64_t ms = 1'000'000;
 
 TouchDecoder decoder() { return {{0, 799}, {0, 479}}; }
 
-/// Ten seconds are a failure, not a measurement.
+/// After ten seconds the test fails; the limit is not a measurement.
 template <typename Condition>
 bool comes(Condition condition) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(10);

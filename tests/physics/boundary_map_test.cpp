@@ -68,7 +68,7 @@ TEST_CASE("boundary to frequency and back closes to 1e-9 mm for every edge and t
   for (const Surface& s : surfaces()) {
     for (const char* name : {"turning", "peak", "p70", "p50", "p25", "p10"}) {
       if (s.edges == Edges::clamped && std::string(name) != "p50")
-        continue;  // its tables take longest to build
+        continue;  // building its tables takes longest
       const BoundaryMap map(s, edge(name));
       int found = 0;
       for (double x = 0.003; x < s.length_m; x += 0.0071) {
@@ -90,7 +90,8 @@ TEST_CASE("the table behind a map agrees with the profile it stands for", "[phys
   for (const double f : {9.1e3, 17.3e3, 29.9e3, 61e3}) {
     const auto line = make_centre_line(s, f, Model::mode);
     CHECK(std::abs(map.boundary_m(f).value() - line->level_m(0.25).value()) < 1e-9);
-    CHECK(std::abs(map.boundary_m(f).value() - line->level_m(0.27).value()) > 1e-5);  // it would show
+    // negative control: a wrong level would be detected
+    CHECK(std::abs(map.boundary_m(f).value() - line->level_m(0.27).value()) > 1e-5);
   }
 }
 
@@ -113,7 +114,7 @@ TEST_CASE("loss and parameters move a boundary by what the answer states, in two
   const double lossy = make_centre_line(s, 20e3, Model::modes)->level_m(0.5).value();
   CHECK(std::abs(lossy - answer.boundary_m.value()) < answer.error_bound_m);
   CHECK(std::abs(lossy - answer.boundary_m.value()) > 0.3 * answer.error_bound_m);
-  // s is proportional to c: 2 % of tension is 1 % of the distance from the apex.
+  // The distance from the apex is proportional to the wave speed: 2 % of tension is 1 % of that distance.
   CHECK(answer.uncertainty_m == Approx(0.01 * (0.3 - *answer.boundary_m)).epsilon(1e-3));
   s.sd = {};
   CHECK(BoundaryMap(s, edge("p50")).at_frequency(20e3).uncertainty_m == 0);
@@ -162,7 +163,7 @@ TEST_CASE("one frequency solved for alone is the map's", "[physics]") {
         const auto f = solve_frequency_Hz(surface, options, x);
         CAPTURE(edge, x);
         REQUIRE(f);
-        // A friction edge's table is refined to 2 um, a plate's to 0.3 um.
+        // The table of a friction edge is refined to 2 um, that of a plate to 0.3 um.
         CHECK(std::abs(map.boundary_m(*f).value() - x) < 3e-6);
       }
     }

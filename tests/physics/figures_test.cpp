@@ -40,7 +40,8 @@ TEST_CASE("the corrected mode differs from equation 11 by the flux, not by the p
     seed_first = std::max(seed_first, std::abs(seed[i]));
     mode_first = std::max(mode_first, std::abs(mode[i]));
   }
-  // sqrt(W0/W) = 1.7 from the drive edge to the last maximum: eq. 11 puts that much more at the drive edge.
+  // sqrt(W0/W) is 1.7 between the drive edge and the last maximum, so eq. 11 is larger by that factor at the
+  // drive edge.
   CHECK(seed_first / mode_first > 1.4);
   CHECK(seed_first / mode_first < 1.9);
 }

@@ -98,7 +98,7 @@ TEST_CASE("on a lossy uniform clamped strip the response to a force is that of i
   const std::complex<double> g =
       (1.0 / r2 - 1.0 / r1) / (2.0 * (r1 * r1 - r2 * r2)) / (m4 * bending_stiffness_N_m(s).value());
   const double expected = 1 / std::abs(2 * M_PI * f * g);
-  // Inside an element its polynomials round off the jump under the force.
+  // The element's polynomials smooth the jump under the force.
   CHECK(finger_load(s, f, {1.5}, Finger{})[0].strip_impedance_Ns_per_m == Approx(expected).epsilon(1e-3));
 }
 

@@ -1,4 +1,5 @@
-# Installs the library to a fresh prefix, then builds and runs the example against it as a stranger would.
+# Installs the library to a fresh prefix, then builds and runs the example against it as an outside project
+# would.
 #   cmake -D BUILD=<build tree> -D SOURCE=<source tree> -D WORK=<scratch folder>
 #         -D GENERATOR=<that of the build tree> -P install_test.cmake
 function(step)

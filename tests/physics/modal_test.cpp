@@ -47,7 +47,7 @@ TEST_CASE("modes, driven by an exact wedge mode along the straight edge, is that
       }
       CAPTURE(d, f, spare, worst / most);
       CHECK(worst / most < (spare == 1 ? 3e-2 : spare == 2 ? 5e-4 : 2e-5));
-      CHECK(worst <= 1.5 * last);  // converges
+      CHECK(worst <= 1.5 * last);  // the error decreases with resolution
       last = worst;
     }
   }
@@ -138,14 +138,14 @@ TEST_CASE("a clamped strip carries waves of the clamped dispersion's length", "[
   for (int i = 0; i < 100; ++i) {
     const double kx = 0.5 * (low + high);
     const double q1 = std::sqrt(b * b - kx * kx), q2 = std::sqrt(b * b + kx * kx);
-    // Times cos: positive while q1 W is below the root, that is for large kx.
+    // multiplied by cos: positive while q1 W is below the root, that is, for large kx
     (q1 * std::sin(q1 * w) + q2 * std::tanh(q2 * w) * std::cos(q1 * w) > 0 ? high : low) = kx;
   }
   const auto line = make_modal_line(s, f, Losses::left_out, {});
   double first = 0, last = 0;
   int crossings = 0;
   double before = line->value(0.1).mantissa.real();
-  for (double x = 0.1; x < 0.2; x += 1e-5) {  // away from the ends' near fields
+  for (double x = 0.1; x < 0.2; x += 1e-5) {  // away from the near fields at the ends
     const double now = line->value(x).mantissa.real();
     if (now * before < 0) {
       const double at = x - 1e-5 * now / (now - before);
@@ -218,7 +218,7 @@ TEST_CASE("modes of curved tapers, membrane and clamped plate, match collocation
     s.taper = ExponentialTaper{number(1), number(2)};
     s.length_m = number(3);
     s.quality_factor = number(5);
-    REQUIRE(number(48) < 1e-5);  // the table's own convergence
+    REQUIRE(number(48) < 1e-5);  // the table itself has converged
     for (const Model model : {Model::mode, Model::modes}) {
       const auto line = make_centre_line(s, number(4), model);
       const Scaled unit = line->value(0);
@@ -232,7 +232,8 @@ TEST_CASE("modes of curved tapers, membrane and clamped plate, match collocation
       }
       CAPTURE(row[0], row[2], name(model), worst / most);
       if (model == Model::modes) CHECK(worst < 1e-4 * most);
-      if (model == Model::mode) CHECK(worst > 1e-4 * most);  // the one-mode rungs are told apart
+      // negative control: one-mode models differ measurably
+      if (model == Model::mode) CHECK(worst > 1e-4 * most);
     }
   }
 }

@@ -69,13 +69,13 @@ TEST_CASE("seed and mode match exact solutions at every extreme of taper, loss a
     for (std::size_t i = 0; i < x.size(); ++i) {
       CAPTURE(x[i], c.points[i].ln, ln[i]);
       REQUIRE(std::isfinite(ln[i]));
-      // Error relative to the local envelope: a node of the standing wave has no relative accuracy of its
-      // own.
+      // Error relative to the local envelope, because at a node of the standing wave a relative error is
+      // meaningless.
       const Scaled here = line->value(x[i]);
       const double envelope = std::hypot(1.0, std::abs(line->slope(x[i]).mantissa / here.mantissa) / k);
       const double arg = std::arg(here.mantissa / v0.mantissa);
       const auto miss = std::polar(std::exp(ln[i] - c.points[i].ln), arg) - std::polar(1.0, c.points[i].arg);
-      // A position is known to rounding only, which the local decay turns into an error of the value.
+      // A position has a rounding error, which the local decay turns into an error of the value.
       const double scale = allowed * envelope + 4 * eps * c.surface.length_m * k * envelope;
       worst = std::max(worst, std::abs(miss) / scale);
       CHECK(std::abs(miss) <= scale);
@@ -87,7 +87,7 @@ TEST_CASE("seed and mode match exact solutions at every extreme of taper, loss a
 }
 
 TEST_CASE("the exact solutions tell the two equations apart", "[physics][oracle]") {
-  // Negative control: eq. 11 against the corrected equation's table is wrong by far more than any tolerance
+  // Negative control: eq. 11 differs from the table of the corrected equation by far more than any tolerance
   // here.
   const Case c = parse(oracle("one_mode.csv")[401]);
   REQUIRE(c.model == Model::mode);

@@ -38,12 +38,12 @@ TEST_CASE("a clamped cut-off solves its equation to rounding, and has the plate'
       CHECK(cut_off_half_width_m(s, f) == Approx(w).epsilon(1e-12));
     }
   }
-  // Small D: the half-width shrinks by sqrt(D/N).
+  // For small D the effective half-width is smaller by sqrt(D/N).
   s.tension_Pa = 1e12;
   const double layer = std::sqrt(stiffness / line_tension_N_per_m(s));
   const double k = wavenumber_per_m(s, cut_off_frequency_Hz(s, 0.014));
   CHECK(pi / (2 * k) == Approx(0.014 - layer).epsilon(1e-5));
-  // Negative control: the layer is seen.
+  // Negative control: the test detects the layer.
   CHECK(std::abs(pi / (2 * k) - 0.014) > 0.5 * layer);
 }
 

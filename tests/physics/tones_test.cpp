@@ -32,8 +32,8 @@ TEST_CASE("non-negative least squares meets its optimality conditions", "[physic
     if (fit.x[j] > 0) CHECK(std::abs(gradient) < 1e-9);
     active += fit.x[j] == 0 ? 1 : 0;
   }
-  CHECK(active > 0);                          // the constraint matters here
-  CHECK(active < static_cast<int>(columns));  // and so do the columns
+  CHECK(active > 0);                          // the constraint is active in some cases
+  CHECK(active < static_cast<int>(columns));  // but not for all columns
 }
 
 TEST_CASE("profiles are reachable as far as physics lets them be", "[physics]") {
@@ -78,7 +78,7 @@ TEST_CASE("a zone has the friction asked for inside and ends at the boundary ask
         CHECK(design.tones[i].frequency_Hz <= request.band.high_Hz);
         if (i > 0) CHECK(design.tones[i - 1].frequency_Hz - design.tones[i].frequency_Hz >= 999);
       }
-      // What the tones do on the surface, evaluated afresh.
+      // Evaluates the tones on the surface independently of the design.
       const auto x = linspace_points(s, 1201);
       const Field field = evaluate(s, design.tones, x, Model::mode, Normalise::none);
       std::vector<double> mu;
@@ -94,7 +94,8 @@ TEST_CASE("a zone has the friction asked for inside and ends at the boundary ask
       CHECK(mean / count == Approx(0.6).margin(2e-3));
       ZoneRequest single = request;
       single.tones = 1;
-      CHECK(design.residual < 0.75 * design_zone(s, friction, single).residual);  // the nodes are filled
+      // further tones fill the nodes of the first
+      CHECK(design.residual < 0.75 * design_zone(s, friction, single).residual);
     }
   }
 }

@@ -75,7 +75,7 @@ TEST_CASE("A figure is the same bytes each time, escaped and without NaN", "[plo
   CHECK(svg.find("nan") == std::string::npos);
   CHECK(svg.find("A &amp; B") != std::string::npos);
   CHECK(svg.find("Example &lt;1&gt;") != std::string::npos);
-  CHECK(count(svg, "<polyline") == 2);  // the curve is broken where it is not finite
+  CHECK(count(svg, "<polyline") == 2);  // values that are not finite interrupt the curve
   CHECK(count(svg, "<svg") == 1);
   CHECK(count(svg, "<g ") == count(svg, "</g>"));
 }
@@ -110,12 +110,12 @@ TEST_CASE("A figure laid out for a place fills it, in the arrangement that suits
   CHECK(high.columns == 1);
   CHECK(high.panel_width_px == 400);
   CHECK(high.panel_height_px == 270);
-  // With a caption below, the whole still fits.
+  // The figure still fits with a caption below it.
   figure.caption = "Bars show what nineteen of twenty repetitions would lie between.";
   const auto told = laid_out(figure, 640, 240);
   CHECK(told.panel_height_px < 240);
   CHECK(render(told).find("height=\"240\"") != std::string::npos);
-  // Where there is no room the document grows instead of the text shrinking to nothing.
+  // If there is not enough room, the document grows and the text keeps its size.
   figure.caption.clear();
   const auto tiny = laid_out(figure, 100, 40);
   CHECK(tiny.panel_height_px >= 165);

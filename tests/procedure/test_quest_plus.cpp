@@ -112,9 +112,9 @@ TEST_CASE("psi-marginal learns about what is kept and sums over the nuisance", "
   with.nuisance = {"lapse"};
   Posterior all(spec), kept(with);
   const auto a = all.information(), b = kept.information();
-  // Knowing less than everything can only tell less.
+  // With less knowledge, no answer can be more informative.
   for (std::size_t i = 0; i < a.size(); ++i) CHECK(b[i] <= a[i] + 1e-12);
-  // An observer at threshold 10 mm, slope 2: the estimate finds it.
+  // The estimate must find an observer with threshold 10 mm and slope 2.
   const auto procedure = make_procedure(with, {}, {});
   turnpoint::random::Draws draws({3, turnpoint::random::Stream::observer, 0, 0, 0});
   while (const auto proposal = procedure->next()) {

@@ -10,7 +10,7 @@ namespace turnpoint::tests {
 
 namespace {
 
-// `zzzzzz = 1` in each table, whether written with a header or in braces.
+// Adds `zzzzzz = 1` to each table, whether it has a header or braces.
 std::string with_unknown_keys(const std::string& source) {
   std::istringstream lines(source);
   std::string result;

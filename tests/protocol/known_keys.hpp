@@ -4,8 +4,8 @@
 
 namespace turnpoint::tests {
 
-/// Every key that the reader of protocol files knows, asked from the reader itself: an unknown key is put
-/// into each table of the shipped files, and the messages list what is known there.
+/// All keys that the reader of protocol files knows. They are found by adding an unknown key to each table of
+/// the shipped files: the reader's messages then list the known ones.
 std::set<std::string> known_keys();
 
 }  // namespace turnpoint::tests

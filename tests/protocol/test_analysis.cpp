@@ -2,7 +2,7 @@
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
-// [analysis] of a protocol file: whatever it accepts has an effect.
+// The [analysis] table of a protocol file: every accepted value has an effect.
 
 using namespace turnpoint;
 
@@ -12,7 +12,7 @@ std::string source_of(const std::string& name) {
   return text::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
 }
 
-/// The shipped file with an [analysis] of its own.
+/// The shipped file with a different [analysis].
 std::string with_analysis(const std::string& name, const std::string& analysis) {
   auto source = source_of(name);
   if (const auto at = source.find("[analysis]"); at != std::string::npos)

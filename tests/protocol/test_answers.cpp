@@ -58,7 +58,7 @@ TEST_CASE("the middle of a protocol's levels is known for every procedure", "[pr
   CHECK(middle(shipped("friction-2ifc")) == Approx(-16.5));
   CHECK(middle(shipped("boundary-adaptive")) == Approx(12).margin(0.5));
   CHECK(middle(shipped("boundary-constant")) == Approx(12));
-  CHECK(middle(shipped("demo")) == Approx(18));  // zero is not a size
+  CHECK(middle(shipped("demo")) == Approx(18));  // zero does not count as a magnitude
   CHECK(middle(shipped("two-spots-oddity")) == Approx(std::sqrt(80.0)));
   CHECK(middle(yes_no()) == Approx(0.1));
 }

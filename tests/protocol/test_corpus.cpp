@@ -1,5 +1,5 @@
-// Every file of tests/protocol/bad has one mistake (or a few). A line that must be reported ends in
-// `#! part of the message`; a message about the file as a whole stands in a first line `#!! part`.
+// Every file of tests/protocol/bad contains one mistake (or a few). A line that must be reported ends in `#!
+// part of the message`. A message about the file as a whole is given in the first line as `#!! part`.
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -39,7 +39,7 @@ std::vector<text::Problem> problems_of(const std::string& source) {
   }
 }
 
-// What is wrong with how a file is reported: lines that were missed, and reports that nobody expects.
+// Differences between reported and expected problems: missed lines, and unexpected reports.
 std::string misreported(const std::string& source) {
   const auto expected = expected_lines(source);
   const auto problems = problems_of(source);

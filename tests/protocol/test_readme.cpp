@@ -1,5 +1,5 @@
-// protocols/README.md is the manual: every key that the reader knows must stand there, and its examples must
-// read.
+// protocols/README.md is the manual: it must mention every key that the reader knows, and its examples must
+// be valid.
 #include <cctype>
 #include <set>
 #include <sstream>
@@ -32,7 +32,7 @@ std::vector<std::string> snippets() {
   return all;
 }
 
-// The words of everything that the manual's running text sets in backticks.
+// All words that the manual's running text puts in backticks.
 std::set<std::string> words_in_backticks() {
   std::istringstream lines(text::read_file(readme_path));
   std::set<std::string> words;
@@ -62,8 +62,7 @@ std::vector<text::Problem> problems_of(const std::string& source) {
   }
 }
 
-// A part of a file lacks what stands elsewhere; anything else that is wrong with it is a mistake of the
-// manual.
+// An example may lack what only a whole file contains. Any other problem is a mistake of the manual.
 bool lacks_the_rest(const text::Problem& problem) {
   for (const auto* part :
        {"the file needs", "the file has no", "unknown factor", "unknown scene", "unknown procedure",
@@ -95,7 +94,7 @@ TEST_CASE("the manual documents every key that the reader knows", "[protocol]") 
   const auto documented = words_in_backticks();
   auto known = tests::known_keys();
   for (const auto* factor : {"contrast_dB", "offset_mm", "spread_mm", "mark_mm", "change", "instruction"})
-    known.erase(factor);  // [[block]] catch takes the names of factors as keys
+    known.erase(factor);  // [[block]] catch uses names of factors as keys
   CHECK(known.size() > 80);
   for (const auto& key : known) {
     INFO(key);

@@ -22,8 +22,8 @@ std::string replaced(std::string where, const std::string& from, const std::stri
 
 std::string source(const std::string& name) { return text::read_file(root + "/protocols/" + name); }
 std::string rig_source() { return text::read_file(root + "/deploy/rigs/simulated.toml"); }
-// Twice as thick and supported at its edges, the plate has nearly the same map, in closed form: surveys of it
-// are quick.
+// With twice the thickness and simply supported sides, the plate has almost the same map in closed form, so
+// surveys are fast.
 std::string quick_source() {
   return replaced(replaced(rig_source(), "edges = \"clamped\"", "edges = \"supported\""),
                   "thickness_mm = 2.0", "thickness_mm = 4.2");
@@ -62,7 +62,8 @@ TEST_CASE("every shipped protocol can be run, without a warning, on a rig like t
   check_shipped(quick());
 }
 
-// Run by name: maps of a clamped plate are made from its two-dimensional field, which takes seconds for each.
+// Run this test by name: maps of a clamped plate are computed from its two-dimensional field, which takes
+// seconds for each.
 TEST_CASE("every shipped protocol can be run on the simulated rig, without a warning", "[.slow]") {
   check_shipped(simulated());
 }

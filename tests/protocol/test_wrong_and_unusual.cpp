@@ -1,5 +1,5 @@
-// The corpus of tests/protocol/corpus: wrong protocols with the line at which that must be said, and unusual
-// ones that are right. Its README explains the form.
+// The corpus in tests/protocol/corpus: wrong protocols with the line that must be reported, and unusual ones
+// that are correct. Its README explains the form.
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -72,7 +72,7 @@ Edited edited(const Case& wanted) {
   return result;
 }
 
-/// In closed form, so that a survey is quick.
+/// A rig with a closed-form model, so that a survey is fast.
 const rig::Rig& quick() {
   static const auto rig = [] {
     auto text = text::read_file(root + "/deploy/rigs/simulated.toml");
@@ -84,7 +84,7 @@ const rig::Rig& quick() {
   return rig;
 }
 
-/// Problems of the file or, where it has none, what a check on a rig says.
+/// The problems of the file, or, if there are none, those found by a check on a rig.
 std::vector<text::Problem> said_of(const std::string& source) {
   try {
     auto survey = protocol::survey(protocol::parse(source, "p.toml"), quick());

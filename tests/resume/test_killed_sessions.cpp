@@ -15,7 +15,7 @@ using namespace turnpoint;
 
 namespace {
 
-/// TURNPOINT_KILLS=1000 makes a long run: that many kills, and an adaptive protocol as well.
+/// TURNPOINT_KILLS=1000 makes a long run with that many kills, and with an adaptive protocol in addition.
 const char* const kLong = std::getenv("TURNPOINT_KILLS");
 
 int kills_wanted() { return kLong != nullptr ? std::atoi(kLong) : 10; }
@@ -32,7 +32,7 @@ session::Setup setup_for(const std::string& protocol, const std::string& db) {
   return app::prepare(request);
 }
 
-/// Begins a session, or goes on with the interrupted one, to its end.
+/// Begins a session, or continues the interrupted one, and runs it to its end.
 void run_to_end(session::Setup setup) {
   if (std::filesystem::exists(setup.database))
     if (const auto interrupted = store::interrupted_session(setup.database))
@@ -41,7 +41,7 @@ void run_to_end(session::Setup setup) {
   session::run(setup, nullptr, inputs);
 }
 
-/// True where a child that runs the session to its end was killed on the way.
+/// Runs the session in a child process and kills it. Returns true if it was killed before the session's end.
 bool killed_on_the_way(const session::Setup& setup, useconds_t after_us) {
   const auto child = ::fork();
   if (child == 0) {
@@ -70,7 +70,7 @@ std::vector<store::TrialRow> trials_of(const std::string& db, const std::string&
   return trials;
 }
 
-/// What a trial was and what came of it; not when.
+/// Compares what a trial presented and its result, but not its times.
 void check_equal(const store::TrialRow& a, const store::TrialRow& b) {
   CHECK(a.trial_in_block == b.trial_in_block);
   CHECK(a.type == b.type);
@@ -81,7 +81,8 @@ void check_equal(const store::TrialRow& a, const store::TrialRow& b) {
   CHECK(a.response == b.response);
   CHECK(a.outcome == b.outcome);
   REQUIRE(a.response_time_s.has_value() == b.response_time_s.has_value());
-  if (a.response_time_s) CHECK(*a.response_time_s == Approx(*b.response_time_s).margin(1e-5));  // a frame
+  // a tolerance of one frame
+  if (a.response_time_s) CHECK(*a.response_time_s == Approx(*b.response_time_s).margin(1e-5));
   CHECK(a.state_hash == b.state_hash);
   REQUIRE(a.tones.size() == b.tones.size());
   for (std::size_t i = 0; i < a.tones.size(); ++i) {
@@ -104,7 +105,7 @@ TEST_CASE("sessions killed at random moments and gone on with equal the unbroken
   const auto expected = trials_of(whole, store::list_sessions(whole).front().session_id);
   REQUIRE(!expected.empty());
   std::mt19937 random(3);
-  // Over the whole length of a session, so that beginning, trials and ending are all hit.
+  // Spread over the whole length of a session, so that kills hit its beginning, its trials and its ending.
   std::uniform_int_distribution<useconds_t> moment(0, static_cast<useconds_t>(1.2 * whole_us.count()));
   int kills = 0, finished = 0, resumed = 0;
   while (kills < kills_wanted() || finished == 0) {

@@ -23,7 +23,7 @@ std::string replaced(std::string where, const std::string& from, const std::stri
   return where.replace(at, from.size(), to);
 }
 
-// The problems of a rig file in which `from` was replaced, one a line.
+// The problems of a rig file in which `from` was replaced, one per line.
 std::string problems(const std::string& from, const std::string& to) {
   try {
     rig::parse(replaced(source(), from, to), "r.toml");
@@ -65,7 +65,7 @@ TEST_CASE("every default that stood in for a key is named with its value", "[rig
   CHECK(has("output.bits = 24"));
   CHECK(has("output.period_frames = 384"));
   CHECK(has("output.converter_delay_ms = 0"));
-  CHECK_FALSE(has("limits.duty = 0.8"));  // the file states it
+  CHECK_FALSE(has("limits.duty = 0.8"));  // given in the file, so not a default
 }
 
 TEST_CASE("the converter's delay is read in ms, and a negative one is refused", "[rig]") {

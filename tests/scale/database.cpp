@@ -72,7 +72,7 @@ ToneRow tone_of(int trial, int index) {
   return tone;
 }
 
-/// Answers rise with the level, with a few wrong ones at every level.
+/// Higher levels have more right answers, with a few wrong ones at every level.
 TrialRow trial_of(int session, int trial) {
   TrialRow row;
   row.trial_index = row.trial_in_block = trial;
@@ -103,7 +103,7 @@ TrialRow trial_of(int session, int trial) {
   return row;
 }
 
-/// The rows of a session that begin() has made, in one transaction.
+/// Writes the rows of a session that begin() has made, in one transaction.
 void fill(Database& database, const std::string& id, int session, int trials) {
   Transaction transaction(database);
   RowWriter rows(database);

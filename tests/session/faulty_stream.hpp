@@ -9,7 +9,7 @@
 
 #include "station/drive/engine.hpp"
 
-/// A real stream to which a device's misfortunes happen when the test says so.
+/// A real stream for which the test can simulate faults of the device.
 struct Misfortunes {
   std::mutex mutex;
   std::optional<turnpoint::drive::Event> event;

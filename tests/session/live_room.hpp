@@ -1,5 +1,4 @@
-// A room in which live sessions are held in real time: who sits there, the protocol, and lines that are
-// simulated.
+// A room for live sessions in real time: the participant, the protocol, and simulated lines.
 #pragma once
 #include <algorithm>
 #include <functional>
@@ -62,7 +61,7 @@ procedures = ["levels"]
 )";
 }
 
-/// Who sits in the room: told of each page on the session's thread, may push inputs and move lines.
+/// The person in the room. Gets each page on the session's thread, and may push inputs and move lines.
 struct Room : session::Display {
   session::Inputs inputs;
   std::shared_ptr<panel::SimulatedLines> lines = std::make_shared<panel::SimulatedLines>(SharedLines::count);
@@ -85,7 +84,7 @@ struct Room : session::Display {
     reacts(page);
   }
 
-  /// What a willing participant and an operator who mends everything do.
+  /// A cooperative participant, and an operator who clears every fault.
   void cooperate(const session::Page& page) {
     if (page.kind == PageKind::instructions || page.kind == PageKind::paused) push(InputKind::next);
     if (page.kind == PageKind::stimulus) press(0);

@@ -38,7 +38,7 @@ struct Folder {
   ~Folder() { fs::remove_all(path); }
 };
 
-/// Keeps the pages with a slider; pulls the plug after so many pages.
+/// Records the pages with a slider; simulates a crash after a number of pages.
 struct Pages : session::Display {
   int left = std::numeric_limits<int>::max();
   std::vector<session::Page> sliders;
@@ -104,7 +104,7 @@ TEST_CASE("settings come from their file into rows, with what the surface did", 
     CHECK(std::fabs(*trial.level) == 20);
     CHECK(setting != *trial.level);
     CHECK_FALSE(trial.correct);
-    // The boundary that was felt last is the mark and the setting, within what the protocol tolerates.
+    // The last boundary felt is the mark plus the setting, within the protocol's tolerance.
     CHECK(*trial.boundary_mm == Approx(std::get<double>(trial.factors.at("mark_mm")) + setting).margin(0.5));
     REQUIRE(trial.tones.size() == 2);
     CHECK(trial.tones[0].scene_index == 0);
@@ -152,7 +152,7 @@ TEST_CASE("an adjustment that was interrupted goes on with the same settings", "
 
 namespace {
 
-/// A real stream that keeps the tones that it was asked to glide to.
+/// A real stream that records the tones of each glide.
 struct KeptStream : FaultyStream {
   KeptStream(std::unique_ptr<Stream> real, Misfortunes& misfortunes, std::vector<drive::ToneSet>& kept)
       : FaultyStream(std::move(real), misfortunes), glides(kept) {}
@@ -163,7 +163,7 @@ struct KeptStream : FaultyStream {
   std::vector<drive::ToneSet>& glides;
 };
 
-/// A tone, as it is played or as the operator reads it.
+/// A tone, as played or as shown to the operator.
 struct Tone {
   double frequency_Hz = 0, full_scale = 0;
 };
@@ -176,7 +176,7 @@ Tone read_tone(const app::LiveState& state) {
   return {};
 }
 
-/// The operator, who looks at the live view whenever the session says something to it.
+/// An operator who looks at the live view whenever the session reports something.
 struct Operator : session::Monitor {
   explicit Operator(const session::Setup& setup)
       : view(setup.protocol, setup.rig, [this](app::LiveState state) {
@@ -199,7 +199,7 @@ struct Operator : session::Monitor {
   }
   void trial_ended(const session::TrialSpec&, const store::TrialRow&) override {}
 
-  /// Ten seconds are a failure, not a measurement.
+  /// After ten seconds the test fails; the limit is not a measurement.
   void look(const std::function<void()>& tell) {
     std::unique_lock lock(mutex);
     const auto before = told;
@@ -217,7 +217,7 @@ struct Operator : session::Monitor {
   std::condition_variable changed;
   app::LiveState newest;
   int told = 0;
-  app::LiveView view;  // last: its thread ends before what it writes to goes
+  app::LiveView view;  // The last member, because its thread writes to the others.
 };
 
 }  // namespace

@@ -15,9 +15,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// What a session schedules, on the station's real stream and output and a sound card in memory: when
-// intervals are really played, as the marker on the second channel shows; and whole sessions on the card's
-// time.
+// Tests what a session schedules, with the station's real stream and output on a sound card in memory: when
+// intervals are really played (as the marker on the second channel shows), and whole sessions on the card's
+// clock.
 
 using namespace turnpoint;
 using drive::fake_pcm;
@@ -48,7 +48,7 @@ void steps(drive::DeviceStream& stream, int count) {
   for (int k = 0; k < count; ++k) stream.step();
 }
 
-/// The moments (frames of the card's time) at which a marker's pulse was played.
+/// The times (in frames of the card) at which a marker's pulse was played.
 std::vector<std::int64_t> pulses() {
   std::vector<std::int64_t> found;
   const auto& heard = fake_pcm().heard;
@@ -57,7 +57,7 @@ std::vector<std::int64_t> pulses() {
   return found;
 }
 
-/// The next trial of a protocol, planned and checked as a session does it.
+/// The next trial of a protocol, planned and checked as in a session.
 struct Trial {
   Trial(const rig::Rig& rig, const protocol::Protocol& protocol)
       : director(protocol, 0, 3), plans(rig, protocol, 3), spec(*director.next()) {}
@@ -157,7 +157,7 @@ TEST_CASE("on a converter that is gone nothing is scheduled, and silence is no e
   fake_pcm().fail(drive::FakePcm::State::gone);
   fake_pcm().present = false;
   steps(stream, 3);
-  // What was on the surface until now is booked: the time of silence lies after the onset.
+  // The stimulus is recorded up to now, because the time of the silence is after the onset.
   const auto now_ns = fake_pcm().now_ns();
   const auto silent_ns = session::ramp_down(stream, presented, now_ns);
   CHECK(silent_ns > onset.time_ns);
@@ -175,7 +175,8 @@ using terms::FaultKind;
 
 constexpr std::int64_t kRate_Hz = 192000;
 
-/// The real stream, stepped whenever the session listens, so that a session lasts as long as the card plays.
+/// A real stream that is stepped whenever the session polls it, so that a session takes as long as the card
+/// plays.
 struct SteppedStream : drive::DeviceStream {
   SteppedStream(const drive::StreamConfig& config, const bool& holds, const std::function<void()>& then)
       : DeviceStream(config), holding(holds), after_step(then) {}
@@ -195,12 +196,12 @@ struct SteppedStream : drive::DeviceStream {
     return event;
   }
 
-  const bool& holding;  ///< what was heard is reported later
+  const bool& holding;  ///< while true, reports of what was heard are delayed
   const std::function<void()> after_step;
   std::deque<drive::Event> held;
 };
 
-/// The guard's rules without a thread: its time is the card's as well.
+/// The guard's rules without a thread, on the card's clock.
 struct RuledAmplifier : drive::Amplifier {
   using Answer = std::optional<panel::Guard::Refusal>;
   static Refusal refusal(const Answer& why) {
@@ -223,14 +224,14 @@ struct RuledAmplifier : drive::Amplifier {
   panel::Guard guard;
 };
 
-/// A live session of two trials on the card, with a participant who answers 0.3 s after an onset.
+/// A live session of two trials on the card. The participant answers 0.3 s after an onset.
 struct CardSession {
   TemporaryFolder folder;
   session::Setup setup = live_room::live_setup(folder / "a.sqlite", "touch");
   live_room::Room room;
   bool holding = false;
-  bool first_answered = true;  ///< the first stimulus, like the others
-  double repair_s = 0;         ///< how long the operator takes to deal with a fault
+  bool first_answered = true;  ///< whether the first stimulus is answered, as the others are
+  double repair_s = 0;         ///< time that the operator takes to clear a fault
   std::vector<std::pair<std::int64_t, std::function<void()>>> agenda;
   std::function<void(const session::Page&)> reacts = [](const auto&) {};
   std::vector<FaultKind> faults;
@@ -301,7 +302,7 @@ TEST_CASE("of a converter that is lost amid a stimulus, what was played until th
   CHECK(trials[0].outcome == terms::Outcome::fault);
   const auto stimuli = live_room::events_of(card.setup.database, card.summary, "stimulus");
   REQUIRE(stimuli.size() == 3);
-  // Booked from the onset on, in frames; and what the card really played in that time.
+  // The recorded stimulation in frames, from the onset on, and what the card really played in that time.
   const auto onset = (stimuli[0].time_ns - 1'000'000'000) * kRate_Hz / 1'000'000'000;
   const auto booked = std::stod(stimuli[0].value) * static_cast<double>(kRate_Hz);
   const auto& heard = fake_pcm().heard;
@@ -311,8 +312,8 @@ TEST_CASE("of a converter that is lost amid a stimulus, what was played until th
   CHECK(std::abs(first - onset) <= 4);  // the ramp begins with zeros
   const auto played = static_cast<double>(lost_at - onset);
   CHECK(std::any_of(end - 20, end, sounds));
-  CHECK(std::abs(booked - played) <= 384);  // the converter is asked for its position once a period
-  // One page before the first arming, and one for the one cause, however long it takes.
+  CHECK(std::abs(booked - played) <= 384);  // the converter's position is read once per period
+  // One page before the first arming, and one for the single cause, however long the repair takes.
   REQUIRE(card.faults.size() >= 2);
   CHECK(card.faults.front() == FaultKind::disarmed);
   CHECK(std::count(card.faults.begin() + 1, card.faults.end(), FaultKind::converter_gone) ==
@@ -343,7 +344,8 @@ TEST_CASE("a trial is void a second after a converter should have said that it w
 TEST_CASE("a converter that does not say where it is gets no stimulus", "[session][card][fault]") {
   CardSession card;
   card.reacts = [&](const session::Page& page) {
-    if (page.kind == PageKind::instructions) fake_pcm().fail(drive::FakePcm::State::xrun);  // a new relation
+    // the restart makes a new relation between frames and time
+    if (page.kind == PageKind::instructions) fake_pcm().fail(drive::FakePcm::State::xrun);
     if (page.kind == PageKind::instructions) fake_pcm().stamps = false;
     if (page.kind == PageKind::fault) fake_pcm().stamps = true;
   };
@@ -364,7 +366,7 @@ TEST_CASE("what is reported late of a repeated trial says nothing about the next
       card.room.push(InputKind::repeat);
     }
     if (page.kind == PageKind::cue && card.room.stimuli == 1) card.holding = false;
-    // The converter never says that the second one was played.
+    // The converter never reports that the second one was played.
     if (page.kind == PageKind::stimulus && card.room.stimuli == 2) fake_pcm().stamps = false;
     if (page.kind == PageKind::fault) fake_pcm().stamps = true;
   };

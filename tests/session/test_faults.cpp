@@ -1,6 +1,6 @@
-// Each cause that can switch the amplifier off, produced where it arises and followed to the page that
-// explains it: the trial is void, the line is low before the page is shown, and once the operator has dealt
-// with it the trial comes again. Touch panel and disk have their turn in tests/ui/tst_faults.qml.
+// Every cause that can switch the amplifier off, produced at its source and followed to the page that
+// explains it. The trial must be void, the line must be low before the page is shown, and once the operator
+// has cleared the fault the trial is repeated. Touch panel and disk are tested in tests/ui/tst_faults.qml.
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
@@ -30,7 +30,7 @@ struct BrokenLines : SharedLines {
   std::atomic<bool>& broken;
 };
 
-/// A room in which one thing goes wrong during the first stimulus.
+/// A room in which one fault happens during the first stimulus.
 struct Mishap {
   TemporaryFolder folder;
   session::Setup setup = live_setup(folder / "a.sqlite");
@@ -39,7 +39,7 @@ struct Mishap {
   std::atomic<std::int64_t> slept_ns{0};
   std::atomic<bool> enable_broken{false};
   std::atomic<bool> audio_lives{true};
-  bool chip_gone = false;  ///< and nobody can read its levels
+  bool chip_gone = false;  ///< the chip is gone, so that nobody can read its levels
   std::function<void()> strikes, operator_repairs = [] {};
   std::vector<session::Page> faults;
   std::unique_ptr<std::jthread> audio;
@@ -66,7 +66,7 @@ struct Mishap {
   }
 
   void react(const session::Page& page) {
-    if (page.kind == PageKind::end) audio.reset();  // what it speaks to goes with the session
+    if (page.kind == PageKind::end) audio.reset();  // the object that it reports to ends with the session
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return strikes();
     if (page.kind == PageKind::fault && room.stimuli == 1) {
       faults.push_back(page);
@@ -76,7 +76,7 @@ struct Mishap {
     room.cooperate(page);
   }
 
-  /// The page that explained it.
+  /// Runs a session. Returns the page that explained the fault.
   session::Page runs(session::Devices with) {
     room.reacts = [this](const auto& page) { react(page); };
     const auto summary = session::run(setup, &room, room.inputs, std::move(with));
@@ -95,7 +95,7 @@ struct Mishap {
   session::Page runs() { return runs(devices()); }
 };
 
-/// Until the guard has acted; ten seconds are a failure, not a measurement.
+/// Waits until the guard has acted. After ten seconds the test fails; the limit is not a measurement.
 void until_low(const Room& room) {
   const auto end_ns = drive::monotonic_ns() + 10'000'000'000;
   while (room.lines->level(SharedLines::enable) && drive::monotonic_ns() < end_ns) std::this_thread::yield();
@@ -144,7 +144,7 @@ TEST_CASE("a silent audio thread has its page", "[session][live][fault][threads]
   Mishap mishap;
   auto devices = mishap.devices();
   devices.open_stream = [](drive::StreamConfig config) {
-    config.amplifier = nullptr;  // its signs of life come from the test
+    config.amplifier = nullptr;  // the test reports that the audio thread is alive
     return drive::open_realtime(config);
   };
   mishap.audio = std::make_unique<std::jthread>(

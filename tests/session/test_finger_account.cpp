@@ -49,7 +49,7 @@ TEST_CASE("a trial that a crash cut off counts as the longest stimulus", "[sessi
   CHECK(history.stimuli[0].end_s - kNow_s == Approx(0).margin(1e-5));  // not in the future
   store::BlockRecord block;
   block.trials.emplace_back();
-  session.blocks.push_back(block);  // the negative control: the trial ended and told its stimulus itself
+  session.blocks.push_back(block);  // negative control: the trial ended and has recorded its stimulus itself
   CHECK(finger_history({session}, kNow_s, 30).stimuli.empty());
 }
 
@@ -58,7 +58,7 @@ TEST_CASE("a crash does not begin a new sitting, a pause of half an hour does", 
   add(earlier, 1500, "stimulus", "1");  // active until 1500 s ago
   CHECK(finger_history({earlier}, kNow_s, 30).sitting_start_s == Approx(kNow_s - 3000).epsilon(1e-12));
   auto long_ago = session_of(5000);
-  add(long_ago, 1000, "stimulus", "1");  // active until 4000 s ago: 1000 s before the other began
+  add(long_ago, 1000, "stimulus", "1");  // active until 4000 s ago, that is, 1000 s before the other began
   CHECK(finger_history({earlier, long_ago}, kNow_s, 30).sitting_start_s ==
         Approx(kNow_s - 5000).epsilon(1e-12));
   auto rested = session_of(3000);

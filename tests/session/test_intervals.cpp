@@ -10,7 +10,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// When intervals reach the surface, as simulated sessions store it, for buffers of any length.
+// When intervals reach the surface, as recorded in simulated sessions, for buffers of any length.
 
 using namespace turnpoint;
 
@@ -113,8 +113,8 @@ TEST_CASE("the converter's delay is part of every stored onset", "[session][inte
 }
 
 TEST_CASE("simulated sessions have the latency of the rig's buffer", "[session][intervals]") {
-  // A slider's move reaches the surface a buffer after it was made, so the last setting's onset is that much
-  // later.
+  // A move of the slider reaches the surface one buffer later, so the last setting's onset is later by that
+  // time.
   const auto short_ = session_of(shipped("boundary-adjustment"), kBuffers[0], 0),
              long_ = session_of(shipped("boundary-adjustment"), kBuffers[2], 0);
   REQUIRE(short_.size() == long_.size());

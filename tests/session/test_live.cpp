@@ -11,8 +11,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Live sessions in real time: a person with buttons, the operator, the guard on simulated lines, alsa-lib's
-// null device allowed as a plug-in, or no device at all. The assertions on the amplifier read the line's log.
+// Live sessions in real time: a person with buttons, the operator, the guard on simulated lines, and
+// alsa-lib's null device (allowed as a plug-in) or no device at all. Assertions about the amplifier read the
+// line's log.
 
 using namespace turnpoint;
 using namespace turnpoint::live_room;
@@ -25,7 +26,7 @@ TEST_CASE("a live session goes from the operator's arming to answers by buttons,
   room.reacts = [&room](const auto& page) { room.cooperate(page); };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
   CHECK(summary.status == store::SessionStatus::completed);
-  CHECK(room.pages.front().kind == PageKind::fault);  // nothing before the operator has armed
+  CHECK(room.pages.front().kind == PageKind::fault);  // there is no page before the operator has armed
   CHECK(room.pages.front().amplifier == "disarmed");
   CHECK(room.heartbeats() > 20);
   const auto trials = trials_of(setup.database, summary);
@@ -35,7 +36,8 @@ TEST_CASE("a live session goes from the operator's arming to answers by buttons,
     CHECK(trial.outcome == terms::Outcome::answered);
     CHECK(trial.clock_slope_ns_per_frame.has_value());
   }
-  // Enabled once for each trial, in silence before its stimulus; off once that is over.
+  // The amplifier is enabled once for each trial, in silence before its stimulus, and switched off
+  // afterwards.
   const auto enables = room.enables();
   REQUIRE(enables.size() == 4);
   const auto stimuli = events_of(setup.database, summary, "stimulus");
@@ -47,7 +49,8 @@ TEST_CASE("a live session goes from the operator's arming to answers by buttons,
                off_ns =
                    on_ns + static_cast<std::int64_t>(1e9 * std::strtod(stimuli[k].value.c_str(), nullptr));
     CHECK(enables[2 * k].level == 1);
-    CHECK(enables[2 * k].time_ns > presented[k].time_ns);  // durable before: a disk may be slow
+    // `presented` is durable before the amplifier is enabled, however slow the disk
+    CHECK(enables[2 * k].time_ns > presented[k].time_ns);
     CHECK(enables[2 * k].time_ns < on_ns - 20'000'000);
     CHECK(enables[2 * k + 1].level == 0);
     CHECK(enables[2 * k + 1].time_ns > off_ns);
@@ -74,7 +77,7 @@ TEST_CASE("without the operator's arming the amplifier is never enabled", "[sess
   const auto& end = room.pages.back();
   CHECK(end.kind == PageKind::end);
   CHECK(end.trials_done == 0);
-  CHECK(end.trials_total == 2);  // not "all of what was done"
+  CHECK(end.trials_total == 2);  // the total of the session, not the number of trials done
 }
 
 TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the trial and presents it again",
@@ -90,7 +93,8 @@ TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the
     }
     if (page.kind == PageKind::fault && page.fault == session::FaultKind::stop_pressed &&
         room.lines->level(SharedLines::stop)) {
-      if (page.detail.find("refused") == std::string::npos) return room.push(InputKind::arm);  // too soon
+      // too early: the stop is still pressed
+      if (page.detail.find("refused") == std::string::npos) return room.push(InputKind::arm);
       room.lines->set(SharedLines::stop, false, drive::monotonic_ns());
     }
     room.cooperate(page);
@@ -147,12 +151,12 @@ TEST_CASE("faults on a fault's page are mended with it, not one after another", 
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.push(InputKind::fault);
     if (page.kind == PageKind::fault && room.stimuli == 1 && !std::exchange(pressed, true)) {
-      CHECK(page.amplifier.empty());  // still armed: the page has its Continue
+      CHECK(page.amplifier.empty());  // still armed: the page offers Continue
       return room.lines->set(SharedLines::stop, true, drive::monotonic_ns());
     }
     if (page.kind == PageKind::fault && pressed && room.lines->level(SharedLines::stop)) {
       room.lines->set(SharedLines::stop, false, drive::monotonic_ns());
-      room.push(InputKind::fault);  // a third one, before anybody has armed
+      room.push(InputKind::fault);  // a third fault, before anybody has armed
     }
     room.cooperate(page);
   };
@@ -173,7 +177,7 @@ TEST_CASE("who goes on before the buttons are back is told what is missing", "[s
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return buttons->remove();
     if (page.kind == PageKind::fault && page.fault == session::FaultKind::lines_gone && ++told == 3) {
-      CHECK(page.amplifier.empty());  // nothing to arm: the amplifier has lines of its own
+      CHECK(page.amplifier.empty());  // nothing to arm: the amplifier is on lines that were not lost
       buttons->put_back();
     }
     if (page.kind == PageKind::stimulus) {
@@ -252,19 +256,19 @@ TEST_CASE("the interval between trials stretches to keep the duty, and the log s
           "[session][live]") {
   const TemporaryFolder folder;
   auto setup = live_setup(folder / "a.sqlite");
-  setup.rig.limits.duty = 0.04;  // 2.4 s of any minute: one whole stimulus of 2 s, and no second
+  setup.rig.limits.duty = 0.04;  // 2.4 s in any minute: one stimulus of 2 s fits, a second one does not
   Room room;
   room.reacts = [&](const auto& page) {
-    if (page.kind == PageKind::stimulus) return;  // explores to the end, answers after
+    if (page.kind == PageKind::stimulus) return;  // explores until the end and answers afterwards
     if (page.kind == PageKind::response) return room.press(1);
     if (page.kind == PageKind::interval && room.stimuli == 1) return room.push(InputKind::stop);
     room.cooperate(page);
   };
   const auto first = session::run(setup, &room, room.inputs, room.devices());
   CHECK(first.trials == 1);
-  // The same participant at once, in a new session: the database remembers.
+  // The same participant starts a new session at once. The database remembers the exposure.
   Room again;
-  std::jthread stops;  // ends before the room that it speaks into
+  std::jthread stops;  // declared after the room, so that it ends before it
   again.reacts = [&](const auto& page) {
     if (page.kind == PageKind::instructions) {
       again.push(InputKind::next);
@@ -329,6 +333,6 @@ TEST_CASE("what a session is allowed to resample nowhere plays through alsa-lib'
   const auto summary = session::run(setup, nullptr, inputs);
   CHECK(summary.status == store::SessionStatus::completed);
   CHECK(summary.answered == 2);
-  setup.rig.output.uri = "alsa:rated";  // the negative control: a resampler behind the same permission
+  setup.rig.output.uri = "alsa:rated";  // negative control: a resampler behind the same permission
   CHECK_THROWS(session::run(setup, nullptr, inputs));
 }

@@ -19,7 +19,7 @@ namespace {
 
 const std::string kSource = TURNPOINT_SOURCE_DIR;
 
-/// A folder of its own for each test, gone afterwards.
+/// A folder for one test, removed afterwards.
 struct Folder {
   fs::path path;
   Folder() : path(fs::temp_directory_path() / ("turnpoint-session-" + std::to_string(::getpid()))) {
@@ -53,7 +53,7 @@ std::vector<store::TrialRow> trials_of(const std::string& database, const std::s
   return all;
 }
 
-/// Counts what it is told.
+/// Counts its notifications.
 struct Watch : session::Monitor {
   std::vector<std::optional<double>> announced, ended;
   void trial_begins(const session::TrialSpec& spec, const protocol::Block&,
@@ -65,7 +65,7 @@ struct Watch : session::Monitor {
   }
 };
 
-/// Pulls the plug: throws after so many pages.
+/// Simulates a crash: throws after a number of pages.
 struct Cut : session::Display {
   int pages;
   explicit Cut(int n) : pages(n) {}
@@ -285,7 +285,7 @@ TEST_CASE("the response device's latency and the consent form are stored, and no
   const auto a = trials_of(folder / "a.sqlite", summary.session_id);
   const auto b = trials_of(folder / "b.sqlite", plain.session_id);
   CHECK(a.front().response_offset_s == 0.0625);
-  // Found for the kernel's time stamps, it says nothing of others.
+  // A latency measured for the kernel's time stamps does not apply to others.
   setup.response_offset_quality = "kernel";
   setup.database = folder / "c.sqlite";
   const auto other = session::run(setup, nullptr, inputs);

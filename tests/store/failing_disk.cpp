@@ -22,7 +22,7 @@ int write(sqlite3_file* file, const void* data, int size, sqlite3_int64 offset) 
   return real_write(file, data, size, offset);
 }
 
-/// The real file's methods, but for writing.
+/// The real file's methods, except for writing.
 int open(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, int* out_flags) {
   const int code = real->xOpen(real, name, file, flags, out_flags);
   if (code != SQLITE_OK || file->pMethods == nullptr) return code;

@@ -1,8 +1,9 @@
 #pragma once
 #include <cstdint>
 
-/// Makes SQLite write to a disk that fills up: a shim over the real file system, the default for connections
-/// opened while it lives. One at a time; bytes_left() and space_again() from any thread.
+/// Makes SQLite write to a disk that fills up. This is a shim over the real file system and the default for
+/// connections opened during its lifetime. Use one at a time; bytes_left() and space_again() may be called
+/// from any thread.
 class FailingDisk {
  public:
   FailingDisk();

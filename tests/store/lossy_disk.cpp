@@ -20,7 +20,7 @@ struct Change {
   bool truncates = false;
 };
 
-/// A file as the platter has it, and what still waits in the cache.
+/// The durable content of a file, and the writes that are still in the cache.
 struct Platter {
   std::string durable;
   std::vector<Change> waiting;
@@ -33,7 +33,8 @@ std::map<std::string, Platter> platters;
 std::map<sqlite3_file*, std::string> names;
 std::function<void()> hook;
 LossyDisk::Syncs mode;
-const sqlite3_io_methods* any_real = nullptr;  // write, truncate, sync and close are the same for all files
+// for all files the same functions write, truncate, sync and close
+const sqlite3_io_methods* any_real = nullptr;
 
 void apply(std::string& bytes, const Change& change) {
   if (change.truncates) return bytes.resize(change.offset);
@@ -126,7 +127,8 @@ void LossyDisk::at_each_operation(std::function<void()> call) { hook = std::move
 void LossyDisk::cut(const std::string& database, const std::string& into, std::uint64_t seed) const {
   std::mt19937_64 random(seed);
   const auto survival =
-      std::uniform_real_distribution<>(0, 1)(random);  // of this cut, from nothing to everything
+      // share of unsynced writes that survive this cut, from none to all
+      std::uniform_real_distribution<>(0, 1)(random);
   const auto survives = [&] { return std::uniform_real_distribution<>(0, 1)(random) < survival; };
   for (const auto* suffix : {"", "-wal"}) {
     const auto found = platters.find(database + suffix);

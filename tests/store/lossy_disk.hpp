@@ -4,25 +4,26 @@
 #include <memory>
 #include <string>
 
-/// Makes SQLite write to a disk that can lose its power: what was synced stays, of everything written since
-/// any part may be there and any part not, sector by sector. A shim over the real file system, the default
-/// for connections opened while it lives. Not thread-safe.
+/// Makes SQLite write to a disk that can lose power. Synced data stay; of everything written since, each
+/// sector may or may not be there. This is a shim over the real file system and the default for connections
+/// opened during its lifetime. Not thread-safe.
 class LossyDisk {
  public:
-  enum class Syncs { kept, ignored };  ///< ignored: a disk that says it has synced and has not
+  enum class Syncs { kept, ignored };  ///< ignored: a disk that reports a sync without doing it
 
   explicit LossyDisk(Syncs syncs);
   LossyDisk(const LossyDisk&) = delete;
   LossyDisk& operator=(const LossyDisk&) = delete;
   ~LossyDisk();
 
-  /// Called before each write, truncation and sync: the moments when power may go.
+  /// Sets a function that is called before each write, truncation and sync: the moments at which power may
+  /// fail.
   void at_each_operation(std::function<void()> call);
 
-  /// The files of `database` as a power cut at this moment may leave them, into the folder `into`, which must
-  /// exist. `seed` chooses what survives.
+  /// Writes the files of `database`, as a power cut at this moment may leave them, into the existing folder
+  /// `into`. `seed` chooses what survives.
   void cut(const std::string& database, const std::string& into, std::uint64_t seed) const;
 
-  /// Keeps nothing of this database any longer; no connection to it may be open.
+  /// Forgets this database. No connection to it may be open.
   void forget(const std::string& database);
 };

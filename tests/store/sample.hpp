@@ -106,7 +106,7 @@ inline TrialRow timeout(int index) {
 
 inline BlockStart block(int index = 0, int attempt = 0) { return {index, attempt, "main", "speed", false}; }
 
-/// A finished session of `trials` trials, all events included. Returns its id.
+/// Makes a finished session of `trials` trials with all events. Returns its id.
 inline std::string session(const std::string& database, int trials, const SessionStart& with = start(),
                            SessionStatus status = SessionStatus::completed) {
   auto log = SessionLog::begin(database, with, segment());
@@ -127,10 +127,10 @@ inline std::string bytes_of(const std::string& path) {
   return all.str();
 }
 
-/// A connection of the test's own, past the store's rules of access.
+/// A connection for the test that bypasses the store's access rules.
 inline Database raw(const std::string& path) { return Database(path, Database::Access::read_write); }
 
-/// The fault and message of what `action` throws; fault io and "" where it throws nothing.
+/// The fault and message that `action` throws; fault io and "" if it throws nothing.
 template <class Action>
 std::pair<Fault, std::string> failure(Action&& action) {
   try {

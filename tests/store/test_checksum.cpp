@@ -22,7 +22,7 @@ using namespace turnpoint::store;
 
 namespace {
 
-/// Everything that `turnpoint verify` looks at: pages, references, and each session's chain.
+/// All problems that `turnpoint verify` finds: pages, references, and each session's chain.
 std::vector<std::string> problems_of(const std::string& db) {
   Database database(db, Database::Access::read_only);
   std::vector<std::string> problems;
@@ -50,7 +50,7 @@ void make(const std::string& db) {
   log = SessionLog(std::move(log));
 }
 
-/// Past everything that guards the rows: as somebody with an SQLite shell could do it.
+/// Removes all guards of the rows, as somebody with an SQLite shell could do.
 Database unguarded(const std::string& db) {
   auto database = sample::raw(db);
   std::vector<std::string> triggers;
@@ -82,14 +82,15 @@ struct Damage {
 
   std::uint64_t below(std::uint64_t n) { return random() % n; }
 
-  /// A condition that only the chosen row of the table meets.
+  /// A condition that only one random row of the table meets.
   std::string some_row(Database& database, const std::string& table, const std::string& key) {
     const auto count = database.integer("SELECT count(*) FROM " + table);
     return "(" + key + ") = (SELECT " + key + " FROM " + table + " ORDER BY " + key + " LIMIT 1 OFFSET " +
            std::to_string(below(static_cast<std::uint64_t>(count))) + ")";
   }
 
-  /// One bit of one stored value. False where that value has none, or the schema refuses the new one.
+  /// Flips one bit of one stored value. Returns false if that value has none, or if the schema refuses the
+  /// new one.
   bool flip(Database& database) {
     const auto& [table, key] = kTables[below(kTables.size())];
     std::vector<std::string> columns;
@@ -99,7 +100,7 @@ struct Damage {
       while (rows.step()) columns.push_back(rows.text(0));
     }
     const auto& column = columns[below(columns.size())];
-    if (column == "trial_id") return false;  // a row number, which merging gives anew
+    if (column == "trial_id") return false;  // a row number, which merging assigns again
     const auto row = some_row(database, table, key);
     Statement value(database, "SELECT " + column + " FROM " + table + " WHERE " + row);
     value.step();
@@ -121,7 +122,7 @@ struct Damage {
     return run(update);
   }
 
-  /// An edit to a value that the schema allows: it leaves no trace but in the chain.
+  /// Changes a value in a way that the schema allows, so that only the chain can detect it.
   bool edit(Database& database) {
     const std::vector<std::string> edits = {
         "UPDATE trial SET level = level + 0.5 WHERE ", "UPDATE trial SET response_time_s = 0.4 WHERE ",
@@ -161,7 +162,7 @@ TEST_CASE("a session's rows are as they were recorded, whatever it went through"
     died.append(sample::answered(0));
     died.presented(1, 1);
   }
-  sample::session(db, 1, sample::start("P03"));  // opening the database marks the one that died
+  sample::session(db, 1, sample::start("P03"));  // opening the database marks the session of the dead process
   CHECK(list_sessions(db, {"", "P02", ""}).front().status == SessionStatus::interrupted);
   CHECK(problems_of(db).empty());
   const auto other = folder / "b.sqlite";
@@ -189,7 +190,7 @@ TEST_CASE("of 1000 flipped bits, edited rows and missing rows every one is found
     if (!problems_of(damaged).empty()) ++found;
   }
   CHECK(found == 1000);
-  // Without any damage, taking the guards off is not a difference by itself.
+  // Negative control: removing the guards alone, without damage, makes no difference.
   std::filesystem::copy_file(db, damaged, std::filesystem::copy_options::overwrite_existing);
   unguarded(damaged);
   CHECK(problems_of(damaged).empty());
@@ -227,7 +228,7 @@ TEST_CASE("verify compares a database with a sessions.csv that was exported befo
   const auto csv = folder / "out/two-boundaries/sessions.csv";
   CHECK(verify(db, {"", csv}).good());
   sample::session(db, 1, sample::start("P04"));
-  CHECK(verify(db, {"", csv}).good());  // what came later is not in the export
+  CHECK(verify(db, {"", csv}).good());  // later sessions are not in the export
   SECTION("rows edited and sealed again") {
     auto database = unguarded(db);
     database.execute("UPDATE trial SET level = 3; DELETE FROM link");
@@ -302,7 +303,7 @@ TEST_CASE("the first encoding of a session never changes", "[store]") {
   const auto db = folder / "a.sqlite";
   sample::session(db, 2);
   auto database = unguarded(db);
-  // What is drawn or read from a clock when a session is made.
+  // Replaces the values that are drawn or read from a clock when a session is made.
   database.execute(
       "UPDATE session SET session_id = '00000000-0000-4000-8000-000000000000';"
       "UPDATE trial SET session_id = (SELECT session_id FROM session), recorded_realtime_ns = 5;"

@@ -1,4 +1,5 @@
-// Backups, restored files, withdrawn participants: what belongs to which database, and what may be replaced.
+// Backups, restored files, withdrawn participants: which files belong to which database, and what may be
+// replaced.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -22,7 +23,7 @@ SessionStart at_station(const std::string& participant, const std::string& stati
   return start;
 }
 
-/// What a killed session leaves: the file, and a log that holds some of its pages.
+/// Makes what a killed session leaves: the file, and a log that contains some of its pages.
 void leave_log(const std::string& db) {
   auto raw = sample::raw(db);
   raw.execute("CREATE TABLE filler (a); INSERT INTO filler SELECT randomblob(9000) FROM event");
@@ -31,7 +32,7 @@ void leave_log(const std::string& db) {
 
 void damage(const std::string& db) { fs::resize_file(db, 6000); }
 
-/// As a clock would have it that is ahead by years.
+/// Gives a backup the date of a clock that is years ahead.
 void postdate(const std::string& backup) {
   const auto at = backup.rfind("-20");
   REQUIRE(at != std::string::npos);
@@ -72,7 +73,7 @@ TEST_CASE(
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4);
   backup(db, {dir, 9});
-  fs::rename(db, db + ".restored");  // the old file is aside already
+  fs::rename(db, db + ".restored");  // the old file was already moved aside
   CHECK(sample::failure([&] { sample::session(db, 1); }).first == Fault::missing);
   CHECK(restore_backup(db, {dir, ""}).trials == 4);
   CHECK_FALSE(fs::exists(db + ".restored"));
@@ -90,7 +91,7 @@ TEST_CASE("a good database that cannot be opened is not replaced", "[store]") {
     CHECK_THROWS_AS(restore_backup(db, {dir, ""}), StoreError);
     return;
   }
-  // Root reads everything: a child of another user owns the folder and may not read the file.
+  // Root can read everything, so a child process of another user owns the folder and may not read the file.
   fs::permissions(folder.path, fs::perms::all);
   fs::permissions(dir, fs::perms::all);
   for (const auto& entry : fs::directory_iterator(folder.path))
@@ -290,7 +291,7 @@ TEST_CASE("the same code at two stations is two people until somebody joins them
   CHECK(sample::failure([&] { withdraw(a, {"P01", "", "", ""}); }).first == Fault::refused);
   CHECK(join(a, "P01@a", "P07") == "P01@a");
   CHECK(persons() == std::vector<std::string>{"P01@a", "P01@a", "P01@b"});
-  // Their sessions are counted on, at whichever station.
+  // Their sessions continue to be numbered, at any station.
   const auto id = sample::session(a, 1, at_station("P01", "a"));
   CHECK(read_session(a, id).session.session_index == 2);
   CHECK(join(a, "P01@a", "P07", Relation::two_people) == "P01@a");
@@ -309,7 +310,8 @@ TEST_CASE("a withdrawal takes one of two people of a code, or one station, or on
   SECTION("one of two people") {
     CHECK(withdraw(a, {"P01@b", "", "", ""}).trials == 3);
     CHECK(list_sessions(a).size() == 2);
-    CHECK(sample::session(a, 1, at_station("P01", "a")).size() == 36);  // nobody withdrew here
+    // nobody has withdrawn at this station
+    CHECK(sample::session(a, 1, at_station("P01", "a")).size() == 36);
     CHECK(sample::failure([&] { sample::session(a, 1, at_station("P01", "b")); }).first == Fault::refused);
     CHECK(merge(a, b).sessions[0].what == MergedSession::What::withdrawn);
   }

@@ -1,4 +1,5 @@
-// The drill of a restore, what the last backup notes for the start page, and backups that want a disk.
+// The drill of a restore, the note about the last backup for the start page, and backups that require a
+// separate disk.
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -15,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Without what SQLite keeps beside a database that has been read.
+/// The file names without those that SQLite keeps beside a database that has been read.
 std::vector<std::string> names_in(const std::string& folder) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder))

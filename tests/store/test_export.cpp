@@ -62,7 +62,7 @@ TEST_CASE("trials.csv has the fixed columns, all of them, with the factors in th
 
 namespace {
 
-/// A session in which no two fields of a row have the same value, so that exchanged columns show.
+/// A session in which no two fields of a row have the same value, so that swapped columns are detected.
 std::string session_of_unlike_values(const std::string& db) {
   auto start = sample::start("P07");
   start.run_mode = RunMode::pilot;
@@ -100,7 +100,7 @@ std::string session_of_unlike_values(const std::string& db) {
     trial.tones[3].friction.reset();
     log.presented(1, 4'000'000'001);
     log.event({4'100'000'002, "touch", "0.1 0.2", std::nullopt});
-    log.event({4'050'000'000, "stimulus", "0.75", 1});  // known only after it has ended
+    log.event({4'050'000'000, "stimulus", "0.75", 1});  // becomes known only after it has ended
     log.append(trial);
     log.finish(SessionStatus::interrupted, "the participant left");
     id = log.session().session_id;
@@ -125,7 +125,7 @@ TEST_CASE("each value of the four tables stands in its column", "[store]") {
     auto text = sample::bytes_of(files[i].path);
     for (auto at = text.find(id); at != std::string::npos; at = text.find(id))
       text.replace(at, id.size(), "ID");
-    // The one value that hangs on the drawn id.
+    // The only value that depends on the random id.
     const auto checksum = list_sessions(db).front().checksum;
     if (const auto at = text.find(checksum); at != std::string::npos)
       text.replace(at, checksum.size(), "CHECKSUM");

@@ -14,10 +14,11 @@ namespace {
 
 enum class Acknowledge { after_commit, before_commit };
 
-constexpr std::size_t kHeldBack = 8;  // trials that the careless writer gathers before it commits them
+// number of trials that the careless writer collects before it commits them
+constexpr std::size_t kHeldBack = 8;
 
-/// Goes on with the interrupted session of a database, or begins one, and appends trials for ever. Writes the
-/// index of each trial to the pipe when it is said to be durable.
+/// Continues the interrupted session of a database, or begins one, and appends trials for ever. Writes the
+/// index of each trial to the pipe once it is reported durable.
 [[noreturn]] void write_for_ever(const std::string& db, int pipe, Acknowledge when) {
   const auto interrupted = std::filesystem::exists(db) ? interrupted_session(db) : std::nullopt;
   auto log = interrupted ? SessionLog::resume(db, interrupted->session.session_id, sample::segment("resume"))
@@ -41,7 +42,7 @@ struct Toll {
   int kills = 0, acknowledged = 0, lost = 0, damaged = 0, repeated = 0;
 };
 
-/// Kills a writer at a random moment; then looks at what is there.
+/// Kills a writer at a random moment, then checks the database.
 void kill_once(const std::string& db, Acknowledge when, std::mt19937& random, Toll& toll) {
   int ends[2];
   REQUIRE(::pipe(ends) == 0);
@@ -55,7 +56,8 @@ void kill_once(const std::string& db, Acknowledge when, std::mt19937& random, To
     }
   }
   ::close(ends[1]);
-  // Half of them while they begin, the others once they have written some trials, however slow the machine.
+  // Half of the writers are killed while they begin, the others after some trials, however slow the machine
+  // is.
   const int wanted = std::uniform_int_distribution<>(-5, 5)(random);
   int last = -1, index = 0;
   for (int seen = 0; seen < wanted && ::read(ends[0], &index, sizeof index) == sizeof index; ++seen) {
@@ -66,7 +68,7 @@ void kill_once(const std::string& db, Acknowledge when, std::mt19937& random, To
   ::kill(child, SIGKILL);
   int status = 0;
   ::waitpid(child, &status, 0);
-  REQUIRE(WIFSIGNALED(status));  // it did not end by itself
+  REQUIRE(WIFSIGNALED(status));  // it was killed and did not end by itself
   while (::read(ends[0], &index, sizeof index) == sizeof index) {
     last = index;
     ++toll.acknowledged;
@@ -88,7 +90,7 @@ Toll kill_many(int kills, Acknowledge when) {
   Toll toll;
   std::mt19937 random(7);
   for (int round = 0; toll.kills < kills; ++round) {
-    TemporaryFolder folder;  // begun afresh now and then: creation is killed too
+    TemporaryFolder folder;  // start with a new database now and then, so that creation is killed too
     for (int i = 0; i < 25 && toll.kills < kills; ++i) kill_once(folder / "a.sqlite", when, random, toll);
   }
   return toll;

@@ -1,4 +1,4 @@
-// What a large database costs, counted in SQLite's own steps: the same on every machine.
+// The cost of a large database in steps of SQLite's virtual machine, which is the same on every machine.
 #include <sqlite3.h>
 
 #include <functional>

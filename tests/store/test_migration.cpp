@@ -9,7 +9,7 @@ using namespace turnpoint::store;
 
 namespace {
 
-/// A database as an older release wrote it, from its dump.
+/// Makes a database as an older release wrote it, from its dump.
 void make_old(const std::string& path, int version) {
   Database database(path, Database::Access::create);
   database.execute("PRAGMA journal_mode = WAL");

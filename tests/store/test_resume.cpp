@@ -6,7 +6,7 @@ using namespace turnpoint::store;
 
 namespace {
 
-/// A process that makes `trials` trials of block 0, presents one more, and ends without a word.
+/// A process that appends `trials` trials of block 0, presents one more, and ends abruptly.
 std::string broken_session(const std::string& db, int trials, const SessionStart& start = sample::start()) {
   auto log = SessionLog::begin(db, start, sample::segment());
   log.begin_block(sample::block());

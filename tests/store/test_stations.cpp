@@ -29,7 +29,7 @@ std::string trials_csv(const std::string& db, const std::string& out) {
   return sample::bytes_of(export_data(db, out, {})[0].path);
 }
 
-/// Every file of the folder whose name begins with the database's, as one text.
+/// The content of every file in the folder whose name begins with the database's, as one text.
 std::string all_bytes(const std::string& db) {
   std::string all;
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(db).parent_path()))
@@ -158,7 +158,8 @@ TEST_CASE("a damaged database is set aside and the newest good backup takes its 
   backup(db, {dir, 9});
   sample::session(db, 3, sample::start("P02"));
   const auto newest = backup(db, {dir, 9});
-  CHECK(sample::failure([&] { restore_backup(db, {dir, ""}); }).first == Fault::refused);  // it is good
+  // refused because the database is good
+  CHECK(sample::failure([&] { restore_backup(db, {dir, ""}); }).first == Fault::refused);
   auto bytes = sample::bytes_of(db);
   bytes.resize(6000);
   std::ofstream(db, std::ios::binary | std::ios::trunc) << bytes;
@@ -208,7 +209,7 @@ TEST_CASE("what root makes in the station's folder is the station's, and a copy 
   std::filesystem::permissions(db, std::filesystem::perms(0640));
   const auto copy = backup(db, {dir, 9});
   CHECK((status_of(copy.path).st_mode & 0777) == 0640);
-  CHECK(status_of(copy.path).st_uid == 0);  // of the folder for backups
+  CHECK(status_of(copy.path).st_uid == 0);  // owner of the folder for backups
   std::filesystem::remove(db + ".lock");
   std::filesystem::resize_file(db, 6000);
   restore_backup(db, {dir, ""});
@@ -285,7 +286,7 @@ TEST_CASE("withdraw lists what it removes and leaves no trace in the file, its l
   auto id = sample::session(db, 60, start);
   annotate(db, id, "told us about JKLMNO");
   sample::session(db, 5, sample::start("P02"));
-  CHECK(sample::contains(all_bytes(db), "XQ77ZK"));  // the search finds what is there
+  CHECK(sample::contains(all_bytes(db), "XQ77ZK"));  // negative control: the search finds existing text
   const auto old_backup = backup(db, {folder / "backups", 9});
   const auto gone = withdraw(db, {"XQ77ZK", "", "", folder / "backups"});
   REQUIRE(gone.sessions.size() == 1);
@@ -331,7 +332,7 @@ TEST_CASE("what was withdrawn is not brought back by merge, nor are later sessio
   CHECK(report.sessions[2].what == MergedSession::What::added);
   REQUIRE(list_sessions(a).size() == 1);
   CHECK_FALSE(sample::contains(all_bytes(a), "P01"));
-  CHECK(merge(b, a).withdrawn_there.size() == 1);  // station b is told that it still holds one
+  CHECK(merge(b, a).withdrawn_there.size() == 1);  // station b learns that it still has one
 }
 
 TEST_CASE("who comes after a withdrawal takes the place that became free", "[store]") {

@@ -86,7 +86,7 @@ void Child::stop_listening() {
   if (output_ >= 0) ::close(std::exchange(output_, -1));
 }
 
-/// One piece of what it says; false at the end, or after so long.
+/// Reads one piece of the output. Returns false at its end, or after this time.
 bool Child::listen(int patience_ms) {
   if (output_ < 0) return false;
   char text[4096];
@@ -104,7 +104,7 @@ bool Child::says(const std::string& text, int patience_ms) {
 
 bool Child::ends_within(int patience_ms) {
   const auto start = std::chrono::steady_clock::now();
-  // It is listened to meanwhile, so that it never waits for room in the pipe.
+  // Keep reading the output, so that the child never waits for room in the pipe.
   while (listen(std::max(0, patience_ms - ms_since(start))))
     if (ms_since(start) > patience_ms) return false;
   if (!ready(descriptor_, std::max(0, patience_ms - ms_since(start)))) return false;

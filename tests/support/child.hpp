@@ -2,30 +2,31 @@
 #include <string>
 #include <vector>
 
-/// A program under test in a process of its own, with what it says; killed where it still runs at the end.
+/// A program under test in its own process, with its output. It is killed if it still runs at the end.
 class Child {
  public:
-  /// Starts it, `environment` ("NAME=value") added to this process's. Throws std::system_error.
+  /// Starts the program with `environment` ("NAME=value") added to this process's environment. Throws
+  /// std::system_error.
   explicit Child(const std::vector<std::string>& command, const std::vector<std::string>& environment = {});
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
   ~Child();
 
   void signal(int number) const;
-  /// A line for its standard input. Throws std::system_error where it has ended.
+  /// Writes a line to its standard input. Throws std::system_error if it has ended.
   void type(const std::string& line) const;
-  /// From now on what it says goes to a pipe that nobody reads.
+  /// From now on its output goes to a pipe that nobody reads.
   void stop_listening();
-  /// True once it has said `text` on standard output or error; false where it ends, or says nothing for
-  /// `patience_ms`, before.
+  /// Waits until it has printed `text` on standard output or error. Returns false if it ends first, or prints
+  /// nothing for `patience_ms`.
   bool says(const std::string& text, int patience_ms);
-  /// True where it has ended within so long; what it said until then is in said().
+  /// Returns true if it ends within this time. Its output until then is in said().
   bool ends_within(int patience_ms);
-  /// True while it has a handler of its own for the signal (/proc/PID/status).
+  /// True if it has installed a handler for the signal (/proc/PID/status).
   bool handles(int number) const;
 
   const std::string& said() const { return said_; }
-  /// The exit code, or minus the signal that killed it; only after it has ended.
+  /// The exit code, or minus the signal that killed it. Valid only after it has ended.
   int outcome() const { return outcome_; }
 
  private:

@@ -6,7 +6,7 @@ namespace turnpoint::tests {
 
 struct Decision {
   bool correct = false;
-  double time_s = 0;  ///< with the time outside the decision
+  double time_s = 0;  ///< includes the non-decision time
 };
 
 /// One decision of a diffusion with these parameters, for s = 0.1.

@@ -26,7 +26,7 @@ double probability(Shape shape, double guess, const Point& at, double x) {
   return guess + (1 - guess - at[2]) * f;
 }
 
-/// Of threshold or ln slope at this share of the prior's range.
+/// For threshold or ln slope, at this fraction of the prior's range.
 double log_prior(double at, double falling_share) {
   const double nearest = std::min(at, 1 - at);
   return nearest < falling_share ? std::log(nearest / falling_share) : 0;
@@ -46,7 +46,7 @@ double log_posterior(Shape shape, const std::vector<Level>& data, const Prior& p
   return sum;
 }
 
-/// By bisection on the function itself: it rises.
+/// Bisection on the function itself, which is increasing.
 double level_75(Shape shape, const Prior& prior, const Point& at) {
   const double guess = guess_of(prior, at);
   if (!(guess < 0.75 && 1 - at[2] > 0.75)) return std::nan("");

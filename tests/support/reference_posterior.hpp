@@ -4,8 +4,8 @@
 
 namespace reference {
 
-/// The posterior of a psychometric function by Metropolis sampling, from the formulas of the papers: shares
-/// no code with the station's grid, only the random numbers.
+/// The posterior of a psychometric function by Metropolis sampling, from the formulas of the papers. It
+/// shares no code with the station's grid, only the random numbers.
 enum class Shape { weibull_dB, normal };
 
 struct Level {
@@ -13,7 +13,7 @@ struct Level {
   int trials = 0, positive = 0;
 };
 
-/// Ascending, one entry a level.
+/// Sorts the levels and merges equal ones.
 std::vector<Level> merged(std::vector<Level> levels);
 
 /// Uniform in threshold, logarithm of the slope, lapse rate and guess rate; equal ends fix a parameter. The
@@ -25,13 +25,13 @@ struct Prior {
   double falling_share = 0;
 };
 
-/// One draw each of the parameters and of the level with probability 0.75 (NaN where there is none).
+/// Draws of the parameters and of the level with probability 0.75 (NaN if there is none).
 struct Samples {
   std::vector<double> threshold, slope, lapse, guess, level_75;
 };
 
-/// One in five of `steps` draws, after a tenth as many that are dropped. Steps have scales from a thousandth
-/// of the prior's range to all of it, so that narrow and wide posteriors are both walked without tuning.
+/// Keeps one in five of `steps` draws, after discarding a tenth as many at the start. Step sizes range from a
+/// thousandth of the prior's range to all of it, so that narrow and wide posteriors need no tuning.
 Samples sample(Shape shape, const std::vector<Level>& data, const Prior& prior, int steps,
                std::uint64_t seed);
 

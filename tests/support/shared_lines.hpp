@@ -4,8 +4,7 @@
 #include "station/panel/guarded_amplifier.hpp"
 #include "station/panel/simulated_lines.hpp"
 
-/// The lines of an amplifier whose guard is the real one: the test moves them, reads their log when all is
-/// over.
+/// Lines for an amplifier with the real guard. The test moves them, and reads their log at the end.
 struct SharedLines : turnpoint::panel::Lines {
   static constexpr int enable = 0, heartbeat = 1, fault = 2, stop = 3, count = 4;
 
@@ -20,7 +19,7 @@ struct SharedLines : turnpoint::panel::Lines {
   std::shared_ptr<turnpoint::panel::SimulatedLines> lines;
 };
 
-/// Requests them, as one does from a chip: fails while that is gone.
+/// Requests the lines as from a real chip: fails while the chip is gone.
 inline turnpoint::panel::OpenLines opener(const std::shared_ptr<turnpoint::panel::SimulatedLines>& lines) {
   return [lines] {
     static_cast<void>(lines->level(0));

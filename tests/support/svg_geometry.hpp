@@ -7,14 +7,14 @@
 
 #include "station/plot/svg.hpp"
 
-/// What stands where in an SVG document of plot::Svg, read back from its text.
+/// Finds the positions of elements in an SVG document of plot::Svg by parsing its text.
 namespace svg_geometry {
 
 struct Box {
   double left, top, right, bottom;
 };
 
-/// A text that is not turned, in a box no smaller than it is drawn.
+/// A text that is not rotated, in a box at least as large as the drawn text.
 struct Text {
   std::string words, colour;
   double size_px;
@@ -65,8 +65,8 @@ inline std::vector<Text> texts(const std::string& svg) {
   return found;
 }
 
-/// What lines, but for those of some colours (grid, axes), curves, round markers and outlined rectangles
-/// cover, in small boxes.
+/// The area covered by curves, round markers, outlined rectangles and lines (except for some colours: grid,
+/// axes), as small boxes.
 inline std::vector<Box> ink(const std::string& svg, const std::vector<std::string>& not_of_colour) {
   std::vector<Box> boxes;
   const auto stroke = [&](double x0, double y0, double x1, double y1, double half) {

@@ -4,10 +4,10 @@
 #include <stdexcept>
 #include <string>
 
-/// A folder of its own for one test, removed afterwards.
+/// A folder for one test, removed afterwards.
 struct TemporaryFolder {
   TemporaryFolder() {
-    // In memory where there is such a place: what is durable is not what these tests are about.
+    // In memory if possible, because these tests do not test durability.
     std::string name = std::filesystem::exists("/dev/shm") ? "/dev/shm" : "/tmp";
     name += "/turnpoint-test-XXXXXX";
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");

@@ -99,7 +99,7 @@ TEST_CASE("an estimate is printed to the digits that its uncertainty leaves", "[
 }
 
 TEST_CASE("what cannot be read to its end is an error and never an empty file", "[text]") {
-  CHECK_THROWS_AS(read_file("/proc/self/mem"), std::system_error);  // EIO at its first byte
+  CHECK_THROWS_AS(read_file("/proc/self/mem"), std::system_error);  // reading its first byte gives EIO
   CHECK_THROWS_AS(read_file("/proc/self"), std::system_error);
   CHECK_THROWS_AS(read_file("/dev/zero"), std::system_error);
   CHECK_THROWS_AS(read_file("/nowhere/at/all"), std::system_error);

@@ -66,7 +66,7 @@ TEST_CASE("the user's own link is followed, and one that another user has made i
   text::write_file(path, "new");
   CHECK(content(target) == "new");
   CHECK(fs::is_symlink(path));
-  if (::geteuid() != 0) return;  // only root can play another user
+  if (::geteuid() != 0) return;  // only root can act as another user
   REQUIRE(::lchown(path.c_str(), 12345, 12345) == 0);
   CHECK_THROWS_AS(text::write_file(path, "worse"), std::system_error);
   CHECK(content(target) == "new");

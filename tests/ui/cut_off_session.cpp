@@ -1,6 +1,6 @@
-// cut_off_session PROTOCOL RIG DATABASE MODE: a session of participant T1 whose process is killed (SIGKILL)
-// in the middle of its third trial's stimulus, as by a cut of the power. It answers the second choice before
-// that.
+// cut_off_session PROTOCOL RIG DATABASE MODE: runs a session of participant T1 whose process is killed
+// (SIGKILL) in the middle of its third trial's stimulus, as by a power cut. Before that it always answers the
+// second choice.
 #include <signal.h>
 
 #include <chrono>
@@ -32,7 +32,7 @@ class Room : public session::Display {
   void push(session::InputKind kind, int value = 0) {
     session::Input input;
     input.time_ns = std::chrono::steady_clock::now().time_since_epoch().count();
-    // Long enough after the page for it to have been read.
+    // late enough that the page can have been read
     if (kind == session::InputKind::answer) input.time_ns += 300'000'000;
     input.kind = kind;
     input.value = value;

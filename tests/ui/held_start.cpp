@@ -1,5 +1,5 @@
-// held_start: makes the application object on the panel's own frame buffer (where there is none, Qt goes on
-// without a screen), says "held", and never comes to its event loop: a start that takes very long.
+// held_start: simulates a start that takes very long. Makes the application object on the panel's own frame
+// buffer (if there is none, Qt continues without a screen), prints "held", and never reaches its event loop.
 #include <unistd.h>
 
 #include <cstdio>

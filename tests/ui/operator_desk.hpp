@@ -10,8 +10,8 @@
 
 namespace turnpoint::ui {
 
-/// For the tests of the operator's pages: the real controller on the shipped protocols beside one with
-/// mistakes, a database in a folder that goes with it, and a live model fed by hand.
+/// For tests of the operator's pages: the real controller with the shipped protocols and one that has
+/// mistakes, a database in a temporary folder, and a live model that the test fills.
 class OperatorDesk : public QObject {
   Q_OBJECT
   Q_PROPERTY(turnpoint::ui::OperatorController* operating READ operating CONSTANT)
@@ -24,12 +24,12 @@ class OperatorDesk : public QObject {
   OperatorController* operating() { return operating_.get(); }
   LiveModel* live() { return &live_; }
   LatencyController* latency() { return &latency_; }
-  /// "protocol participant language mode" of the session that the operator began, "" before.
+  /// "protocol participant language mode" of the session that the operator began; "" before.
   QString chosen() const { return chosen_; }
 
-  /// The reference button closed so long ago.
+  /// Simulates a press of the reference button this long ago.
   Q_INVOKABLE void pressed(double ago_ms);
-  /// Milliseconds of the latency that was kept, 0 before.
+  /// The accepted latency in milliseconds; 0 before.
   Q_INVOKABLE double keptLatencyMs() const;
   Q_INVOKABLE void tellLive(const QString& heading);
 

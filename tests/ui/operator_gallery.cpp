@@ -21,7 +21,7 @@ app::RunRequest request_for(const std::string& protocol, const std::string& data
   return request;
 }
 
-/// Hands on the first trials only, and cuts the session off after them.
+/// Passes on only the first trials, then ends the session.
 struct FirstTrials : session::Monitor {
   session::Monitor& to;
   int left;

@@ -12,7 +12,7 @@ app::LiveState live_exhibit(const std::string& protocol, int trials);
 /// The report of a whole simulated session of that protocol.
 app::ReportPages report_exhibit(const std::string& protocol);
 
-/// A database in a folder of its own, with an interrupted session of participant P03 in it.
+/// A database in a separate folder that contains an interrupted session of participant P03.
 std::string interrupted_exhibit(const std::string& folder);
 
 }  // namespace turnpoint::ui

@@ -6,7 +6,7 @@
 
 namespace turnpoint::ui {
 
-/// Looks at what has been rendered, as a participant does, and not at what a page was told to draw.
+/// Inspects the rendered pixels, as a participant sees them, and not what a page was asked to draw.
 class PageInspector : public QObject {
   Q_OBJECT
 
@@ -14,19 +14,20 @@ class PageInspector : public QObject {
   using QObject::QObject;
   ~PageInspector() override;
 
-  /// Texts below `page` that are visible and enabled, whose letters and background differ by a contrast (as
-  /// WCAG 2.1 defines it) below `least` in the pixels on the screen: "text: contrast", one each.
+  /// Texts below `page` that are visible and enabled and whose contrast with the background on the screen (as
+  /// defined by WCAG 2.1) is below `least`, each as "text: contrast".
   Q_INVOKABLE QStringList faintTexts(QQuickItem* page, double least) const;
-  /// Texts below `page` that were cut off by their place: elided, clipped, or reaching out of the page.
+  /// Texts below `page` that are cut off: elided, clipped, or extending beyond the page.
   Q_INVOKABLE QStringList cutTexts(QQuickItem* page) const;
-  /// Texts below `page` with a line break inside a word. (Between Chinese or Japanese characters it is none.)
+  /// Texts below `page` with a line break inside a word. (Breaks between Chinese or Japanese characters do
+  /// not count.)
   Q_INVOKABLE QStringList brokenWords(QQuickItem* page) const;
-  /// True where anything but the ground that it stands on reaches the left or the right edge of an item.
+  /// True if anything but the background reaches the left or the right edge of an item.
   Q_INVOKABLE bool reachesEdge(QQuickItem* item) const;
-  /// How many texts the others look at.
+  /// Number of texts that the other functions inspect.
   Q_INVOKABLE int texts(QQuickItem* page) const;
 
-  /// A picture's file that nobody has opened yet; from now on opened() tells how often somebody did.
+  /// The file of a picture that nobody has opened yet. From now on opened() counts how often it is opened.
   Q_INVOKABLE QString picture();
   Q_INVOKABLE int opened();
 

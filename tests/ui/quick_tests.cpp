@@ -17,7 +17,7 @@ class Setup : public QObject {
   Q_OBJECT
 
  public slots:
-  // Owned by the application: timers and pending calls must not outlive it.
+  // Owned by the application, because timers and pending calls must not outlive it.
   void applicationAvailable() {
     script_ = new turnpoint::ui::ScriptedSession(QCoreApplication::instance());
     desk_ = new turnpoint::ui::OperatorDesk(*script_->bridge(), QCoreApplication::instance());

@@ -12,9 +12,9 @@
 
 namespace turnpoint::ui {
 
-/// For tests of whole sessions: real ones (protocol file, physics, drive to null, the amplifier's guard on
-/// simulated lines, SQLite on a disk that may fill up) on their own thread, one after another, each with a
-/// database of its own in a folder that goes with this.
+/// For tests of whole sessions. Runs real ones (protocol file, physics, drive to null, the amplifier's guard
+/// on simulated lines, SQLite on a disk that may fill up) on their own thread, one after another, each with
+/// its own database in a temporary folder.
 class RealSession : public QObject {
   Q_OBJECT
   Q_PROPERTY(turnpoint::ui::SessionBridge* bridge READ bridge CONSTANT)
@@ -29,16 +29,16 @@ class RealSession : public QObject {
   QString failure() const { return failure_; }
 
   Q_INVOKABLE void start(const QString& protocol);
-  /// What happens in the room: the stop in the amplifier's supply, its fault line, the disk, and whatever
-  /// else the station may find ("touch_gone", ...), told as the device's thread would.
+  /// Events in the room: the stop in the amplifier's supply, its fault line, the disk, and any other fault of
+  /// the station ("touch_gone", ...), reported as by the device's thread.
   Q_INVOKABLE void setStop(bool pressed);
   Q_INVOKABLE void setAmplifierFault(bool active);
   Q_INVOKABLE void setDiskFull(bool full);
   Q_INVOKABLE void find(const QString& fault);
   Q_INVOKABLE void loseFrames(int frames) { bridge_.frames_lost(frames); }
-  /// The values of one column of the exported trials.csv, in the order of its rows, between spaces.
+  /// The values of one column of the exported trials.csv in the order of its rows, separated by spaces.
   Q_INVOKABLE QString column(const QString& name) const;
-  /// The values of the events of a kind, likewise.
+  /// The values of all events of a kind, in the same form.
   Q_INVOKABLE QString events(const QString& kind) const;
 
  signals:

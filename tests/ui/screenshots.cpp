@@ -33,7 +33,7 @@ using turnpoint::ui::StartController;
 
 const QStringList kLanguages{"en", "de", "ja"};
 
-/// The panels looked at: pixels and the density of a common panel of that size.
+/// The panels to render for: their pixels, and the density of a common panel of that size.
 struct Panel {
   QSize size;
   double pixels_per_mm;
@@ -83,12 +83,12 @@ class Camera {
   void shoot(const turnpoint::session::Page& page, const QString& name) {
     bridge_.show(page);
     QGuiApplication::processEvents();
-    // The numbers that only the operator opens.
+    // The numbers that only the operator can open.
     window_->findChild<QQuickItem*>("participantView")->setProperty("counting", name == "end-operator");
     shoot(name);
   }
 
-  /// The keypad for the operator's code, as a station begins that is locked, and over a participant's page.
+  /// The keypad for the operator's code, at the start of a locked station and over a participant's page.
   void shoot_gate() {
     auto* gate = window_->findChild<QQuickItem*>("gate");
     gate->setVisible(true);
@@ -113,7 +113,7 @@ class Camera {
   int count_ = 0;
 };
 
-/// One page of the operator's alone in a window: those are in English only.
+/// One of the operator's pages alone in a window. These exist only in English.
 class OperatorCamera {
  public:
   OperatorCamera(const QString& out, const Panel& panel, const QString& prefix)

@@ -6,8 +6,8 @@
 
 namespace turnpoint::ui {
 
-/// For tests of single pages: shows pages of the gallery and keeps what the page answered, as text
-/// ("answer 1", "next", "slider 31", "stop", "pause").
+/// For tests of single pages: shows pages of the gallery and records the page's replies as text ("answer 1",
+/// "next", "slider 31", "stop", "pause").
 class ScriptedSession : public QObject {
   Q_OBJECT
   Q_PROPERTY(turnpoint::ui::SessionBridge* bridge READ bridge CONSTANT)
@@ -24,16 +24,15 @@ class ScriptedSession : public QObject {
   static QStringList pages();
 
   Q_INVOKABLE void show(const QString& name, const QString& language);
-  /// The same page with this text in every place that a file or a device fills.
+  /// Shows the same page with this text wherever a text comes from a file or a device.
   Q_INVOKABLE void showWith(const QString& name, const QString& text);
   Q_INVOKABLE void forget();
-  /// From now on the kernel knows every touch, as having begun so many milliseconds before the toolkit saw
-  /// it.
+  /// From now on the kernel's stamp of every touch is this many milliseconds earlier than the toolkit's.
   Q_INVOKABLE void setKernelLead(double ms);
   Q_INVOKABLE void forgetKernel();
-  /// "kernel" or "toolkit": of the last answer's time stamp.
+  /// Source of the last answer's time stamp: "kernel" or "toolkit".
   Q_INVOKABLE QString quality() const { return quality_; }
-  /// Milliseconds from the touch that began at the last answer's time stamp until now.
+  /// Milliseconds since the last answer's time stamp.
   Q_INVOKABLE double answerAgeMs() const;
 
  signals:

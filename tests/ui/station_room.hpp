@@ -14,11 +14,12 @@
 namespace turnpoint::ui {
 
 /// For tests of the whole program: its own window with the real controllers and sessions behind it, in a
-/// folder with one protocol and the simulated rig; the database there is read as an export has it.
+/// folder with one protocol and the simulated rig. The database is read by way of an export.
 class StationRoom : public QObject {
   Q_OBJECT
-  Q_PROPERTY(QQuickItem* screen READ screen NOTIFY opened)  ///< what the participant's window shows
-  Q_PROPERTY(QQuickItem* second READ second NOTIFY opened)  ///< the second screen's, null before
+  Q_PROPERTY(QQuickItem* screen READ screen NOTIFY opened)  ///< content of the participant's window
+  Q_PROPERTY(QQuickItem* second READ second NOTIFY
+                 opened)  ///< content of the second screen's window; null before it opens
   Q_PROPERTY(turnpoint::ui::PageModel* page READ page NOTIFY opened)
   Q_PROPERTY(turnpoint::ui::OperatorController* operating READ operating NOTIFY opened)
   Q_PROPERTY(turnpoint::ui::LatencyController* latency READ latency CONSTANT)
@@ -33,40 +34,40 @@ class StationRoom : public QObject {
   OperatorController* operating() const { return operating_.get(); }
   LatencyController* latency() { return &latency_; }
 
-  /// Starts the program anew in an empty folder, with this code for the operator.
+  /// Starts the program in an empty folder, with this code for the operator.
   Q_INVOKABLE void open(const QString& code);
-  /// Gives the folder's protocol another title.
+  /// Changes the title of the folder's protocol.
   Q_INVOKABLE void entitle(const QString& title);
-  /// Leaves it and starts it again on what is in the folder.
+  /// Ends the program and starts it again in the same folder.
   Q_INVOKABLE void reopen(const QString& code);
   /// The same, locked.
   Q_INVOKABLE void reopenLocked(const QString& code);
   Q_INVOKABLE void close();
   Q_INVOKABLE void addSecondScreen();
 
-  /// Measures the rig: response, friction, sound level; as `turnpoint calibrate` writes it.
+  /// Writes a calibration of the rig (response, friction, sound level), as `turnpoint calibrate` does.
   Q_INVOKABLE void calibrate();
-  /// The reference button closed so long ago; and what was kept of the panel's latency is written.
+  /// Simulates a press of the reference button this long ago. An accepted latency of the panel is written.
   Q_INVOKABLE void pressed(double ago_ms);
   Q_INVOKABLE double keepLatency();
 
-  /// A session of participant T1, on this rig, that was killed in its third trial: exit code, -9 for a
-  /// kill, 0 where it did not end within a minute.
+  /// Runs a session of participant T1 on this rig that is killed in its third trial. Returns the exit code,
+  /// -9 for a kill, 0 if it did not end within a minute.
   Q_INVOKABLE int cutOffSession(const QString& mode);
 
-  /// The levels of this protocol's first session, in order: of one that nothing interrupted.
+  /// The levels of this protocol's first session in order, from a session without interruption.
   Q_INVOKABLE QStringList plannedLevels() const;
 
-  /// From now on an own beat of 60 Hz on the pages' thread looks on; stallsSeen() ends that and tells how
-  /// many refreshes this thread was late by, counted generously: nothing else can have delayed a page here.
+  /// Starts a separate 60 Hz timer on the pages' thread. stallsSeen() stops it and returns a generous count
+  /// of the refreshes that this thread was late by; nothing else can have delayed a page here.
   Q_INVOKABLE void lookOn();
   Q_INVOKABLE int stallsSeen();
 
-  /// The thread of the pages does nothing for so long, as one that is hung.
+  /// Blocks the pages' thread for this time, as if it hung.
   Q_INVOKABLE void block(int ms);
 
-  /// The values of one column of an exported file (trials.csv, events.csv, ...) in the order of its rows; of
-  /// those rows whose column `where` is `is`, where that is given.
+  /// The values of one column of an exported file (trials.csv, events.csv, ...) in the order of its rows. If
+  /// `where` is given, only of rows whose column `where` is `is`.
   Q_INVOKABLE QStringList column(const QString& file, const QString& name, const QString& where = {},
                                  const QString& is = {}) const;
 

@@ -1,6 +1,6 @@
-// stopped_session PROTOCOL RIG DATABASE: a session on the screen, by the program's own way there, whose
-// process is told to stop (SIGTERM) in the middle of its second trial's stimulus. It answers the second
-// choice before.
+// stopped_session PROTOCOL RIG DATABASE: runs a session on the screen, started as by the program itself. In
+// the middle of its second trial's stimulus the process gets SIGTERM. Before that it answers the second
+// choice.
 #include <signal.h>
 
 #include <QGuiApplication>
@@ -26,11 +26,11 @@ void take_part(ui::SessionBridge& bridge) {
   if (page->kind() == Kind::Instructions) return bridge.next();
   if (page->kind() != Kind::Stimulus || !page->answers_open()) return;
   if (page->trials_done() == 1) return void(::raise(SIGTERM));
-  // Long enough after the page for it to have been read.
+  // late enough that the page can have been read
   bridge.answer(1, bridge.now_ns() + 300'000'000);
 }
 
-/// Once the program's window is there: somebody before it.
+/// Called once the program's window exists: simulates a person in front of it.
 void sit_down() {
   for (auto* window : QGuiApplication::topLevelWindows()) {
     auto* bridge = window->property("bridge").value<ui::SessionBridge*>();

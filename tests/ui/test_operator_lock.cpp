@@ -8,7 +8,7 @@ using namespace turnpoint;
 
 namespace {
 
-/// Enough for a machine that does much else; what never comes must end the test as well.
+/// Long enough for a busy machine. If something never comes, the test must still end.
 constexpr std::chrono::seconds kPatience{20};
 
 /// A keypad without its screen, on a clock that the test moves.
@@ -39,9 +39,9 @@ struct Keypad {
 TEST_CASE("the operator's lock opens by the code, and is compared off the pages' thread", "[lock]") {
   Keypad keypad;
   keypad.lock.enter("7391");
-  CHECK(keypad.lock.checking());  // it came back before the code was compared
+  CHECK(keypad.lock.checking());  // the call returned before the code was compared
   CHECK(keypad.opened == 0);
-  keypad.enter("1234");  // ignored meanwhile
+  keypad.enter("1234");  // ignored while the code is being compared
   CHECK(keypad.opened == 1);
   CHECK(keypad.refused == 0);
 }
@@ -64,5 +64,5 @@ TEST_CASE("after wrong codes the lock takes not even the right one until its tim
   CHECK(keypad.opened == 1);
   keypad.enter("1111");
   keypad.enter("2222");
-  CHECK(keypad.lock.wait_s() == 0);  // the right one began the count anew
+  CHECK(keypad.lock.wait_s() == 0);  // the right code reset the count
 }

@@ -1,4 +1,4 @@
-// What the screen's own hardware and program do to a session: the amplifier's guard counts on the
+// What the screen's hardware and program can do to a session: the amplifier's guard expects reports of the
 // participant's page, and a touch panel can be unplugged.
 #include <QCoreApplication>
 #include <chrono>
@@ -15,7 +15,7 @@ using namespace turnpoint;
 
 namespace {
 
-/// A pilot session on simulated lines, whose stimuli are felt for half a minute.
+/// A pilot session on simulated lines, with stimuli of half a minute.
 struct PilotSession {
   int argc = 1;
   char name[5] = "test";
@@ -38,7 +38,8 @@ struct PilotSession {
 
   const session::Page& page() { return runner.bridge().page()->page(); }
 
-  /// Turns the event loop until the page is there; half a minute is a failure, not a measurement.
+  /// Runs the event loop until the page is there. After half a minute the test fails; the limit is not a
+  /// measurement.
   bool shows(session::PageKind kind) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (page().kind != kind) {
@@ -55,13 +56,13 @@ struct PilotSession {
 TEST_CASE("a page whose thread hangs switches the amplifier off, and then says so", "[page]") {
   PilotSession session;
   REQUIRE(session.shows(session::PageKind::stimulus));
-  // The thread turns: nothing happens for as long as it will hang afterwards.
+  // First run the event loop normally for as long as it will hang afterwards: nothing must happen.
   const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(2600);
   while (std::chrono::steady_clock::now() < until) {
     QCoreApplication::processEvents(QEventLoop::AllEvents, 10);
     REQUIRE(session.page().kind == session::PageKind::stimulus);
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(2600));  // it hangs
+  std::this_thread::sleep_for(std::chrono::milliseconds(2600));  // now it hangs
   REQUIRE(session.shows(session::PageKind::fault));
   CHECK(session.page().fault == terms::FaultKind::page_silent);
   CHECK(session.page().amplifier == "faulted");

@@ -7,7 +7,7 @@
 
 namespace {
 
-/// Texts of a page that Qt may take for rich text.
+/// Number of a page's texts that Qt could interpret as rich text.
 int rich_texts(const std::string& qml) {
   static const std::regex rich(R"((^|[^A-Za-z])(Text|TextEdit|TextArea|Label)\s*\{)");
   return static_cast<int>(

@@ -13,9 +13,9 @@ using turnpoint::ui::StopSignals;
 
 namespace {
 
-/// Enough for a machine that does much else; what is not obeyed at all takes for ever.
+/// Long enough for a busy machine. A request that is ignored would take for ever.
 constexpr int kPatience_ms = 20000;
-/// From the signal to the end of the process. A service manager kills after 5 s.
+/// Limit for the time from the signal to the end of the process. A service manager kills after 5 s.
 constexpr int kPrompt_ms = 1000;
 
 const std::string kSource = TURNPOINT_SOURCE_DIR;
@@ -36,7 +36,7 @@ struct Loop {
   QCoreApplication application{argc, argv};
 };
 
-/// For a test's time signals do what the kernel does; the test framework has handlers of its own.
+/// For the duration of a test, signals have their default action. The test framework installs handlers.
 struct KernelsWay {
   KernelsWay() { set(SIG_DFL, SIG_DFL); }
   ~KernelsWay() { set(terminate, interrupt); }
@@ -75,8 +75,8 @@ TEST_CASE("the station ends promptly whenever in its start it is told to", "[sto
   REQUIRE_FALSE(child.ends_within(delay_ms));
   child.signal(SIGTERM);
   REQUIRE(child.ends_within(kPrompt_ms));
-  // Before the first page as the kernel does it, afterwards in order: a service manager takes both for a
-  // stop.
+  // Before the first page the signal kills the process, afterwards the program ends cleanly. A service
+  // manager accepts both.
   CHECK((child.outcome() == -SIGTERM || child.outcome() == 0));
 }
 

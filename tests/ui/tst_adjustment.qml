@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// A whole adjustment session by touch: what the slider shows is what the surface does and what the row keeps.
+// A whole adjustment session by touch: the slider, the surface and the stored row must agree.
 Item {
     id: stage
     width: 800
@@ -32,11 +32,11 @@ Item {
         }
         function tap(name) {
             tryVerify(() => find(view, name) !== null, 20000, name)
-            wait(400)                                                // a page takes taps once it has been up a while,
+            wait(400)                                                // a page accepts taps after it has been shown for a while,
             tryVerify(() => find(view, name)?.armed, 20000, name)    // however long its first frame took
             mouseClick(find(view, name))
         }
-        /// Where on the slider a value stands.
+        /// The position of a value on the slider.
         function place(slider, value) {
             const knob = slider.knob
             return knob / 2 + (value - page.sliderMin) / (page.sliderMax - page.sliderMin) * (slider.width - knob)
@@ -52,7 +52,7 @@ Item {
             sitting.start("adjust.toml")
             tap("proceed")
 
-            // Dragged with a finger from where it stands to -8, then two steps up.
+            // Drag with a finger from the current position to -8, then two steps up.
             let slider = adjusting()
             fuzzyCompare(page.slider, -20, 1e-9)
             const touch = touchEvent(stage)
@@ -68,7 +68,7 @@ Item {
 
             tryVerify(() => page.kind !== PageModel.Adjust, 5000)
 
-            // The second one is left alone until the surface falls silent; moving it then would be felt by nobody.
+            // Leave the second one alone until the surface falls silent. A move after that could not be felt.
             slider = adjusting()
             fuzzyCompare(page.slider, -20, 1e-9)
             tap("stepDown")

@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// A real session through everything that can go wrong in the room.
+// A real session with every fault that can happen in the room.
 Item {
     id: stage
     width: 800
@@ -44,7 +44,7 @@ Item {
             wait(1200)
             mouseRelease(button)
         }
-        /// Through the break that is due after two trials, if it comes.
+        /// Continues past the break after two trials, if it comes.
         function untilAsked() {
             tryVerify(() => page.answersOpen && page.kind === PageModel.Stimulus
                             || page.kind === PageModel.Rest && page.remainingSeconds === 0, 20000)
@@ -60,8 +60,8 @@ Item {
         function explained(text) {
             tryVerify(() => page.kind === PageModel.Fault && page.text.includes(text), 20000, text)
             verify(page.safe !== "" && page.toDo !== "")
-            wait(100)  // until it is laid out
-            // A long path in what was found may be cut short; the log has it whole.
+            wait(100)  // wait for the layout
+            // A long path in the detail may be cut off on the page; the log contains all of it.
             compare(inspector.cutTexts(view).filter(cut => cut !== page.detail), [])
         }
         function arm() {
@@ -82,7 +82,7 @@ Item {
             sitting.setStop(true)
             explained("emergency stop")
             arm()
-            tryVerify(() => page.detail.includes("refused"), 5000)   // it is still pressed
+            tryVerify(() => page.detail.includes("refused"), 5000)   // the stop is still pressed
             sitting.setStop(false)
             arm()
             tryCompare(page, "kind", PageModel.Paused, 5000)
@@ -103,7 +103,7 @@ Item {
             const before = shown.count
             tap("proceed")
             tryVerify(() => shown.count > before, 5000)
-            explained("disk is full")                                // it still is
+            explained("disk is full")                                // the disk is still full
             sitting.setDiskFull(false)
             tap("proceed")
 

@@ -2,7 +2,8 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// Every page as it is rendered, on a small panel and on a larger one: nothing faint, nothing cut off, no word broken.
+// Checks every rendered page on a small panel and on a larger one: nothing is faint, nothing cut off, no word
+// broken.
 Item {
     id: stage
     width: 800
@@ -81,7 +82,7 @@ Item {
             const first = findChild(view, "answer0").children[0], second = findChild(view, "answer1").children[0]
             compare(first.font.pixelSize, second.font.pixelSize)
             verify(first.font.pixelSize >= 3.4 * row.panel.mm)
-            // What is short keeps the size that answers have.
+            // Short texts keep the normal size of answers.
             compare(first.font.pixelSize === Math.round(4 * Math.min(row.panel.width / 80, row.panel.height / 48)), row.tag === "short")
         }
 

@@ -23,7 +23,7 @@ Item {
         function initTestCase() { script.bridge.watch(stage.Window.window) }
 
         function init() {
-            wait(2 * settleMs)  // a tap so soon after that of the test before would count for neither
+            wait(2 * settleMs)  // two taps too soon after each other count as none, so wait after the previous test
             show("between-trials")
             script.forget()
         }
@@ -74,7 +74,7 @@ Item {
             tryCompare(script, "inputs", ["answer 1"])
             verify(script.answerAgeMs() >= settleMs)
             mouseClick(item("answer0"))
-            tryCompare(script, "touches", 1)  // the second tap alone: the first became the answer
+            tryCompare(script, "touches", 1)  // only the second tap: the first became the answer
             compare(script.inputs, ["answer 1"])
         }
 
@@ -205,7 +205,7 @@ Item {
                 compare(script.inputs, ["next"])
                 return
             }
-            // Only an operator leads on: who touches the screen cannot arm by accident.
+            // Only an operator can continue: somebody who touches the screen by accident cannot arm.
             arming.clear()
             tap("operatorArms")
             compare(arming.count, 1)

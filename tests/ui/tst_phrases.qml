@@ -23,7 +23,7 @@ Item {
         name: "Phrases"
         when: windowShown
 
-        /// What lies between two places where a line may break.
+        /// The pieces of text between two possible line breaks.
         function pieces(text) {
             const joined = japanese.phrased(text), found = [""]
             for (let i = 0; i < joined.length; ++i) {
@@ -47,7 +47,8 @@ Item {
         }
         function test_a_japanese_text_breaks_where_a_phrase_ends(row) {
             const wanted = row.tag.split("|"), text = wanted.join("")
-            // Hiragana after hiragana is no place to break, so a piece may be two phrases, but never half of one.
+            // Two hiragana are no place to break, so a piece may consist of two phrases, but never of half a
+            // phrase.
             let begun = 0
             const starts = wanted.map(piece => (begun += piece.length) - piece.length)
             begun = 0
@@ -64,12 +65,12 @@ Item {
             shown.width = widthOf("なめらかな部分が印で終わるように、つまみを動かしてく") + 2
             shown.text = text
             compare(shown.lineCount, 2)
-            verify(shown.lines[0] > widthOf("なめらかな部分が印で終わるように、つまみを動か"))  // as it was without
+            verify(shown.lines[0] > widthOf("なめらかな部分が印で終わるように、つまみを動か"))  // as it would be without phrases
             shown.text = japanese.phrased(text)
             compare(shown.lineCount, 2)
             fuzzyCompare(shown.lines[0], widthOf("なめらかな部分が印で終わるように、つまみを"), 2)
             shown.width = widthOf("なめらか")
-            verify(shown.contentWidth <= shown.width + 1)  // a phrase that has no room breaks after all
+            verify(shown.contentWidth <= shown.width + 1)  // a phrase that does not fit into a line is broken after all
         }
 
         function test_words_of_other_languages_and_writings_are_left_alone() {

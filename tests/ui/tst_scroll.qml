@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// What is below the edge of a place that scrolls is told, and where one is in it.
+// A scrolling area shows that there is more below its edge, and the current position.
 Item {
     id: stage
     width: 400
@@ -50,7 +50,7 @@ Item {
             fuzzyCompare(cue.y + cue.height, 20 + 260, 0.5)
             verify(cue.x >= place.x + place.width && cue.x + cue.width <= card.width)
         }
-        /// Darkest of some pixels, 0 to 1, around the middle of a sign that lies at (0, y).
+        /// The darkest of some pixels, 0 to 1, around the middle of a symbol at (0, y).
         function darkest(y) {
             const image = grabImage(stage)
             let least = 1

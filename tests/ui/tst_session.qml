@@ -48,7 +48,7 @@ Item {
             }
         }
 
-        // The answers below follow no level: what counts is that each row has what was tapped.
+        // The answers below do not depend on the levels: each row must contain the answer that was tapped.
         function test_a_whole_session_tapped_through_is_in_the_database() {
             sitting.bridge.watch(stage.Window.window)
             sitting.start("short.toml")

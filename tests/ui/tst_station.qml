@@ -2,8 +2,8 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// The whole program in its own window, as a laboratory's day goes: operator's page, participant's pages, real sessions
-// and their rows.
+// The whole program in its own window during a day in the laboratory: operator's page, participant's pages,
+// real sessions and their rows.
 Item {
     id: stage
     width: 800
@@ -47,7 +47,7 @@ Item {
         function appears(name, parent = room.screen) {
             tryVerify(() => shown(name, parent), 20000, name)
             wait(60)
-            // A page reacts once it can have been read.
+            // A page reacts only once it can have been read.
             tryVerify(() => shown(name, parent) && find(parent, name).armed !== false, 5000, name + " reacts")
             return find(parent, name)
         }
@@ -65,9 +65,9 @@ Item {
             for (const digit of code) tap("digit" + digit)
             const lock = find(room.screen, "gate").lock
             tap("digitOK")
-            tryCompare(lock, "checking", false, 20000)               // it is compared by another thread
+            tryCompare(lock, "checking", false, 20000)               // another thread compares the code
         }
-        /// One finger on an answer of the participant's screen.
+        /// Touches an answer on the participant's screen with one finger.
         function answer(choice) {
             tryCompare(page, "answersOpen", true, 20000)
             wait(150)
@@ -91,7 +91,7 @@ Item {
             tap("proceed")
         }
         function ends() { tryCompare(page, "kind", PageModel.End, 20000) }
-        /// As an operator who stands at the participant's screen.
+        /// Arms like an operator who stands at the participant's screen.
         function arm() {
             tryCompare(page, "awaitsArming", true, 20000)
             tap("operatorArms")
@@ -107,7 +107,7 @@ Item {
                 room.pressed(50)
                 mousePress(field)
                 mouseRelease(field)
-                wait(410)  // or the edge of one tap could belong to the next
+                wait(410)  // otherwise the edge of one tap could belong to the next
             }
             tryCompare(room.latency, "pairs", 10)
             const offset = room.keepLatency()
@@ -122,7 +122,7 @@ Item {
             tap("begin")
             tryVerify(() => operating.problems.length > 0, 20000)
             verify(operating.problems[0].includes("friction is the illustrative curve"), operating.problems[0])
-            tap("pilot")                                             // which the reason does not concern
+            tap("pilot")                                             // the reason does not apply to this mode
             compare(operating.problems, [])
             compare(operating.mayBegin, true)
 
@@ -132,7 +132,7 @@ Item {
             tap("live")
             begin("T7")
 
-            // Nobody has armed: the participant can neither go on nor arm.
+            // Nobody has armed: the participant can neither continue nor arm.
             tryCompare(page, "kind", PageModel.Fault, 20000)
             compare(page.runMode, "live")
             verify(!shown("proceed") && !shown("holdToArm"))
@@ -167,15 +167,17 @@ Item {
             compare(room.column("trials.csv", "response_time_quality"), ["toolkit", "toolkit", "toolkit", "toolkit"])
             compare(room.column("events.csv", "value", "kind", "arm"), ["armed"])
             compare(room.column("sessions.csv", "status"), ["completed"])
-            // The panel's latency stands beside each answer that it concerns, and in no response time.
+            // The panel's latency is stored with each answer that it applies to, but not subtracted from
+            // response times.
             for (const stored of room.column("trials.csv", "response_offset_s"))
                 fuzzyCompare(Number(stored), offset, 1e-6)
             const hashes = room.column("trials.csv", "calibration_id")
             verify(/^[0-9a-f]{64}$/.test(hashes[0]), hashes[0])
         }
 
-        /// Four trials, the second with the pages' thread blocked for so long: {trial: frames lost}, and in `seen`
-        /// what a beat of the test's own has found (which may not see a wait that two of its turns have shared).
+        /// Four trials, the second with the pages' thread blocked for this time: {trial: frames lost}, and in
+        /// `seen` the count of the test's own timer (which may miss a wait that was split between two of its
+        /// beats).
         function framesLost(blocked_ms) {
             room.open("7391")
             begin("T2")
@@ -201,7 +203,7 @@ Item {
 
         function test_frames_that_are_late_in_a_trial_are_counted_in_its_events() {
             const lost = framesLost(100)
-            verify(lost["1"] >= 4, JSON.stringify(lost))             // 100 ms are six at 60 Hz, and one may pass
+            verify(lost["1"] >= 4, JSON.stringify(lost))             // 100 ms are six refreshes at 60 Hz, and one may be missed
             verify(lost.total <= lost.seen + 1, JSON.stringify(lost))
             tap("results")
             type("7391")
@@ -211,7 +213,7 @@ Item {
 
         function test_a_session_whose_pages_are_in_time_counts_no_late_frame() {
             const lost = framesLost(0)
-            verify(lost.total <= lost.seen + 1, JSON.stringify(lost))  // what this machine was late by, and no more
+            verify(lost.total <= lost.seen + 1, JSON.stringify(lost))  // no more than this machine was late by
         }
 
         function test_a_session_that_was_cut_off_goes_on_at_its_very_trial() {
@@ -236,7 +238,7 @@ Item {
             compare(room.column("trials.csv", "response"), ["right", "right", "left", "left"])
             compare(room.column("trials.csv", "run_mode"), ["live", "live", "live", "live"])
             compare(room.column("trials.csv", "level"), room.plannedLevels())
-            // The trial that the cut hit had been presented, and was presented again.
+            // The interrupted trial had been presented, and was presented again.
             const presented = room.column("events.csv", "trial_index", "kind", "presented")
             compare(presented, ["0", "1", "2", "2", "3"])
             compare(room.column("sessions.csv", "status"), ["completed"])
@@ -258,7 +260,7 @@ Item {
             tap("livePause", room.second)
             tryCompare(page, "kind", PageModel.Paused, 5000)
             verify(!shown("liveView"))
-            tap("livePause", room.second)                            // goes on
+            tap("livePause", room.second)                            // continues the session
             tryVerify(() => page.answersOpen, 20000)
             compare(page.trialsDone, 0)
             answer(1)
@@ -286,7 +288,7 @@ Item {
             verify(shown("gate") && !shown("liveView"))
             tap("gateLeave")
             verify(!shown("gate") && !shown("liveView"))
-            compare(page.kind, PageModel.Instructions)               // nothing has happened to the session
+            compare(page.kind, PageModel.Instructions)               // the session is not affected
             tap("proceed")
             tryVerify(() => page.kind === PageModel.Stimulus, 20000)
             compare(find(room.screen, "operatorCorner").enabled, false)
@@ -295,14 +297,14 @@ Item {
             tryCompare(page, "kind", PageModel.Paused, 5000)
             hold("operatorCorner", 2300)
             type("7391")
-            appears("liveView")                                      // the right code does
+            appears("liveView")                                      // the right code opens it
             tap("liveClose")
             verify(!shown("liveView"))
             tap("end")
             tap("end")
             ends()
 
-            // What the thanks lead to is the operator's as well.
+            // The pages after the thanks are also for the operator.
             for (const way of ["results", "close"]) {
                 tap(way)
                 type("1234")
@@ -320,13 +322,13 @@ Item {
             room.reopenLocked("7391")
             appears("gate")
             verify(!shown("operatorPage"))
-            compare(find(room.screen, "gateLeave").enabled, false)   // there is nothing to go back to
+            compare(find(room.screen, "gateLeave").enabled, false)   // there is no page to go back to
             type("1357")
             verify(shown("gate") && !shown("operatorPage"))
             type("7391")
             appears("operatorPage")
             verify(!shown("gate"))
-            begin("T8")                                              // and from then on as ever
+            begin("T8")                                              // from then on everything works as usual
             tryCompare(page, "kind", PageModel.Instructions, 20000)
         }
     }

@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// What a file or a person wrote is shown as it was written: tags are no markup, and no picture is opened.
+// Text from a file or a person is shown literally: tags have no effect, and no picture is opened.
 Item {
     id: stage
     width: 800

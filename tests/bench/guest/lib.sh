@@ -1,32 +1,33 @@
-# What scenarios share. A scenario is sourced after this with `set -eu`: the first command that fails, fails it.
+# Functions for scenarios. A scenario is sourced after this file with `set -eu`, so its first failing command
+# makes it fail.
 set -eu
 PATH=$BENCH_DIR/bin:$BIN:$PATH
 say() { echo "# $*"; }
 fail() { echo "FAILED: $*"; [ ! -e /dev/fb0 ] || screenshot failed || true; exit 1; }
 
-# near WHAT VALUE EXPECTED TOLERANCE: passes when the value is that close.
+# near WHAT VALUE EXPECTED TOLERANCE: passes if the value is within the tolerance.
 near() {
   awk -v v="$2" -v e="$3" -v t="$4" 'BEGIN { d = v - e; exit !(v ~ /^[-+0-9.e]+$/ && d <= t && d >= -t) }' ||
     fail "$1 is $2, expected $3 within $4"
   say "$1: $2 (expected $3 within $4)"
 }
-# fails STATUS COMMAND...: passes when the command exits with this status; what it said is in refusal.txt.
+# fails STATUS COMMAND...: passes if the command exits with this status; its output is in refusal.txt.
 fails() {
   local expected=$1 status=0; shift
   "$@" >refusal.txt 2>&1 || status=$?
   cat refusal.txt
   [ $status -eq "$expected" ] || fail "exit status $status, expected $expected: $*"
 }
-# eventually SECONDS COMMAND...: waits at least so long until the command succeeds, or fails the scenario.
+# eventually SECONDS COMMAND...: repeats the command until it succeeds. Fails the scenario after SECONDS.
 eventually() {
-  local end=$((SECONDS + $1 + 1)); shift   # SECONDS may be about to count on
+  local end=$((SECONDS + $1 + 1)); shift   # +1 because SECONDS may be about to advance
   until "$@"; do [ $SECONDS -lt $end ] || fail "did not happen in time: $*"; sleep 0.1; done
 }
 has() { grep -q "$2" "$1"; }   # has FILE PATTERN
 equals() { [ "$($1 $2)" = "$3" ]; }
 
-# gpio_sim NAME...: a simulated chip with these line names, in order. Afterwards `pull NAME up|down` drives an
-# input, `level NAME` reads what the line carries, `pull_file NAME` is for gpio_line press.
+# gpio_sim NAME...: makes a simulated chip with these line names, in order. Afterwards `pull NAME up|down`
+# drives an input, `level NAME` reads a line's level, and `pull_file NAME` is for gpio_line press.
 gpio_sim() {
   local n=0 name chip=/sys/kernel/config/gpio-sim/bench
   if [ -s "$BENCH_DIR/gpio-sim.ko" ]; then insmod "$BENCH_DIR/gpio-sim.ko"; else modprobe gpio-sim; fi
@@ -49,10 +50,11 @@ line_of() {
 pull_file() { echo "$(line_of "$1")/pull"; }
 pull() { echo "pull-$2" >"$(pull_file "$1")"; }
 level() { cat "$(line_of "$1")/value"; }
-# keep_outputs Y|N: whether an output stays as it was driven when its holder is gone, as on most chips; N without it.
+# keep_outputs Y|N: whether an output keeps its level when its holder ends, as on most chips; N by default.
 keep_outputs() { echo "$1" >/sys/module/gpio_sim_bench/parameters/keep_outputs; }
 
-# rig_with DEVICE=URI... <RIG >RIG: a rig file with these devices; sound gets buffers that outlast a stalled host.
+# rig_with DEVICE=URI... <RIG >RIG: a rig file with these devices. Sound gets buffers that outlast a stalled
+# host.
 rig_with() {
   local device script=
   for device in "$@"; do
@@ -61,7 +63,8 @@ rig_with() {
   done
   sed "$script"
 }
-# calibrate_for_live RIG: what a live session asks for, of an actuator that nobody has measured.
+# calibrate_for_live RIG: makes the calibration that a live session requires, for an actuator that nobody
+# measured.
 calibrate_for_live() {
   awk 'BEGIN { print "frequency_Hz,displacement_um,phase_deg"
     for (f = 20000; f <= 50000; f += 500) print f "," 0.3 + 4e-6 * f ",-20" }' >sweep.csv
@@ -70,12 +73,12 @@ calibrate_for_live() {
   turnpoint calibrate --rig "$1" --response main=sweep.csv --full-scale 0.1 --friction friction.csv --sound sound.csv
 }
 
-# loopback: a sound card whose playback side (hw:Loopback,0) is recorded from hw:Loopback,1, bit by bit.
+# loopback: a sound card whose playback side (hw:Loopback,0) can be recorded bit by bit from hw:Loopback,1.
 loopback() { modprobe snd-aloop pcm_substreams=1; eventually 5 test -e /dev/snd/pcmC0D1c; }
-# record SECONDS FILE [RATE]: in the background, raw S32_LE stereo; its process is $!.
+# record SECONDS FILE [RATE]: records raw S32_LE stereo in the background; $! is its process.
 record() { arecord -q -D hw:Loopback,1 -t raw -f S32_LE -c 2 -r "${3:-192000}" --period-size=9600 --buffer-size=192000 -d "$1" "$2" & }
 
-# disk_begin [WHERE]: the `disk`, empty, on /run/disk or there. What is written there is judged by NAME.after with
+# disk_begin [WHERE]: mounts the empty `disk` on /run/disk or there. NAME.after checks its content with
 # power_cuts.py.
 disk_begin() {
   modprobe virtio_blk; eventually 5 test -b /dev/vda
@@ -83,8 +86,8 @@ disk_begin() {
   mount -t ext4 -o noatime /dev/vda "${1:-/run/disk}"
 }
 
-# panel_begin: a touch panel of 800 x 480 at $PANEL; `touch_do COMMAND...` makes it do something (touch_panel.cpp).
-# After `touch_do gone`, it plugs it in again.
+# panel_begin: creates a touch panel of 800 x 480 at $PANEL; `touch_do COMMAND...` controls it
+# (touch_panel.cpp). After `touch_do gone`, it plugs the panel in again.
 panel_begin() {
   modprobe uinput; modprobe evdev
   [ -p panel.in ] || mkfifo panel.in
@@ -96,23 +99,26 @@ panel_begin() {
 }
 touch_do() { echo "$*" >&9; }
 
-# screen_begin: the frame buffer of the `screen`, and what Qt needs to draw on it and read the panel.
+# screen_begin: prepares the frame buffer of the `screen`, and the settings that Qt needs to draw on it and to
+# read the panel.
 screen_begin() {
   modprobe bochs; eventually 10 test -e /dev/fb0
   export QT_QPA_PLATFORM=linuxfb QT_QUICK_BACKEND=software QT_QPA_FB_DISABLE_INPUT=1
   export QT_QPA_GENERIC_PLUGINS=evdevtouch:$PANEL
 }
-# pixel X Y: colour there, as bbggrr in hexadecimal; screenshot NAME: keeps what is on the screen in $OUT/NAME.png.
-# Both see what the card scans out, whether eglfs or the frame buffer drew it.
+# pixel X Y prints the colour there, as bbggrr in hexadecimal; screenshot NAME saves the screen as
+# $OUT/NAME.png. Both read what the card scans out, whether eglfs or the frame buffer drew it.
 pixel() { kms_screen "$1" "$2"; }
 screenshot() { kms_screen | python3 "$BENCH_SOURCE/guest/screenshot.py" "$OUT/$1.png"; }
-# On the participant's pages: whether something that can be pressed is at X Y, by its colour; which page it is.
+# On the participant's pages: detects by colour whether something at X Y can be pressed, and which page is
+# shown.
 action=5c3d0f
 shows() { [ "$(pixel "$1" "$2")" = $action ]; }
 answers_open() { shows 60 400 && shows 740 400; }
 continues() { shows 290 390 && ! shows 60 400; }
 
-# The installed kiosk on its panel of 800 x 480. A tap, and a press of a second; the way in by the operator's code 2580.
+# For the installed kiosk on its panel of 800 x 480: a tap, a press of one second, and entering with the
+# operator's code 2580.
 tap() { touch_do tap "$1" "$2"; sleep 0.2; }
 hold() { touch_do down 0 "$1" "$2"; touch_do sleep 1200; touch_do up 0; sleep 1.6; }
 keypad() { shows 280 75 && shows 397 75; }

@@ -1,5 +1,5 @@
-// add_switch CARD NAME: gives a sound card a switch of this name, on, as a converter's driver does. It stays
-// for as long as the card.
+// add_switch CARD NAME: adds a switch of this name to a sound card, in state "on", as the driver of a
+// converter does. The switch exists as long as the card.
 extern "C" {
 #include <alsa/asoundlib.h>
 }
@@ -20,7 +20,7 @@ int add(const char* card_name, const char* name) {
   snd_ctl_elem_value_set_id(on, id);
   snd_ctl_elem_value_set_boolean(on, 0, 1);
   int error = snd_ctl_elem_add_boolean(card, id, 1);
-  if (error >= 0) error = snd_ctl_elem_unlock(card, id);  // else nobody but this process may change it
+  if (error >= 0) error = snd_ctl_elem_unlock(card, id);  // otherwise only this process could change it
   if (error >= 0) error = snd_ctl_elem_write(card, on);
   snd_ctl_close(card);
   return error;

@@ -1,6 +1,6 @@
-// burst_samples ONSET SECONDS HZ:AMPLITUDE:CHANNEL...: what `turnpoint synth` makes of these tones at 192 kHz
-// and 24 bits when the first frame is ONSET, which the dither depends on: raw S32_LE stereo on standard
-// output.
+// burst_samples ONSET SECONDS HZ:AMPLITUDE:CHANNEL...: writes the samples that `turnpoint synth` makes of
+// these tones at 192 kHz and 24 bits to standard output, as raw S32_LE stereo. ONSET is the first frame, on
+// which the dither depends.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

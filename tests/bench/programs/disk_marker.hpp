@@ -7,11 +7,11 @@
 #include <cstring>
 #include <string>
 
-/// Puts marks into the record of a disk's writes: a sector behind the file system, written past all caches
-/// but not flushed. A mark at some place of the record says that the disk had taken all that went before.
+/// Writes marks into the record of a disk's writes. A mark is a sector behind the file system that is written
+/// past all caches but not flushed. It proves that the disk had accepted everything recorded before it.
 class DiskMarker {
  public:
-  /// `device` as a block device; exits with a message where it cannot be opened.
+  /// Opens `device` as a block device. Exits with a message if that fails.
   explicit DiskMarker(const char* device) : fd_(::open(device, O_WRONLY | O_DIRECT | O_CLOEXEC)) {
     if (fd_ < 0 || ::posix_memalign(&sector_, 4096, size) != 0) std::perror(device), std::exit(1);
   }
@@ -28,7 +28,7 @@ class DiskMarker {
  private:
   static constexpr std::size_t size = 512;
   static constexpr off_t offset =
-      31 << 20;  ///< where power_cuts.py looks for it: the file system ends before
+      31 << 20;  ///< power_cuts.py looks for marks here; the file system ends before
   int fd_;
   void* sector_ = nullptr;
 };

@@ -1,5 +1,5 @@
-// disk_writer DATABASE FULL|NORMAL COUNT DEVICE: so many one-row transactions in WAL mode; after each commit
-// a mark "FULL 17" goes to the disk's record, as a promise to whoever asked for the row.
+// disk_writer DATABASE FULL|NORMAL COUNT DEVICE: writes COUNT one-row transactions in WAL mode. After each
+// commit it writes a mark such as "FULL 17" to the disk's record: from then on the row must survive.
 #include <sqlite3.h>
 
 #include <algorithm>
@@ -24,5 +24,5 @@ int main(int argc, char** argv) {
     run("INSERT INTO row VALUES (" + std::to_string(i) + ", hex(randomblob(200)))");
     marker.mark(mode + " " + std::to_string(i));
   }
-  std::_Exit(0);  // no orderly close: the files stay as a running station would leave them
+  std::_Exit(0);  // do not close cleanly: leave the files as a running station would
 }

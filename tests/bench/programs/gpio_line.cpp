@@ -1,9 +1,11 @@
 // gpio_line hold NAME VALUE       holds a line as an output until killed
-//           watch NAME COUNT      prints the kernel's stamp (ns, CLOCK_MONOTONIC) and direction of so many edges
-//           press FILE MS         pulls a simulated input (its sysfs file) up for so long, with 0 for 0.1 ms; prints
+//           watch NAME COUNT      prints the kernel's stamp (ns, CLOCK_MONOTONIC) and direction of so many
+//           edges press FILE MS         pulls a simulated input (its sysfs file) up for so long, with 0 for
+//           0.1 ms; prints
 //                                 "BEFORE AFTER" (ns) for either edge: it happened between these two
 //           bounce FILE MS        the same, with a contact that bounces at either end
-//           until-low FILE VALUE  pulls a simulated input up and prints how long (ns) until the line of the other
+//           until-low FILE VALUE  pulls a simulated input up and prints how long (ns) until the line of the
+//           other
 //                                 sysfs file was low
 // By the kernel's own interface, so that the bench does not depend on a version of libgpiod.
 #include <fcntl.h>
@@ -57,13 +59,13 @@ long long now_ns() {
   return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
 }
 
-/// Without sleeping, for the guest sleeps longer than it wants to where its host is busy.
+/// Waits without sleeping, because in a guest of a busy host a sleep takes too long.
 void busy_wait_ns(long long length_ns) {
   for (const auto end = now_ns() + length_ns; now_ns() < end;) {
   }
 }
 
-/// One press; at either end the contact bounces so many times, 0.5 ms each.
+/// One press. At either end the contact bounces this many times, for 0.5 ms each.
 int press(const char* file, int ms, int bounces) {
   const int fd = ::open(file, O_WRONLY | O_CLOEXEC);
   const auto drive = [fd](const std::string& pull) { return ::write(fd, pull.data(), pull.size()) > 0; };
@@ -86,7 +88,7 @@ int press(const char* file, int ms, int bounces) {
   return 0;
 }
 
-/// Time from driving an input until another line is low, as a bystander sees it.
+/// Measures from outside how long it takes from driving an input until another line is low.
 int until_low(const char* pull_file, const char* value_file) {
   const int pull = ::open(pull_file, O_WRONLY | O_CLOEXEC), value = ::open(value_file, O_RDONLY | O_CLOEXEC);
   const auto start = now_ns();

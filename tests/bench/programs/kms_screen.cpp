@@ -1,7 +1,7 @@
-// kms_screen [X Y]: what the screen shows now, read from the buffer that the graphics card scans out,
-// whichever program drew it. With X Y: the colour there as bbggrr in hexadecimal. Without: "WIDTH HEIGHT", a
-// new line, and all pixels, 4 bytes each (blue, green, red, unused), row by row. Must run as root: the kernel
-// hands the buffer to nobody else.
+// kms_screen [X Y]: reads what the screen shows now from the buffer that the graphics card scans out,
+// whichever program drew it. With X Y it prints the colour there as bbggrr in hexadecimal. Without, it prints
+// "WIDTH HEIGHT", a new line, and all pixels, 4 bytes each (blue, green, red, unused), row by row. Must run
+// as root, because only root may read the buffer.
 #include <drm.h>
 #include <drm_mode.h>
 #include <fcntl.h>
@@ -18,7 +18,7 @@
 
 namespace {
 
-/// The buffer that this card's first active output shows; its id is 0 where the card shows nothing.
+/// The buffer of this card's first active output; its id is 0 if the card shows nothing.
 drm_mode_fb_cmd shown_by(int card) {
   std::array<std::uint32_t, 16> outputs{};
   drm_mode_card_res resources{};

@@ -1,5 +1,5 @@
-// make_tone RATE FREQUENCY LEVEL_DB SECONDS: a sine in raw S32_LE stereo on standard output, the left channel
-// only; the right one is silent, so that a swap of channels shows.
+// make_tone RATE FREQUENCY LEVEL_DB SECONDS: writes a sine as raw S32_LE stereo to standard output. Only the
+// left channel has the tone, so that swapped channels are detected.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>

@@ -1,7 +1,7 @@
-// measure_tone FILE RATE CHANNELS CHANNEL: of a raw S32_LE recording, over its loudest quarter second, prints
-// "FREQUENCY LEVEL RESIDUAL": of the strongest tone in Hz and dB (peak, re full scale), and what is left once
-// it is subtracted, in dB re the tone. A gap or jump of one frame shows as residual. "0 -inf 0" where all is
-// silence.
+// measure_tone FILE RATE CHANNELS CHANNEL: analyses the loudest quarter second of a raw S32_LE recording and
+// prints "FREQUENCY LEVEL RESIDUAL": the frequency (Hz) and level (dB peak, re full scale) of the strongest
+// tone, and what is left after subtracting it (dB re the tone). A gap or jump of a single frame shows up in
+// the residual. Prints "0 -inf 0" if everything is silent.
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -27,7 +27,7 @@ std::vector<double> read_channel(const char* path, std::size_t channels, std::si
   return samples;
 }
 
-/// The loudest stretch of this length: the silence around a burst says nothing about its tone.
+/// The loudest stretch of this length. The silence around a burst says nothing about its tone.
 Samples loudest(Samples x, std::size_t length) {
   if (x.size() <= length) return x;
   double energy = 0, best = -1;
@@ -39,7 +39,8 @@ Samples loudest(Samples x, std::size_t length) {
   return x.subspan(begin, length);
 }
 
-/// Hann-weighted Fourier component at so many cycles a frame: peak amplitude and phase of a tone there.
+/// Hann-weighted Fourier component at this frequency (cycles per frame): peak amplitude and phase of the
+/// tone.
 std::complex<double> component(Samples x, double cycles_per_frame) {
   const double turn = 2 * std::numbers::pi, n = static_cast<double>(x.size());
   const auto step = std::polar(1.0, -turn * cycles_per_frame), window_step = std::polar(1.0, turn / n);
@@ -52,14 +53,15 @@ std::complex<double> component(Samples x, double cycles_per_frame) {
   return 4.0 * sum / n;
 }
 
-/// In cycles a frame: a coarse scan over a short piece, a fine one and a golden-section search on the whole.
+/// In cycles per frame: a coarse scan over a short piece, then a fine one and a golden-section search on
+/// everything.
 double strongest_frequency(Samples x) {
   const Samples piece = x.first(std::min<std::size_t>(x.size(), 1024));
   double best = 0, at = 0;
   for (int k = 2; k < 1023; ++k)
     if (const double level = std::abs(component(piece, k / 2048.0)); level > best)
       best = level, at = k / 2048.0;
-  // The main lobe of the whole is far narrower than that of the piece.
+  // The main lobe of the whole recording is far narrower than that of the short piece.
   const double lobe = 1.0 / static_cast<double>(x.size());
   double start = at;
   best = 0;

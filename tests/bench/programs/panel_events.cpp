@@ -1,5 +1,5 @@
 // panel_events BUTTONS CONTACT SECONDS: prints presses, contacts, glitches (line, time, edges, length),
-// faults and returns with the kernel's time stamps; "" for none.
+// faults and recoveries with the kernel's time stamps. Pass "" to leave out a device.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

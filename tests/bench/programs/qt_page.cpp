@@ -1,5 +1,5 @@
-// qt_page: a Qt Quick page of two buttons, for the screen and touch path below the station's own screens.
-// Prints "shown" once it has been drawn and "tapped left" or "tapped right"; a tapped button turns green.
+// qt_page: a Qt Quick page with two buttons, to test screen and touch without the station's own pages. Prints
+// "shown" once it has been drawn, and "tapped left" or "tapped right"; a tapped button turns green.
 #include <QGuiApplication>
 #include <QQmlComponent>
 #include <QQuickView>

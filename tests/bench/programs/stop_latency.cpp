@@ -1,8 +1,8 @@
-// stop_latency COUNT PULL_FILE VALUE_FILE: so many stops, at random moments, of an amplifier that is enabled
-// on real lines (AMP_EN, AMP_FAULT, STOP, AMP_HB), while the processor is fully loaded and a session that
-// hardly gets any of it keeps calling the amplifier. PULL_FILE moves the stop, VALUE_FILE shows the enable
-// line (files of gpio-sim). Prints a histogram of the time from the stop until the line is low, as a
-// bystander sees it, and the longest time in ns.
+// stop_latency COUNT PULL_FILE VALUE_FILE: presses the stop COUNT times, at random moments, of an amplifier
+// that is enabled on real lines (AMP_EN, AMP_FAULT, STOP, AMP_HB). Meanwhile the processor is fully loaded,
+// and a session that gets hardly any processor time keeps calling the amplifier. PULL_FILE moves the stop,
+// VALUE_FILE shows the enable line (files of gpio-sim). Prints a histogram of the time from the stop until
+// the line is low, measured from outside, and the longest time in ns.
 #include <fcntl.h>
 #include <pthread.h>
 #include <sys/resource.h>
@@ -33,7 +33,7 @@ void check(const turnpoint::drive::Amplifier::Refusal& refusal) {
   if (refusal) throw std::runtime_error("refused: " + turnpoint::terms::describe(*refusal));
 }
 
-/// Four that use all the processor time they get, and the session behind them.
+/// Four threads that use all the processor time they can get, and the session with a lower priority.
 std::vector<std::jthread> crowd(turnpoint::drive::Amplifier& amplifier) {
   std::vector<std::jthread> threads;
   for (int k = 0; k < 4; ++k)
@@ -51,9 +51,9 @@ std::vector<std::jthread> crowd(turnpoint::drive::Amplifier& amplifier) {
   return threads;
 }
 
-/// Above the crowd, below the guard: the bystander's clock must not wait for the crowd. The kernel hands
-/// edges on by a thread of priority 50. A bystander below it leaves that way open; one above it blocks it, as
-/// a busy audio thread would, and the guard has to see the level.
+/// The measuring thread runs above the load, so that it need not wait for it, and below the guard. The kernel
+/// delivers edges by a thread of priority 50. A measuring thread below that priority does not disturb it; one
+/// above blocks it, as a busy audio thread would, and the guard has to read the level.
 void stand_at(int priority) {
   sched_param parameters{};
   parameters.sched_priority = priority;
@@ -62,7 +62,7 @@ void stand_at(int priority) {
 }
 constexpr int priorities[] = {40, 60};
 
-/// How long it took, by what the guard had to go on.
+/// Reaction times, separated by how the guard learned of the stop.
 struct Times {
   std::array<std::array<int, std::size(edges_us)>, 2> histogram{};
   std::int64_t longest_ns = 0;
@@ -97,7 +97,7 @@ class Stop {
     if (::pread(value_, &level, 1, 0) != 1) throw std::runtime_error("cannot see the line");
     return level == '1';
   }
-  /// Presses; the time until the line is low.
+  /// Presses the stop. Returns the time until the line is low.
   std::int64_t press() const {
     const auto start_ns = monotonic_ns();
     pull("pull-up");
@@ -118,13 +118,13 @@ int run(int count, const Stop& stop) {
   Times times;
   for (int k = 0; k < count; ++k) {
     const auto way = static_cast<std::size_t>(k % 2);
-    stand_at(priorities[way]);  // after the crowd was made, which would inherit it
+    stand_at(priorities[way]);  // after starting the load, which would otherwise inherit the priority
     amplifier->audio_alive();
     amplifier->session_alive();
     check(amplifier->clear());
     check(amplifier->arm());
     check(amplifier->enable());
-    ::usleep(300 + static_cast<useconds_t>(random() % 1000));  // the crowd runs
+    ::usleep(300 + static_cast<useconds_t>(random() % 1000));  // let the load run
     if (!stop.high()) throw std::runtime_error("the line was not high before the stop");
     times.add(way, stop.press());
     stop.pull("pull-down");

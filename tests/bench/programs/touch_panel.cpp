@@ -38,7 +38,7 @@ void axis(int code, int maximum) {
   ::ioctl(panel, UI_ABS_SETUP, &setup);
 }
 
-// As the kernel's drivers do for programs that know of one finger only.
+// Also sends single-finger events, as the kernel's drivers do for programs that know only one finger.
 void one_finger(int slot, int x, int y) {
   if (slot != 0) return;
   emit(EV_ABS, ABS_X, x);
@@ -88,7 +88,7 @@ void plug_in_mouse() {
   for (const int button : {BTN_LEFT, BTN_RIGHT}) ::ioctl(mouse, UI_SET_KEYBIT, button);
   for (const int axis : {REL_X, REL_Y}) ::ioctl(mouse, UI_SET_RELBIT, axis);
   create(mouse, "bench mouse");
-  sleep_ms(1000);  // until those who look for devices have it
+  sleep_ms(1000);  // wait until programs that watch for devices have found it
 }
 
 void move_mouse(int dx, int dy) {

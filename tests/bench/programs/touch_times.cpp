@@ -1,4 +1,5 @@
-// touch_times DEVICE COUNT: prints the kernel's CLOCK_MONOTONIC stamp (ns) of so many touches that begin.
+// touch_times DEVICE COUNT: prints the kernel's CLOCK_MONOTONIC stamps (ns) of the next COUNT touches that
+// begin.
 #include <fcntl.h>
 #include <linux/input.h>
 #include <sys/ioctl.h>

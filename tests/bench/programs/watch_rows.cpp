@@ -1,6 +1,6 @@
-// watch_rows DATABASE TABLE DEVICE: marks in the disk's record how many rows of a table another process has
-// committed so far ("rows 17"), until killed. What a reader sees in WAL mode with synchronous FULL is already
-// promised.
+// watch_rows DATABASE TABLE DEVICE: until killed, writes marks into the disk's record that say how many rows
+// of a table another process has committed so far ("rows 17"). With WAL mode and synchronous FULL, a row that
+// a reader sees must survive.
 #include <sqlite3.h>
 
 #include <algorithm>

@@ -3,7 +3,8 @@
 # timeout: 240
 loopback
 make_tone 192000 19600.123 -6 0.8 >played.raw
-# snd-aloop may cut a piece out of what is played while it drains on a busy machine: let that be silence.
+# On a busy machine snd-aloop may drop a piece of what is playing while it drains. Make sure that this is
+# silence.
 { cat played.raw; head -c $((8 * 192000)) /dev/zero; } >with_silence.raw
 record 6 tone.raw; recorder=$!
 aplay -q -D hw:Loopback,0 -t raw -f S32_LE -c 2 -r 192000 --period-size=1920 --buffer-size=192000 with_silence.raw
@@ -27,7 +28,7 @@ PYTHON
 }
 same_bits tone.raw || fail "the recording differs from what was played"
 
-# The measures can fail: one frame is taken out.
+# Negative control: one frame is removed.
 { head -c $((8 * 60000)) played.raw; tail -c +$((8 * 60001 + 1)) played.raw; } >cut.raw
 ! same_bits cut.raw || fail "a missing frame was not noticed"
 read -r _ _ residual <<<"$(tail -c +$((8 * 36001)) cut.raw | head -c $((8 * 48000)) >middle.raw; measure_tone middle.raw 192000 2 0)"

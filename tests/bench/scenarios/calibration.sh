@@ -8,7 +8,7 @@ rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,
 sed -e 's/device = "touch"/device = "buttons"/' "$SOURCE/tests/ui/short.toml" >short.toml
 live() { turnpoint run short.toml --rig rig.toml --mode live --participant P1 --db lab.sqlite --buttons-only --json "$@"; }
 
-# A steady tone that is told to end goes down by its ramp, and the amplifier after it.
+# If a steady tone is interrupted, it ends with its ramp, and the amplifier is switched off after it.
 cut_short() {
   record 20 cut.raw; recorder=$!
   turnpoint synth --rig rig.toml --tone 30000:0.5 --seconds 20 --out alsa:hw:Loopback,0 --arm 2>cut.txt & tone=$!
@@ -18,7 +18,7 @@ cut_short() {
   kill $recorder; wait $recorder || true
   cat cut.txt
   [ "$(level AMP_EN)" = 0 ] || fail "the amplifier stays on after a signal"
-  has cut.txt SIGTERM || return 1    # a host that stalls makes the guard trip before
+  has cut.txt SIGTERM || return 1    # on a stalled host the guard trips earlier
   [ $status = 1 ] || fail "a tone that was told to end ended with $status"
 }
 cut_short || cut_short || cut_short || fail "the tone was never told to end"
@@ -32,19 +32,20 @@ print(max(map(abs, heard[last - 384:last + 1])) / max(map(abs, heard)))
 PYTHON
 )" 0 0.01
 
-# Not before it is calibrated.
+# Refused before calibration.
 fails 2 live </dev/null
 has refusal.txt "no calibration in force" || fail "a live session without a calibration"
 
-# The transducer's true response, um at full scale: a resonance that the rig file knows nothing of.
+# The transducer's true response in um at full scale: a resonance that is not in the rig file.
 true_um() { awk -v f="$1" 'BEGIN { u = (f - 30000) / 8000; printf "%.6f", 3.1 * (1 + 0.5 * exp(-u * u)) }'; }
-# moved FILE: the frequency (Hz) and displacement (um) of what was played, as a vibrometer on that transducer sees it
+# moved FILE: frequency (Hz) and displacement (um) of what was played, as a vibrometer on that transducer
+# would measure them
 moved() {
   read -r frequency level _ <<<"$(measure_tone "$1" 192000 2 0)"
   awk -v f="$frequency" -v l="$level" -v r="$(true_um "$frequency")" 'BEGIN { printf "%.3f %.6f\n", f, r * 10 ^ (l / 20) }'
 }
 turnpoint calibrate --rig rig.toml --sweep --points 24 --amplitude 0.1 >sweep.csv
-sweep() {  # a host that stalls makes the guard trip, as it should: an operator would begin again
+sweep() {  # on a stalled host the guard trips, as it should; an operator would start again
   record 60 heard.raw; recorder=$!
   turnpoint calibrate --rig rig.toml --sweep --points 24 --amplitude 0.1 --sweep-out alsa:hw:Loopback,0 --arm || status=$?
   kill $recorder; wait $recorder || true
@@ -70,12 +71,12 @@ printf '%s\n' frequency_Hz,level_dB 14000,70 30000,60 60000,50 >sound.csv
 turnpoint calibrate --rig rig.toml --response main=response.csv --full-scale 0.1 --friction friction.csv --sound sound.csv --note bench
 ls rig.calibration-*.toml
 
-# Four trials of a live session with it, by buttons.
+# Four trials of a live session with this calibration, answered by buttons.
 record 120 heard.raw; recorder=$!
 mkfifo operator
 live <operator >summary.json 2>console.txt & session=$!
 exec 8>operator
-# Whatever the session asks for is given, also where a stalled host made the guard trip and a trial is repeated.
+# Answers whatever the session asks for, also if the guard tripped on a stalled host and a trial is repeated.
 said() { grep -cE "$1" console.txt || true; }
 armed=0 went_on=0 answered=0
 while kill -0 $session 2>/dev/null; do
@@ -97,7 +98,7 @@ python3 "$BENCH_SOURCE/guest/bursts.py" heard.raw burst 0.1
 heard=0
 for burst in burst*.raw; do
   read -r frequency_Hz um <<<"$(moved $burst)"
-  # the tone that the database tells, and the displacement as a multiple of what it says
+  # the tone in the database, and the measured displacement as a multiple of the stored one
   read -r told_Hz ratio <<<"$(awk -v f="$frequency_Hz" -v u="$um" '{ d = f - $1; if (d < 0.02 && d > -0.02) print $1, u / $2 }' told.txt)"
   near "stimulus $heard (Hz)" "$frequency_Hz" "${told_Hz:-0}" 0.02
   near "displacement of the drive edge against the database's (ratio)" "$ratio" 1 0.02

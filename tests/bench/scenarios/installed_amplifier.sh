@@ -8,7 +8,7 @@ panel_begin
 screen_begin
 udevadm settle
 
-# The installed rig has another line than the one that the station is started with.
+# The installed rig file names another line than the rig with which the station is started.
 rig_with "touch=evdev:bench touch panel" amplifier=gpio:enable=OTHER </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
 rig_with "touch=evdev:bench touch panel" amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB \
   </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/second.toml
@@ -23,7 +23,8 @@ state() { systemctl show -P "$1" turnpoint; }
 off() { [ "$(level AMP_EN)" = 0 ]; }
 failed() { [ "$(state ActiveState)" = failed ]; }
 
-# drives: a station that drives the amplifier: the first stimulus of a session that was chosen and armed by touch.
+# drives: waits until the station drives the amplifier, in the first stimulus of a session that was chosen and
+# armed by touch.
 drives() {
   systemctl stop turnpoint
   rm -f /var/lib/turnpoint/second.sqlite*
@@ -41,7 +42,7 @@ drives() {
   goes_on
   eventually 30 equals level AMP_EN 1
 }
-# seconds_to_off SIGNAL LIMIT: how long the line stays high after the station's program got it.
+# seconds_to_off SIGNAL LIMIT: how long the line stays high after the station received the signal.
 seconds_to_off() {
   local station start; station=$(state MainPID) start=$(date +%s%N)
   kill -"$1" "$station"
@@ -71,7 +72,7 @@ systemctl daemon-reload
 drives
 ! seconds_to_off KILL 5 || fail "low without amplifier-off: this scenario shows nothing"
 eventually 5 failed
-turnpoint amplifier-off             # of the installed rig, which has another line
+turnpoint amplifier-off             # for the installed rig, which has another line
 ! off || fail "low without the rig that the station was started with"
 turnpoint amplifier-off --locked --rig /etc/turnpoint/second.toml
 off || fail "amplifier-off does not lower it"

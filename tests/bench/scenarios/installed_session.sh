@@ -11,7 +11,8 @@ rows() { sqlite3 -separator ' ' "file:$db?mode=ro" "$1"; }
 rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB buttons=gpio:left=BTN_L,right=BTN_R \
   </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
 
-# station ARGUMENTS: starts the unit as it is installed, with buttons and the operator's typing instead of the screen.
+# station ARGUMENTS: starts the unit as installed, but with buttons and the operator's keyboard instead of the
+# screen.
 mkfifo /run/operator; exec 8<>/run/operator
 drop_in=/run/systemd/system/turnpoint.service.d/bench.conf
 mkdir ${drop_in%/*}
@@ -22,7 +23,7 @@ station() {
   systemctl start turnpoint
 }
 lasts() { [ "$(systemctl show -P ActiveState turnpoint)" = active ]; }
-# says TEXT: waits until the station has said it, after what was waited for before.
+# says TEXT: waits until the station prints this, after the text that was waited for before.
 read_so_far=0
 said() {
   lasts || { cat $log; fail "the session ended, waiting for: $1"; }
@@ -37,7 +38,7 @@ press() { gpio_line press "$(pull_file "$1")" 50 >/dev/null; }
 stored() { [ "$(rows "SELECT count(*) FROM trial")" = "$1" ]; }
 stimulus() { says "^stimulus"; eventually 5 on; sleep 1; }
 answer() { press BTN_R; eventually 5 off; }
-armed() { operator arm; sleep 0.5; said "$1"; }   # refused for as long as the reason lasts
+armed() { operator arm; sleep 0.5; said "$1"; }   # arming is refused as long as the reason exists
 
 record 120 heard0.raw; recorder=$!
 station run /usr/share/turnpoint/protocols/demo.toml --participant P01 --db $db --buttons-only --seed 3
@@ -97,7 +98,7 @@ kill $recorder; wait $recorder || true
 near "clock jumps logged" "$(rows "SELECT count(*) FROM event WHERE value LIKE '%wall clock was set by +7%'")" 1 0
 [[ "$(rows "SELECT realtime_rights FROM session")" == "fifo 70, memory locked"* ]] || fail "$(rows "SELECT realtime_rights FROM session")"
 
-# Each stimulus that was heard against its row: the tones in the order of presentation.
+# Compares each recorded stimulus with its row: the tones in the order of presentation.
 rows "SELECT tone.frequency_Hz FROM tone ORDER BY trial_index" >frequencies.txt
 for k in 0 1; do python3 "$BENCH_SOURCE/guest/bursts.py" heard$k.raw burst$k 0.1; done
 ls burst*.raw | head -4 | paste -d ' ' - frequencies.txt >pairs.txt

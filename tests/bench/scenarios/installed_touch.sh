@@ -8,8 +8,8 @@ db=/var/lib/turnpoint/turnpoint.sqlite
 rows() { sqlite3 -separator ' ' "file:$db?mode=ro" "$1" 2>/dev/null || true; }
 stored() { [ "$(rows "SELECT count(*) FROM trial")" = "$1" ]; }
 
-# Nothing but what every station says: its rig, its operator's code, and the size of a panel that does not tell it. The
-# pointer, were there one, is to be part of the picture that is looked at here.
+# Only the settings that every station needs: its rig, its operator's code, and the size of a panel that does
+# not report it. The screenshot must include a pointer if there is one.
 rig_with "touch=evdev:bench touch panel" </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
 echo '{"device": "/dev/dri/card0", "hwcursor": false}' >/etc/turnpoint/kms.json
 printf 'TURNPOINT_DPI=132\nQT_QPA_EGLFS_KMS_CONFIG=/etc/turnpoint/kms.json\n' >/etc/turnpoint/environment
@@ -48,7 +48,7 @@ screenshot trial
 say "the panel is unplugged, and comes back"
 eventually 30 answers_open
 touch_do gone
-eventually 10 stored 4            # a fault: the trial comes again
+eventually 10 stored 4            # a fault: the trial is repeated
 panel_begin
 sleep 1.5; tap 535 395
 for trial in 5 6 7 8 9 10 11; do by_touch $trial; done
@@ -67,7 +67,7 @@ shows_no_pointer
 unlock
 
 say "a service that may only read the devices is told so by the doctor"
-# A unit of its own, since the guest has no bus for systemd-run.
+# Uses a unit file, because the guest has no bus for systemd-run.
 doctor() {
   cat >/run/systemd/system/bench-doctor.service <<UNIT
 [Service]

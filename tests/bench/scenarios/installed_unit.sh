@@ -4,18 +4,18 @@
 state() { systemctl show -P "$1" turnpoint; }
 journal() { journalctl -u turnpoint --no-pager; }
 panel_begin
-# As on a board whose first graphics card only draws: the screen is at the second.
+# Simulates a board whose first graphics card has no screen; the screen is at the second one.
 modprobe vgem
 eventually 5 test -e /dev/dri/card0
 screen_begin
 [ -e /sys/class/drm/card1-Virtual-1 ] || fail "not at the second card: $(ls /sys/class/drm)"
-# Without a code of its own the station does not start, and says how one is stored.
+# Without its own operator's code the station does not start, and says how to store one.
 systemctl start --no-block turnpoint
 refused() { journal | grep -q 'store one of your own: sudo turnpoint operator-code'; }
 eventually 30 refused
 echo 7391 | turnpoint operator-code
 systemctl stop turnpoint
-# As it is installed: eglfs on the kernel's mode setting, drawn by software for want of a GPU.
+# As installed: eglfs on kernel mode setting, rendered in software because there is no GPU.
 systemctl start turnpoint || { journal | tail -30; fail "the unit did not get ready on eglfs"; }
 mount -t debugfs debugfs /sys/kernel/debug
 sed -n '/^plane/,/^crtc/p' /sys/kernel/debug/dri/1/state >shown.txt
@@ -30,14 +30,14 @@ score=$(systemd-analyze security turnpoint --no-pager | awk '/Overall exposure/ 
 near "exposure" "$score" 0.75 0.75
 [ -z "$(ss -H -l -n -t -u -p | grep -v 'AF_NETLINK' || true)" ] || fail "something listens: $(ss -H -lntup)"
 
-# Stopped on its first page, and while it starts: obeyed, and no failure.
+# Stopping it works both on its first page and while it starts, and does not count as a failure.
 stops() { systemctl stop turnpoint; [ "$(state Result)" = success ] || fail "stopped $1, it ended as $(state Result)"; }
 stops "on its first page"
 systemctl start --no-block turnpoint
 sleep 0.5
 stops "while it started"
 
-# Removed and purged, the station is gone, and the lab's data are not, unless they are asked for.
+# Removing and purging the package removes the station, but keeps the lab's data unless asked otherwise.
 db=/var/lib/turnpoint/turnpoint.sqlite
 cp /usr/share/turnpoint/rigs/simulated.toml /etc/turnpoint/rig.toml
 runuser -u turnpoint -- turnpoint run /usr/share/turnpoint/protocols/demo.toml --participant P01 --db $db --headless --observer sim

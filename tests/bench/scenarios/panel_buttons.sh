@@ -16,14 +16,14 @@ done
 pull FINGER up; eventually 5 grep -q "^contact 1" events.txt
 pull FINGER down; eventually 5 grep -q "^contact 0" events.txt
 [ "$(grep -c ^press events.txt)" = 3 ] || fail "$(grep -c ^press events.txt) presses, not 3"
-# A level that does not last.
+# A level that is too short to count.
 gpio_line press "$(pull_file BTN_L)" 0 >spike.txt
 eventually 5 grep -q "^glitch left" events.txt
 read -r before after _ <spike.txt
 awk -v b="$before" -v a="$after" '/^glitch left/ { exit !($3 >= b && $3 <= a + 1e6 && $5 < 1.5e6) }' events.txt ||
   fail "$(grep ^glitch events.txt), spike from $before to $after"
 ! grep -q "^press 0" events.txt || fail "a spike was taken for a press"
-# More edges than the kernel keeps while the station is frozen.
+# While the station is frozen, there are more edges than the kernel can store.
 kill -STOP $panel
 for k in $(seq 40); do pull BTN_L up; pull BTN_L down; done
 kill -CONT $panel

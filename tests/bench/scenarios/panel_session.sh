@@ -15,7 +15,7 @@ eventually 60 shown
 screenshot field
 for delay in 20 40 30 50 25 35 45 30 20 40 30 35; do
   sleep 0.5
-  gpio_line press "$(pull_file BTN_L)" "$delay" | head -1 >>edges.txt     # released, and then the panel is touched
+  gpio_line press "$(pull_file BTN_L)" "$delay" | head -1 >>edges.txt     # release the button, then touch the panel
   touch_do tap 600 300
   eventually 5 equals "grep -c ^tapped" panel.out "$(wc -l <edges.txt)"
 done
@@ -24,27 +24,27 @@ touch_do tap 740 450                                                     # Keep 
 status=0; wait $page || status=$?
 cat result.json page.log
 [ $status = 0 ] || fail "calibrate ended with $status"
-# The truth: from each edge to its injected touch, and the median of these.
+# The true latency: from each edge to its injected touch, and the median of these.
 paste -d ' ' edges.txt <(grep ^tapped panel.out | head -12) | awk '{ print ($4 - $1) * 1e-9 }' | sort -n >truth.txt
 truth=$(awk '{ v[NR] = $1 } END { print (v[6] + v[7]) / 2 }' truth.txt)
 stored=$(awk '$1 == "response_offset_s" { print $3 }' rig.calibration-*.toml)
 near "response_offset_s" "$stored" "$truth" 0.0001
 [ "$(awk '$1 == "response_offset_unmatched" { print $3 }' rig.calibration-*.toml)" = 0 ] || fail "a tap was not matched"
 
-# The rest of the calibration; what was found of the panel stays in it.
+# Makes the rest of the calibration; the panel's latency stays in it.
 calibrate_for_live rig.toml
 near "response_offset_s, calibrated again" "$(awk '$1 == "response_offset_s" { print $3 }' rig.calibration-*.toml)" "$truth" 0.0001
 
-# A live session from the first question to the thanks; the amplifier is on while there is something to feel.
+# A live session from the first question to the thanks. The amplifier is on while there is something to feel.
 sed -e 's/device = "touch"/device = "either"/' "$SOURCE/tests/ui/short.toml" >short.toml
 turnpoint run short.toml --rig rig.toml --db lab.sqlite --mode live --consent 2026-03 --json \
   >summary.json 2>session.log & session=$!
 tap() { touch_do tap "$1" "$2"; sleep 0.2; }
 trials() { sqlite3 lab.sqlite "SELECT count(*) FROM trial" 2>/dev/null || echo 0; }
-# Both keep, for each answer, between which times (ns) it was given.
+# Both record for each answer the times (ns) between which it was given.
 touch_answer() { touch_do tap "$1" 370; sleep 0.2; tail -1 panel.out | cut -d ' ' -f 2,3 >>given.txt; }
 press() { gpio_line press "$(pull_file "$1")" 50 | head -1 >>given.txt; }
-# A tap before the page could have been read does nothing: then once more.
+# A tap before the page can have been read is ignored; then tap once more.
 goes_on() { answers_open && return; ! continues || tap 400 390; return 1; }
 
 eventually 60 has session.log "first page"
@@ -81,7 +81,7 @@ cat summary.json session.log
 
 rows() { sqlite3 -separator ' ' lab.sqlite "$1"; }
 [ "$(rows "SELECT participant FROM session")" = A2 ] || fail "not the participant who typed the code"
-# When each answer was given, by its row: error beyond the time that the injection itself took, in ms.
+# The error of each stored answer time beyond the time that the injection itself took, in ms.
 rows "SELECT onset_ns + CAST(round(response_time_s * 1e9) AS INTEGER) FROM trial ORDER BY trial_index" >recovered.txt
 paste -d ' ' given.txt recovered.txt | awk '
   { late = $3 > $2 ? $3 - $2 : $3 < $1 ? $3 - $1 : 0; sum += late < 0 ? -late : late; after += ($3 - $1) / 1e6; print $1, $2, $3, late * 1e-6 " ms" }

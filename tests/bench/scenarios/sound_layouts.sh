@@ -1,7 +1,7 @@
 # proves: samples reach a card bit by bit, as S32_LE in its 2 channels and as S24_3LE in 2 of its 6; a card of another layout is refused with what it takes; the doctor sees a converter that mutes itself, and its advice ends that
 # timeout: 900
 loopback
-# Both channels drive something, so that channels that change places show.
+# Both channels have a tone, so that swapped channels are detected.
 second='[[transducer]]\nname = "second"\nchannel = 1\nband_kHz = [60, 80]\num_per_full_scale = 4.0\n'
 rig() {  # RIG BITS [DEVICE_CHANNELS]
   sed -e "s/^rate_Hz.*/&\nbits = $2\nperiod_frames = 1920\nperiods = 40${3:+\ndevice_channels = $3}/" -e "s/^\[output\]/$second\n&/" \
@@ -12,15 +12,16 @@ rig six.toml 24 6
 rig deep.toml 32
 synth() { turnpoint synth --rig "$1" --tone 30000:1 --tone 70000:2 --seconds 0.5 --out "$2" --json >report.json; }
 onset() { sed -n 's/.*"onset_frame": \([0-9]*\).*/\1/p' report.json; }
-# expected: what the last report's burst is made of
+# expected: the samples of the burst in the last report
 expected() { burst_samples "$(onset)" 0.5 30000:0.25:0 70000:0.5:1 >expected.raw; }
-# card FORMAT CHANNELS: the card's other side takes these, so that this one takes nothing else.
+# card FORMAT CHANNELS: opens the other side of the card with these, so that this side accepts nothing else.
 card() {
   arecord -q -D hw:Loopback,1 -t raw -f "$1" -c "$2" -r 192000 --period-size=9600 --buffer-size=76800 heard.raw & recorder=$!
   eventually 10 grep -q RUNNING /proc/asound/Loopback/pcm1c/sub0/status
 }
 no_card() { kill $recorder; wait $recorder || true; }
-# same_bits FILE BYTES CHANNELS: it holds the expected burst, whole, in samples of so many bytes, and zeros besides.
+# same_bits FILE BYTES CHANNELS: the file contains the whole expected burst, in samples of BYTES bytes, and
+# otherwise zeros.
 same_bits() {
   python3 - "$@" <<'PYTHON'
 import sys
@@ -38,7 +39,7 @@ sys.exit(not same)
 PYTHON
 }
 
-# What is expected is what the same command writes to a file.
+# The same command written to a file gives the expected samples.
 synth two.toml wav:tone.wav
 expected
 tail -c +69 tone.wav >tone.raw
@@ -48,17 +49,17 @@ plays() {  # RIG FORMAT BYTES CHANNELS
   card "$2" "$4"
   synth "$1" alsa:hw:Loopback,0
   sed -n '/^format\|^channels/p' </proc/asound/Loopback/pcm1c/sub0/hw_params
-  sleep 0.7   # what is on its way
+  sleep 0.7   # samples still on their way
   no_card
-  has report.json '"underruns": 0' || return 1   # a host that stalls
+  has report.json '"underruns": 0' || return 1   # the host may stall
   expected
   same_bits heard.raw "$3" "$4" || fail "$2 in $4 channels: other samples than expected"
 }
 bits() { plays "$@" || plays "$@" || plays "$@" || fail "an underrun each time"; }
 bits two.toml S32_LE 4 2
 bits six.toml S24_3LE 3 6
-# The comparison sees a bit that is wrong, a frame that is missing, and something in a channel that is not used.
-spoilt() {  # WHAT POSITION BYTES FLIP: so many bytes are changed by FLIP, or taken out where that is 0
+# Negative controls of the comparison: a wrong bit, a missing frame, and a signal in an unused channel.
+spoilt() {  # WHAT POSITION BYTES FLIP: changes BYTES bytes by FLIP, or removes them if FLIP is 0
   python3 - "$@" <<'PYTHON'
 import sys
 data = bytearray(open("heard.raw", "rb").read())
@@ -86,7 +87,7 @@ card S16_LE 2
 refused two.toml "takes neither 32-bit samples (S32_LE) nor 24-bit ones (S24_3LE)"
 no_card
 
-# A card without the switch has no such line.
+# For a card without the switch there is no such line.
 doctor() {
   status=0
   turnpoint doctor --rig two.toml --data . >doctor.txt 2>&1 || status=$?

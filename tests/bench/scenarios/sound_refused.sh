@@ -11,9 +11,9 @@ aplay -q -D hw:Loopback,0 -t raw -f S32_LE -c 2 -r 192000 /dev/zero & other=$!
 eventually 5 grep -q RUNNING /proc/asound/Loopback/pcm0p/sub0/status
 refused alsa:hw:Loopback,0 "in use"
 kill $other; wait $other || true
-# The two sides of the card share one rate: 44.1 kHz on the other one takes 192 kHz away.
+# The two sides of the card share one rate. With 44.1 kHz on the other side, 192 kHz is not available.
 record 20 /dev/null 44100; recorder=$!
 eventually 5 grep -q RUNNING /proc/asound/Loopback/pcm1c/sub0/status
 refused alsa:hw:Loopback,0 "rate 192000 Hz not supported; it offers 44100"
 kill $recorder; wait $recorder || true
-synth alsa:hw:Loopback,0     # and once nothing is in the way, it plays
+synth alsa:hw:Loopback,0     # without obstacles it plays

@@ -14,6 +14,6 @@ for name in plughw:Loopback,0 default plug:default sysdefault:CARD=Loopback dmix
   if drive_stream "alsa:$name" 1920 0.1 >out.txt 2>&1; then fail "$name was accepted"; fi
   say "$name: $(tail -1 out.txt)"
 done
-# The negative control: the same card, by aplay, through plug: accepted at 192 kHz although it runs at 48 kHz.
+# Negative control: aplay through plug accepts 192 kHz on the same card, although the card runs at 48 kHz.
 head -c 1536000 /dev/zero | aplay -q -D plug_over_dmix -f S32_LE -r 192000 -c 2 -t raw || fail "the control does not open"
 drive_stream alsa:hw:Loopback,0 1920 0.6 >out.txt || fail "the hardware was refused"

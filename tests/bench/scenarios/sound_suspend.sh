@@ -6,7 +6,7 @@ eventually 10 grep -q started events.txt
 sleep 1
 cp "$BENCH_DIR/card_sleep.ko" .
 insmod card_sleep.ko
-kill -STOP $stream    # what runs is frozen while devices sleep
+kill -STOP $stream    # running programs are frozen while devices sleep
 grep -q SUSPENDED /proc/asound/Loopback/pcm0p/sub0/status || fail "the card does not sleep"
 lines=$(wc -l <events.txt)
 sleep 2
@@ -20,6 +20,7 @@ has events.txt " underrun .* error -86" || fail "it is not told as a suspend (ES
 has events.txt "losses 0 " || fail "taken for an unplugged card"
 awk '/ started / { if ($4 <= last) exit 1; last = $4 }' events.txt || fail "frames went back"
 awk '/^clock/ { exit !($3 > 191900 && $3 < 192100 && $5 < 2000) }' events.txt || fail "the clock's regression is off"
-# Rendered a buffer before it is heard, each at the time that was predicted once the relation was known again.
+# Each burst is rendered one buffer before it is heard, and heard at the time that was predicted once the new
+# relation was known.
 awk '/ scheduled / && $5 > $1 { due[$3] = $5 } / started / && $4 in due { ahead = due[$4] - $1; n++; if (ahead < 0 || ahead > 4e8) exit 1 } END { if (n < 8) exit 1 }' events.txt ||
   fail "a burst began at another time than was predicted"

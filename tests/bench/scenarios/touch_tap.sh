@@ -7,15 +7,16 @@ eventually 5 has times.txt ready
 for x in 100 300 500 700; do touch_do tap $x 240; touch_do sleep 50; done
 eventually 10 equals "grep -c" "^tapped panel.out" 4
 eventually 10 equals "grep -c" "^[0-9] times.txt" 4
-# Stamps have microseconds, and are taken when the report ends.
+# Stamps have a resolution of microseconds and are taken when the report ends.
 paste -d ' ' <(awk '$1 == "tapped" { print $2, $3 }' panel.out) <(grep '^[0-9]' times.txt) | tee pairs.txt
 awk '$3 < $1 - 1000 || $3 > $2 + 1000 { bad++ } END { exit bad || NR != 4 }' pairs.txt ||
   fail "a stamp is not that of its touch (injected between these two, stamp; ns)"
 
 touch_do down 0 100 100; touch_do down 1 700 400; touch_do up 0; touch_do up 1
-eventually 10 equals "grep -c" "^[0-9] times.txt" 5   # two fingers that overlap begin one touch
+eventually 10 equals "grep -c" "^[0-9] times.txt" 5   # two overlapping fingers count as one touch
 
-# More events than the kernel keeps while the station is frozen: the lift is among those that it drops.
+# While the station is frozen, there are more events than the kernel can store, and the lift is among the
+# dropped ones.
 panel_events "" "evdev:bench touch panel" 60 >contact.txt & contact=$!
 eventually 5 has contact.txt ready
 touch_do down 0 100 100
@@ -23,7 +24,7 @@ eventually 5 has contact.txt "^contact 1"
 kill -STOP $contact
 for x in $(seq 101 600); do touch_do move 0 $x 100; done
 touch_do up 0
-touch_do tap 700 300              # says when all that is through
+touch_do tap 700 300              # a further tap shows that all previous events were processed
 eventually 20 equals "grep -c" "^tapped panel.out" 5
 eventually 10 equals "grep -c" "^[0-9] times.txt" 7
 kill -CONT $contact

@@ -1,6 +1,6 @@
-# The one-mode equation by SciPy. Arguments: k2 (real and imaginary part), b, c, w0, slope, decay, length, points, order
-# of the Bessel function. The points are equal steps from the driven edge to the end, both included. Each line that it
-# prints is "name;setting;seconds;re im re im ...".
+# Solves the one-mode equation with SciPy. Arguments: k2 (real and imaginary part), b, c, w0, slope, decay,
+# length, points, order of the Bessel function. The points are evenly spaced from the driven edge to the end,
+# ends included. Each printed line is "name;setting;seconds;re im re im ...".
 import sys
 import time, numpy as np
 from scipy.integrate import solve_ivp

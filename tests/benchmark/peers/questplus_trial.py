@@ -1,5 +1,5 @@
-# A trial of QUEST+ by questplus. Arguments: how many stimuli, thresholds, slopes and lapse rates the grid has. Prints
-# "version median slowest", times in milliseconds.
+# A trial of QUEST+ by questplus. Arguments: the numbers of stimuli, thresholds, slopes and lapse rates of the
+# grid. Prints "version median slowest", times in milliseconds.
 import sys
 import time
 from importlib.metadata import version

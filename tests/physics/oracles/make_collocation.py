@@ -61,7 +61,7 @@ def solve(kind, w0, l, length, f, q, nx, ny):
     for i in range(nx + 1):
         for j in range(ny + 1):
             row = on(i, j)
-            side, end, drive = j in (0, ny), i == 0, i == nx  # tx falls: index 0 is x = length
+            side, end, drive = j in (0, ny), i == 0, i == nx  # tx decreases: index 0 is x = length
             if side or end or drive:
                 a[row] = 0
                 a[row, row] = 1

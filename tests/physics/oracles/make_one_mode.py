@@ -55,13 +55,13 @@ def exponential(model, l, w0, k):
 
 
 def row(taper, model, slope, w0, length, f, q, x0):
-    # What the program reads are doubles: take exactly those.
+    # The program reads doubles, so use exactly these values.
     slope, w0, length, f = (mpf(float(value)) for value in (slope, w0, length, f))
     k = wavenumber(f, q)
     v = linear(model, slope, w0, length, k) if taper == "linear" else exponential(model, slope, w0, k)
     fractions = [x0 * mpf("0.31"), x0 * mpf("0.83"), x0]
     fractions += [x0 + (length - x0) * t for t in (mpf("0.2"), mpf("0.6"), mpf("0.97"))]
-    if taper == "exponential":  # the end of the surface shows close to it
+    if taper == "exponential":  # the end of the surface affects the solution close to it
         fractions[5] = x0 + (length - x0) * mpf("0.75")
     unit = v(mpf(0))
     cells = [taper, model] + [repr(float(value)) for value in (slope, w0, length, f, q)]
