@@ -10,8 +10,8 @@ struct LeastSquares {
   std::vector<double> known_sd;  ///< standard errors if the weights are 1 / variance
 };
 
-/// Minimises sum w (y - row . value)^2 by the normal equations (columns scaled to unit length), for up to
-/// about five parameters. Throws terms::UsageError if the columns are linearly dependent.
+/// Minimises sum w (y - row . value)^2 by Householder QR with column pivoting (columns scaled to unit
+/// length). Throws terms::UsageError if the columns are linearly dependent.
 LeastSquares least_squares(const std::vector<std::vector<double>>& rows, const std::vector<double>& values,
                            const std::vector<double>& weights);
 

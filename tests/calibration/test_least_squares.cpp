@@ -1,0 +1,53 @@
+#include "station/calibration/least_squares.hpp"
+
+#include <cmath>
+
+#include "station/terms/usage_error.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+using calibration::least_squares;
+
+TEST_CASE("a line through points far from the origin keeps its digits", "[calibration]") {
+  // Columns 1 and x are nearly the same: squaring them would leave five digits of the slope.
+  std::vector<std::vector<double>> rows;
+  std::vector<double> values, weights;
+  const double scatter[] = {1, -2, 0, 3, -1, 0, -3, 2, 1, -2, 1};
+  double w = 0, wx = 0, wy = 0;
+  for (int i = 0; i <= 10; ++i) {
+    const double x = 1 + i * std::ldexp(1.0, -20);  // exact, as are the values
+    rows.push_back({1, x});
+    values.push_back(2 + 3 * x + scatter[i] * std::ldexp(1.0, -22));
+    weights.push_back(1 + i % 3);
+    w += weights.back(), wx += weights.back() * i, wy += weights.back() * scatter[i];
+  }
+  // In whole numbers: i instead of x, the scatter instead of y.
+  double square = 0, product = 0, rest = 0;
+  for (int i = 0; i <= 10; ++i) {
+    square += weights[i] * (i - wx / w) * (i - wx / w);
+    product += weights[i] * (i - wx / w) * (scatter[i] - wy / w);
+  }
+  const double slope = product / square;
+  for (int i = 0; i <= 10; ++i) rest += weights[i] * std::pow(scatter[i] - wy / w - slope * (i - wx / w), 2);
+  const auto fit = least_squares(rows, values, weights);
+  CHECK(fit.value[1] == Approx(3 + slope / 4).epsilon(1e-9));
+  CHECK(fit.known_sd[1] == Approx(std::ldexp(1.0, 20) / std::sqrt(square)).epsilon(1e-9));
+  CHECK(fit.sd[1] == Approx(std::sqrt(rest / 9 / square) / 4).epsilon(1e-9));
+}
+
+TEST_CASE("as many points as parameters are met, without a scatter to judge by", "[calibration]") {
+  const auto fit = least_squares({{1, 0, 0}, {1, 1, 1}, {1, 2, 4}}, {5, 4, 7}, {1, 2, 3});
+  CHECK(fit.value[0] == Approx(5));
+  CHECK(fit.value[1] == Approx(-3));
+  CHECK(fit.value[2] == Approx(2));
+  for (const double sd : fit.sd) CHECK(sd == 0);
+}
+
+TEST_CASE("columns that do not determine the fit are refused", "[calibration]") {
+  const std::vector<double> three{1, 2, 3}, ones{1, 1, 1};
+  CHECK_THROWS_AS(least_squares({{1, 2}, {1, 2}, {1, 2}}, three, ones), terms::UsageError);
+  CHECK_THROWS_AS(least_squares({{1, 0}, {1, 0}, {1, 0}}, three, ones), terms::UsageError);
+  CHECK_THROWS_AS(least_squares({{1, 2, 3}}, {1}, {1}), terms::UsageError);
+  CHECK_THROWS_AS(least_squares({{1, 2}, {1, 3}, {1, 4}}, three, {1, 0, 0}), terms::UsageError);
+  CHECK_NOTHROW(least_squares({{1, 2}, {1, 3}, {1, 4}}, three, ones));
+}
