@@ -1,5 +1,6 @@
 #include "station/analysis/likelihood.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -7,31 +8,22 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// Solves the damped system for the free parameters by Cholesky. Returns false if it is not positive
-/// definite.
-bool solve(std::array<std::array<double, 4>, 4> a, std::array<double, 4> b, const std::array<bool, 4>& free,
-           std::array<double, 4>& x) {
-  std::array<int, 4> index{};
-  int n = 0;
-  for (int i = 0; i < 4; ++i)
-    if (free[i]) index[n++] = i;
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j <= i; ++j) {
-      double sum = a[index[i]][index[j]];
-      for (int k = 0; k < j; ++k) sum -= a[index[i]][index[k]] * a[index[j]][index[k]];
-      if (i == j && !(sum > 0)) return false;
-      a[index[i]][index[j]] = i == j ? std::sqrt(sum) : sum / a[index[j]][index[j]];
-    }
-  for (int i = 0; i < n; ++i) {
-    for (int k = 0; k < i; ++k) b[index[i]] -= a[index[i]][index[k]] * b[index[k]];
-    b[index[i]] /= a[index[i]][index[i]];
+/// Solves the damped system (its lower half is used) for the free parameters by Cholesky. Fixed parameters
+/// get rows of the unit matrix and a step of 0. Returns false if the system is not positive definite.
+bool solve(const std::array<std::array<double, 4>, 4>& a, const std::array<double, 4>& b,
+           const std::array<bool, 4>& free, std::array<double, 4>& x) {
+  Eigen::Matrix4d system = Eigen::Matrix4d::Identity();
+  Eigen::Vector4d right = Eigen::Vector4d::Zero();
+  for (int i = 0; i < 4; ++i) {
+    if (!free[i]) continue;
+    right(i) = b[i];
+    for (int j = 0; j <= i; ++j)
+      if (free[j]) system(i, j) = a[i][j];
   }
-  x = {};
-  for (int i = n - 1; i >= 0; --i) {
-    double sum = b[index[i]];
-    for (int k = i + 1; k < n; ++k) sum -= a[index[k]][index[i]] * x[index[k]];
-    x[index[i]] = sum / a[index[i]][index[i]];
-  }
+  const Eigen::LLT<Eigen::Matrix4d> factor(system);
+  if (factor.info() != Eigen::Success || !factor.matrixLLT().allFinite())
+    return false;  // NaN passes for positive
+  Eigen::Map<Eigen::Vector4d>(x.data()) = factor.solve(right);
   return true;
 }
 
