@@ -1,7 +1,7 @@
-#include "station/app/places.hpp"
 #include "station/cli/run.hpp"
-#include "station/panel/amplifier.hpp"
+#include "station/lines/amplifier.hpp"
 #include "station/rig/rig.hpp"
+#include "station/setup/places.hpp"
 
 namespace turnpoint::cli {
 
@@ -13,9 +13,9 @@ void add_amplifier_off(CommandLine& app, Context& context) {
   auto request = add_station_options(*command);
   command->footer("Example: turnpoint amplifier-off --rig /etc/turnpoint/rig.toml");
   command->callback([request, &context] {
-    const auto path = app::rig_or_default(request->rig, context.err);
+    const auto path = setup::rig_or_default(request->rig, context.err);
     const auto uri = rig::load(path).amplifier_uri;
-    panel::force_amplifier_off(uri);
+    lines::force_amplifier_off(uri);
     context.out << "amplifier off: " << uri << ", of " << path << "\n";
   });
 }

@@ -5,9 +5,9 @@
 
 #include <memory>
 
-#include "station/app/operator_choices.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/desk/choices.hpp"
 
 namespace turnpoint::cli {
 
@@ -58,7 +58,7 @@ void drill(const Options& options, Context& context) {
     return;
   }
   fmt::print(context.out, "{}: {} old, restored into a temporary file, checked and removed again\n",
-             drill.from, app::age_in_words(drill.age_s));
+             drill.from, desk::age_in_words(drill.age_s));
   fmt::print(context.out, "it holds {} sessions, {} trials; the database has {} sessions, {} trials\n",
              drill.sessions, drill.trials, drill.live_sessions, drill.live_trials);
   for (const auto& problem : drill.problems) fmt::print(context.out, "{}\n", problem);

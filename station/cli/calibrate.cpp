@@ -4,14 +4,14 @@
 #include <iostream>
 #include <memory>
 
-#include "station/app/calibrate.hpp"
 #include "station/calibration/apply.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
+#include "station/maintenance/calibrate.hpp"
+#include "station/system/write_file.hpp"
 #include "station/text/number.hpp"
-#include "station/text/write_file.hpp"
 
 namespace turnpoint::cli {
 
@@ -27,7 +27,7 @@ struct Options {
   int valid_days = 90;
   bool sweep = false, arm = false, panel = false;
   std::string reference = "button";
-  app::SweepOptions plan;
+  maintenance::SweepOptions plan;
 };
 
 calibration::Measurements measurements_of(const Options& options) {
@@ -93,15 +93,15 @@ void print(std::ostream& out, const calibration::Calibration& c) {
 }
 
 void sweep(const Options& options, const rig::Rig& rig, Context& context) {
-  const auto steps = app::sweep_plan(rig, options.plan);
+  const auto steps = maintenance::sweep_plan(rig, options.plan);
   if (options.sweep_out.empty()) {
-    context.out << app::to_csv(steps);
+    context.out << maintenance::to_csv(steps);
     return;
   }
   if (options.sweep_out.starts_with("alsa:") && !options.arm)
     throw UsageError("calibrate: --sweep-out " + options.sweep_out +
                      " plays on the amplifier; with the surface clear, give --arm");
-  app::play_sweep(rig, steps, options.sweep_out);
+  maintenance::play_sweep(rig, steps, options.sweep_out);
   const double length_s = steps.back().start_s + steps.back().length_s;
   fmt::print(context.err, "{} tones, {} s, to {}\n", steps.size(), number(length_s, 4), options.sweep_out);
 }
@@ -120,10 +120,10 @@ void calibrate_panel(const Options& options, const rig::Rig& rig, Context& conte
                                                            : calibration::LatencyReference::button;
   const auto measured = context.screens->latency({options.rig, reference});
   if (!measured) throw std::runtime_error("calibrate --panel: nothing was kept, so nothing is written");
-  const auto made = app::with_panel(rig, *measured);
+  const auto made = maintenance::with_panel(rig, *measured);
   const auto out =
       options.out.empty() ? calibration::file_for(options.rig, calibration::today()) : options.out;
-  text::write_file(out, calibration::to_toml(made));
+  system::write_file(out, calibration::to_toml(made));
   if (context.json) {
     const Json json{{"file", out},
                     {"quality", measured->quality},
@@ -148,12 +148,12 @@ void calibrate(const Options& options, Context& context) {
   if (options.sweep) return sweep(options, rig, context);
   if (options.panel) return calibrate_panel(options, rig, context);
   const auto measurements = measurements_of(options);
-  auto made = app::calibrate(rig, measurements, options.valid_days, options.note);
-  made.panel = app::known_panel(rig);
+  auto made = maintenance::calibrate(rig, measurements, options.valid_days, options.note);
+  made.panel = maintenance::known_panel(rig);
   const auto out = options.out.empty() ? calibration::file_for(options.rig, made.made_on) : options.out;
   const auto plots = options.plots.empty() ? out + ".svg" : options.plots;
-  text::write_file(plots, plot::render(app::calibration_figure(made, measurements)));
-  text::write_file(out, calibration::to_toml(made));
+  system::write_file(plots, plot::render(maintenance::calibration_figure(made, measurements)));
+  system::write_file(out, calibration::to_toml(made));
   if (context.json) {
     context.out << to_json(made, out, plots).dump(2) << "\n";
     return;

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <memory>
 
-#include "station/app/check.hpp"
-#include "station/app/places.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/protocol/combinations.hpp"
+#include "station/setup/places.hpp"
+#include "station/simulation/check.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
@@ -37,7 +37,7 @@ Json problems_json(const std::vector<text::Problem>& problems) {
   return list;
 }
 
-Json spread_json(const app::Spread& spread) {
+Json spread_json(const simulation::Spread& spread) {
   return {{"low", json_number(spread.low)},
           {"median", json_number(spread.median)},
           {"high", json_number(spread.high)}};
@@ -78,7 +78,7 @@ Extremes extremes_of(const protocol::Survey& survey) {
   return found;
 }
 
-Json to_json(const app::Check& check) {
+Json to_json(const simulation::Check& check) {
   Json blocks = Json::array(), cues = Json::array();
   for (const auto& block : check.blocks)
     blocks.push_back({{"name", block.name},
@@ -119,7 +119,7 @@ Json to_json(const app::Check& check) {
       {"defaults", {{"protocol", check.protocol_defaults}, {"rig", check.rig_defaults}}}};
 }
 
-std::string range(const app::Spread& spread, double unit) {
+std::string range(const simulation::Spread& spread, double unit) {
   const auto shown = [&](double value) { return number(std::round(value / unit * 10) / 10, 4); };
   const auto low = shown(spread.low), median = shown(spread.median), high = shown(spread.high);
   return low == high ? median : median + " (" + low + " to " + high + ")";
@@ -127,7 +127,7 @@ std::string range(const app::Spread& spread, double unit) {
 
 long percent(double share) { return std::lround(100 * share); }
 
-void print_cues(std::ostream& out, const app::CueGuard& cues) {
+void print_cues(std::ostream& out, const simulation::CueGuard& cues) {
   if (!cues.not_compared.empty())
     return fmt::print(out, "Cues: NOT COMPARED ({}): nothing is known of leaks\n", cues.not_compared);
   if (!cues.nothing_to_tell.empty())
@@ -155,7 +155,7 @@ void print_cues(std::ostream& out, const app::CueGuard& cues) {
              chance, cues.reports.size());
 }
 
-void print(std::ostream& out, const app::Check& check, const std::string& path) {
+void print(std::ostream& out, const simulation::Check& check, const std::string& path) {
   const bool known = check.cues.not_compared.empty();
   fmt::print(out, "{} {} on \"{}\": {}\n", path, known ? "is good" : "can run", check.rig_name, check.title);
   for (const auto& block : check.blocks)
@@ -178,8 +178,8 @@ void print(std::ostream& out, const app::Check& check, const std::string& path) 
 }
 
 void check(const Options& options, Context& context) {
-  const auto rig = app::rig_or_default(options.rig, context.err);
-  const auto result = app::check(options.protocol, rig, {options.sessions});
+  const auto rig = setup::rig_or_default(options.rig, context.err);
+  const auto result = simulation::check(options.protocol, rig, {options.sessions});
   if (!result.problems.empty()) context.exit_code = 2;
   for (const auto& problem : result.problems) fmt::print(context.err, "{}\n", format(problem));
   for (const auto& warning : result.warnings) fmt::print(context.err, "warning: {}\n", format(warning));

@@ -5,10 +5,10 @@
 #include <thread>
 #include <utility>
 
-#include "station/app/stop_signals.hpp"
 #include "station/cli/operator_console.hpp"
 #include "station/cli/run.hpp"
-#include "station/drive/monotonic.hpp"
+#include "station/system/clocks.hpp"
+#include "station/system/stop_signals.hpp"
 
 namespace turnpoint::cli {
 
@@ -29,13 +29,13 @@ class StopOnSignal {
   static void stop(session::Inputs& inputs, const std::string& signal) {
     if (signal.empty()) return;
     session::Input input;
-    input.time_ns = drive::monotonic_ns();
+    input.time_ns = system::monotonic_ns();
     input.kind = session::InputKind::stop;
     input.text = "the program was told to end (" + signal + ")";
     inputs.push(std::move(input));
   }
 
-  app::StopSignals signals_;
+  system::StopSignals signals_;
   // The last member, so that the thread is joined before the objects that it uses are destroyed.
   std::jthread waiter_;
 };

@@ -4,31 +4,30 @@
 #include <filesystem>
 #include <memory>
 
-#include "station/app/doctor.hpp"
-#include "station/app/places.hpp"
-#include "station/app/station_request.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/maintenance/doctor.hpp"
+#include "station/setup/places.hpp"
 
 namespace turnpoint::cli {
 
 namespace {
 
-const char* word(panel::Check::Status status) {
+const char* word(lines::Finding::Status status) {
   switch (status) {
-    case panel::Check::Status::ok:
+    case lines::Finding::Status::ok:
       return "ok";
-    case panel::Check::Status::warning:
+    case lines::Finding::Status::warning:
       return "warning";
-    case panel::Check::Status::failed:
+    case lines::Finding::Status::failed:
       return "failed";
   }
   return "?";
 }
 
 void doctor(const std::string& rig_path, const std::string& data_path, Context& context) {
-  const auto rig = rig::load(app::rig_or_default(rig_path, context.err));
-  const auto checks = app::examine(rig, data_path);
+  const auto rig = rig::load(setup::rig_or_default(rig_path, context.err));
+  const auto checks = maintenance::examine(rig, data_path);
   Json list = Json::array();
   for (const auto& check : checks) {
     list.push_back(
@@ -37,7 +36,7 @@ void doctor(const std::string& rig_path, const std::string& data_path, Context& 
     fmt::print(context.out, "{:<20} {:<8} {}\n", check.name, word(check.status), check.what);
     if (!check.mend.empty()) fmt::print(context.out, "{:<29} -> {}\n", "", check.mend);
   }
-  const bool fit = app::fit_for_use(checks);
+  const bool fit = maintenance::fit_for_use(checks);
   if (context.json) context.out << Json{{"rig", rig.name}, {"fit", fit}, {"checks", list}}.dump(2) << "\n";
   context.exit_code = fit ? 0 : 1;
 }
@@ -49,7 +48,7 @@ void add_doctor(CommandLine& app, Context& context) {
       app.add_subcommand("doctor", "Check the hardware of a rig; exit status 1 if something is wrong");
   auto rig = std::make_shared<std::string>();
   auto data =
-      std::make_shared<std::string>(std::filesystem::path(app::default_database()).parent_path().string());
+      std::make_shared<std::string>(std::filesystem::path(setup::default_database()).parent_path().string());
   command->add_option("--rig", *rig, "Rig file; otherwise the installed one, else the simulated one");
   command->add_option("--data", *data, "Folder for databases")->capture_default_str();
   add_json(*command, context);

@@ -9,7 +9,7 @@
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/plot/chart.hpp"
-#include "station/text/write_file.hpp"
+#include "station/system/write_file.hpp"
 
 namespace turnpoint::cli {
 
@@ -51,8 +51,8 @@ void figures(const Options& options, Context& context) {
   Json list = Json::array();
   for (const auto& figure : physics::figures()) {
     const auto path = (std::filesystem::path(options.out) / figure.id).string();
-    text::write_file(path + ".svg", plot::render(drawn(figure)));
-    text::write_file(path + ".csv", physics::to_csv(figure));
+    system::write_file(path + ".svg", plot::render(drawn(figure)));
+    system::write_file(path + ".csv", physics::to_csv(figure));
     list.push_back({{"id", figure.id},
                     {"title", figure.title},
                     {"note", figure.note},

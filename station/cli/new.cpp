@@ -6,11 +6,12 @@
 #include <memory>
 #include <system_error>
 
-#include "station/app/places.hpp"
 #include "station/cli/command.hpp"
 #include "station/protocol/protocol.hpp"
+#include "station/setup/places.hpp"
+#include "station/system/read_file.hpp"
+#include "station/system/write_file.hpp"
 #include "station/text/toml.hpp"
-#include "station/text/write_file.hpp"
 
 namespace turnpoint::cli {
 
@@ -90,11 +91,11 @@ void make(const Options& options, Context& context) {
   if (fs::exists(options.file)) throw UsageError(options.file + " exists already; choose another name");
   const auto* goal = options.goal.empty() ? &ask(context) : find_goal(options.goal);
   if (!goal) throw UsageError(fmt::format("--measure {}: allowed are {}", options.goal, goal_words()));
-  const auto from = fs::path(app::shipped("protocols")) / (std::string(goal->file) + ".toml");
+  const auto from = fs::path(setup::shipped("protocols")) / (std::string(goal->file) + ".toml");
   const auto id = options.id.empty() ? fs::path(options.file).stem().string() : options.id;
-  const auto source = own(text::read_file(from.string()), goal->file, id);
+  const auto source = own(system::read_file(from.string()), goal->file, id);
   protocol::parse(source, options.file);  // refuses an invalid id before anything is written
-  text::write_file(options.file, source);
+  system::write_file(options.file, source);
   fmt::print(context.out, "{}\n", options.file);
   fmt::print(context.err, "It begins as a copy of {}. Change levels and texts, then: turnpoint check {}\n",
              goal->file, options.file);

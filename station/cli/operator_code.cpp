@@ -1,4 +1,4 @@
-#include "station/app/operator_code.hpp"
+#include "station/desk/operator_code.hpp"
 
 #include <fmt/ostream.h>
 #include <termios.h>
@@ -58,8 +58,8 @@ std::string entered(Context& context) {
 }
 
 void set_operator_code(Context& context) {
-  const auto file = app::operator_code_files().front();
-  app::store_operator_code(app::OperatorCode::of_digits(entered(context)), file);
+  const auto file = desk::operator_code_files().front();
+  desk::store_operator_code(desk::OperatorCode::of_digits(entered(context)), file);
   fmt::print(
       context.out,
       "The operator's code is stored in {} (its hash). A station that runs takes it when it is started "

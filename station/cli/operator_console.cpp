@@ -8,7 +8,7 @@
 #include <ostream>
 #include <utility>
 
-#include "station/drive/monotonic.hpp"
+#include "station/system/clocks.hpp"
 
 namespace turnpoint::cli {
 
@@ -116,7 +116,7 @@ bool OperatorConsole::simulate(const std::string& line, session::Input& input) c
 void OperatorConsole::take(const std::string& line) {
   if (line.empty()) return;
   session::Input input;
-  input.time_ns = drive::monotonic_ns();
+  input.time_ns = system::monotonic_ns();
   const auto space = line.find(' ');
   const auto command = command_of(line.substr(0, space));
   if (command) {

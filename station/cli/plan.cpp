@@ -3,14 +3,14 @@
 
 #include <memory>
 
-#include "station/app/places.hpp"
-#include "station/app/preview.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/desk/preview.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
+#include "station/setup/places.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
@@ -104,14 +104,14 @@ void print(std::ostream& out, const scene::DrivePlan& plan) {
 
 void plan(const Options& options, Context& context) {
   const auto protocol = protocol::load(options.protocol);
-  const auto rig = rig::load(app::rig_or_default(options.rig, context.err));
+  const auto rig = rig::load(setup::rig_or_default(options.rig, context.err));
   if (!protocol.scenes.count(options.scene)) {
     std::string known;
     for (const auto& [name, scene] : protocol.scenes) known += (known.empty() ? "" : ", ") + name;
     throw UsageError(fmt::format("--scene {}: the protocol has {}", options.scene, known));
   }
   std::vector<std::string> assumed;
-  const auto factors = app::factors_for(protocol, options.set, assumed);
+  const auto factors = desk::factors_for(protocol, options.set, assumed);
   for (const auto& name : assumed)
     std::visit([&](const auto& value) { fmt::print(context.err, "{} = {} (not --set)\n", name, value); },
                factors.at(name));

@@ -1,4 +1,4 @@
-#include "station/app/power.hpp"
+#include "station/simulation/power.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -8,13 +8,13 @@
 #include <filesystem>
 #include <memory>
 
-#include "station/app/cue_guard.hpp"
-#include "station/app/places.hpp"
-#include "station/app/power_figure.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/setup/places.hpp"
+#include "station/simulation/cue_guard.hpp"
+#include "station/simulation/power_figure.hpp"
+#include "station/system/write_file.hpp"
 #include "station/text/number.hpp"
-#include "station/text/write_file.hpp"
 
 namespace turnpoint::cli {
 
@@ -28,7 +28,7 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
-Json to_json(const app::Recovery& recovery) {
+Json to_json(const simulation::Recovery& recovery) {
   Json coverage = nullptr;
   if (recovery.coverage)
     coverage = {{"value", recovery.coverage->value},
@@ -55,7 +55,7 @@ Json to_json(const app::Recovery& recovery) {
 // Report a cue if its accuracy exceeds chance by this margin (about what 20 trials can detect).
 constexpr double noticeable = 0.1;
 
-Json to_json(const std::vector<app::CueReport>& cues) {
+Json to_json(const std::vector<simulation::CueReport>& cues) {
   Json list = Json::array();
   for (const auto& cue : cues)
     list.push_back({{"cue", cue.cue},
@@ -66,8 +66,8 @@ Json to_json(const std::vector<app::CueReport>& cues) {
   return list;
 }
 
-Json to_json(const app::Power& power, const std::vector<app::CueReport>& cues, const std::string& protocol,
-             const std::vector<std::string>& files) {
+Json to_json(const simulation::Power& power, const std::vector<simulation::CueReport>& cues,
+             const std::string& protocol, const std::vector<std::string>& files) {
   Json recoveries = Json::array();
   for (const auto& recovery : power.recoveries) recoveries.push_back(to_json(recovery));
   return {{"protocol", protocol},
@@ -81,7 +81,7 @@ Json to_json(const app::Power& power, const std::vector<app::CueReport>& cues, c
           {"files", files}};
 }
 
-void print(std::ostream& out, const app::Power& power) {
+void print(std::ostream& out, const simulation::Power& power) {
   fmt::print(out, "{} simulated sessions, on average {} trials and {} minutes each{}\n", power.observers,
              number(power.trials, 4), number(power.minutes, 3),
              power.accuracy ? fmt::format(", {} % right", number(100 * *power.accuracy, 3)) : "");
@@ -111,7 +111,7 @@ void print(std::ostream& out, const app::Power& power) {
              power.interval_sessions);
 }
 
-void print(std::ostream& out, const std::vector<app::CueReport>& cues) {
+void print(std::ostream& out, const std::vector<simulation::CueReport>& cues) {
   if (cues.empty()) return;
   fmt::print(out, "An observer with one cue alone and the best rule for it:\n");
   for (const auto& cue : cues)
@@ -130,27 +130,27 @@ std::function<void(int, int)> progress() {
 
 void power(const Options& options, Context& context) {
   const auto protocol = protocol::load(options.protocol);
-  const auto rig = rig::load(app::rig_or_default(options.rig, context.err));
+  const auto rig = rig::load(setup::rig_or_default(options.rig, context.err));
   const auto survey = protocol::survey(protocol, rig);
   if (!survey.problems.empty()) throw text::BadInput(survey.problems);
-  const auto cues = app::cue_guard(protocol, rig, survey).reports;
-  app::PowerOptions wanted;
+  const auto cues = simulation::cue_guard(protocol, rig, survey).reports;
+  simulation::PowerOptions wanted;
   wanted.observers = options.observers;
   wanted.interval_sessions = options.intervals;
   wanted.observer = observer::parse(options.observer);
   wanted.seed = options.seed;
   wanted.progress = progress();
-  const auto result = app::power(protocol, wanted);
+  const auto result = simulation::power(protocol, wanted);
   std::vector<std::string> files;
   if (!options.out.empty()) {
     std::filesystem::create_directories(options.out);
     files.push_back((std::filesystem::path(options.out) / (protocol.id + "-power.svg")).string());
-    text::write_file(files.back(), plot::render(app::figure_of(result, protocol.title)));
+    system::write_file(files.back(), plot::render(simulation::figure_of(result, protocol.title)));
   }
   const auto document = to_json(result, cues, protocol.id, files);
   if (!options.out.empty()) {
     const auto path = (std::filesystem::path(options.out) / (protocol.id + "-power.json")).string();
-    text::write_file(path, document.dump(2) + "\n");
+    system::write_file(path, document.dump(2) + "\n");
     files.push_back(path);
   }
   if (context.json)

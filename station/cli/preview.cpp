@@ -1,4 +1,4 @@
-#include "station/app/preview.hpp"
+#include "station/desk/preview.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -8,12 +8,12 @@
 #include <memory>
 #include <system_error>
 
-#include "station/app/places.hpp"
-#include "station/app/scene_figures.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
-#include "station/text/write_file.hpp"
+#include "station/desk/scene_figures.hpp"
+#include "station/setup/places.hpp"
+#include "station/system/write_file.hpp"
 
 namespace turnpoint::cli {
 
@@ -25,16 +25,16 @@ struct Options {
 };
 
 void write(const std::filesystem::path& path, const std::string& text, std::ostream& messages) {
-  text::write_file(path.string(), text);
+  system::write_file(path.string(), text);
   fmt::print(messages, "{}\n", path.string());
 }
 
 /// Writes files for every requested scene. A scene that cannot be presented is reported, and the command
 /// fails at the end.
 void preview_to_files(const Options& options, Context& context) {
-  app::Preview preview(options.protocol, options.rig);
+  desk::Preview preview(options.protocol, options.rig);
   std::vector<std::string> assumed;
-  const auto factors = app::factors_for(preview.protocol(), options.set, assumed);
+  const auto factors = desk::factors_for(preview.protocol(), options.set, assumed);
   const auto scenes = options.scene.empty() ? preview.scenes() : std::vector<std::string>{options.scene};
   std::filesystem::create_directories(options.out);
   const std::filesystem::path folder = options.out;
@@ -50,9 +50,9 @@ void preview_to_files(const Options& options, Context& context) {
     fmt::print(context.out, "Scene {}\n", scene);
     for (const auto* list : {&look.facts, &look.cues})
       for (const auto& [label, value] : *list) fmt::print(context.out, "  {}: {}\n", label, value);
-    write(folder / (scene + "-surface.svg"), app::surface_svg(look, preview.rig()), context.out);
-    write(folder / (scene + "-profile.svg"), plot::render(app::profile_figure({look})), context.out);
-    write(folder / (scene + "-spectrum.svg"), plot::render(app::spectrum_figure(look)), context.out);
+    write(folder / (scene + "-surface.svg"), desk::surface_svg(look, preview.rig()), context.out);
+    write(folder / (scene + "-profile.svg"), plot::render(desk::profile_figure({look})), context.out);
+    write(folder / (scene + "-spectrum.svg"), plot::render(desk::spectrum_figure(look)), context.out);
   }
 }
 
@@ -71,7 +71,7 @@ void add_preview(CommandLine& app, Context& context) {
       "Example: turnpoint preview protocols/demo.toml --scene edge --set offset_mm=9 --out looks");
   command->callback([options, &context] {
     if (options->out.empty() && !context.screens) return become_ui(context);
-    options->rig = app::rig_or_default(options->rig, context.err);
+    options->rig = setup::rig_or_default(options->rig, context.err);
     if (!options->out.empty()) return preview_to_files(*options, context);
     context.screens->preview({options->protocol, options->rig, options->scene, options->set});
   });

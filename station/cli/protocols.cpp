@@ -6,10 +6,10 @@
 #include <memory>
 #include <vector>
 
-#include "station/app/places.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/protocol/protocol.hpp"
+#include "station/setup/places.hpp"
 
 namespace turnpoint::cli {
 
@@ -56,7 +56,7 @@ void add_protocols(CommandLine& app, Context& context) {
   add_json(*command, context);
   command->footer("Example: turnpoint protocols");
   command->callback(
-      [folder, &context] { protocols(folder->empty() ? app::shipped("protocols") : *folder, context); });
+      [folder, &context] { protocols(folder->empty() ? setup::shipped("protocols") : *folder, context); });
 }
 
 }  // namespace turnpoint::cli

@@ -1,4 +1,4 @@
-#include "station/app/report.hpp"
+#include "station/desk/report_data.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -9,7 +9,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/report/html.hpp"
-#include "station/text/write_file.hpp"
+#include "station/system/write_file.hpp"
 
 namespace turnpoint::cli {
 
@@ -21,12 +21,12 @@ struct Options {
 };
 
 void report_session(Options options, Context& context) {
-  const auto id = app::session_to_report(options.database, options.filter);
-  const auto summary = report::summarise(app::report_data(options.database, id));
+  const auto id = desk::session_to_report(options.database, options.filter);
+  const auto summary = report::summarise(desk::report_data(options.database, id));
   if (context.json) context.out << report::to_json(summary) << "\n";
   if (options.out.empty() && !context.json) options.out = "report-" + id + ".html";
   if (options.out.empty()) return;
-  text::write_file(options.out, report::to_html(summary));
+  system::write_file(options.out, report::to_html(summary));
   if (!context.json) fmt::print(context.out, "{}\n", options.out);
 }
 

@@ -1,15 +1,15 @@
 #include <memory>
 
-#include "station/app/resume.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/console_session.hpp"
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
+#include "station/setup/resume.hpp"
 
 namespace turnpoint::cli {
 
 void add_resume(CommandLine& app, Context& context) {
-  auto request = std::make_shared<app::ResumeRequest>();
+  auto request = std::make_shared<setup::ResumeRequest>();
   auto* command = app.add_subcommand("resume", "Continue the newest interrupted session");
   command->add_option("--db", request->database, "Database file")->required()->check(existing_file());
   command->add_option("--session", request->session_id, "Session; otherwise the newest interrupted one");
@@ -22,7 +22,7 @@ void add_resume(CommandLine& app, Context& context) {
   add_json(*command, context);
   command->footer("Example: turnpoint resume --db lab.sqlite --policy resume");
   command->callback([request, &context] {
-    const auto setup = app::prepare_resume(*request, context.err);
+    const auto setup = setup::prepare_resume(*request, context.err);
     if (!setup) {
       if (context.json)
         context.out << "null\n";

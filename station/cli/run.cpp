@@ -8,10 +8,10 @@
 #include <filesystem>
 #include <system_error>
 
-#include "station/app/places.hpp"
 #include "station/cli/console_session.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/screens.hpp"
+#include "station/setup/places.hpp"
 #include "station/store/read.hpp"
 #include "station/text/number.hpp"
 
@@ -69,7 +69,7 @@ void print_summary(std::ostream& out, const session::Summary& s) {
              s.anticipations, s.voided);
   if (s.accuracy) fmt::print(out, "  {} % of the scored answers right\n", number(100 * *s.accuracy, 3));
   for (const auto& e : s.estimates)
-    fmt::print(out, "  {}: {} {}\n", e.procedure, e.parameter, session::in_words(e));
+    fmt::print(out, "  {}: {} {}\n", e.procedure, e.parameter, trial::in_words(e));
   if (s.stretched_s > 0)
     fmt::print(out, "  intervals stretched by {} s in all to keep the rig's limits\n",
                number(s.stretched_s, 3));
@@ -88,7 +88,7 @@ void print_how_to_resume(std::ostream& out, const session::Summary& s, const std
 }  // namespace
 
 void show_summary(Context& context, const session::Summary& summary, const std::string& resume_options) {
-  const bool interrupted = summary.status == store::SessionStatus::interrupted;
+  const bool interrupted = summary.status == records::SessionStatus::interrupted;
   if (interrupted) context.exit_code = 1;
   if (context.json) {
     context.out << to_json(summary).dump(2) << "\n";
@@ -98,8 +98,8 @@ void show_summary(Context& context, const session::Summary& summary, const std::
   if (interrupted) print_how_to_resume(context.out, summary, resume_options);
 }
 
-std::shared_ptr<app::RunRequest> add_run_options(Command& command) {
-  auto request = std::make_shared<app::RunRequest>();
+std::shared_ptr<setup::RunRequest> add_run_options(Command& command) {
+  auto request = std::make_shared<setup::RunRequest>();
   command.add_option("protocol", request->protocol, "Protocol file")->required();
   command.add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
   command.add_option("--participant", request->participant,
@@ -145,9 +145,9 @@ void add_run(CommandLine& app, Context& context) {
     if (on_screen && !context.screens) return become_ui(context);
     if (!on_screen && request->participant.empty())
       throw UsageError("run: --participant is missing; only a screen can ask for it");
-    request->rig = app::rig_or_default(request->rig, context.err);
+    request->rig = setup::rig_or_default(request->rig, context.err);
     if (on_screen) return show_summary(context, context.screens->session(*request, std::nullopt));
-    run_without_screen(context, app::prepare(*request));
+    run_without_screen(context, setup::prepare(*request));
   });
 }
 

@@ -2,17 +2,17 @@
 #include <memory>
 #include <string>
 
-#include "station/app/prepare.hpp"
-#include "station/app/station_request.hpp"
 #include "station/cli/command.hpp"
+#include "station/setup/prepare.hpp"
+#include "station/setup/station_request.hpp"
 
 namespace turnpoint::cli {
 
 /// Adds the options of `turnpoint run` to a command. turnpoint-ui accepts the same options.
-std::shared_ptr<app::RunRequest> add_run_options(Command& command);
+std::shared_ptr<setup::RunRequest> add_run_options(Command& command);
 
 /// Adds the options of `turnpoint station`. amplifier-off accepts the same options.
-std::shared_ptr<app::StationRequest> add_station_options(Command& command);
+std::shared_ptr<setup::StationRequest> add_station_options(Command& command);
 
 /// Replaces this process by turnpoint-ui from the same folder, with the whole command line. Returns only by
 /// an exception.

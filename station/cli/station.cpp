@@ -1,16 +1,16 @@
 #include <memory>
 
-#include "station/app/operator_code.hpp"
-#include "station/app/places.hpp"
-#include "station/app/station_request.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
+#include "station/desk/operator_code.hpp"
+#include "station/setup/places.hpp"
+#include "station/setup/station_request.hpp"
 
 namespace turnpoint::cli {
 
-std::shared_ptr<app::StationRequest> add_station_options(Command& command) {
-  auto request = std::make_shared<app::StationRequest>();
+std::shared_ptr<setup::StationRequest> add_station_options(Command& command) {
+  auto request = std::make_shared<setup::StationRequest>();
   command.add_option("--protocols", request->protocols,
                      "Folder with protocol files; otherwise the shipped ones");
   command.add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
@@ -26,14 +26,14 @@ void add_station(CommandLine& app, Context& context) {
   auto request = add_station_options(*command);
   command->footer("Example: turnpoint station --db lab.sqlite");
   command->callback([request, &context] {
-    if (request->locked && app::operator_code().is_built_in())
+    if (request->locked && desk::operator_code().is_built_in())
       throw UsageError(
           "station: --locked would open with the built-in code, which is public; store your own: sudo "
           "turnpoint operator-code");
     if (!context.screens) return become_ui(context);
-    request->rig = app::rig_or_default(request->rig, context.err);
-    if (request->protocols.empty()) request->protocols = app::shipped("protocols");
-    if (request->database.empty()) request->database = app::default_database();
+    request->rig = setup::rig_or_default(request->rig, context.err);
+    if (request->protocols.empty()) request->protocols = setup::shipped("protocols");
+    if (request->database.empty()) request->database = setup::default_database();
     context.screens->station(*request);
   });
 }

@@ -5,11 +5,11 @@
 #include <memory>
 #include <numbers>
 
-#include "station/app/play_armed.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/tones.hpp"
 #include "station/drive/engine.hpp"
+#include "station/maintenance/play_armed.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/session/stage.hpp"
@@ -83,7 +83,7 @@ drive::PlayReport play(const rig::Rig& rig, const Options& options) {
   if (options.seconds > rig.limits.continuous_s)
     throw UsageError(fmt::format("synth: --arm for {} s; the rig allows {} s without a pause",
                                  text::number(options.seconds), text::number(rig.limits.continuous_s)));
-  return app::play_armed(rig, options.out, {burst});
+  return maintenance::play_armed(rig, options.out, {burst});
 }
 
 void synth(const Options& options, Context& context) {

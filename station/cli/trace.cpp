@@ -7,8 +7,8 @@
 #include "station/cli/json.hpp"
 #include "station/procedure/trace.hpp"
 #include "station/protocol/protocol.hpp"
-#include "station/session/trial_orders.hpp"
 #include "station/text/number.hpp"
+#include "station/trial/orders.hpp"
 
 namespace turnpoint::cli {
 
@@ -38,7 +38,7 @@ procedure::Context context_of(const protocol::Protocol& protocol, const procedur
   }
   context.right_answer = [&protocol, factors, level = spec.level](double value) mutable {
     factors[level] = value;
-    return session::correct_choice(protocol.task, factors).value_or(-1);
+    return trial::correct_choice(protocol.task, factors).value_or(-1);
   };
   return context;
 }

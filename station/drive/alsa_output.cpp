@@ -5,8 +5,8 @@
 #include <system_error>
 
 #include "station/drive/alsa_device.hpp"
-#include "station/drive/monotonic.hpp"
 #include "station/drive/recovery.hpp"
+#include "station/system/clocks.hpp"
 
 namespace turnpoint::drive {
 namespace {
@@ -57,7 +57,9 @@ class AlsaOutput final : public Output {
     return Position{frames_ - queued, std::int64_t{1'000'000'000} * stamp.tv_sec + stamp.tv_nsec};
   }
 
-  std::vector<MemoryRange> memory() const override { return {range_of(*this), range_of(packed_)}; }
+  std::vector<system::MemoryRange> memory() const override {
+    return {system::range_of(*this), system::range_of(packed_)};
+  }
   // alsa-lib's structures are opaque, so their memory ranges are unknown here.
   std::string memory_left_out() const override { return "alsa-lib's own objects"; }
 
@@ -152,7 +154,7 @@ class AlsaOutput final : public Output {
           outcome = snd_pcm_resume(pcm());
           break;
         case RecoveryAction::wait:
-          sleep_until_ns(monotonic_ns() + period_ns());
+          system::sleep_until_ns(system::monotonic_ns() + period_ns());
           outcome = snd_pcm_resume(pcm());
           break;
         default:
@@ -176,7 +178,7 @@ class AlsaOutput final : public Output {
 
   void lose(int error, std::int64_t frames, WriteResult& result) noexcept {
     device_.pcm.reset();
-    lost_at_ns_ = monotonic_ns();
+    lost_at_ns_ = system::monotonic_ns();
     if (result.status == WriteStatus::ok) result.dropped = frames_ - played_;
     const auto passed = std::max(result.passed, frames - result.taken);
     frames_ += passed - result.passed;
@@ -189,11 +191,11 @@ class AlsaOutput final : public Output {
   // The device is lost. Keep the stream's time running at its nominal rate and try to reopen the device by
   // name.
   WriteResult absent(std::int64_t frames) noexcept {
-    sleep_until_ns(monotonic_ns() + period_ns());
+    system::sleep_until_ns(system::monotonic_ns() + period_ns());
     frames_ += frames;
     played_ = frames_;
     WriteResult result{WriteStatus::lost, -ENODEV, 0, frames, 0};
-    if (recovery_.absent(monotonic_ns() - lost_at_ns_) != RecoveryAction::reopen) return result;
+    if (recovery_.absent(system::monotonic_ns() - lost_at_ns_) != RecoveryAction::reopen) return result;
     result.error = reopen();
     if (recovery_.reopened(result.error) != RecoveryAction::back) return result;
     stalls_ = 0;

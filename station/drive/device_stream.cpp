@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "station/drive/monotonic.hpp"
+#include "station/system/clocks.hpp"
 
 namespace turnpoint::drive {
 
@@ -13,14 +13,15 @@ DeviceStream::DeviceStream(const StreamConfig& config)
       clock_(config.output.rate_Hz, 1024),
       block_(static_cast<std::size_t>(config.output.channels) *
              static_cast<std::size_t>(config.output.period_frames)),
-      origin_ns_(monotonic_ns()),
+      origin_ns_(system::monotonic_ns()),
       rate_check_(config.output.rate_Hz) {}
 
 std::int64_t DeviceStream::delay_ns() const noexcept { return std::llround(config_.converter_delay_s * 1e9); }
 
-std::vector<MemoryRange> DeviceStream::memory() const {
+std::vector<system::MemoryRange> DeviceStream::memory() const {
   auto ranges = core_.memory();
-  ranges.insert(ranges.end(), {range_of(block_), range_of(*positions_), range_of(*rates_)});
+  ranges.insert(ranges.end(),
+                {system::range_of(block_), system::range_of(*positions_), system::range_of(*rates_)});
   const auto output = output_->memory();
   ranges.insert(ranges.end(), output.begin(), output.end());
   return ranges;
@@ -115,7 +116,7 @@ void DeviceStream::follow_device() noexcept {
 }
 
 void DeviceStream::check_rate(const Position& position) noexcept {
-  rate_check_.add(position.frame, position.time_ns + raw_minus_monotonic_ns());
+  rate_check_.add(position.frame, position.time_ns + system::raw_minus_monotonic_ns());
   const auto rate = rate_check_.result();
   if (!rate) return;
   rate_told_ = true;
@@ -128,7 +129,7 @@ void DeviceStream::check_rate(const Position& position) noexcept {
 void DeviceStream::follow_clock() noexcept {
   const std::int64_t rate = config_.output.rate_Hz, heard = frame_ - config_.output.period_frames;
   const std::int64_t due_ns = origin_ns_ + heard / rate * 1'000'000'000 + heard % rate * 1'000'000'000 / rate;
-  sleep_until_ns(due_ns);
+  system::sleep_until_ns(due_ns);
   core_.heard(heard);
   static_cast<void>(positions_->push({relation_.load(), {heard, due_ns}}));
 }

@@ -8,8 +8,8 @@
 
 #include "station/drive/engine.hpp"
 #include "station/drive/engine_core.hpp"
-#include "station/drive/rights.hpp"
 #include "station/drive/ring.hpp"
+#include "station/system/rights.hpp"
 
 namespace turnpoint::drive {
 
@@ -27,7 +27,7 @@ class DeviceStream : public Stream {
 
   /// Memory that the audio side uses beside this object, and a textual note about memory missing from the
   /// list.
-  std::vector<MemoryRange> memory() const;
+  std::vector<system::MemoryRange> memory() const;
   std::string memory_left_out() const { return output_->memory_left_out(); }
 
   std::uint32_t schedule(const Burst& burst) override {
@@ -50,7 +50,7 @@ class DeviceStream : public Stream {
   std::optional<std::int64_t> frame_at(std::int64_t time_ns) override;
   std::optional<MeasuredRate> measured_rate() override;
   Counters counters() const override { return core_.counters(); }
-  Rights rights() const override { return {}; }
+  system::Rights rights() const override { return {}; }
   const StreamConfig& config() const override { return config_; }
 
  private:

@@ -13,6 +13,7 @@
 #include "station/drive/prepared_burst.hpp"
 #include "station/drive/rate_check.hpp"
 #include "station/drive/synth.hpp"
+#include "station/system/rights.hpp"
 
 namespace turnpoint::drive {
 
@@ -53,14 +54,6 @@ struct Counters {
   std::int64_t saturated = 0;    ///< samples out of range; anything but 0 is a fault
   std::int64_t device_losses = 0;
   std::int64_t events_dropped = 0;  ///< events lost because nobody called poll()
-};
-
-/// The rights that the operating system granted to the audio thread, for the record and the screen.
-struct Rights {
-  bool asked = false;     ///< false for a synchronous stream, which needs no rights
-  int fifo_priority = 0;  ///< 0: not a real-time thread
-  bool memory_locked = false;
-  std::string note;  ///< the reason, if something was denied
 };
 
 /// What a synchronous stream to `null:` does with its samples. `rendered` computes them, to measure them or
@@ -129,7 +122,7 @@ class Stream {
   /// Measured rate of the open device's clock; empty for the first 2 s, and for streams without a device.
   virtual std::optional<MeasuredRate> measured_rate() = 0;
   virtual Counters counters() const = 0;
-  virtual Rights rights() const = 0;
+  virtual system::Rights rights() const = 0;
   virtual const StreamConfig& config() const = 0;
 };
 
@@ -157,7 +150,7 @@ std::unique_ptr<Stream> open_realtime(const StreamConfig& config);
 /// The result of `play`.
 struct PlayReport {
   Counters counters;
-  Rights rights;
+  system::Rights rights;
   ClockFit clock;
   std::optional<MeasuredRate> rate;  ///< for a device that played for 2 s or more
   double peak = 0;                   ///< computed before playing, relative to full scale

@@ -246,8 +246,9 @@ void EngineCore::report_until(std::int64_t frame) noexcept {
   atomics_.frames.store(frame);
 }
 
-std::vector<MemoryRange> EngineCore::memory() const {
-  return {range_of(*incoming_), range_of(*commands_), range_of(*events_), synth_.memory()};
+std::vector<system::MemoryRange> EngineCore::memory() const {
+  return {system::range_of(*incoming_), system::range_of(*commands_), system::range_of(*events_),
+          synth_.memory()};
 }
 
 void EngineCore::process(std::int64_t frame, std::span<std::int32_t> samples) noexcept {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "station/drive/engine.hpp"
-#include "station/drive/rights.hpp"
 #include "station/drive/ring.hpp"
+#include "station/system/rights.hpp"
 
 namespace turnpoint::drive {
 
@@ -27,7 +27,7 @@ class EngineCore {
   std::optional<Event> poll();
   Counters counters() const noexcept;
   /// Memory that the audio side uses beside this object.
-  std::vector<MemoryRange> memory() const;
+  std::vector<system::MemoryRange> memory() const;
 
   /// Takes the waiting commands and renders frames, beginning with `frame`.
   void process(std::int64_t frame, std::span<std::int32_t> samples) noexcept;

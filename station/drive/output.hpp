@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "station/drive/memory_range.hpp"
 #include "station/drive/prepared_burst.hpp"
+#include "station/system/memory_range.hpp"
 
 namespace turnpoint::drive {
 
@@ -63,7 +63,7 @@ class Output {
   virtual std::optional<Position> position() noexcept = 0;
   /// Memory that write() and position() use, to be locked, and a textual note about further memory that is
   /// not in the list. Empty for files and null.
-  virtual std::vector<MemoryRange> memory() const { return {}; }
+  virtual std::vector<system::MemoryRange> memory() const { return {}; }
   virtual std::string memory_left_out() const { return ""; }
   /// Plays what is buffered, then closes. Throws std::system_error if a file cannot be completed. The
   /// destructor closes too, but reports no errors.

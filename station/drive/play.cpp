@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "station/drive/engine.hpp"
-#include "station/drive/monotonic.hpp"
+#include "station/system/clocks.hpp"
 
 namespace turnpoint::drive {
 namespace {
@@ -21,7 +21,7 @@ PlayReport played(const StreamConfig& config, Burst burst) {
   const auto stream = open_realtime(config);
   const auto scheduled = stream->schedule_soon(burst);
   for (bool sounding = true; sounding;) {
-    sleep_until_ns(monotonic_ns() + 10'000'000);
+    system::sleep_until_ns(system::monotonic_ns() + 10'000'000);
     while (const auto event = stream->poll()) {
       const bool over = event->kind == EventKind::burst_ended || event->kind == EventKind::burst_missed;
       if ((over && event->burst == scheduled.burst) || event->kind == EventKind::device_lost)

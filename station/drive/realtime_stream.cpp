@@ -5,8 +5,8 @@
 #include <thread>
 
 #include "station/drive/device_stream.hpp"
-#include "station/drive/monotonic.hpp"
-#include "station/drive/rights.hpp"
+#include "station/system/clocks.hpp"
+#include "station/system/rights.hpp"
 
 namespace turnpoint::drive {
 namespace {
@@ -15,8 +15,8 @@ class Realtime final : public DeviceStream {
  public:
   explicit Realtime(const StreamConfig& config) : DeviceStream(config) {
     auto used = memory();
-    used.push_back(range_of(*this));
-    rights_ = lock_memory(used, memory_left_out());
+    used.push_back(system::range_of(*this));
+    rights_ = system::lock_memory(used, memory_left_out());
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
     started_.wait();
     if (const int error = stack_denied_.load(); error != 0 && rights_.memory_locked) {
@@ -37,24 +37,24 @@ class Realtime final : public DeviceStream {
       const Ramp ramp;
       stop(0, ramp, std::nullopt);
       const std::int64_t tail = ramp.frames + std::int64_t{output.period_frames} * (output.periods + 1);
-      sleep_until_ns(monotonic_ns() + tail * 1'000'000'000 / output.rate_Hz);
+      system::sleep_until_ns(system::monotonic_ns() + tail * 1'000'000'000 / output.rate_Hz);
       // The audio thread does not accept commands, so nothing is sounding either.
     } catch (const std::exception&) {
     }
     thread_.request_stop();
   }
 
-  Rights rights() const override { return rights_; }
+  system::Rights rights() const override { return rights_; }
 
  private:
   void run(const std::stop_token& stop) noexcept {
-    granted_.store(become_realtime(config().fifo_priority));
-    stack_denied_.store(lock_stack());
+    granted_.store(system::become_realtime(config().fifo_priority));
+    stack_denied_.store(system::lock_stack());
     started_.count_down();
     while (!stop.stop_requested()) step();
   }
 
-  Rights rights_;
+  system::Rights rights_;
   std::atomic<int> granted_{0}, stack_denied_{0};
   std::latch started_{1};
   // The last member, so that the thread is joined before the objects that it uses are destroyed.

@@ -35,7 +35,7 @@ class Synchronous final : public SynchronousStream {
   std::optional<Event> poll() override { return core_.poll(); }
   std::int64_t earliest_frame() const override { return frame_ + config_.virtual_lead_frames; }
   Counters counters() const override { return core_.counters(); }
-  Rights rights() const override { return {}; }
+  system::Rights rights() const override { return {}; }
   std::optional<MeasuredRate> measured_rate() override { return std::nullopt; }
   const StreamConfig& config() const override { return config_; }
   std::int64_t frame() const override { return frame_; }

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "station/drive/noise.hpp"
-#include "station/drive/rights.hpp"
 #include "station/drive/voice.hpp"
+#include "station/system/rights.hpp"
 #include "station/terms/usage_error.hpp"
 
 namespace turnpoint::drive {
@@ -194,7 +194,7 @@ std::span<const SynthEvent> Synth::events() const noexcept {
 }
 void Synth::clear_events() noexcept { state_->event_count = 0; }
 
-MemoryRange Synth::memory() const noexcept { return range_of(*state_); }
+system::MemoryRange Synth::memory() const noexcept { return system::range_of(*state_); }
 
 bool Synth::active() const noexcept { return state_->active(); }
 

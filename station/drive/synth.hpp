@@ -6,10 +6,9 @@
 
 #include "station/drive/oscillator.hpp"
 #include "station/drive/prepared_burst.hpp"
+#include "station/system/memory_range.hpp"
 
 namespace turnpoint::drive {
-
-struct MemoryRange;  // defined in memory_range.hpp
 
 /// An event of a burst, in frames of the stream.
 enum class SynthEventKind : std::int32_t { started, ended, missed };
@@ -66,7 +65,7 @@ class Synth {
   void clear_events() noexcept;
 
   /// All memory that render() uses beside this object.
-  MemoryRange memory() const noexcept;
+  system::MemoryRange memory() const noexcept;
 
   bool active() const noexcept;              ///< true while a burst waits or sounds
   std::uint64_t saturated() const noexcept;  ///< samples out of range: 0 unless limits were lifted

@@ -9,6 +9,8 @@
 #include <cstring>
 #include <system_error>
 
+#include "station/system/file_descriptor.hpp"
+
 namespace turnpoint::drive {
 namespace {
 
@@ -63,17 +65,15 @@ int write_all(int descriptor, const void* bytes, std::size_t size) noexcept {
 class WavOutput final : public Output {
  public:
   WavOutput(OutputConfig config, const std::string& path) : config_(std::move(config)), path_(path) {
-    descriptor_ = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) throw std::system_error(errno, std::generic_category(), "wav:" + path);
+    file_ = system::FileDescriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
+    if (!file_.is_open()) throw std::system_error(errno, std::generic_category(), "wav:" + path);
     const auto header = header_of(config_, 0);
-    if (const int error = write_all(descriptor_, header.data(), header.size())) {
-      ::close(descriptor_);
+    if (const int error = write_all(file_.get(), header.data(), header.size()))
       throw std::system_error(error, std::generic_category(), "wav:" + path);
-    }
   }
 
   ~WavOutput() override {
-    if (descriptor_ >= 0) complete();
+    if (file_.is_open()) complete();
   }
 
   const OutputConfig& config() const noexcept override { return config_; }
@@ -82,7 +82,7 @@ class WavOutput final : public Output {
 
   WriteResult write(std::span<const std::int32_t> interleaved) noexcept override {
     if (error_ == 0 && data_bytes_ + interleaved.size_bytes() > most_bytes) error_ = EFBIG;
-    if (error_ == 0) error_ = write_all(descriptor_, interleaved.data(), interleaved.size_bytes());
+    if (error_ == 0) error_ = write_all(file_.get(), interleaved.data(), interleaved.size_bytes());
     if (error_ != 0)
       return {WriteStatus::lost, -error_, 0,
               static_cast<std::int64_t>(interleaved.size()) / config_.channels};
@@ -91,23 +91,22 @@ class WavOutput final : public Output {
   }
 
   void finish() override {
-    if (descriptor_ < 0) return;
+    if (!file_.is_open()) return;
     if (const int error = complete()) throw std::system_error(error, std::generic_category(), "wav:" + path_);
   }
 
  private:
   int complete() noexcept {
     const auto header = header_of(config_, static_cast<std::uint32_t>(data_bytes_));
-    if (::lseek(descriptor_, 0, SEEK_SET) != 0 && error_ == 0) error_ = errno;
-    const int late = write_all(descriptor_, header.data(), header.size());
-    const int closed = ::close(descriptor_) != 0 ? errno : 0;
-    descriptor_ = -1;
+    if (::lseek(file_.get(), 0, SEEK_SET) != 0 && error_ == 0) error_ = errno;
+    const int late = write_all(file_.get(), header.data(), header.size());
+    const int closed = ::close(file_.release()) != 0 ? errno : 0;
     return error_ != 0 ? error_ : late != 0 ? late : closed;
   }
 
   OutputConfig config_;
   std::string path_;
-  int descriptor_ = -1;
+  system::FileDescriptor file_;
   int error_ = 0;
   std::uint64_t data_bytes_ = 0;
 };

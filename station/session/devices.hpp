@@ -4,29 +4,29 @@
 
 #include "station/drive/amplifier.hpp"
 #include "station/drive/engine.hpp"
-#include "station/panel/buttons.hpp"
+#include "station/lines/buttons.hpp"
 #include "station/rig/rig.hpp"
-#include "station/session/clock_watch.hpp"
 #include "station/session/inputs.hpp"
+#include "station/system/clock_watch.hpp"
 
 namespace turnpoint::session {
 
-/// What a real session works with. The panel may be null (no buttons, no contact). Stream and clocks are the
-/// real ones unless a test puts others in their place.
+/// What a real session works with. The buttons may be null (no buttons, no contact). Stream and clocks are
+/// the real ones unless a test puts others in their place.
 struct Devices {
   std::unique_ptr<drive::Amplifier> amplifier;
-  std::unique_ptr<panel::Panel> panel;
+  std::unique_ptr<lines::Buttons> buttons;
   std::function<std::unique_ptr<drive::Stream>(const drive::StreamConfig&)> open_stream =
       drive::open_realtime;
-  std::function<Clocks()> clocks = read_clocks;
+  std::function<system::Clocks()> clocks = system::read_clocks;
 };
 
 /// Opens what the rig names: lines by name, the amplifier disarmed and off. `sim:` has the same guard on
-/// lines that exist in memory only. Throws panel::LineError, std::system_error, terms::UsageError.
+/// lines that exist in memory only. Throws lines::LineError, std::system_error, terms::UsageError.
 Devices open_devices(const rig::Rig& rig, Inputs& inputs);
 
-/// Presses, contacts and faults of a panel as inputs of a session, with the kernel's time; `inputs` must
-/// outlive the panel.
-panel::PanelHandlers handlers_for(Inputs& inputs);
+/// Presses, contacts and faults of buttons as inputs of a session, with the kernel's time; `inputs` must
+/// outlive the buttons.
+lines::ButtonsHandlers handlers_for(Inputs& inputs);
 
 }  // namespace turnpoint::session

@@ -6,6 +6,53 @@
 
 namespace turnpoint::session {
 
+const char* name(TimeQuality quality) {
+  switch (quality) {
+    case TimeQuality::kernel:
+      return "kernel";
+    case TimeQuality::toolkit:
+      return "toolkit";
+    case TimeQuality::simulated:
+      return "simulated";
+  }
+  return "";
+}
+
+std::optional<trial::Event> event_of(const Input& input) {
+  using trial::EventKind;
+  switch (input.kind) {
+    case InputKind::answer:
+      return trial::Event{input.time_ns, EventKind::answer, input.value};
+    case InputKind::touch_down:
+      return trial::Event{input.time_ns, EventKind::touch, 0};
+    case InputKind::contact:
+      return trial::Event{input.time_ns, EventKind::contact, input.value};
+    case InputKind::xrun:
+      return trial::Event{input.time_ns, EventKind::xrun, input.value};
+    case InputKind::heard:
+      return trial::Event{input.time_ns, EventKind::heard, input.value};
+    case InputKind::fault:
+      return trial::Event{input.time_ns, EventKind::fault, 0};
+    case InputKind::stop:
+    case InputKind::pause:
+    case InputKind::failure:
+    case InputKind::repeat:
+      return trial::Event{input.time_ns, EventKind::abort, 0};
+    case InputKind::disarm:
+      return trial::Event{input.time_ns, EventKind::fault, 0};
+    case InputKind::next:
+    case InputKind::slider:
+    case InputKind::button:
+    case InputKind::glitch:
+    case InputKind::notice:
+    case InputKind::arm:
+    case InputKind::note:
+    case InputKind::frames_lost:
+      break;
+  }
+  return std::nullopt;
+}
+
 void Inputs::push(Input input) {
   {
     const std::lock_guard lock(mutex_);

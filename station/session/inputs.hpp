@@ -8,6 +8,7 @@
 #include <string>
 
 #include "station/session/fault.hpp"
+#include "station/trial/machine.hpp"
 
 namespace turnpoint::session {
 
@@ -35,6 +36,7 @@ enum class InputKind {
 
 /// How good the time stamp is: the kernel's own, a toolkit's, or made by a simulated observer.
 enum class TimeQuality { kernel, toolkit, simulated };
+const char* name(TimeQuality quality);
 
 struct Input {
   std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC (virtual in a simulated session)
@@ -45,6 +47,9 @@ struct Input {
   FaultKind fault = FaultKind::other;
   TimeQuality quality = TimeQuality::toolkit;
 };
+
+/// The input as an event of the trial machine; none where the machine is not concerned.
+std::optional<trial::Event> event_of(const Input& input);
 
 /// The one queue into the session: any thread pushes, the session thread takes. Unbounded but tiny.
 class Inputs {

@@ -11,7 +11,7 @@ namespace {
 using trial::Phase;
 
 /// The mark that the participant is asked about: the factor that names one, by its name.
-std::optional<double> mark_of(const TrialSpec& spec) {
+std::optional<double> mark_of(const trial::TrialSpec& spec) {
   const auto found = spec.factors.find("mark_mm");
   if (found == spec.factors.end()) return std::nullopt;
   const auto* value = std::get_if<double>(&found->second);
@@ -53,7 +53,7 @@ std::string Pages::text(const protocol::Localised& localised) const {
   return localised.empty() ? "" : localised.begin()->second;
 }
 
-Page Pages::blank(PageKind kind, const protocol::Block* block, const Director* director) const {
+Page Pages::blank(PageKind kind, const protocol::Block* block, const trial::Director* director) const {
   Page page;
   page.kind = kind;
   page.language = setup_.language;
@@ -72,7 +72,7 @@ Page Pages::blank(PageKind kind, const protocol::Block* block, const Director* d
   return page;
 }
 
-Page Pages::instructions(const protocol::Block& block, const Director& director) const {
+Page Pages::instructions(const protocol::Block& block, const trial::Director& director) const {
   auto page = blank(PageKind::instructions, &block, &director);
   page.title = word(block.practice ? Word::practice : Word::get_ready, setup_.language);
   const auto found = setup_.protocol.instructions.find(page.instruction);
@@ -82,10 +82,10 @@ Page Pages::instructions(const protocol::Block& block, const Director& director)
   return page;
 }
 
-void Pages::add_mark(Page& page, const TrialSpec& first) const { page.mark_mm = mark_of(first); }
+void Pages::add_mark(Page& page, const trial::TrialSpec& first) const { page.mark_mm = mark_of(first); }
 
-Page Pages::of_phase(Phase phase, int interval, const TrialSpec& spec, const protocol::Block& block,
-                     const trial::Result& result, const Director& director) const {
+Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, const protocol::Block& block,
+                     const trial::Result& result, const trial::Director& director) const {
   auto page = blank(kind_of(phase), &block, &director);
   const bool explored = setup_.protocol.task.kind == protocol::TaskKind::single_interval;
   page.mark_mm = mark_of(spec);
@@ -109,7 +109,7 @@ Page Pages::of_phase(Phase phase, int interval, const TrialSpec& spec, const pro
   return page;
 }
 
-void Pages::add_slider(Page& page, const SliderSpan& span, double setting) const {
+void Pages::add_slider(Page& page, const trial::SliderSpan& span, double setting) const {
   page.kind = PageKind::adjust;
   page.answers.clear();
   page.slider = setting;
@@ -117,7 +117,7 @@ void Pages::add_slider(Page& page, const SliderSpan& span, double setting) const
   page.slider_step = span.step;
 }
 
-Page Pages::rest(const protocol::Block& block, double min_s, const Director& director) const {
+Page Pages::rest(const protocol::Block& block, double min_s, const trial::Director& director) const {
   auto page = blank(PageKind::rest, &block, &director);
   page.title = word(Word::rest, setup_.language);
   page.text = word(Word::rest_text, setup_.language);
@@ -125,13 +125,13 @@ Page Pages::rest(const protocol::Block& block, double min_s, const Director& dir
   return page;
 }
 
-Page Pages::practice_again(const protocol::Block& block, const Director& director) const {
+Page Pages::practice_again(const protocol::Block& block, const trial::Director& director) const {
   auto page = instructions(block, director);
   page.title = word(Word::practice_again, setup_.language);
   return page;
 }
 
-Page Pages::fault(FaultKind kind, const std::string& detail, const Director& director) const {
+Page Pages::fault(FaultKind kind, const std::string& detail, const trial::Director& director) const {
   auto page = blank(PageKind::fault, nullptr, &director);
   const auto text = fault_text(kind, setup_.language);
   page.title = word(Word::fault, setup_.language);
@@ -143,15 +143,15 @@ Page Pages::fault(FaultKind kind, const std::string& detail, const Director& dir
   return page;
 }
 
-Page Pages::paused(const Director& director) const {
+Page Pages::paused(const trial::Director& director) const {
   auto page = blank(PageKind::paused, nullptr, &director);
   page.title = word(Word::paused, setup_.language);
   return page;
 }
 
-Page Pages::end(const Summary& summary, const Director& director) const {
+Page Pages::end(const Summary& summary, const trial::Director& director) const {
   auto page = blank(PageKind::end, nullptr, &director);
-  const bool whole = summary.status == store::SessionStatus::completed;
+  const bool whole = summary.status == records::SessionStatus::completed;
   page.title = word(whole ? Word::thanks : Word::thanks_early, setup_.language);
   if (whole) page.trials_total = page.trials_done;  // an adaptive procedure's end was an estimate
   page.summary = {{"Trials", std::to_string(summary.trials)},

@@ -2,36 +2,36 @@
 #include <string>
 
 #include "station/protocol/protocol.hpp"
-#include "station/session/director.hpp"
 #include "station/session/page.hpp"
 #include "station/session/session.hpp"
-#include "station/trial/trial.hpp"
+#include "station/trial/director.hpp"
+#include "station/trial/machine.hpp"
 
 namespace turnpoint::session {
 
-/// Makes the pages of one sitting: texts in its language, the surface's drawing, progress.
+/// Makes the pages of one session: texts in its language, the surface's drawing, progress.
 class Pages {
  public:
   Pages(const Setup& setup);
 
   /// A block's instructions: its instruction's text where it has one, else the task's question.
-  Page instructions(const protocol::Block& block, const Director& director) const;
+  Page instructions(const protocol::Block& block, const trial::Director& director) const;
   /// Points at the mark that the block's first trial will ask about.
-  void add_mark(Page& page, const TrialSpec& first) const;
+  void add_mark(Page& page, const trial::TrialSpec& first) const;
   /// The page of a phase of a trial.
-  Page of_phase(trial::Phase phase, int interval, const TrialSpec& spec, const protocol::Block& block,
-                const trial::Result& result, const Director& director) const;
+  Page of_phase(trial::Phase phase, int interval, const trial::TrialSpec& spec, const protocol::Block& block,
+                const trial::Result& result, const trial::Director& director) const;
   /// Makes a phase's page of an adjustment one with a slider.
-  void add_slider(Page& page, const SliderSpan& span, double setting) const;
-  Page rest(const protocol::Block& block, double min_s, const Director& director) const;
-  Page practice_again(const protocol::Block& block, const Director& director) const;
+  void add_slider(Page& page, const trial::SliderSpan& span, double setting) const;
+  Page rest(const protocol::Block& block, double min_s, const trial::Director& director) const;
+  Page practice_again(const protocol::Block& block, const trial::Director& director) const;
   /// A fault that stops the session until somebody has mended it; `detail` is what the station found.
-  Page fault(FaultKind kind, const std::string& detail, const Director& director) const;
-  Page paused(const Director& director) const;
-  Page end(const Summary& summary, const Director& director) const;
+  Page fault(FaultKind kind, const std::string& detail, const trial::Director& director) const;
+  Page paused(const trial::Director& director) const;
+  Page end(const Summary& summary, const trial::Director& director) const;
 
  private:
-  Page blank(PageKind kind, const protocol::Block* block, const Director* director) const;
+  Page blank(PageKind kind, const protocol::Block* block, const trial::Director* director) const;
   std::string text(const protocol::Localised& localised) const;
 
   const Setup& setup_;

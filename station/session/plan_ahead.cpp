@@ -9,15 +9,15 @@
 #include "station/random/draws.hpp"
 #include "station/session/burst.hpp"
 #include "station/session/stage.hpp"
-#include "station/session/trial_plan.hpp"
 #include "station/text/number.hpp"
+#include "station/trial/timing.hpp"
 
 namespace turnpoint::session {
 
 namespace {
 
 /// Equal for trials that present the same.
-std::string key_of(const TrialSpec& trial) {
+std::string key_of(const trial::TrialSpec& trial) {
   std::string key = fmt::format("{}/{}/{}", trial.block_index, trial.attempt, trial.trial_in_block);
   for (const auto& [name, value] : trial.factors) {
     key += "|" + name + "=";
@@ -42,7 +42,7 @@ PlanAhead::PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol, st
 
 PlanAhead::~PlanAhead() = default;
 
-void PlanAhead::begin(const TrialSpec& trial) {
+void PlanAhead::begin(const trial::TrialSpec& trial) {
   auto key = key_of(trial);
   const std::lock_guard lock(mutex_);
   if (key == wanted_key_) return;
@@ -51,13 +51,13 @@ void PlanAhead::begin(const TrialSpec& trial) {
   changed_.notify_all();
 }
 
-bool PlanAhead::ready(const TrialSpec& trial) {
+bool PlanAhead::ready(const trial::TrialSpec& trial) {
   const auto key = key_of(trial);
   const std::lock_guard lock(mutex_);
   return done_key_ == key;
 }
 
-const PlanAhead::Planned& PlanAhead::take(const TrialSpec& trial) {
+const PlanAhead::Planned& PlanAhead::take(const trial::TrialSpec& trial) {
   begin(trial);
   const auto key = key_of(trial);
   std::unique_lock lock(mutex_);
@@ -69,7 +69,7 @@ const PlanAhead::Planned& PlanAhead::take(const TrialSpec& trial) {
 void PlanAhead::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [this] { return wanted_.has_value(); })) {
-    const TrialSpec trial = *std::exchange(wanted_, std::nullopt);
+    const trial::TrialSpec trial = *std::exchange(wanted_, std::nullopt);
     lock.unlock();
     Planned planned;
     std::exception_ptr failed;
@@ -86,7 +86,7 @@ void PlanAhead::run(const std::stop_token& stop) {
   }
 }
 
-PlanAhead::Planned PlanAhead::plan(const TrialSpec& trial) {
+PlanAhead::Planned PlanAhead::plan(const trial::TrialSpec& trial) {
   Planned planned;
   for (std::size_t i = 0; i < trial.intervals.size(); ++i) {
     auto& scenes = planned.plans.emplace_back();
@@ -97,10 +97,11 @@ PlanAhead::Planned PlanAhead::plan(const TrialSpec& trial) {
   return planned;
 }
 
-std::vector<drive::PreparedBurst> PlanAhead::bursts_of(const TrialSpec& trial, const Plans& plans) const {
+std::vector<drive::PreparedBurst> PlanAhead::bursts_of(const trial::TrialSpec& trial,
+                                                       const Plans& plans) const {
   const auto stream = stream_of(rig_);
   const int rate_Hz = stream.output.rate_Hz;
-  const auto times = interval_times(protocol_, trial);
+  const auto times = trial::interval_times(protocol_, trial);
   const auto& task = protocol_.task;
   random::Draws noise(
       {seed_, random::Stream::masking_noise, trial.block_index, trial.attempt, trial.trial_in_block});

@@ -12,7 +12,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
-#include "station/session/director.hpp"
+#include "station/trial/director.hpp"
 
 namespace turnpoint::session {
 
@@ -35,16 +35,16 @@ class PlanAhead {
 
   /// Begins a trial; one that waits and was not begun yet is dropped for it. Beginning the same again does
   /// nothing.
-  void begin(const TrialSpec& trial);
+  void begin(const trial::TrialSpec& trial);
   /// True where take() would not wait.
-  bool ready(const TrialSpec& trial);
+  bool ready(const trial::TrialSpec& trial);
   /// The plans of a trial, waiting for them if need be. Throws what planning them threw.
-  const Planned& take(const TrialSpec& trial);
+  const Planned& take(const trial::TrialSpec& trial);
 
  private:
   void run(const std::stop_token& stop);
-  Planned plan(const TrialSpec& trial);
-  std::vector<drive::PreparedBurst> bursts_of(const TrialSpec& trial,
+  Planned plan(const trial::TrialSpec& trial);
+  std::vector<drive::PreparedBurst> bursts_of(const trial::TrialSpec& trial,
                                               const std::vector<std::vector<scene::DrivePlan>>& plans) const;
 
   const rig::Rig& rig_;
@@ -53,7 +53,7 @@ class PlanAhead {
   scene::Planner planner_;  // worker thread only
   std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::optional<TrialSpec> wanted_;  ///< newest trial asked for and not yet begun
+  std::optional<trial::TrialSpec> wanted_;  ///< newest trial asked for and not yet begun
   std::string wanted_key_, done_key_;
   Planned done_;
   std::exception_ptr failed_;

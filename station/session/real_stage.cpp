@@ -5,10 +5,10 @@
 #include <cstring>
 #include <utility>
 
-#include "station/drive/monotonic.hpp"
 #include "station/drive/recovery.hpp"
-#include "station/session/clock_watch.hpp"
-#include "station/session/schedule.hpp"
+#include "station/session/presented.hpp"
+#include "station/system/clock_watch.hpp"
+#include "station/system/clocks.hpp"
 
 namespace turnpoint::session {
 
@@ -30,7 +30,7 @@ class RealStage : public Stage {
     stream_ = devices_.open_stream(config);
   }
 
-  std::int64_t now_ns() override { return drive::monotonic_ns(); }
+  std::int64_t now_ns() override { return system::monotonic_ns(); }
 
   std::optional<Input> wait_until(std::int64_t deadline_ns) override {
     for (;;) {
@@ -55,7 +55,7 @@ class RealStage : public Stage {
   void wait_for(const std::function<bool()>& ready) override {
     while (!ready()) {
       attend();
-      drive::sleep_until_ns(now_ns() + kPoll_ns / 5);
+      system::sleep_until_ns(now_ns() + kPoll_ns / 5);
     }
   }
 
@@ -114,9 +114,9 @@ class RealStage : public Stage {
   void close_amplifier() override { closing_ = true; }
 
   const std::vector<std::string>& buttons() const override {
-    return devices_.panel ? devices_.panel->buttons() : no_buttons_;
+    return devices_.buttons ? devices_.buttons->names() : no_buttons_;
   }
-  std::string missing() const override { return devices_.panel ? devices_.panel->missing() : ""; }
+  std::string missing() const override { return devices_.buttons ? devices_.buttons->missing() : ""; }
   void question(const observer::Question&, std::int64_t) override {}
   void adjustment(const observer::Adjustment&, std::int64_t) override {}
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
@@ -254,7 +254,7 @@ class RealStage : public Stage {
   std::optional<std::int64_t>
       lost_ns_;  ///< when the converter was lost amid them: the surface is silent since
   drive::UnderrunLimit underruns_;
-  ClockWatch clocks_;
+  system::ClockWatch clocks_;
   std::int64_t clocks_due_ns_ = 0;
   std::int64_t quiet_ns_ = 0;   ///< when the surface will be silent
   std::int64_t opened_ns_ = 0;  ///< when the amplifier was enabled
@@ -265,7 +265,7 @@ class RealStage : public Stage {
 
 }  // namespace
 
-std::string describe(const drive::Rights& rights) {
+std::string describe(const system::Rights& rights) {
   if (!rights.asked) return "none asked (synchronous)";
   return fmt::format("fifo {}, memory {}{}{}", rights.fifo_priority,
                      rights.memory_locked ? "locked" : "not locked", rights.note.empty() ? "" : "; ",

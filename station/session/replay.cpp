@@ -1,10 +1,13 @@
 #include "station/session/replay.hpp"
 
+#include <fmt/format.h>
+
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
-#include "station/session/rows.hpp"
+#include "station/trial/question.hpp"
 
 namespace turnpoint::session {
 
@@ -12,7 +15,7 @@ namespace {
 
 /// Takes the director to a block that the log holds: by finishing what is done, or by the restart that made
 /// it.
-void enter_stored(Director& director, const store::BlockStart& block) {
+void enter_stored(trial::Director& director, const records::BlockStart& block) {
   const auto here = [&] {
     return director.block_index() == block.block_index && director.attempt() == block.attempt;
   };
@@ -25,14 +28,45 @@ void enter_stored(Director& director, const store::BlockStart& block) {
                              " is not the one that the protocol runs next; they do not belong together");
 }
 
+/// Runs a stored trial through the director again. Throws std::runtime_error where the director would have
+/// presented another level, or its state differs afterwards: the log and the program do not belong together.
+void replay(trial::Director& director, const records::TrialRow& trial, const protocol::Protocol& protocol) {
+  const auto mismatch = [&trial](const std::string& what) {
+    throw std::runtime_error(
+        fmt::format("resume: trial {} of the log cannot be replayed: {}; the database, the protocol or this "
+                    "program has changed",
+                    trial.trial_index, what));
+  };
+  const auto spec = director.next();
+  if (!spec) mismatch("the session would have been over");
+  if (spec->level != trial.level)
+    mismatch(fmt::format("level {} would have come, the log holds {}", spec->level.value_or(0),
+                         trial.level.value_or(0)));
+  trial::TrialEnd end;
+  end.outcome = trial.outcome;
+  end.correct = trial.correct;
+  if (trial.response)
+    for (std::size_t i = 0; i < protocol.task.choices.size(); ++i)
+      if (protocol.task.choices[i].id == *trial.response) end.response = static_cast<int>(i);
+  if (spec->slider && trial.response) {
+    double setting = 0;
+    const auto* last = trial.response->data() + trial.response->size();
+    const auto read = std::from_chars(trial.response->data(), last, setting);
+    if (read.ec != std::errc{} || read.ptr != last) mismatch("\"" + *trial.response + "\" is no setting");
+    end.response = 0, end.setting = setting;
+  }
+  director.record(end);
+  if (director.state_hash() != trial.state_hash) mismatch("its state hash differs");
+}
+
 /// Half of a session by one simulated observer and half by another would be neither's. Sliders are left out:
 /// their row has no answer of the observer.
-void check_observer(const Setup& setup, const store::StoredSession& stored, const TrialSpec& spec,
-                    const store::TrialRow& trial) {
+void check_observer(const Setup& setup, const store::StoredSession& stored, const trial::TrialSpec& spec,
+                    const records::TrialRow& trial) {
   constexpr double tolerance_s = 1e-3;
   if (trial.outcome != terms::Outcome::answered || !trial.response_time_s || spec.slider) return;
   const observer::Observer observer(observer::parse(setup.observer));
-  const auto reply = observer.answer(question_of(spec, setup.protocol, stored.session.start.seed));
+  const auto reply = observer.answer(trial::question_of(spec, setup.protocol, stored.session.start.seed));
   const auto& choices = setup.protocol.task.choices;
   if (reply.choice && choices[static_cast<std::size_t>(*reply.choice)].id == trial.response &&
       std::fabs(reply.response_time_s - *trial.response_time_s) < tolerance_s)
@@ -45,8 +79,8 @@ void check_observer(const Setup& setup, const store::StoredSession& stored, cons
 
 }  // namespace
 
-Director replayed(const Setup& setup, const store::StoredSession& stored) {
-  Director director(setup.protocol, stored.session.sequence_index, stored.session.start.seed);
+trial::Director replayed(const Setup& setup, const store::StoredSession& stored) {
+  trial::Director director(setup.protocol, stored.session.sequence_index, stored.session.start.seed);
   for (const auto& block : stored.blocks) {
     enter_stored(director, block.start);
     for (const auto& trial : block.trials)

@@ -13,21 +13,16 @@
 #include <system_error>
 #include <utility>
 
-#include "station/session/finger_account.hpp"
+#include "station/limits/finger_account.hpp"
 #include "station/session/replay.hpp"
-#include "station/session/sitting.hpp"
+#include "station/session/session_run.hpp"
 #include "station/session/stage.hpp"
+#include "station/system/clocks.hpp"
 #include "station/text/canonical.hpp"
 
 namespace turnpoint::session {
 
 namespace {
-
-std::int64_t clock_ns(clockid_t clock) {
-  timespec now{};
-  ::clock_gettime(clock, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
 
 std::string boot_id() {
   std::string id;
@@ -71,8 +66,8 @@ std::string level_unit(const protocol::Protocol& protocol) {
   return underscore == std::string::npos ? "1" : level.substr(underscore + 1);
 }
 
-store::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::string& rights) {
-  store::SessionStart start;
+records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::string& rights) {
+  records::SessionStart start;
   start.participant = setup.participant;
   start.run_mode = setup.run_mode;
   start.protocol_id = setup.protocol.id;
@@ -103,8 +98,9 @@ store::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::
 }
 
 /// `now_ns` is the stage's own time: a simulated session has its virtual clock's origin.
-store::SegmentStart segment(const std::string& reason, std::int64_t now_ns) {
-  return {boot_id(), reason, now_ns, clock_ns(CLOCK_BOOTTIME), clock_ns(CLOCK_REALTIME)};
+records::SegmentStart segment(const std::string& reason, std::int64_t now_ns) {
+  const auto clocks = system::read_clocks();
+  return {boot_id(), reason, now_ns, clocks.boottime_ns, clocks.realtime_ns};
 }
 
 }  // namespace
@@ -138,26 +134,26 @@ drive::StreamConfig simulated_stream(const rig::Rig& rig) {
 }
 
 /// The finger's account begins before the log is opened for writing: it reads the same database.
-FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
-  const double now_s = 1e-9 * static_cast<double>(clock_ns(CLOCK_REALTIME));
-  const auto limits = limits_of(setup.rig, setup.run_mode);
-  const auto history = setup.observer.empty() ? read_finger_history(setup.database, setup.participant, now_s,
-                                                                    limits.continuous_s)
-                                              : FingerHistory{{}, now_s};
-  return FingerAccount(limits, history, origin_ns, now_s);
+limits::FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
+  const double now_s = 1e-9 * static_cast<double>(system::realtime_ns());
+  const auto limits = limits::limits_of(setup.rig, setup.run_mode);
+  const auto history = setup.observer.empty() ? limits::read_finger_history(setup.database, setup.participant,
+                                                                            now_s, limits.continuous_s)
+                                              : limits::FingerHistory{{}, now_s};
+  return limits::FingerAccount(limits, history, origin_ns, now_s);
 }
 
 /// A session's log, and the director that stands where the log does.
 struct Begun {
   store::SessionLog log;
-  Director director;
+  trial::Director director;
 };
 
 Begun begin(const Setup& setup, Stage& stage) {
   const auto seed = setup.seed ? *setup.seed : setup.protocol.seed.value_or(fresh_seed());
   auto log = store::SessionLog::begin(setup.database, start_of(setup, seed, stage.realtime_rights()),
                                       segment("start", stage.now_ns()));
-  Director director(setup.protocol, log.session().sequence_index, seed);
+  trial::Director director(setup.protocol, log.session().sequence_index, seed);
   return {std::move(log), std::move(director)};
 }
 
@@ -177,9 +173,9 @@ Begun resume(const Setup& setup, Stage& stage) {
 Summary run_on(const Setup& setup, Display* display, std::unique_ptr<Stage> stage, Monitor* monitor) {
   auto account = account_of(setup, stage->now_ns());
   auto begun = setup.resume_session.empty() ? begin(setup, *stage) : resume(setup, *stage);
-  Sitting sitting(setup, std::move(begun.director), std::move(begun.log), std::move(stage),
-                  std::move(account), display, monitor);
-  return sitting.run();
+  SessionRun run(setup, std::move(begun.director), std::move(begun.log), std::move(stage), std::move(account),
+                 display, monitor);
+  return run.run();
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "station/drive/exposure.hpp"
+#include "station/limits/exposure.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/devices.hpp"
@@ -19,7 +19,7 @@ namespace turnpoint::session {
 /// Where an interrupted session goes on. What was done stays in the log, whatever is chosen.
 enum class ResumeAt { next_trial, block_start, session_start };
 
-/// Everything a sitting needs, already loaded and checked.
+/// Everything that running a session needs, already loaded and checked.
 struct Setup {
   rig::Rig rig;
   protocol::Protocol protocol;
@@ -33,7 +33,7 @@ struct Setup {
   ResumeAt resume_at = ResumeAt::next_trial;
   /// The calibration in force, already applied to `rig`: SHA-256 of its file and the file; "" without one.
   std::string calibration_id, calibration_text;
-  std::vector<drive::SoundLevel> sound;  ///< measured levels at full scale, rising in frequency
+  std::vector<limits::SoundLevel> sound;  ///< measured levels at full scale, rising in frequency
   std::string consent_version;  ///< of the consent form that the participant signed; "" where none was asked
   /// The touch panel's own latency, stored with each answer by touch, never subtracted.
   double response_offset_s = 0;
@@ -42,10 +42,10 @@ struct Setup {
   std::string response_offset_quality;
 };
 
-/// How a sitting ended, for people and for --json.
+/// How a run ended, for people and for --json.
 struct Summary {
   std::string session_id, participant, protocol_id, database, run_mode;
-  store::SessionStatus status = store::SessionStatus::running;
+  records::SessionStatus status = records::SessionStatus::running;
   std::string reason;
   std::uint64_t seed = 0;
   int blocks = 0, trials = 0, answered = 0, timeouts = 0, anticipations = 0, voided = 0;
@@ -55,10 +55,10 @@ struct Summary {
   double stretched_s = 0;       ///< by how much intervals between trials were lengthened to keep the duty
   std::string realtime_rights;  ///< what the operating system granted to the audio thread
   std::string checksum;         ///< last link of the chain over the session's rows (`turnpoint verify`)
-  std::vector<ProcedureEstimate> estimates;
+  std::vector<trial::ProcedureEstimate> estimates;
 };
 
-/// Runs one sitting to its end on the calling thread: real clock, pages to `display`, input from `inputs`.
+/// Runs a session to its end on the calling thread: real clock, pages to `display`, input from `inputs`.
 /// Where the amplifier is real, or the session live, nothing is presented before an operator has pushed
 /// InputKind::arm, and again after each fault of the amplifier. With an observer in the setup it runs on the
 /// virtual clock, drives no hardware, hears of `inputs` a stop alone, and between two trials, and `display`

@@ -33,7 +33,7 @@ struct ClockFit {
 /// A deadline that never comes.
 constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
-/// Time, drive, amplifier and inputs of one sitting. Two exist: real (CLOCK_MONOTONIC, a person) and virtual
+/// Time, drive, amplifier and inputs of one run. Two exist: real (CLOCK_MONOTONIC, a person) and virtual
 /// (a simulated observer, as fast as the machine goes); the session above is the same code on both. All on
 /// one thread.
 class Stage {

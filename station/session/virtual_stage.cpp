@@ -2,8 +2,8 @@
 #include <deque>
 #include <utility>
 
-#include "station/panel/guard.hpp"
-#include "station/session/schedule.hpp"
+#include "station/lines/guard.hpp"
+#include "station/session/presented.hpp"
 
 namespace turnpoint::session {
 
@@ -145,17 +145,17 @@ class VirtualStage : public Stage {
   }
 
   /// The guard's rules without lines. On this clock nobody can hang.
-  panel::Guard& alive() {
+  lines::Guard& alive() {
     guard_.audio_alive(now_ns_);
     guard_.session_alive(now_ns_);
     return guard_;
   }
-  static Refusal refusal(const std::optional<panel::Guard::Refusal>& why) {
+  static Refusal refusal(const std::optional<lines::Guard::Refusal>& why) {
     return why ? Refusal(Fault{why->kind, ""}) : std::nullopt;
   }
 
   const std::vector<std::string> no_buttons_;
-  panel::Guard guard_;
+  lines::Guard guard_;
   std::unique_ptr<drive::SynchronousStream> stream_;
   observer::Observer observer_;
   Inputs& inputs_;

@@ -2,9 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "station/store/identity.hpp"
 #include "station/store/open.hpp"
 #include "station/store/read.hpp"
+#include "station/system/clocks.hpp"
+#include "station/system/uuid.hpp"
 #include "station/terms/usage_error.hpp"
 
 namespace turnpoint::store {
@@ -15,7 +16,7 @@ void annotate(const std::string& path, const std::string& session_id, const std:
   const auto session = session_record(writer.database, session_id);
   Transaction transaction(writer.database);
   Statement(writer.database, "INSERT INTO annotation VALUES (?,?,?,?)")
-      .bind(new_uuid(), session.session_id, realtime_ns(), text)
+      .bind(system::new_uuid(), session.session_id, system::realtime_ns(), text)
       .run();
   transaction.commit();
 }

@@ -10,10 +10,10 @@
 #include "station/store/backup_folder.hpp"
 #include "station/store/export_files.hpp"
 #include "station/store/files.hpp"
-#include "station/store/identity.hpp"
 #include "station/store/open.hpp"
 #include "station/store/whole_file.hpp"
-#include "station/text/write_file.hpp"
+#include "station/system/clocks.hpp"
+#include "station/system/write_file.hpp"
 
 namespace turnpoint::store {
 
@@ -47,7 +47,7 @@ std::string record_path(const std::string& database) { return database + ".last-
 void record(BackupReport& report, const std::string& database, const std::string& database_id) {
   try {
     const auto name = record_path(database);
-    text::write_file(name, fmt::format("{}\n{}\n{}\n", database_id, realtime_ns(), report.path));
+    system::write_file(name, fmt::format("{}\n{}\n{}\n", database_id, system::realtime_ns(), report.path));
     give_to_owner_of_folder(name);
   } catch (const std::exception& error) {
     report.unrecorded = error.what();

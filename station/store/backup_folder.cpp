@@ -89,12 +89,10 @@ void remove_backup(const std::string& path) {
 }
 
 BackupFolderLock::BackupFolderLock(const std::string& folder)
-    : descriptor_(open_lock(folder + "/turnpoint-backups.lock")) {
-  while (::flock(descriptor_, LOCK_EX) != 0 && errno == EINTR) {
+    : lock_(open_lock(folder + "/turnpoint-backups.lock")) {
+  while (::flock(lock_.get(), LOCK_EX) != 0 && errno == EINTR) {
   }
 }
-
-BackupFolderLock::~BackupFolderLock() { ::close(descriptor_); }
 
 std::string drill_file(const std::string& backup) { return backup + ".drill"; }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "station/store/sqlite.hpp"
+#include "station/system/file_descriptor.hpp"
 
 namespace turnpoint::store {
 
@@ -40,12 +41,9 @@ void remove_backup(const std::string& path);
 class BackupFolderLock {
  public:
   explicit BackupFolderLock(const std::string& folder);
-  BackupFolderLock(const BackupFolderLock&) = delete;
-  BackupFolderLock& operator=(const BackupFolderLock&) = delete;
-  ~BackupFolderLock();
 
  private:
-  int descriptor_ = -1;
+  system::FileDescriptor lock_;
 };
 
 /// Throws StoreError (missing) unless a disk other than the database's is mounted at the folder or at its

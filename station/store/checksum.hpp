@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "station/store/records.hpp"
+#include "station/store/names.hpp"
 #include "station/store/sqlite.hpp"
 
 namespace turnpoint::store {

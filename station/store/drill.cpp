@@ -7,9 +7,9 @@
 #include "station/store/backup_folder.hpp"
 #include "station/store/checksum.hpp"
 #include "station/store/files.hpp"
-#include "station/store/identity.hpp"
 #include "station/store/open.hpp"
 #include "station/store/whole_file.hpp"
+#include "station/system/clocks.hpp"
 
 namespace turnpoint::store {
 
@@ -82,7 +82,7 @@ Drill drill_restore(const std::string& name, const std::string& folder) {
       newest_backup(directory, path, live.text("SELECT value FROM meta WHERE key = 'database_id'"));
   Drill drill{backup.path,
               backup.number,
-              1e-9 * static_cast<double>(realtime_ns() - backup.made_realtime_ns),
+              1e-9 * static_cast<double>(system::realtime_ns() - backup.made_realtime_ns),
               0,
               0,
               sessions_in(live),

@@ -13,8 +13,8 @@
 #include "station/store/open.hpp"
 #include "station/store/sqlite.hpp"
 #include "station/store/whole_file.hpp"
+#include "station/system/write_file.hpp"
 #include "station/terms/usage_error.hpp"
-#include "station/text/write_file.hpp"
 
 namespace turnpoint::store {
 
@@ -102,7 +102,7 @@ auto writing(const std::string& path, Write write) {
 void write_file(const std::string& path, const std::string& bytes) {
   writing(path, [&] {
     fs::create_directories(fs::path(path).parent_path());
-    text::write_file(path, bytes);
+    system::write_file(path, bytes);
   });
 }
 
@@ -110,7 +110,7 @@ TableFile::TableFile(const std::string& path, const TableStyle& style,
                      const std::vector<std::string>& columns)
     : path_(path), table_(style, columns), file_(writing(path, [&] {
         fs::create_directories(fs::path(path).parent_path());
-        return text::FileWriter(path);
+        return system::FileWriter(path);
       })) {}
 
 void TableFile::row(const std::vector<Cell>& cells) {

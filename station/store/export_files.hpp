@@ -5,7 +5,7 @@
 #include "station/store/export.hpp"
 #include "station/store/read.hpp"
 #include "station/store/text_table.hpp"
-#include "station/text/write_file.hpp"
+#include "station/system/write_file.hpp"
 
 namespace turnpoint::store {
 
@@ -31,7 +31,7 @@ class TableFile {
  private:
   std::string path_;
   TextTable table_;
-  text::FileWriter file_;
+  system::FileWriter file_;
 };
 
 /// The two formats.

@@ -11,30 +11,17 @@
 #include <filesystem>
 #include <functional>
 #include <string_view>
-#include <utility>
+#include <system_error>
 
+#include "station/system/read_file.hpp"
 #include "station/text/sha256.hpp"
 
 namespace turnpoint::store {
 
 namespace fs = std::filesystem;
+using system::FileDescriptor;
 
 namespace {
-
-class Descriptor {
- public:
-  explicit Descriptor(int number) : number_(number) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (number_ >= 0) ::close(number_);
-  }
-  int get() const { return number_; }
-  int release() { return std::exchange(number_, -1); }
-
- private:
-  int number_;
-};
 
 struct stat status_of(int descriptor, const std::string& path) {
   struct stat status {};
@@ -80,29 +67,22 @@ std::uint64_t file_size(const std::string& path) {
 
 namespace {
 
-/// Passes all bytes of a file to `take`, piece by piece. Opening is non-blocking: on a pipe it would
-/// otherwise wait for a writer.
-void read_pieces(const std::string& path, const std::function<void(std::string_view)>& take) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (file.get() >= 0 && !fs::is_regular_file(path))
+/// Gives all bytes of a file to `take`, piece by piece.
+void read_pieces(const std::string& path, const std::function<void(std::string_view)>& take) try {
+  system::FileReader file(path);
+  const auto expected = file_size(path);
+  std::uint64_t taken = 0;
+  for (auto piece = file.read(); !piece.empty(); piece = file.read()) {
+    take(piece);
+    taken += piece.size();
+  }
+  if (taken < expected) throw std::system_error(EIO, std::generic_category(), path);  // the system said more
+} catch (const std::system_error& error) {
+  const int code = error.code().value();
+  if (code == EISDIR || code == EINVAL)
     fail_system(Fault::cannot_open, "read " + path, EINVAL,
                 "it is a folder, a pipe or a device; name a file");
-  const auto expected = file_size(path);
-  std::string piece(std::size_t{1} << 20U, '\0');
-  std::uint64_t taken = 0;
-  ssize_t size = file.get() < 0 ? -1 : 1;
-  while (size > 0) {
-    do size = ::read(file.get(), piece.data(), piece.size());
-    while (size < 0 && errno == EINTR);
-    // the file is shorter than the system reported
-    if (size == 0 && taken < expected) size = -1, errno = EIO;
-    if (size > 0) {
-      take(std::string_view(piece).substr(0, static_cast<std::size_t>(size)));
-      taken += static_cast<std::uint64_t>(size);
-    }
-  }
-  if (size < 0)
-    fail_system(fault_of_errno(errno), "read " + path, errno, "check the disk and the permissions");
+  fail_system(fault_of_errno(code), "read " + path, code, "check the disk and the permissions");
 }
 
 }  // namespace
@@ -142,29 +122,29 @@ std::string canonical(const std::string& path) {
   return resolved.string();
 }
 
-int open_lock(const std::string& path) {
-  Descriptor lock(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0660));
-  if (lock.get() < 0 && errno == ELOOP)
+FileDescriptor open_lock(const std::string& path) {
+  FileDescriptor lock(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0660));
+  if (!lock.is_open() && errno == ELOOP)
     throw StoreError(Fault::io, "lock file " + path + ": is a link; it was not followed; remove it");
-  if (lock.get() < 0)
+  if (!lock.is_open())
     fail_system(fault_of_errno(errno), "lock file " + path, errno,
                 "the folder of the database must exist and be writable");
   const auto status = status_of(lock.get(), path);
   if (!S_ISREG(status.st_mode) || status.st_nlink > 1)
     throw StoreError(Fault::io, "lock file " + path + ": has a second name; it was left alone; remove it");
   give_to_owner_of_folder(lock.get(), path);
-  return lock.release();
+  return lock;
 }
 
 void create_private(const std::string& path) {
-  const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
-  if (file.get() < 0)
+  const FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
+  if (!file.is_open())
     fail_system(fault_of_errno(errno), path, errno, "the folder must exist and be writable");
 }
 
 void give_to_owner_of_folder(const std::string& path) {
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
-  if (file.get() < 0) fail_system(fault_of_errno(errno), path, errno, "check the disk");
+  const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
+  if (!file.is_open()) fail_system(fault_of_errno(errno), path, errno, "check the disk");
   give_to_owner_of_folder(file.get(), path);
 }
 
@@ -179,8 +159,8 @@ void permit_as(const std::string& original, const std::string& path) {
 
 void sync_path(const std::string& path) {
   const auto name = path.empty() ? std::string(".") : path;
-  const Descriptor file(::open(name.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0 || ::fsync(file.get()) != 0)
+  const FileDescriptor file(::open(name.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!file.is_open() || ::fsync(file.get()) != 0)
     fail_system(fault_of_errno(errno), "sync " + name, errno, "check the disk");
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "station/store/error.hpp"
+#include "station/system/file_descriptor.hpp"
 
 namespace turnpoint::store {
 
@@ -36,8 +37,8 @@ std::vector<std::string> list_folder(const std::string& path);
 std::string canonical(const std::string& path);
 
 /// Opens the lock file and creates it if missing. If a link or a file with a second name is in its place, it
-/// is refused and not changed. Returns the file descriptor.
-int open_lock(const std::string& path);
+/// is refused and not changed.
+system::FileDescriptor open_lock(const std::string& path);
 
 /// Creates an empty file that only its owner may read.
 void create_private(const std::string& path);

@@ -7,10 +7,10 @@
 #include "station/store/backup.hpp"
 #include "station/store/checksum.hpp"
 #include "station/store/files.hpp"
-#include "station/store/identity.hpp"
 #include "station/store/open.hpp"
 #include "station/store/whole_file.hpp"
 #include "station/store/withdraw.hpp"
+#include "station/system/clocks.hpp"
 
 namespace turnpoint::store {
 
@@ -192,7 +192,7 @@ void settle(Database& database, MergedSession& session, std::int64_t trials_befo
   Statement(
       database,
       "INSERT OR IGNORE INTO main.merged SELECT ?, ?, value, ? FROM source.meta WHERE key = 'database_id'")
-      .bind(id, session.sha256, realtime_ns())
+      .bind(id, session.sha256, system::realtime_ns())
       .run();
 }
 

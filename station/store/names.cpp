@@ -6,22 +6,6 @@
 
 namespace turnpoint::store {
 
-const char* name(SessionStatus status) {
-  switch (status) {
-    case SessionStatus::running:
-      return "running";
-    case SessionStatus::completed:
-      return "completed";
-    case SessionStatus::interrupted:
-      return "interrupted";
-    case SessionStatus::stopped:
-      return "stopped";
-    case SessionStatus::abandoned:
-      return "abandoned";
-  }
-  return "";
-}
-
 namespace {
 
 template <class Values>

@@ -1,9 +1,12 @@
 #pragma once
 #include <string>
 
-#include "station/store/records.hpp"
+#include "station/records/records.hpp"
 
 namespace turnpoint::store {
+
+// The records keep their own names in the store.
+using namespace records;
 
 /// These functions convert the database's words back to enums. They throw StoreError (corrupt) for a word
 /// that no release wrote.

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "station/store/files.hpp"
-#include "station/store/records.hpp"
+#include "station/store/names.hpp"
 #include "station/store/schema.hpp"
 #include "station/store/whole_file.hpp"
 
@@ -105,16 +105,14 @@ LockNote note_in(int descriptor) {
 
 StationLock::StationLock(const std::string& database) {
   refuse_second_name(database);
-  descriptor_ = open_lock(database + ".lock");
-  const auto found = note_in(descriptor_);
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-    ::close(std::exchange(descriptor_, -1));
+  lock_ = open_lock(database + ".lock");
+  const auto found = note_in(lock_.get());
+  if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0)
     throw StoreError(
         Fault::busy,
         fmt::format("database {}: another station process{}{} is writing it; end that one first, or "
                     "name another database",
                     database, found.process.empty() ? "" : ", pid ", found.process));
-  }
   note(found.database_id);
 }
 
@@ -124,22 +122,13 @@ void StationLock::remember(const std::string& database_id) { note(database_id); 
 /// station from starting here.
 void StationLock::note(const std::string& database_id) {
   const auto text = fmt::format("{}\n{}{}", ::getpid(), database_id, database_id.empty() ? "" : "\n");
-  if (::pwrite(descriptor_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()))
-    (void)!::ftruncate(descriptor_, static_cast<off_t>(text.size()));
+  if (::pwrite(lock_.get(), text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()))
+    (void)!::ftruncate(lock_.get(), static_cast<off_t>(text.size()));
 }
 
 std::string remembered_database_id(const std::string& database) {
-  const int lock = ::open((database + ".lock").c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
-  if (lock < 0) return "";
-  const auto note = note_in(lock);
-  ::close(lock);
-  return note.database_id;
-}
-
-StationLock::StationLock(StationLock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-
-StationLock::~StationLock() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+  const system::FileDescriptor lock(::open((database + ".lock").c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
+  return lock.is_open() ? note_in(lock.get()).database_id : "";
 }
 
 namespace {

@@ -2,6 +2,7 @@
 #include <string>
 
 #include "station/store/sqlite.hpp"
+#include "station/system/file_descriptor.hpp"
 
 namespace turnpoint::store {
 
@@ -11,9 +12,6 @@ class StationLock {
  public:
   /// Throws StoreError (busy) that names the process holding the lock.
   explicit StationLock(const std::string& database);
-  StationLock(StationLock&& other) noexcept;
-  StationLock& operator=(StationLock&&) = delete;
-  ~StationLock();
 
   /// Stores the database's id in the lock file. If the database is lost, the id tells which backups are its
   /// own.
@@ -21,7 +19,7 @@ class StationLock {
 
  private:
   void note(const std::string& database_id);
-  int descriptor_ = -1;
+  system::FileDescriptor lock_;
 };
 
 /// The id that remember() stored beside this database, available even after the file itself is lost; "" if

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <set>
 
-#include "station/store/identity.hpp"
 #include "station/store/open.hpp"
+#include "station/system/clocks.hpp"
 
 namespace turnpoint::store {
 
@@ -127,7 +127,7 @@ std::string join(const std::string& path, const std::string& first, const std::s
         .run();
   else if (!joined)
     Statement(database, "INSERT INTO same_person VALUES (?,?,?,?,?)")
-        .bind(a.station_id, a.code, b.station_id, b.code, realtime_ns())
+        .bind(a.station_id, a.code, b.station_id, b.code, system::realtime_ns())
         .run();
   if (relation == Relation::two_people && database.changes() == 0)
     throw StoreError(Fault::missing,

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "station/store/fields.hpp"
-#include "station/store/identity.hpp"
 #include "station/store/open.hpp"
 #include "station/store/people.hpp"
 #include "station/store/rows.hpp"
 #include "station/store/sqlite.hpp"
+#include "station/system/clocks.hpp"
 
 namespace turnpoint::store {
 
@@ -190,7 +190,7 @@ std::optional<Interrupted> interrupted_session(const std::string& path, const st
   newest.bind(session_id);
   if (!newest.step()) return std::nullopt;
   auto session = session_record(database, newest.text(0));
-  const auto age_ns = realtime_ns() - session.last_activity_realtime_ns;
+  const auto age_ns = system::realtime_ns() - session.last_activity_realtime_ns;
   return Interrupted{std::move(session), static_cast<double>(age_ns) * 1e-9};
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "station/store/records.hpp"
+#include "station/store/names.hpp"
 #include "station/store/sqlite.hpp"
 
 namespace turnpoint::store {

@@ -9,12 +9,13 @@
 
 #include "station/store/checksum.hpp"
 #include "station/store/fields.hpp"
-#include "station/store/identity.hpp"
 #include "station/store/open.hpp"
 #include "station/store/people.hpp"
 #include "station/store/read.hpp"
 #include "station/store/rows.hpp"
 #include "station/store/withdraw.hpp"
+#include "station/system/clocks.hpp"
+#include "station/system/uuid.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::store {
@@ -180,7 +181,7 @@ SessionLog SessionLog::begin(const std::string& path, const SessionStart& start,
   require_space(path);
   auto impl = std::make_unique<Impl>(open_writer(path, IfMissing::create));
   auto& database = impl->writer.database;
-  const auto id = new_uuid();
+  const auto id = system::new_uuid();
   Transaction transaction(database);
   insert_session(database, id, start);
   insert_segment(database, id, 1, segment);
@@ -268,7 +269,7 @@ void SessionLog::presented(int trial_index, std::int64_t time_ns) {
 void SessionLog::append(const TrialRow& trial) {
   if (!impl_->in_block)
     refuse(impl_->writer.database, Fault::refused, "a trial belongs to a block; begin_block comes first");
-  const auto now = realtime_ns();
+  const auto now = system::realtime_ns();
   Transaction transaction(impl_->writer.database);
   impl_->rows.trial(impl_->place, trial, now);
   impl_->write_events();
@@ -280,7 +281,7 @@ void SessionLog::append(const TrialRow& trial) {
 void SessionLog::annotate(const std::string& text) {
   Transaction transaction(impl_->writer.database);
   Statement(impl_->writer.database, "INSERT INTO annotation VALUES (?,?,?,?)")
-      .bind(new_uuid(), impl_->place.session_id, realtime_ns(), text)
+      .bind(system::new_uuid(), impl_->place.session_id, system::realtime_ns(), text)
       .run();
   transaction.commit();
   impl_->session.annotations.push_back(text);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "station/store/error.hpp"
-#include "station/store/records.hpp"
+#include "station/store/names.hpp"
 
 namespace turnpoint::store {
 
@@ -27,12 +27,6 @@ struct SessionRecord {
   std::vector<std::string> annotations;  ///< oldest first
   std::string
       checksum;  ///< last link of its chain (checksum.hpp); "" if an earlier release recorded the session
-};
-
-/// A block of a stored session with its finished trials, in the order in which they were run.
-struct BlockRecord {
-  BlockStart start;
-  std::vector<TrialRow> trials;
 };
 
 /// Writes one session. This is the station's only write connection (WAL, synchronous FULL, foreign keys, an

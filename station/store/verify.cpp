@@ -8,6 +8,7 @@
 #include "station/store/open.hpp"
 #include "station/store/text_table.hpp"
 #include "station/store/whole_file.hpp"
+#include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
 
 namespace turnpoint::store {
@@ -26,7 +27,7 @@ std::vector<Exported> read_export(const std::string& path) {
   };
   std::string bytes;
   try {
-    bytes = text::read_file(path);
+    bytes = system::read_file(path);
   } catch (const std::system_error& error) {
     refuse(error.what());
   }

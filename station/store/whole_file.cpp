@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "station/store/files.hpp"
-#include "station/store/identity.hpp"
 #include "station/store/schema.hpp"
+#include "station/system/clocks.hpp"
+#include "station/system/uuid.hpp"
 
 namespace turnpoint::store {
 
@@ -64,7 +65,7 @@ std::string orphan_of(const std::string& path) {
 }  // namespace
 
 std::string time_stamp() {
-  const auto ns = realtime_ns();
+  const auto ns = system::realtime_ns();
   const std::time_t seconds = ns / 1'000'000'000;
   return fmt::format("{:%Y%m%dT%H%M%S}.{:03}Z", fmt::gmtime(seconds), ns / 1'000'000 % 1000);
 }
@@ -121,7 +122,7 @@ void create_file(const std::string& path) {
     Database database(temporary, Database::Access::read_write);
     database.execute("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA");
     create_schema(database, schema_version());
-    Statement(database, "INSERT INTO meta VALUES ('database_id', ?)").bind(new_uuid()).run();
+    Statement(database, "INSERT INTO meta VALUES ('database_id', ?)").bind(system::new_uuid()).run();
   });
 }
 

@@ -7,11 +7,12 @@
 #include "station/store/backup.hpp"
 #include "station/store/copies.hpp"
 #include "station/store/files.hpp"
-#include "station/store/identity.hpp"
 #include "station/store/open.hpp"
 #include "station/store/read.hpp"
 #include "station/store/sqlite.hpp"
 #include "station/store/whole_file.hpp"
+#include "station/system/clocks.hpp"
+#include "station/system/uuid.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::store {
@@ -122,13 +123,13 @@ void remove_bearer(Database& database, const Bearer& bearer) {
 }
 
 void remove_sessions(Database& database, const Withdrawal& withdrawal) {
-  const auto salt = new_uuid();
+  const auto salt = system::new_uuid();
   Transaction transaction(database);
   for (const auto& session : withdrawal.sessions) {
     const auto& id = session.session_id;
     const bool code_goes = !withdrawal.bearers.empty();
     Statement(database, "INSERT INTO tombstone VALUES (?,?,?,?,?)")
-        .bind(id, salt, code_goes ? digest(salt, session.start.participant) : "", realtime_ns(),
+        .bind(id, salt, code_goes ? digest(salt, session.start.participant) : "", system::realtime_ns(),
               session.start.station_id)
         .run();
     for (const auto* table : {"annotation", "merged", "link", "unsealed", "event", "tone", "trial", "block",

@@ -1,15 +1,10 @@
 #include "station/text/toml.hpp"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <string_view>
 #include <system_error>
 #include <tuple>
 
+#include "station/system/read_file.hpp"
 #include "station/text/toml_scan.hpp"
 
 // Some malformed files trip assertions of toml++ 3.3 (for example a key that begins with an invalid byte). An
@@ -132,64 +127,8 @@ std::string describe(const Value& value) {
   return "a table";
 }
 
-namespace {
-
-/// A file open for reading. The destructor closes it.
-class OpenFile {
- public:
-  explicit OpenFile(const std::string& path) : path_(path) {
-    // Without O_NONBLOCK, opening a pipe would wait for a writer.
-    descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (descriptor_ < 0) fail(errno);
-    struct stat status {};
-    if (::fstat(descriptor_, &status) != 0) close_and_fail(errno);
-    if (S_ISDIR(status.st_mode)) close_and_fail(EISDIR);
-    if (!S_ISREG(status.st_mode)) {
-      ::close(descriptor_);
-      throw std::system_error(std::make_error_code(std::errc::invalid_argument),
-                              path + ": not a file but a pipe or a device");
-    }
-  }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  ~OpenFile() { ::close(descriptor_); }
-
-  /// The next bytes; empty at the end of the file.
-  std::string_view read() {
-    for (;;) {
-      const auto count = ::read(descriptor_, buffer_.data(), buffer_.size());
-      if (count >= 0) return {buffer_.data(), static_cast<std::size_t>(count)};
-      if (errno != EINTR) fail(errno);
-    }
-  }
-
- private:
-  [[noreturn]] void fail(int error) const { throw std::system_error(error, std::generic_category(), path_); }
-  [[noreturn]] void close_and_fail(int error) const {
-    ::close(descriptor_);
-    fail(error);
-  }
-
-  std::string path_;
-  int descriptor_ = -1;
-  std::vector<char> buffer_ = std::vector<char>(1 << 16);
-};
-
-}  // namespace
-
-std::string read_file(const std::string& path, std::size_t most_bytes) {
-  OpenFile file(path);
-  std::string bytes;
-  for (auto part = file.read(); !part.empty(); part = file.read()) {
-    bytes += part;
-    if (bytes.size() > most_bytes)
-      throw std::system_error(std::make_error_code(std::errc::file_too_large), path);
-  }
-  return bytes;
-}
-
 std::string read_text_file(const std::string& path) try {
-  return read_file(path, most_text_bytes);
+  return system::read_file(path, most_text_bytes);
 } catch (const std::system_error& error) {
   if (error.code() != std::errc::file_too_large) throw;
   throw BadInput({{{path, 0, 0}, "the file has more than 4 MiB", "at most 4 MiB"}});

@@ -39,14 +39,11 @@ Value parse_toml(const std::string& source, const std::string& path);
 /// The type of a value, for messages: `a number`, `text`, `a table`, ...
 std::string describe(const Value& value);
 
-/// The bytes of a file. Throws std::system_error naming the file if it cannot be opened or read to its end,
-/// if it is not a regular file (a folder, a pipe, a device), or if it has more than `most_bytes`.
-std::string read_file(const std::string& path, std::size_t most_bytes = std::size_t{256} << 20);
-
 /// Size limit for files that people write (protocols, rigs, calibrations).
 constexpr std::size_t most_text_bytes = 4 << 20;
 
-/// Reads a file that people write. Throws BadInput if it is longer than `most_text_bytes`.
+/// Reads a file that people write. Throws as system::read_file, and BadInput if it is longer than
+/// `most_text_bytes`.
 std::string read_text_file(const std::string& path);
 
 }  // namespace turnpoint::text

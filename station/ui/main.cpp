@@ -5,7 +5,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/screens.hpp"
-#include "station/ui/screens.hpp"
+#include "station/ui/platform/screens.hpp"
 
 Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
 

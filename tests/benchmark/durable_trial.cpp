@@ -7,10 +7,10 @@
 #include <memory>
 
 #include "station/store/fields.hpp"
-#include "station/store/identity.hpp"
 #include "station/store/rows.hpp"
 #include "station/store/session_log.hpp"
 #include "station/store/sqlite.hpp"
+#include "station/system/uuid.hpp"
 
 namespace turnpoint::benchmark {
 
@@ -105,7 +105,7 @@ struct Bare {
   Database database;
   std::unique_ptr<RowWriter> rows;
   std::unique_ptr<Statement> begin, commit;
-  TrialPlace place{new_uuid(), 1, 0, 0};
+  TrialPlace place{system::new_uuid(), 1, 0, 0};
   std::int64_t next_event = 0;
 };
 
@@ -131,7 +131,7 @@ struct Folder {
 
 std::vector<DurableTrial> time_durable_trials(const std::string& directory, int trials) {
   if (trials < 1) throw std::invalid_argument("bench store: at least one trial");
-  const Folder folder{directory + "/turnpoint-bench-" + new_uuid()};
+  const Folder folder{directory + "/turnpoint-bench-" + system::new_uuid()};
   std::filesystem::create_directories(folder.path);
   std::vector<std::pair<std::string, std::function<void(int)>>> ways;
   ways.emplace_back("bare SQLite, FULL", bare(folder.path + "/bare.sqlite", "FULL"));

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "station/plot/chart.hpp"
-#include "station/text/write_file.hpp"
+#include "station/system/write_file.hpp"
 #include "tests/benchmark/intervals.hpp"
 #include "tests/benchmark/physics.hpp"
 #include "tests/benchmark/procedures.hpp"
@@ -58,10 +58,10 @@ std::vector<std::string> write(const Report& report, const std::string& folder) 
     return (std::filesystem::path(folder) / ("bench-" + file)).string();
   };
   std::vector<std::string> files{path(report.name + ".csv")};
-  text::write_file(files.back(), to_csv(report.table));
+  system::write_file(files.back(), to_csv(report.table));
   for (const auto& picture : report.pictures) {
     files.push_back(path(picture.name + ".svg"));
-    text::write_file(files.back(), plot::render(picture.figure));
+    system::write_file(files.back(), plot::render(picture.figure));
   }
   return files;
 }

@@ -2,7 +2,7 @@
 // figures.
 #include <fstream>
 
-#include "station/text/toml.hpp"
+#include "station/system/read_file.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/child.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -36,7 +36,7 @@ std::string cues_of(const std::string& protocol) {
 TEST_CASE("check says how precise it knows what a cue reaches in simulated sessions", "[cli]") {
   // After roving the amplitude is still a hint. A staircase then makes the level easier until the hint is
   // sufficient.
-  const auto text = with(turnpoint::text::read_file(source + "/protocols/friction-staircase.toml"),
+  const auto text = with(turnpoint::system::read_file(source + "/protocols/friction-staircase.toml"),
                          {{"tolerance = { level_dB = 0.1 }", "rove_dB = 2.5"},
                           {"-3.0", "-9.0"},
                           {"-5.0", "-9.0"},
@@ -50,7 +50,7 @@ TEST_CASE("check compares each cue with its own chance", "[cli]") {
   // In three of four trials the answer is "right", so a single key reaches 75 % without any cue. The
   // amplitude must be compared with that.
   const auto text =
-      with(turnpoint::text::read_file(source + "/protocols/boundary-constant.toml"),
+      with(turnpoint::system::read_file(source + "/protocols/boundary-constant.toml"),
            {{"values = [-28.0, -16.0, -8.0, -3.0, 3.0, 8.0, 16.0, 28.0]", "values = [-3.0, 3.0, 8.0, 16.0]"},
             {"levels = [152.0, 158.0, 164.0]", "levels = [158.0]"}});
   const auto said = cues_of(text);

@@ -82,8 +82,8 @@ store::SessionRecord only_session(const std::string& database) {
 }
 
 /// Without the warm-up trials of a resumed session.
-std::vector<store::TrialRow> trials_of(const std::string& database) {
-  std::vector<store::TrialRow> trials;
+std::vector<records::TrialRow> trials_of(const std::string& database) {
+  std::vector<records::TrialRow> trials;
   for (const auto& block : store::read_session(database, only_session(database).session_id).blocks)
     for (const auto& trial : block.trials)
       if (trial.type != terms::TrialType::warmup) trials.push_back(trial);
@@ -100,7 +100,7 @@ void check_stopped(const Child& child, int signal, const store::SessionRecord& s
   CHECK(child.said().find("interrupted: " + reason_for(signal)) != std::string::npos);
   CHECK(child.said().find("turnpoint resume --db ") != std::string::npos);
   CHECK(child.said().find("--session " + session.session_id) != std::string::npos);
-  CHECK(session.status == store::SessionStatus::interrupted);
+  CHECK(session.status == records::SessionStatus::interrupted);
   CHECK(session.status_reason == reason_for(signal));
 }
 
@@ -156,7 +156,7 @@ TEST_CASE("a simulated session that signals ended goes on to what an unbroken on
   Child to_the_end(resume(database));
   REQUIRE(to_the_end.ends_within(kWhole_ms));
   CHECK(to_the_end.outcome() == 0);
-  CHECK(only_session(database).status == store::SessionStatus::completed);
+  CHECK(only_session(database).status == records::SessionStatus::completed);
   CHECK(only_session(database).segments == 3);
   Child unbroken(simulated(folder / "unbroken"));
   REQUIRE(unbroken.ends_within(kWhole_ms));
@@ -188,7 +188,7 @@ TEST_CASE("a second signal ends at once a session whose ending hangs", "[stop]")
   CAPTURE(child.said());
   CHECK(child.outcome() == -signal);
   held.execute("ROLLBACK");
-  CHECK(only_session(database).status == store::SessionStatus::running);
+  CHECK(only_session(database).status == records::SessionStatus::running);
 }
 
 TEST_CASE("a session goes on through a signal that whoever started it has it ignore", "[stop]") {
@@ -216,6 +216,6 @@ TEST_CASE("a session ends in order where the reader of its messages was ended as
   child.signal(SIGINT);
   REQUIRE(child.ends_within(kPrompt_ms));
   CHECK(child.outcome() == 1);
-  CHECK(only_session(database).status == store::SessionStatus::interrupted);
+  CHECK(only_session(database).status == records::SessionStatus::interrupted);
   CHECK(only_session(database).status_reason == reason_for(SIGINT));
 }

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "station/app/records.hpp"
-#include "station/app/rehearsal.hpp"
 #include "station/random/draws.hpp"
+#include "station/report/stored_trials.hpp"
 #include "station/report/summary.hpp"
+#include "station/simulation/rehearsal.hpp"
 #include "tests/support/reference_posterior.hpp"
 
 namespace coverage {
@@ -92,7 +92,7 @@ Design::Design(const std::string& procedure)
     : protocol_(protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/coverage/protocols/" + procedure +
                                ".toml")) {
   report::SessionData empty;
-  app::add_trials({}, protocol_, empty);
+  report::add_trials({}, protocol_, empty);
   prior_ = empty.prior.value();
 }
 
@@ -105,14 +105,14 @@ Session Design::run(const Source& source, std::uint64_t seed, bool with_referenc
   auto protocol = protocol_;
   const int procedures = static_cast<int>(protocol.procedures.size());
   for (auto& spec : protocol.procedures) spec.stop.trials = counts.back() / procedures;
-  const auto answer = [&](const session::TrialSpec&, const observer::Question& question) {
+  const auto answer = [&](const trial::TrialSpec&, const observer::Question& question) {
     const int right = question.correct.value();
     return observer::Reply{draws.uniform() < share_right(session.truth, question.level) ? right : 1 - right,
                            0.5};
   };
-  const auto rehearsal = app::rehearse(protocol, 0, seed, {answer, {}});
+  const auto rehearsal = simulation::rehearse(protocol, 0, seed, {answer, {}});
   report::SessionData data;
-  app::add_trials(rehearsal.blocks, protocol_, data);
+  report::add_trials(rehearsal.blocks, protocol_, data);
   data.replicates = 0;  // without bands
   const auto all = data.trials;
   for (std::size_t i = 0; i < kTrials.size(); ++i) {

@@ -6,7 +6,7 @@
 #include <system_error>
 
 #include "station/drive/alsa_device.hpp"
-#include "station/drive/monotonic.hpp"
+#include "station/system/clocks.hpp"
 
 namespace turnpoint::drive {
 namespace {
@@ -48,12 +48,6 @@ void FakePcm::pass(std::int64_t frames) {
     }
     heard.push_back(sample);
   }
-}
-
-std::int64_t monotonic_ns() noexcept { return card.now_ns(); }
-std::int64_t raw_minus_monotonic_ns() noexcept { return 0; }
-void sleep_until_ns(std::int64_t time_ns) noexcept {
-  while (card.now_ns() < time_ns) card.pass(1);
 }
 
 AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name) {
@@ -145,3 +139,13 @@ int snd_pcm_htimestamp(snd_pcm_t*, snd_pcm_uframes_t* avail, snd_htimestamp_t* s
 }
 
 }  // extern "C"
+
+namespace turnpoint::system {
+
+std::int64_t monotonic_ns() noexcept { return drive::card.now_ns(); }
+std::int64_t raw_minus_monotonic_ns() noexcept { return 0; }
+void sleep_until_ns(std::int64_t time_ns) noexcept {
+  while (drive::card.now_ns() < time_ns) drive::card.pass(1);
+}
+
+}  // namespace turnpoint::system

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "station/drive/device_stream.hpp"
-#include "station/trial/trial.hpp"
+#include "station/trial/machine.hpp"
 #include "tests/drive/fake_pcm.hpp"
 #include "tests/support/catch.hpp"
 
@@ -86,8 +86,8 @@ constexpr std::int64_t kLengths[] = {3000, 2500}, kAnswerAfter = 400;
 
 std::int64_t ns_of(std::int64_t frames) { return frames * 1'000'000'000 / 192'000; }
 
-trial::Plan trial_plan() {
-  trial::Plan plan;
+trial::Timing trial_timing() {
+  trial::Timing plan;
   plan.intervals = {{ns_of(kLengths[0]), {}}, {ns_of(kLengths[1]), {}}};
   plan.gap_ns = ns_of(kPause);
   plan.response_zero = terms::ResponseZero::interval_off;
@@ -111,7 +111,7 @@ class Bench {
   Run run(int mishaps, const std::vector<Mishap>& kinds) {
     DeviceStream stream(config_);
     for (int k = 0; k < 4 || stream.clock().pairs < 2; ++k) stream.step();
-    trial::Machine machine(trial_plan());
+    trial::Machine machine(trial_timing());
     machine.start(fake_pcm().now_ns());
     Run run = schedule(stream, machine);
     const auto answer_ns = run.predicted_ns + ns_of(kLengths[0] + kPause + kLengths[1] + kAnswerAfter);

@@ -18,6 +18,7 @@
 
 using namespace turnpoint;
 using namespace turnpoint::drive;
+using namespace turnpoint::system;
 
 namespace {
 

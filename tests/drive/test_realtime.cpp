@@ -1,9 +1,10 @@
 #include "station/drive/engine.hpp"
-#include "station/drive/monotonic.hpp"
+#include "station/system/clocks.hpp"
 #include "tests/drive/bursts.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::drive;
+using namespace turnpoint::system;
 
 TEST_CASE("a real-time stream to null plays bursts at their frames and tells what it was granted",
           "[drive][realtime][threads]") {

@@ -192,7 +192,7 @@ void Room::tell_guard_fault() {
   push(InputKind::fault, guard_.fault().kind, guard_.fault().detail);
 }
 
-void Room::strike_line(const char* what, void (panel::Guard::*change)(std::int64_t, bool) noexcept) {
+void Room::strike_line(const char* what, void (lines::Guard::*change)(std::int64_t, bool) noexcept) {
   world_.amplifier.cause(world_ns(), what);
   world_.amplifier.lasts(what);
   if (world_.plant != Plant::deaf_guard) (guard_.*change)(now_ns(), true);
@@ -229,9 +229,9 @@ void Room::strike_chip() {
 void Room::strike(Fault fault) {
   switch (fault) {
     case Fault::amplifier_line:
-      return strike_line("amplifier line", &panel::Guard::fault_line);
+      return strike_line("amplifier line", &lines::Guard::fault_line);
     case Fault::stop_pressed:
-      return strike_line("stop pressed", &panel::Guard::stop_line);
+      return strike_line("stop pressed", &lines::Guard::stop_line);
     case Fault::converter_gone:
       return strike_device();
     case Fault::lines_gone:

@@ -4,7 +4,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "station/panel/guard.hpp"
+#include "station/lines/guard.hpp"
 #include "station/session/monitor.hpp"
 #include "station/session/stage.hpp"
 #include "tests/endurance/faults.hpp"
@@ -15,7 +15,7 @@ namespace endurance {
 /// Violations planted on purpose. The checker must detect each of them.
 enum class Plant { none, deaf_guard, never_off, lost_trial, careless_disk, leak };
 
-/// Ends the process: thrown out of the sitting, after its files were copied as they were at that moment.
+/// Ends the process: thrown out of the run, after its files were copied as they were at that moment.
 struct Died : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -101,7 +101,7 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   void plan(std::int64_t in_ns, std::function<void()> happens);
   void push(InputKind kind, turnpoint::session::FaultKind fault = {}, const std::string& text = "");
   void strike(Fault fault);
-  void strike_line(const char* what, void (turnpoint::panel::Guard::*change)(std::int64_t, bool) noexcept);
+  void strike_line(const char* what, void (turnpoint::lines::Guard::*change)(std::int64_t, bool) noexcept);
   void strike_device();
   void strike_underrun();
   void strike_chip();
@@ -110,7 +110,7 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   World& world_;
   Disk disk_;
   std::unique_ptr<turnpoint::session::Stage> inner_;
-  turnpoint::panel::Guard guard_;
+  turnpoint::lines::Guard guard_;
   std::string missing_;  ///< why the GPIO chip is missing
   double ns_per_frame_;
   std::int64_t born_ns_;

@@ -4,9 +4,9 @@
 #include <optional>
 #include <utility>
 
-#include "station/app/prepare.hpp"
 #include "station/session/replay.hpp"
-#include "station/session/sitting.hpp"
+#include "station/session/session_run.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/store/error.hpp"
 #include "station/store/read.hpp"
 #include "station/store/sqlite.hpp"
@@ -21,10 +21,11 @@ namespace {
 
 // limit for one session: beyond it the session cannot end
 constexpr int kLivesAtMost = 400;
-constexpr std::int64_t kRest_ns = 2'400'000'000'000;  // longer than the half hour that ends a sitting
+constexpr std::int64_t kRest_ns =
+    2'400'000'000'000;  // longer than the half hour that ends a period of exposure
 
 session::Setup prepare(const std::string& protocol, const std::string& database, std::uint64_t seed) {
-  app::RunRequest request;
+  setup::RunRequest request;
   request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol;
   request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
   request.participant = "P01";
@@ -32,7 +33,7 @@ session::Setup prepare(const std::string& protocol, const std::string& database,
   request.observer = "sim";
   request.seed = seed;
   request.headless = true;
-  return app::prepare(request);
+  return setup::prepare(request);
 }
 
 /// Makes it behave like a live session: an operator arms, and the finger's limits count.
@@ -43,8 +44,8 @@ session::Setup as_live(session::Setup setup) {
   return setup;
 }
 
-store::SessionStart start_of(const session::Setup& setup) {
-  store::SessionStart start;
+records::SessionStart start_of(const session::Setup& setup) {
+  records::SessionStart start;
   start.participant = setup.participant;
   start.run_mode = setup.run_mode;
   start.protocol_id = setup.protocol.id;
@@ -74,9 +75,9 @@ struct Acknowledgements : session::Monitor {
 
   Acknowledgements(World& w, const Room& r, std::string id, const bool& d)
       : world(w), room(r), session_id(std::move(id)), dead(d) {}
-  void trial_begins(const session::TrialSpec&, const protocol::Block&,
+  void trial_begins(const trial::TrialSpec&, const protocol::Block&,
                     const session::PlanAhead::Plans&) override {}
-  void trial_ended(const session::TrialSpec&, const store::TrialRow& row) override {
+  void trial_ended(const trial::TrialSpec&, const records::TrialRow& row) override {
     if (dead) return;  // ignore reports of a process that has died
     world.trials.acknowledged(session_id, row);
     const auto answered_ns = row.onset_ns + static_cast<std::int64_t>(row.response_time_s.value_or(0) * 1e9);
@@ -143,15 +144,15 @@ bool Station::live(session::Setup setup) {
   setup.database = database_;
   const auto now_ns = world_.now_ns + world_.wall_offset_ns;
   const double now_s = 1e-9 * static_cast<double>(now_ns);
-  const auto limits = session::limits_of(setup.rig, setup.run_mode);
-  session::FingerAccount account(
-      limits, session::read_finger_history(database_, setup.participant, now_s, limits.continuous_s), 0,
+  const auto limits = limits::limits_of(setup.rig, setup.run_mode);
+  limits::FingerAccount account(
+      limits, limits::read_finger_history(database_, setup.participant, now_s, limits.continuous_s), 0,
       now_s);
   const auto interrupted = fs::exists(database_) ? store::interrupted_session(database_) : std::nullopt;
   const auto segment =
-      store::SegmentStart{std::to_string(lives), interrupted ? "resume" : "start", 0, 0, now_ns};
+      records::SegmentStart{std::to_string(lives), interrupted ? "resume" : "start", 0, 0, now_ns};
   if (interrupted) setup.resume_session = interrupted->session.session_id;
-  std::optional<session::Director> director;
+  std::optional<trial::Director> director;
   if (interrupted)
     director.emplace(session::replayed(setup, store::read_session(database_, setup.resume_session)));
   auto log = interrupted ? store::SessionLog::resume(database_, setup.resume_session, segment)
@@ -165,12 +166,12 @@ bool Station::live(session::Setup setup) {
       stream.output.rate_Hz);
   Room& room = *owned;
   Acknowledgements monitor(world_, room, id, dead_);
-  session::Sitting sitting(setup, std::move(*director), std::move(log), std::move(owned), std::move(account),
-                           &room, &monitor);
-  const auto summary = sitting.run();
+  session::SessionRun run(setup, std::move(*director), std::move(log), std::move(owned), std::move(account),
+                          &room, &monitor);
+  const auto summary = run.run();
   if (summary.reason.find("session's time") != std::string::npos) world_.now_ns += kRest_ns;
-  return !dead_ && (summary.status == store::SessionStatus::completed ||
-                    summary.status == store::SessionStatus::stopped);
+  return !dead_ && (summary.status == records::SessionStatus::completed ||
+                    summary.status == records::SessionStatus::stopped);
 }
 
 Station::Ending Station::give_up(const std::string& why) {

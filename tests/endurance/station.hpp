@@ -11,7 +11,7 @@
 namespace endurance {
 
 /// A database and a participant's sessions in it, through every death of the station's process. The files
-/// that a death leaves are checked, and the session continues with them. Uses the station's own sitting,
+/// that a death leaves are checked, and the session continues with them. Uses the station's own session run,
 /// store, procedures, planner, drive and guard.
 class Station {
  public:

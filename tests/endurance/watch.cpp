@@ -113,7 +113,7 @@ void AmplifierWatch::trial_ended(std::int64_t time_ns, bool answered, std::int64
 namespace {
 
 /// All research data of a trial, as text.
-std::string fingerprint(const store::TrialRow& row, bool times) {
+std::string fingerprint(const records::TrialRow& row, bool times) {
   auto text = fmt::format("{}/{} {} {} {} {} {:016x}", row.trial_in_block, store::name(row.type),
                           row.procedure, row.level.value_or(0), store::name(row.outcome),
                           row.response.value_or("-"), row.state_hash);
@@ -135,7 +135,7 @@ std::vector<std::string> that_count(const store::StoredSession& session) {
 
 }  // namespace
 
-void TrialWatch::acknowledged(const std::string& session_id, const store::TrialRow& row) {
+void TrialWatch::acknowledged(const std::string& session_id, const records::TrialRow& row) {
   kept_[{session_id, row.trial_index}] = fingerprint(row, true);
   ++total_;
 }

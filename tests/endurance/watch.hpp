@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "station/records/records.hpp"
 #include "station/session/page.hpp"
-#include "station/store/records.hpp"
 
 namespace endurance {
 
@@ -58,7 +58,7 @@ class TrialWatch {
  public:
   explicit TrialWatch(Violations& violations) : violations_(violations) {}
 
-  void acknowledged(const std::string& session_id, const turnpoint::store::TrialRow& row);
+  void acknowledged(const std::string& session_id, const turnpoint::records::TrialRow& row);
   /// Call after each death and each ending: the database must be sound and contain every acknowledged trial
   /// unchanged.
   void check(const std::string& database, const std::string& when);

@@ -1,8 +1,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "station/app/prepare.hpp"
 #include "station/drive/synth.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
 #include "station/text/number.hpp"
 #include "tests/support/catch.hpp"
@@ -53,9 +53,9 @@ std::string rendered(const drive::Burst& burst) {
 }
 
 /// Runs a simulated session of a shipped protocol into the folder.
-std::vector<store::TrialRow> session_of(const std::string& protocol, const TemporaryFolder& folder,
-                                        const std::string& output) {
-  app::RunRequest request;
+std::vector<records::TrialRow> session_of(const std::string& protocol, const TemporaryFolder& folder,
+                                          const std::string& output) {
+  setup::RunRequest request;
   request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol + ".toml";
   request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
   request.participant = "P01";
@@ -63,18 +63,18 @@ std::vector<store::TrialRow> session_of(const std::string& protocol, const Tempo
   request.observer = "sim";
   request.seed = 20240229;
   request.headless = true;
-  auto setup = app::prepare(request);
+  auto setup = setup::prepare(request);
   setup.rig.output.uri = output;
   session::Inputs nobody;
   const auto summary = session::run(setup, nullptr, nobody);
-  std::vector<store::TrialRow> trials;
+  std::vector<records::TrialRow> trials;
   for (const auto& block : store::read_session(request.database, summary.session_id).blocks)
     trials.insert(trials.end(), block.trials.begin(), block.trials.end());
   return trials;
 }
 
 /// Questions and answers, to the last bit.
-std::string decided(const std::vector<store::TrialRow>& trials) {
+std::string decided(const std::vector<records::TrialRow>& trials) {
   std::ostringstream text;
   text << std::hexfloat;
   for (const auto& trial : trials) {
@@ -89,7 +89,7 @@ std::string decided(const std::vector<store::TrialRow>& trials) {
 }
 
 /// Stimuli and their times, to the last bit.
-std::string driven(const std::vector<store::TrialRow>& trials) {
+std::string driven(const std::vector<records::TrialRow>& trials) {
   std::ostringstream text;
   text << std::hexfloat;
   for (const auto& trial : trials) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "station/random/draws.hpp"
+#include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
 
 using turnpoint::random::Draws;
@@ -64,7 +65,7 @@ int main(int argc, char** argv) {
     for (const auto& entry : std::filesystem::directory_iterator(argv[i]))
       if (entry.path().extension() == ".toml") paths.push_back(entry.path().string());
   std::sort(paths.begin(), paths.end());
-  for (const auto& path : paths) seeds.push_back(turnpoint::text::read_file(path));
+  for (const auto& path : paths) seeds.push_back(turnpoint::system::read_file(path));
   if (runs == 0 || seeds.empty()) return std::fprintf(stderr, "usage: fuzz_protocol RUNS FOLDER...\n"), 2;
   for (unsigned long run = 0; run < runs; ++run) {
     Draws draws({run});

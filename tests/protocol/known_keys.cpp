@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "station/protocol/protocol.hpp"
+#include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
 
 namespace turnpoint::tests {
@@ -41,7 +42,7 @@ std::set<std::string> known_keys() {
        std::filesystem::directory_iterator(std::string(TURNPOINT_SOURCE_DIR) + "/protocols")) {
     if (entry.path().extension() != ".toml") continue;
     try {
-      protocol::parse(with_unknown_keys(text::read_file(entry.path().string())), "p.toml");
+      protocol::parse(with_unknown_keys(system::read_file(entry.path().string())), "p.toml");
     } catch (const text::BadInput& error) {
       for (const auto& problem : error.problems())
         if (problem.what.find("unknown key \"zzzzzz\"") != std::string::npos) collect(problem.allowed, keys);

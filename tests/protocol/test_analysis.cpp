@@ -1,4 +1,5 @@
 #include "station/protocol/protocol.hpp"
+#include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
@@ -9,7 +10,7 @@ using namespace turnpoint;
 namespace {
 
 std::string source_of(const std::string& name) {
-  return text::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
+  return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
 }
 
 /// The shipped file with a different [analysis].

@@ -1,5 +1,6 @@
 #include "station/protocol/answers.hpp"
 
+#include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
@@ -9,7 +10,7 @@ using protocol::AnswerKind;
 namespace {
 
 std::string source_of(const std::string& name) {
-  return text::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
+  return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
 }
 
 protocol::Protocol shipped(const std::string& name) { return protocol::parse(source_of(name), name); }

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "station/protocol/protocol.hpp"
+#include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
@@ -66,7 +67,7 @@ TEST_CASE("each file of the corpus of mistakes is refused at the line of its mis
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() != ".toml") continue;
     ++files;
-    const auto source = text::read_file(entry.path().string());
+    const auto source = system::read_file(entry.path().string());
     INFO(entry.path().filename().string());
     CHECK_FALSE(expected_lines(source).empty());
     CHECK(misreported(source) == "");
@@ -76,7 +77,7 @@ TEST_CASE("each file of the corpus of mistakes is refused at the line of its mis
 
 TEST_CASE("the corpus check notices a file whose mistake was mended, and a mistake on another line",
           "[protocol]") {
-  auto source = text::read_file((folder / "scene-rove-negative.toml").string());
+  auto source = system::read_file((folder / "scene-rove-negative.toml").string());
   REQUIRE(misreported(source).empty());
   const auto at = source.find("rove_dB = -2.0");
   auto mended = source;

@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "station/protocol/protocol.hpp"
+#include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -16,7 +17,7 @@ namespace {
 const std::string shipped = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/";
 
 protocol::Protocol with(const std::string& file, const std::string& from, const std::string& to) {
-  auto source = text::read_file(shipped + file);
+  auto source = system::read_file(shipped + file);
   const auto at = source.find(from);
   REQUIRE(at != std::string::npos);
   return protocol::parse(source.replace(at, from.size(), to), "p.toml");
@@ -106,7 +107,7 @@ TEST_CASE("in a Williams square each condition follows each other equally often"
     std::string levels;
     for (int i = 0; i < n; ++i)
       levels += (i ? ", \"" : "\"") + std::string(1, static_cast<char>('a' + i)) + "\"";
-    auto source = text::read_file(shipped + "speed-accuracy.toml");
+    auto source = system::read_file(shipped + "speed-accuracy.toml");
     const auto factor = source.find("[scene.before]");
     source.insert(factor, "[[factor]]\nname = \"order\"\nlevels = [" + levels + "]\n");
     for (std::size_t at; (at = source.find("over = \"instruction\"")) != std::string::npos;)
@@ -193,7 +194,7 @@ TEST_CASE("a protocol file that is not there is a system error", "[protocol]") {
 }
 
 TEST_CASE("a file with far too much of something is refused, and within a second", "[protocol]") {
-  const auto demo = text::read_file(shipped + "demo.toml");
+  const auto demo = system::read_file(shipped + "demo.toml");
   std::string factors, values, keys;
   for (int i = 0; i < 100'000; ++i)
     factors += "[[factor]]\nname=\"f" + std::to_string(i) + "\"\nlevels=[1]\n";

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "station/protocol/protocol.hpp"
+#include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
 #include "tests/protocol/known_keys.hpp"
 #include "tests/support/catch.hpp"
@@ -16,7 +17,7 @@ namespace {
 const std::string readme_path = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/README.md";
 
 std::vector<std::string> snippets() {
-  std::istringstream lines(text::read_file(readme_path));
+  std::istringstream lines(system::read_file(readme_path));
   std::vector<std::string> all;
   bool inside = false;
   for (std::string line; std::getline(lines, line);) {
@@ -34,7 +35,7 @@ std::vector<std::string> snippets() {
 
 // All words that the manual's running text puts in backticks.
 std::set<std::string> words_in_backticks() {
-  std::istringstream lines(text::read_file(readme_path));
+  std::istringstream lines(system::read_file(readme_path));
   std::set<std::string> words;
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("```", 0) == 0) continue;

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "station/protocol/design_advice.hpp"
+#include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
@@ -20,8 +21,8 @@ std::string replaced(std::string where, const std::string& from, const std::stri
   return where.replace(at, from.size(), to);
 }
 
-std::string source(const std::string& name) { return text::read_file(root + "/protocols/" + name); }
-std::string rig_source() { return text::read_file(root + "/deploy/rigs/simulated.toml"); }
+std::string source(const std::string& name) { return system::read_file(root + "/protocols/" + name); }
+std::string rig_source() { return system::read_file(root + "/deploy/rigs/simulated.toml"); }
 // With twice the thickness and simply supported sides, the plate has almost the same map in closed form, so
 // surveys are fast.
 std::string quick_source() {

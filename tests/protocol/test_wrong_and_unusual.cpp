@@ -7,6 +7,7 @@
 #include "station/protocol/design_advice.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/survey.hpp"
+#include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
@@ -29,7 +30,7 @@ std::string with_lines(std::string text) {
 
 std::vector<Case> cases_in(const fs::path& path) {
   std::vector<Case> cases;
-  std::istringstream lines(text::read_file(path.string()));
+  std::istringstream lines(system::read_file(path.string()));
   for (std::string line; std::getline(lines, line);) {
     if (line.rfind("## ", 0) == 0) {
       cases.push_back({line.substr(3), "", {}});
@@ -52,7 +53,7 @@ struct Edited {
 
 Edited edited(const Case& wanted) {
   Edited result;
-  auto text = text::read_file(root + "/protocols/" + wanted.base + ".toml");
+  auto text = system::read_file(root + "/protocols/" + wanted.base + ".toml");
   for (const auto& [from, to] : wanted.edits) {
     const auto at = text.find(from);
     INFO("edit: " << from);
@@ -75,7 +76,7 @@ Edited edited(const Case& wanted) {
 /// A rig with a closed-form model, so that a survey is fast.
 const rig::Rig& quick() {
   static const auto rig = [] {
-    auto text = text::read_file(root + "/deploy/rigs/simulated.toml");
+    auto text = system::read_file(root + "/deploy/rigs/simulated.toml");
     for (const auto& [from, to] : {std::pair{"edges = \"clamped\"", "edges = \"supported\""},
                                    std::pair{"thickness_mm = 2.0", "thickness_mm = 4.2"}})
       text.replace(text.find(from), std::string(from).size(), to);

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <random>
 
-#include "station/app/prepare.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
@@ -21,7 +21,7 @@ const char* const kLong = std::getenv("TURNPOINT_KILLS");
 int kills_wanted() { return kLong != nullptr ? std::atoi(kLong) : 10; }
 
 session::Setup setup_for(const std::string& protocol, const std::string& db) {
-  app::RunRequest request;
+  setup::RunRequest request;
   request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol;
   request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
   request.participant = "P01";
@@ -29,7 +29,7 @@ session::Setup setup_for(const std::string& protocol, const std::string& db) {
   request.observer = "sim";
   request.seed = 42;
   request.headless = true;
-  return app::prepare(request);
+  return setup::prepare(request);
 }
 
 /// Begins a session, or continues the interrupted one, and runs it to its end.
@@ -62,8 +62,8 @@ bool killed_on_the_way(const session::Setup& setup, useconds_t after_us) {
   return WIFSIGNALED(status);
 }
 
-std::vector<store::TrialRow> trials_of(const std::string& db, const std::string& id) {
-  std::vector<store::TrialRow> trials;
+std::vector<records::TrialRow> trials_of(const std::string& db, const std::string& id) {
+  std::vector<records::TrialRow> trials;
   for (const auto& block : store::read_session(db, id).blocks)
     for (const auto& trial : block.trials)
       if (trial.type != terms::TrialType::warmup) trials.push_back(trial);
@@ -71,7 +71,7 @@ std::vector<store::TrialRow> trials_of(const std::string& db, const std::string&
 }
 
 /// Compares what a trial presented and its result, but not its times.
-void check_equal(const store::TrialRow& a, const store::TrialRow& b) {
+void check_equal(const records::TrialRow& a, const records::TrialRow& b) {
   CHECK(a.trial_in_block == b.trial_in_block);
   CHECK(a.type == b.type);
   CHECK(a.procedure == b.procedure);
@@ -116,8 +116,8 @@ TEST_CASE("sessions killed at random moments and gone on with equal the unbroken
     auto raw = sample::raw(db);
     CHECK(raw.text("PRAGMA integrity_check") == "ok");
     for (const auto& session : store::list_sessions(db)) {
-      if (session.status == store::SessionStatus::abandoned) continue;
-      CHECK(session.status == store::SessionStatus::completed);
+      if (session.status == records::SessionStatus::abandoned) continue;
+      CHECK(session.status == records::SessionStatus::completed);
       resumed += session.segments > 1 ? 1 : 0;
       const auto trials = trials_of(db, session.session_id);
       REQUIRE(trials.size() == expected.size());

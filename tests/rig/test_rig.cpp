@@ -5,6 +5,7 @@
 #include <system_error>
 
 #include "station/rig/rig.hpp"
+#include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 const std::string simulated = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
 
-std::string source() { return text::read_file(simulated); }
+std::string source() { return system::read_file(simulated); }
 
 std::string replaced(std::string where, const std::string& from, const std::string& to) {
   const auto at = where.find(from);

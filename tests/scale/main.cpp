@@ -15,11 +15,11 @@ using namespace turnpoint;
 namespace {
 
 void begin(const std::string& path) {
-  store::SessionStart start;
+  records::SessionStart start;
   start.participant = "P99999";
   start.protocol_id = "demo";
   auto log = store::SessionLog::begin(path, start, {});
-  log.finish(store::SessionStatus::stopped, "");
+  log.finish(records::SessionStatus::stopped, "");
 }
 
 int run(const std::string& what, int argc, char** argv) {

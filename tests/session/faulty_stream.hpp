@@ -55,7 +55,7 @@ class FaultyStream : public turnpoint::drive::Stream {
   std::optional<std::int64_t> time_of(std::int64_t frame) override { return real_->time_of(frame); }
   std::optional<std::int64_t> frame_at(std::int64_t time_ns) override { return real_->frame_at(time_ns); }
   std::optional<turnpoint::drive::MeasuredRate> measured_rate() override { return real_->measured_rate(); }
-  turnpoint::drive::Rights rights() const override { return real_->rights(); }
+  turnpoint::system::Rights rights() const override { return real_->rights(); }
   const turnpoint::drive::StreamConfig& config() const override { return real_->config(); }
 
  private:

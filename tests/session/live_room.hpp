@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "station/drive/monotonic.hpp"
 #include "station/session/session.hpp"
 #include "station/store/read.hpp"
+#include "station/system/clocks.hpp"
 #include "tests/support/shared_lines.hpp"
 
 namespace turnpoint::live_room {
@@ -64,14 +64,14 @@ procedures = ["levels"]
 /// The person in the room. Gets each page on the session's thread, and may push inputs and move lines.
 struct Room : session::Display {
   session::Inputs inputs;
-  std::shared_ptr<panel::SimulatedLines> lines = std::make_shared<panel::SimulatedLines>(SharedLines::count);
+  std::shared_ptr<lines::SimulatedLines> lines = std::make_shared<lines::SimulatedLines>(SharedLines::count);
   std::vector<session::Page> pages;
   std::function<void(const session::Page&)> reacts;
   int stimuli = 0;
 
   void push(InputKind kind, int value = 0) {
     session::Input input;
-    input.time_ns = drive::monotonic_ns();
+    input.time_ns = system::monotonic_ns();
     input.kind = kind;
     input.value = value;
     inputs.push(input);
@@ -94,12 +94,12 @@ struct Room : session::Display {
   session::Devices devices() {
     session::Devices devices;
     devices.amplifier = guarded(lines);
-    devices.panel =
-        panel::open_panel(panel::ButtonsConfig{}, panel::ContactConfig{}, session::handlers_for(inputs));
+    devices.buttons =
+        lines::open_buttons(lines::ButtonsConfig{}, lines::ContactConfig{}, session::handlers_for(inputs));
     return devices;
   }
 
-  std::vector<panel::SimulatedLines::Driven> enables() const {
+  std::vector<lines::SimulatedLines::Driven> enables() const {
     auto driven = lines->driven();
     std::erase_if(driven, [](const auto& change) { return change.line != SharedLines::enable; });
     return driven;
@@ -122,15 +122,16 @@ inline session::Setup live_setup(const std::string& database, const std::string&
   return setup;
 }
 
-inline std::vector<store::EventRow> events_of(const std::string& database, const session::Summary& summary,
-                                              const std::string& kind) {
+inline std::vector<records::EventRow> events_of(const std::string& database, const session::Summary& summary,
+                                                const std::string& kind) {
   auto events = store::read_session(database, summary.session_id).events;
   std::erase_if(events, [&](const auto& event) { return event.kind != kind; });
   return events;
 }
 
-inline std::vector<store::TrialRow> trials_of(const std::string& database, const session::Summary& summary) {
-  std::vector<store::TrialRow> all;
+inline std::vector<records::TrialRow> trials_of(const std::string& database,
+                                                const session::Summary& summary) {
+  std::vector<records::TrialRow> all;
   for (const auto& block : store::read_session(database, summary.session_id).blocks)
     all.insert(all.end(), block.trials.begin(), block.trials.end());
   return all;

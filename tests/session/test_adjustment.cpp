@@ -11,14 +11,14 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "station/app/operator_live.hpp"
-#include "station/app/prepare.hpp"
-#include "station/app/resume.hpp"
+#include "station/desk/live_view.hpp"
 #include "station/procedure/adjustment.hpp"
 #include "station/session/session.hpp"
-#include "station/session/slider.hpp"
+#include "station/setup/prepare.hpp"
+#include "station/setup/resume.hpp"
 #include "station/store/read.hpp"
 #include "station/text/number.hpp"
+#include "station/trial/slider.hpp"
 #include "tests/session/faulty_stream.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
@@ -50,18 +50,18 @@ struct Pages : session::Display {
 
 session::Setup setup_in(const Folder& folder, const std::string& observer) {
   const std::string source = TURNPOINT_SOURCE_DIR;
-  app::RunRequest request;
+  setup::RunRequest request;
   request.protocol = source + "/protocols/boundary-adjustment.toml";
   request.rig = source + "/deploy/rigs/simulated.toml";
   request.participant = "P01";
   request.database = (folder.path / "a.sqlite").string();
   request.observer = observer;
   request.seed = 7;
-  return app::prepare(request);
+  return setup::prepare(request);
 }
 
-std::vector<store::TrialRow> trials_of(const session::Setup& setup, const std::string& session) {
-  std::vector<store::TrialRow> all;
+std::vector<records::TrialRow> trials_of(const session::Setup& setup, const std::string& session) {
+  std::vector<records::TrialRow> all;
   for (const auto& block : store::read_session(setup.database, session).blocks)
     for (const auto& trial : block.trials) all.push_back(trial);
   return all;
@@ -70,7 +70,7 @@ std::vector<store::TrialRow> trials_of(const session::Setup& setup, const std::s
 }  // namespace
 
 TEST_CASE("a slider keeps to its steps and its range, and the surface follows at its own pace", "[session]") {
-  session::Slider slider({-25, 25, 0.5, -30, 30}, -20);
+  trial::Slider slider({-25, 25, 0.5, -30, 30}, -20);
   CHECK_FALSE(slider.glide_due_ns());
   slider.move(3.3);
   CHECK(slider.setting() == 3.5);
@@ -92,7 +92,7 @@ TEST_CASE("settings come from their file into rows, with what the surface did", 
   session::Inputs inputs;
   Pages pages;
   const auto summary = session::run(setup, &pages, inputs);
-  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.status == records::SessionStatus::completed);
   const auto trials = trials_of(setup, summary.session_id);
   REQUIRE(trials.size() == 18);
   double sum = 0;
@@ -143,10 +143,10 @@ TEST_CASE("an adjustment that was interrupted goes on with the same settings", "
   cut.left = 40;
   CHECK_THROWS(session::run(setup, &cut, inputs));
   std::ostringstream messages;
-  const auto resumed = app::prepare_resume({setup.database, "", "resume", true}, messages);
+  const auto resumed = setup::prepare_resume({setup.database, "", "resume", true}, messages);
   REQUIRE(resumed);
   const auto summary = session::run(*resumed, nullptr, inputs);
-  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.status == records::SessionStatus::completed);
   REQUIRE(summary.estimates.size() == 1);
 }
 
@@ -168,7 +168,7 @@ struct Tone {
   double frequency_Hz = 0, full_scale = 0;
 };
 
-Tone read_tone(const app::LiveState& state) {
+Tone read_tone(const desk::LiveState& state) {
   for (const auto& [label, value] : state.scene)
     if (label == "Tone")
       return {1e3 * std::strtod(value.c_str(), nullptr),
@@ -179,25 +179,25 @@ Tone read_tone(const app::LiveState& state) {
 /// An operator who looks at the live view whenever the session reports something.
 struct Operator : session::Monitor {
   explicit Operator(const session::Setup& setup)
-      : view(setup.protocol, setup.rig, [this](app::LiveState state) {
+      : view(setup.protocol, setup.rig, [this](desk::LiveState state) {
           const std::lock_guard lock(mutex);
           newest = std::move(state);
           ++told;
           changed.notify_one();
         }) {}
 
-  void trial_begins(const session::TrialSpec& spec, const protocol::Block& block,
+  void trial_begins(const trial::TrialSpec& spec, const protocol::Block& block,
                     const session::PlanAhead::Plans& plans) override {
     look([&] { view.trial_begins(spec, block, plans); });
     begun.push_back(read_tone(newest));
   }
-  void surface_follows(const session::TrialSpec& spec, const scene::DrivePlan& plan) override {
+  void surface_follows(const trial::TrialSpec& spec, const scene::DrivePlan& plan) override {
     look([&] { view.surface_follows(spec, plan); });
     followed.push_back(read_tone(newest));
     headings.push_back(newest.heading);
     next_move();
   }
-  void trial_ended(const session::TrialSpec&, const store::TrialRow&) override {}
+  void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override {}
 
   /// After ten seconds the test fails; the limit is not a measurement.
   void look(const std::function<void()>& tell) {
@@ -215,9 +215,9 @@ struct Operator : session::Monitor {
   std::vector<std::string> headings;
   std::mutex mutex;
   std::condition_variable changed;
-  app::LiveState newest;
+  desk::LiveState newest;
   int told = 0;
-  app::LiveView view;  // The last member, because its thread writes to the others.
+  desk::LiveView view;  // The last member, because its thread writes to the others.
 };
 
 }  // namespace
@@ -232,7 +232,7 @@ TEST_CASE("while the slider moves, the operator sees the tone that is played", "
   std::size_t moved = 0;
   const auto move = [&] {
     session::Input input;
-    input.time_ns = drive::monotonic_ns();
+    input.time_ns = system::monotonic_ns();
     const bool done = moved % (moves.size() + 1) == moves.size();
     input.kind = done ? session::InputKind::next : session::InputKind::slider;
     if (!done) input.number = moves[moved % (moves.size() + 1)];
@@ -251,7 +251,7 @@ TEST_CASE("while the slider moves, the operator sees the tone that is played", "
     return std::make_unique<KeptStream>(drive::open_realtime(config), none, played);
   };
   const auto summary = session::run(setup, &room, room.inputs, std::move(devices), &sees);
-  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.status == records::SessionStatus::completed);
   const auto trials = live_room::trials_of(setup.database, summary);
   REQUIRE(trials.size() == 2);
   REQUIRE(sees.begun.size() == 2);

@@ -8,7 +8,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/plan_ahead.hpp"
-#include "station/session/schedule.hpp"
+#include "station/session/presented.hpp"
 #include "tests/drive/fake_pcm.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/session/many_tones.hpp"
@@ -61,9 +61,9 @@ std::vector<std::int64_t> pulses() {
 struct Trial {
   Trial(const rig::Rig& rig, const protocol::Protocol& protocol)
       : director(protocol, 0, 3), plans(rig, protocol, 3), spec(*director.next()) {}
-  session::Director director;
+  trial::Director director;
   session::PlanAhead plans;
-  session::TrialSpec spec;
+  trial::TrialSpec spec;
 };
 
 }  // namespace
@@ -203,25 +203,25 @@ struct SteppedStream : drive::DeviceStream {
 
 /// The guard's rules without a thread, on the card's clock.
 struct RuledAmplifier : drive::Amplifier {
-  using Answer = std::optional<panel::Guard::Refusal>;
+  using Answer = std::optional<lines::Guard::Refusal>;
   static Refusal refusal(const Answer& why) {
     return why ? Refusal(terms::Fault{why->kind, ""}) : std::nullopt;
   }
-  Refusal arm() override { return refusal(guard.arm(drive::monotonic_ns())); }
+  Refusal arm() override { return refusal(guard.arm(system::monotonic_ns())); }
   void disarm() noexcept override { guard.disarm(); }
-  Refusal enable() override { return refusal(guard.enable(drive::monotonic_ns())); }
+  Refusal enable() override { return refusal(guard.enable(system::monotonic_ns())); }
   void disable() noexcept override { guard.disable(); }
-  void trip(FaultKind kind, std::string_view) noexcept override { guard.trip(drive::monotonic_ns(), kind); }
+  void trip(FaultKind kind, std::string_view) noexcept override { guard.trip(system::monotonic_ns(), kind); }
   Refusal clear() override { return refusal(guard.clear()); }
-  void audio_alive() noexcept override { guard.audio_alive(drive::monotonic_ns()); }
-  void session_alive() noexcept override { guard.session_alive(drive::monotonic_ns()); }
+  void audio_alive() noexcept override { guard.audio_alive(system::monotonic_ns()); }
+  void session_alive() noexcept override { guard.session_alive(system::monotonic_ns()); }
   void page_alive(std::int64_t time_ns) noexcept override { guard.page_alive(time_ns); }
   drive::AmplifierState state() const noexcept override { return guard.state(); }
   drive::AmplifierFault fault() const override {
     return {{guard.fault().kind, guard.fault().detail}, guard.fault().time_ns};
   }
   std::int64_t reaction_ns() const noexcept override { return -1; }
-  panel::Guard guard;
+  lines::Guard guard;
 };
 
 /// A live session of two trials on the card. The participant answers 0.3 s after an onset.
@@ -244,20 +244,21 @@ struct CardSession {
   }
 
   void later(double s, std::function<void()> happens) {
-    agenda.emplace_back(drive::monotonic_ns() + static_cast<std::int64_t>(1e9 * s), std::move(happens));
+    agenda.emplace_back(system::monotonic_ns() + static_cast<std::int64_t>(1e9 * s), std::move(happens));
   }
 
-  std::vector<store::TrialRow> runs() {
+  std::vector<records::TrialRow> runs() {
     session::Devices devices;
     devices.amplifier = std::make_unique<RuledAmplifier>();
     devices.clocks = [] {
-      const auto now_ns = drive::monotonic_ns();
-      return session::Clocks{now_ns, now_ns, now_ns};
+      const auto now_ns = system::monotonic_ns();
+      return system::Clocks{now_ns, now_ns, now_ns};
     };
     devices.open_stream = [this](const drive::StreamConfig& config) {
       return std::make_unique<SteppedStream>(config, holding, [this] {
-        const auto due = std::find_if(agenda.begin(), agenda.end(),
-                                      [](const auto& entry) { return entry.first <= drive::monotonic_ns(); });
+        const auto due = std::find_if(agenda.begin(), agenda.end(), [](const auto& entry) {
+          return entry.first <= system::monotonic_ns();
+        });
         if (due == agenda.end()) return;
         const auto happens = due->second;
         agenda.erase(due);
@@ -273,7 +274,7 @@ struct CardSession {
       if (page.kind != PageKind::stimulus) room.cooperate(page);
     };
     summary = session::run(setup, &room, room.inputs, std::move(devices));
-    CHECK(summary.status == store::SessionStatus::completed);
+    CHECK(summary.status == records::SessionStatus::completed);
     return live_room::trials_of(setup.database, summary);
   }
 };

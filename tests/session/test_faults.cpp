@@ -22,7 +22,7 @@ namespace {
 
 /// Lines whose enable output is broken when the test says so.
 struct BrokenLines : SharedLines {
-  BrokenLines(const std::shared_ptr<panel::SimulatedLines>& shared, std::atomic<bool>& broken_)
+  BrokenLines(const std::shared_ptr<lines::SimulatedLines>& shared, std::atomic<bool>& broken_)
       : SharedLines(shared), broken(broken_) {}
   std::optional<bool> read_back(int index) override {
     return broken ? std::optional(false) : SharedLines::read_back(index);
@@ -47,7 +47,7 @@ struct Mishap {
 
   session::Devices devices() {
     auto devices = room.devices();
-    devices.amplifier = panel::guard_amplifier(
+    devices.amplifier = lines::guard_amplifier(
         [this] {
           static_cast<void>(room.lines->level(0));
           return std::make_unique<BrokenLines>(room.lines, enable_broken);
@@ -57,7 +57,7 @@ struct Mishap {
       return std::make_unique<FaultyStream>(drive::open_realtime(config), misfortunes);
     };
     devices.clocks = [this] {
-      auto clocks = session::read_clocks();
+      auto clocks = system::read_clocks();
       clocks.boottime_ns += slept_ns;
       clocks.realtime_ns += slept_ns;
       return clocks;
@@ -80,7 +80,7 @@ struct Mishap {
   session::Page runs(session::Devices with) {
     room.reacts = [this](const auto& page) { react(page); };
     const auto summary = session::run(setup, &room, room.inputs, std::move(with));
-    CHECK(summary.status == store::SessionStatus::completed);
+    CHECK(summary.status == records::SessionStatus::completed);
     const auto trials = trials_of(setup.database, summary);
     REQUIRE(trials.size() == 3);
     CHECK(trials[0].outcome == terms::Outcome::fault);
@@ -97,16 +97,18 @@ struct Mishap {
 
 /// Waits until the guard has acted. After ten seconds the test fails; the limit is not a measurement.
 void until_low(const Room& room) {
-  const auto end_ns = drive::monotonic_ns() + 10'000'000'000;
-  while (room.lines->level(SharedLines::enable) && drive::monotonic_ns() < end_ns) std::this_thread::yield();
+  const auto end_ns = system::monotonic_ns() + 10'000'000'000;
+  while (room.lines->level(SharedLines::enable) && system::monotonic_ns() < end_ns) std::this_thread::yield();
 }
 
 }  // namespace
 
 TEST_CASE("the amplifier's own fault has its page", "[session][live][fault]") {
   Mishap mishap;
-  mishap.strikes = [&] { mishap.room.lines->set(SharedLines::fault, true, drive::monotonic_ns()); };
-  mishap.operator_repairs = [&] { mishap.room.lines->set(SharedLines::fault, false, drive::monotonic_ns()); };
+  mishap.strikes = [&] { mishap.room.lines->set(SharedLines::fault, true, system::monotonic_ns()); };
+  mishap.operator_repairs = [&] {
+    mishap.room.lines->set(SharedLines::fault, false, system::monotonic_ns());
+  };
   const auto page = mishap.runs();
   CHECK(page.fault == FaultKind::amplifier);
   CHECK(page.detail.find("amplifier off after") == 0);
@@ -114,8 +116,8 @@ TEST_CASE("the amplifier's own fault has its page", "[session][live][fault]") {
 
 TEST_CASE("the stop has its page", "[session][live][fault]") {
   Mishap mishap;
-  mishap.strikes = [&] { mishap.room.lines->set(SharedLines::stop, true, drive::monotonic_ns()); };
-  mishap.operator_repairs = [&] { mishap.room.lines->set(SharedLines::stop, false, drive::monotonic_ns()); };
+  mishap.strikes = [&] { mishap.room.lines->set(SharedLines::stop, true, system::monotonic_ns()); };
+  mishap.operator_repairs = [&] { mishap.room.lines->set(SharedLines::stop, false, system::monotonic_ns()); };
   CHECK(mishap.runs().fault == FaultKind::stop_pressed);
 }
 
@@ -151,7 +153,7 @@ TEST_CASE("a silent audio thread has its page", "[session][live][fault][threads]
       [&amplifier = *devices.amplifier, &lives = mishap.audio_lives](const std::stop_token& stop) {
         while (!stop.stop_requested()) {
           if (lives) amplifier.audio_alive();
-          drive::sleep_until_ns(drive::monotonic_ns() + 2'000'000);
+          system::sleep_until_ns(system::monotonic_ns() + 2'000'000);
         }
       });
   mishap.strikes = [&] { mishap.audio_lives = false; };
@@ -168,9 +170,9 @@ TEST_CASE("a session that hangs has its page", "[session][live][fault][threads]"
 TEST_CASE("a participant's page that hangs has its page", "[session][live][fault]") {
   Mishap mishap;
   auto& inputs = mishap.room.inputs;
-  inputs.page_alive(drive::monotonic_ns() + 3'600'000'000'000);
-  mishap.strikes = [&] { inputs.page_alive(drive::monotonic_ns() - 1'900'000'000); };
-  mishap.operator_repairs = [&] { inputs.page_alive(drive::monotonic_ns() + 3'600'000'000'000); };
+  inputs.page_alive(system::monotonic_ns() + 3'600'000'000'000);
+  mishap.strikes = [&] { inputs.page_alive(system::monotonic_ns() - 1'900'000'000); };
+  mishap.operator_repairs = [&] { inputs.page_alive(system::monotonic_ns() + 3'600'000'000'000); };
   CHECK(mishap.runs().fault == FaultKind::page_silent);
 }
 
@@ -217,7 +219,7 @@ TEST_CASE("an amplifier that nobody has armed has its page", "[session][live][fa
   mishap.strikes = [&] { mishap.room.push(InputKind::disarm); };
   mishap.room.reacts = [&](const auto& page) { mishap.react(page); };
   const auto summary = session::run(mishap.setup, &mishap.room, mishap.room.inputs, mishap.devices());
-  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.status == records::SessionStatus::completed);
   CHECK(mishap.room.pages.front().fault == FaultKind::disarmed);  // before the first arming
   REQUIRE_FALSE(mishap.faults.empty());
   CHECK(mishap.faults.front().fault == FaultKind::disarmed);
@@ -239,7 +241,7 @@ TEST_CASE("a limit of the rig has its page; the session ends there, with the rea
   mishap.setup.rig.limits.session_minutes = 2.5 / 60;
   mishap.room.reacts = [&](const auto& page) { mishap.room.cooperate(page); };
   const auto summary = session::run(mishap.setup, &mishap.room, mishap.room.inputs, mishap.devices());
-  CHECK(summary.status == store::SessionStatus::interrupted);
+  CHECK(summary.status == records::SessionStatus::interrupted);
   const auto& pages = mishap.room.pages;
   const auto page = std::find_if(pages.begin(), pages.end(),
                                  [](const auto& shown) { return shown.fault == FaultKind::limits; });

@@ -3,8 +3,8 @@
 #include <fstream>
 #include <map>
 
-#include "station/app/prepare.hpp"
 #include "station/session/session.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
 #include "tests/session/many_tones.hpp"
 #include "tests/support/catch.hpp"
@@ -25,11 +25,11 @@ std::string shipped(const std::string& protocol) {
   return std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol + ".toml";
 }
 
-std::vector<store::TrialRow> session_of(const std::string& protocol, const Buffer& buffer, double delay_s,
-                                        const std::string& rig = std::string(TURNPOINT_SOURCE_DIR) +
-                                                                 "/deploy/rigs/simulated.toml") {
+std::vector<records::TrialRow> session_of(const std::string& protocol, const Buffer& buffer, double delay_s,
+                                          const std::string& rig = std::string(TURNPOINT_SOURCE_DIR) +
+                                                                   "/deploy/rigs/simulated.toml") {
   const TemporaryFolder folder;
-  app::RunRequest request;
+  setup::RunRequest request;
   request.protocol = protocol;
   request.rig = rig;
   request.participant = "P01";
@@ -37,21 +37,21 @@ std::vector<store::TrialRow> session_of(const std::string& protocol, const Buffe
   request.observer = "sim";
   request.seed = 5;
   request.headless = true;
-  auto setup = app::prepare(request);
+  auto setup = setup::prepare(request);
   setup.rig.output.period_frames = buffer.period_frames;
   setup.rig.output.periods = buffer.periods;
   setup.rig.output.converter_delay_s = delay_s;
   session::Inputs nobody;
   const auto summary = session::run(setup, nullptr, nobody);
-  REQUIRE(summary.status == store::SessionStatus::completed);
-  std::vector<store::TrialRow> trials;
+  REQUIRE(summary.status == records::SessionStatus::completed);
+  std::vector<records::TrialRow> trials;
   for (const auto& block : store::read_session(request.database, summary.session_id).blocks)
     trials.insert(trials.end(), block.trials.begin(), block.trials.end());
   return trials;
 }
 
 /// First frame of each interval.
-std::map<int, std::int64_t> onsets(const store::TrialRow& trial) {
+std::map<int, std::int64_t> onsets(const records::TrialRow& trial) {
   std::map<int, std::int64_t> first;
   for (const auto& tone : trial.tones) first.try_emplace(tone.interval_index, tone.onset_frame);
   return first;
@@ -121,7 +121,7 @@ TEST_CASE("simulated sessions have the latency of the rig's buffer", "[session][
   int later = 0;
   for (std::size_t i = 0; i < short_.size(); ++i) {
     REQUIRE(short_[i].tones.size() == long_[i].tones.size());
-    const auto since = [](const store::TrialRow& trial) {
+    const auto since = [](const records::TrialRow& trial) {
       return trial.tones.back().onset_frame - trial.tones.front().onset_frame;
     };
     if (short_[i].tones.back().scene_index == 0) continue;

@@ -4,8 +4,8 @@
 #include <thread>
 #include <utility>
 
-#include "station/app/prepare.hpp"
-#include "station/panel/line_panel.hpp"
+#include "station/lines/watched_lines.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/text/problem.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
@@ -25,7 +25,7 @@ TEST_CASE("a live session goes from the operator's arming to answers by buttons,
   Room room;
   room.reacts = [&room](const auto& page) { room.cooperate(page); };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.status == records::SessionStatus::completed);
   CHECK(room.pages.front().kind == PageKind::fault);  // there is no page before the operator has armed
   CHECK(room.pages.front().amplifier == "disarmed");
   CHECK(room.heartbeats() > 20);
@@ -88,19 +88,19 @@ TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the
   std::int64_t pressed_ns = 0;
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) {
-      pressed_ns = drive::monotonic_ns();
+      pressed_ns = system::monotonic_ns();
       return room.lines->set(SharedLines::stop, true, pressed_ns);
     }
     if (page.kind == PageKind::fault && page.fault == session::FaultKind::stop_pressed &&
         room.lines->level(SharedLines::stop)) {
       // too early: the stop is still pressed
       if (page.detail.find("refused") == std::string::npos) return room.push(InputKind::arm);
-      room.lines->set(SharedLines::stop, false, drive::monotonic_ns());
+      room.lines->set(SharedLines::stop, false, system::monotonic_ns());
     }
     room.cooperate(page);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.status == records::SessionStatus::completed);
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 3);
   CHECK(trials[0].outcome == terms::Outcome::fault);
@@ -133,7 +133,7 @@ TEST_CASE(
     room.cooperate(page);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.status == records::SessionStatus::completed);
   CHECK(refused >= 2);
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 3);
@@ -152,16 +152,16 @@ TEST_CASE("faults on a fault's page are mended with it, not one after another", 
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.push(InputKind::fault);
     if (page.kind == PageKind::fault && room.stimuli == 1 && !std::exchange(pressed, true)) {
       CHECK(page.amplifier.empty());  // still armed: the page offers Continue
-      return room.lines->set(SharedLines::stop, true, drive::monotonic_ns());
+      return room.lines->set(SharedLines::stop, true, system::monotonic_ns());
     }
     if (page.kind == PageKind::fault && pressed && room.lines->level(SharedLines::stop)) {
-      room.lines->set(SharedLines::stop, false, drive::monotonic_ns());
+      room.lines->set(SharedLines::stop, false, system::monotonic_ns());
       room.push(InputKind::fault);  // a third fault, before anybody has armed
     }
     room.cooperate(page);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.status == records::SessionStatus::completed);
   const auto is = [](PageKind kind) { return [kind](const auto& page) { return page.kind == kind; }; };
   const auto paused = std::find_if(room.pages.begin(), room.pages.end(), is(PageKind::paused));
   REQUIRE(paused != room.pages.end());
@@ -172,7 +172,7 @@ TEST_CASE("who goes on before the buttons are back is told what is missing", "[s
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
-  const auto buttons = std::make_shared<panel::SimulatedLines>(2);
+  const auto buttons = std::make_shared<lines::SimulatedLines>(2);
   int told = 0;
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return buttons->remove();
@@ -181,21 +181,21 @@ TEST_CASE("who goes on before the buttons are back is told what is missing", "[s
       buttons->put_back();
     }
     if (page.kind == PageKind::stimulus) {
-      buttons->pulse(1, drive::monotonic_ns(), 3000);  // interference on the other button
-      return buttons->set(0, true, drive::monotonic_ns());
+      buttons->pulse(1, system::monotonic_ns(), 3000);  // interference on the other button
+      return buttons->set(0, true, system::monotonic_ns());
     }
     if (page.kind == PageKind::interval || page.kind == PageKind::feedback)
-      buttons->set(0, false, drive::monotonic_ns());
+      buttons->set(0, false, system::monotonic_ns());
     room.cooperate(page);
   };
   auto devices = room.devices();
-  panel::LinePanel plan;
+  lines::WatchedLines plan;
   plan.lines = 2;
   plan.button_rules.refractory_ns = 0;
   plan.names = {"left", "right"};
-  devices.panel = panel::watch_lines(opener(buttons), plan, session::handlers_for(room.inputs));
+  devices.buttons = lines::watch_lines(opener(buttons), plan, session::handlers_for(room.inputs));
   const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
-  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.status == records::SessionStatus::completed);
   CHECK(told >= 3);
   const auto trials = trials_of(setup.database, summary);
   REQUIRE(trials.size() == 3);
@@ -217,7 +217,7 @@ TEST_CASE("the operator's disarming voids the trial; arming again goes on", "[se
     room.cooperate(page);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.status == records::SessionStatus::completed);
   CHECK(summary.voided == 1);
   CHECK(summary.answered == 2);
 }
@@ -241,9 +241,9 @@ TEST_CASE("a finger's contacts are logged with their place", "[session][live]") 
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
   auto devices = room.devices();
-  auto* panel = devices.panel.get();
+  auto* panel = devices.buttons.get();
   room.reacts = [&](const auto& page) {
-    if (page.kind == PageKind::stimulus) panel->simulate(panel::Touch{drive::monotonic_ns(), true, 0.25});
+    if (page.kind == PageKind::stimulus) panel->simulate(touch::Contact{system::monotonic_ns(), true, 0.25});
     room.cooperate(page);
   };
   const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
@@ -273,7 +273,7 @@ TEST_CASE("the interval between trials stretches to keep the duty, and the log s
     if (page.kind == PageKind::instructions) {
       again.push(InputKind::next);
       stops = std::jthread([&again] {
-        drive::sleep_until_ns(drive::monotonic_ns() + 300'000'000);
+        system::sleep_until_ns(system::monotonic_ns() + 300'000'000);
         again.push(InputKind::stop);
       });
       return;
@@ -296,7 +296,7 @@ TEST_CASE("a session whose time is used up stops with the reason", "[session][li
   Room room;
   room.reacts = [&](const auto& page) { room.cooperate(page); };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == store::SessionStatus::interrupted);
+  CHECK(summary.status == records::SessionStatus::interrupted);
   CHECK(summary.reason.find("session's time") != std::string::npos);
 }
 
@@ -311,7 +311,7 @@ TEST_CASE("a live session refuses a low tone without a measured sound level, bef
   Room room;
   room.reacts = [&](const auto& page) { room.cooperate(page); };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
-  CHECK(summary.status == store::SessionStatus::interrupted);
+  CHECK(summary.status == records::SessionStatus::interrupted);
   CHECK(summary.reason.find("without a measured sound level") != std::string::npos);
   CHECK(room.stimuli == 0);
   CHECK(room.enables().empty());
@@ -321,7 +321,7 @@ TEST_CASE("what a session is allowed to resample nowhere plays through alsa-lib'
           "[session][live][alsa]") {
   ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
   const TemporaryFolder folder;
-  app::RunRequest request;
+  setup::RunRequest request;
   request.participant = "P01";
   request.database = folder / "a.sqlite";
   auto setup = live_setup(folder / "a.sqlite");
@@ -331,7 +331,7 @@ TEST_CASE("what a session is allowed to resample nowhere plays through alsa-lib'
   setup.observer = "sim";
   session::Inputs inputs;
   const auto summary = session::run(setup, nullptr, inputs);
-  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.status == records::SessionStatus::completed);
   CHECK(summary.answered == 2);
   setup.rig.output.uri = "alsa:rated";  // negative control: a resampler behind the same permission
   CHECK_THROWS(session::run(setup, nullptr, inputs));

@@ -5,9 +5,9 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "station/app/prepare.hpp"
-#include "station/app/resume.hpp"
 #include "station/session/session.hpp"
+#include "station/setup/prepare.hpp"
+#include "station/setup/resume.hpp"
 #include "station/store/read.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/stochastic_approximation.hpp"
@@ -30,8 +30,8 @@ struct Folder {
   std::string operator/(const std::string& name) const { return (path / name).string(); }
 };
 
-app::RunRequest request_for(const std::string& protocol, const std::string& database) {
-  app::RunRequest request;
+setup::RunRequest request_for(const std::string& protocol, const std::string& database) {
+  setup::RunRequest request;
   request.protocol = kSource + "/protocols/" + protocol + ".toml";
   request.rig = kSource + "/deploy/rigs/simulated.toml";
   request.participant = "P01";
@@ -41,13 +41,13 @@ app::RunRequest request_for(const std::string& protocol, const std::string& data
   return request;
 }
 
-session::Summary run(const app::RunRequest& request) {
+session::Summary run(const setup::RunRequest& request) {
   session::Inputs inputs;
-  return session::run(app::prepare(request), nullptr, inputs);
+  return session::run(setup::prepare(request), nullptr, inputs);
 }
 
-std::vector<store::TrialRow> trials_of(const std::string& database, const std::string& session) {
-  std::vector<store::TrialRow> all;
+std::vector<records::TrialRow> trials_of(const std::string& database, const std::string& session) {
+  std::vector<records::TrialRow> all;
   for (const auto& block : store::read_session(database, session).blocks)
     for (const auto& trial : block.trials) all.push_back(trial);
   return all;
@@ -56,11 +56,11 @@ std::vector<store::TrialRow> trials_of(const std::string& database, const std::s
 /// Counts its notifications.
 struct Watch : session::Monitor {
   std::vector<std::optional<double>> announced, ended;
-  void trial_begins(const session::TrialSpec& spec, const protocol::Block&,
+  void trial_begins(const trial::TrialSpec& spec, const protocol::Block&,
                     const session::PlanAhead::Plans&) override {
     announced.push_back(spec.level);
   }
-  void trial_ended(const session::TrialSpec&, const store::TrialRow& row) override {
+  void trial_ended(const trial::TrialSpec&, const records::TrialRow& row) override {
     ended.push_back(row.level);
   }
 };
@@ -79,7 +79,7 @@ struct Cut : session::Display {
 TEST_CASE("the demo runs from its file to rows in SQLite", "[session]") {
   const Folder folder;
   const auto summary = run(request_for("demo", folder / "a.sqlite"));
-  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.status == records::SessionStatus::completed);
   const auto trials = trials_of(folder / "a.sqlite", summary.session_id);
   REQUIRE(static_cast<int>(trials.size()) == summary.trials);
   for (const auto& trial : trials) {
@@ -99,7 +99,7 @@ void runs_to_its_end(const std::string& protocol) {
   const Folder folder;
   INFO(protocol);
   const auto summary = run(request_for(protocol, folder / "b.sqlite"));
-  CHECK(summary.status == store::SessionStatus::completed);
+  CHECK(summary.status == records::SessionStatus::completed);
   CHECK(summary.trials > 20);
 }
 
@@ -149,15 +149,15 @@ TEST_CASE("a session cut at any page goes on with the very trial that the unbrok
     const auto database = folder / ("cut" + std::to_string(page) + ".sqlite");
     Cut cut(page);
     session::Inputs inputs;
-    auto setup = app::prepare(request_for("demo", database));
+    auto setup = setup::prepare(request_for("demo", database));
     setup.protocol.resume.warmup = 0;
     CHECK_THROWS_AS(session::run(setup, &cut, inputs), std::runtime_error);
     std::ostringstream messages;
-    auto resumed = app::prepare_resume({database, "", "resume", true}, messages);
+    auto resumed = setup::prepare_resume({database, "", "resume", true}, messages);
     REQUIRE(resumed.has_value());
     resumed->protocol.resume.warmup = 0;
     const auto summary = session::run(*resumed, nullptr, inputs);
-    CHECK(summary.status == store::SessionStatus::completed);
+    CHECK(summary.status == records::SessionStatus::completed);
     const auto trials = trials_of(database, summary.session_id);
     REQUIRE(trials.size() == expected.size());
     for (std::size_t i = 0; i < trials.size(); ++i) {
@@ -188,12 +188,12 @@ TEST_CASE("an accelerated stochastic approximation cut in the middle of a track 
     const auto database = "cut" + std::to_string(page) + ".sqlite";
     Cut cut(page);
     session::Inputs inputs;
-    CHECK_THROWS_AS(session::run(app::prepare(request(database)), &cut, inputs), std::runtime_error);
+    CHECK_THROWS_AS(session::run(setup::prepare(request(database)), &cut, inputs), std::runtime_error);
     const auto before = store::list_sessions(folder / database).front().trials;
     CHECK(before > 8);
     CHECK(before + 4 < static_cast<int>(expected.size()));
     std::ostringstream messages;
-    auto resumed = app::prepare_resume({folder / database, "", "resume", true}, messages);
+    auto resumed = setup::prepare_resume({folder / database, "", "resume", true}, messages);
     REQUIRE(resumed.has_value());
     resumed->protocol.resume.warmup = 0;
     const auto summary = session::run(*resumed, nullptr, inputs);
@@ -212,10 +212,10 @@ TEST_CASE("a log that belongs to another protocol text is not continued", "[sess
   const Folder folder;
   Cut cut(30);
   session::Inputs inputs;
-  auto setup = app::prepare(request_for("demo", folder / "a.sqlite"));
+  auto setup = setup::prepare(request_for("demo", folder / "a.sqlite"));
   CHECK_THROWS(session::run(setup, &cut, inputs));
   std::ostringstream messages;
-  auto resumed = app::prepare_resume({folder / "a.sqlite", "", "resume", true}, messages);
+  auto resumed = setup::prepare_resume({folder / "a.sqlite", "", "resume", true}, messages);
   REQUIRE(resumed.has_value());
   for (auto& value : resumed->protocol.procedures.front().values) value *= 0.5;
   CHECK_THROWS_AS(session::run(*resumed, nullptr, inputs), std::runtime_error);
@@ -226,13 +226,13 @@ TEST_CASE("bad requests are refused all at once, and nothing is written", "[sess
   auto request = request_for("demo", folder / "a.sqlite");
   request.participant = "Jane Doe";
   request.language = "xx";
-  CHECK_THROWS_AS(app::prepare(request), text::BadInput);
+  CHECK_THROWS_AS(setup::prepare(request), text::BadInput);
   request.participant = "P01";
-  CHECK_THROWS_AS(app::prepare(request), text::BadInput);
+  CHECK_THROWS_AS(setup::prepare(request), text::BadInput);
   request.language.clear();
   request.observer.clear();
   request.mode = "live";
-  CHECK_THROWS_AS(app::prepare(request), text::BadInput);
+  CHECK_THROWS_AS(setup::prepare(request), text::BadInput);
   CHECK_FALSE(fs::exists(folder / "a.sqlite"));
 }
 
@@ -241,7 +241,7 @@ TEST_CASE("a monitor is told of every trial before and after, and changes none",
   Watch watch;
   session::Inputs inputs;
   const auto watched =
-      session::run(app::prepare(request_for("demo", folder / "a.sqlite")), nullptr, inputs, &watch);
+      session::run(setup::prepare(request_for("demo", folder / "a.sqlite")), nullptr, inputs, &watch);
   const auto alone = run(request_for("demo", folder / "b.sqlite"));
   CHECK(static_cast<int>(watch.ended.size()) == watched.trials);
   CHECK(watch.announced == watch.ended);
@@ -274,7 +274,7 @@ TEST_CASE("every fault says what happened, what is safe and what to do in each l
 TEST_CASE("the response device's latency and the consent form are stored, and no time is corrected",
           "[session]") {
   const Folder folder;
-  auto setup = app::prepare(request_for("demo", folder / "a.sqlite"));
+  auto setup = setup::prepare(request_for("demo", folder / "a.sqlite"));
   setup.response_offset_s = 0.0625;
   setup.consent_version = "2026-03";
   session::Inputs inputs;
@@ -298,10 +298,10 @@ TEST_CASE("a simulated session is not continued by another simulated observer", 
   const auto database = folder / "a.sqlite";
   Cut cut(30);
   session::Inputs inputs;
-  const auto setup = app::prepare(request_for("demo", database));
+  const auto setup = setup::prepare(request_for("demo", database));
   CHECK_THROWS_AS(session::run(setup, &cut, inputs), std::runtime_error);
   std::ostringstream messages;
-  auto resumed = app::prepare_resume({database, "", "resume", true}, messages);
+  auto resumed = setup::prepare_resume({database, "", "resume", true}, messages);
   REQUIRE(resumed.has_value());
   const auto before = store::list_sessions(database).front();
   REQUIRE(before.trials > 0);
@@ -312,5 +312,5 @@ TEST_CASE("a simulated session is not continued by another simulated observer", 
   CHECK(after.trials == before.trials);
   CHECK(after.segments == before.segments);
   resumed->observer = kept;
-  CHECK(session::run(*resumed, nullptr, inputs).status == store::SessionStatus::completed);
+  CHECK(session::run(*resumed, nullptr, inputs).status == records::SessionStatus::completed);
 }

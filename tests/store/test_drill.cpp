@@ -5,13 +5,15 @@
 #include <algorithm>
 
 #include "station/store/backup.hpp"
-#include "station/store/identity.hpp"
 #include "station/store/read.hpp"
 #include "station/store/withdraw.hpp"
+#include "station/system/clocks.hpp"
+#include "station/system/uuid.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::store;
+using namespace turnpoint::system;
 namespace fs = std::filesystem;
 
 namespace {

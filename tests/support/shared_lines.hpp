@@ -1,33 +1,33 @@
 #pragma once
 #include <memory>
 
-#include "station/panel/guarded_amplifier.hpp"
-#include "station/panel/simulated_lines.hpp"
+#include "station/lines/guarded_amplifier.hpp"
+#include "station/lines/simulated_lines.hpp"
 
 /// Lines for an amplifier with the real guard. The test moves them, and reads their log at the end.
-struct SharedLines : turnpoint::panel::Lines {
+struct SharedLines : turnpoint::lines::Lines {
   static constexpr int enable = 0, heartbeat = 1, fault = 2, stop = 3, count = 4;
 
-  explicit SharedLines(std::shared_ptr<turnpoint::panel::SimulatedLines> shared) : lines(std::move(shared)) {}
-  std::optional<turnpoint::panel::Edge> wait(std::int64_t timeout_ns, int wake) override {
+  explicit SharedLines(std::shared_ptr<turnpoint::lines::SimulatedLines> shared) : lines(std::move(shared)) {}
+  std::optional<turnpoint::lines::Edge> wait(std::int64_t timeout_ns, int wake) override {
     return lines->wait(timeout_ns, wake);
   }
   bool level(int index) override { return lines->level(index); }
   void drive(int index, int level) override { lines->drive(index, level); }
   std::optional<bool> read_back(int index) override { return lines->read_back(index); }
 
-  std::shared_ptr<turnpoint::panel::SimulatedLines> lines;
+  std::shared_ptr<turnpoint::lines::SimulatedLines> lines;
 };
 
 /// Requests the lines as from a real chip: fails while the chip is gone.
-inline turnpoint::panel::OpenLines opener(const std::shared_ptr<turnpoint::panel::SimulatedLines>& lines) {
+inline turnpoint::lines::OpenLines opener(const std::shared_ptr<turnpoint::lines::SimulatedLines>& lines) {
   return [lines] {
     static_cast<void>(lines->level(0));
     return std::make_unique<SharedLines>(lines);
   };
 }
 
-inline auto guarded(const std::shared_ptr<turnpoint::panel::SimulatedLines>& lines) {
-  return turnpoint::panel::guard_amplifier(
+inline auto guarded(const std::shared_ptr<turnpoint::lines::SimulatedLines>& lines) {
+  return turnpoint::lines::guard_amplifier(
       opener(lines), {SharedLines::enable, SharedLines::heartbeat, SharedLines::fault, SharedLines::stop});
 }

@@ -3,13 +3,13 @@
 #include <string>
 #include <utility>
 
-#include "station/text/toml.hpp"
+#include "station/system/read_file.hpp"
 
 /// The shipped staircase protocol with both of its tracks by accelerated stochastic approximation, of 20
 /// trials each.
 inline std::string stochastic_approximation() {
   auto source =
-      turnpoint::text::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-staircase.toml");
+      turnpoint::system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-staircase.toml");
   const std::pair<std::string, std::string> edits[] = {
       {"kind = \"up-down\"", "kind = \"accelerated-stochastic-approximation\"\ntarget = 0.794"},
       {"n_down = 3 ", "# "},

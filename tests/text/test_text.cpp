@@ -1,13 +1,10 @@
-#include <fstream>
 #include <limits>
-#include <system_error>
 
 #include "station/text/number.hpp"
 #include "station/text/problem.hpp"
 #include "station/text/sha256.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint::text;
 
@@ -96,20 +93,6 @@ TEST_CASE("an estimate is printed to the digits that its uncertainty leaves", "[
   CHECK(uncertainty(2, 1, 45) == 0.5);
   CHECK(uncertainty(0, 0, 0.06) == 0.015);
   CHECK(estimated(std::numeric_limits<double>::quiet_NaN(), 1) == "none");
-}
-
-TEST_CASE("what cannot be read to its end is an error and never an empty file", "[text]") {
-  CHECK_THROWS_AS(read_file("/proc/self/mem"), std::system_error);  // reading its first byte gives EIO
-  CHECK_THROWS_AS(read_file("/proc/self"), std::system_error);
-  CHECK_THROWS_AS(read_file("/dev/zero"), std::system_error);
-  CHECK_THROWS_AS(read_file("/nowhere/at/all"), std::system_error);
-}
-
-TEST_CASE("a file longer than its reader allows is an error", "[text]") {
-  const TemporaryFolder folder;
-  std::ofstream(folder / "a") << "0123456789";
-  CHECK(read_file(folder / "a", 10) == "0123456789");
-  CHECK_THROWS_AS(read_file(folder / "a", 9), std::system_error);
 }
 
 TEST_CASE("keys with too many parts and lists with too many items are refused at their place", "[text]") {

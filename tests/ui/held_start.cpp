@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "station/ui/platform.hpp"
+#include "station/ui/platform/platform.hpp"
 
 int main() {
   qputenv("QT_QPA_PLATFORM", "linuxfb:fb=/dev/null");

@@ -14,8 +14,8 @@ OperatorDesk::OperatorDesk(SessionBridge& bridge, QObject* parent) : QObject(par
   if (mistaken.open(QIODevice::WriteOnly)) mistaken.write("format = \"friction-protocol/1\"\nprotocl = 3\n");
   mistaken.close();
   operating_ = std::make_unique<OperatorController>(
-      app::StationRequest{folder_.path().toStdString(), TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml",
-                          folder_.filePath("lab.sqlite").toStdString()});
+      setup::StationRequest{folder_.path().toStdString(), TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml",
+                            folder_.filePath("lab.sqlite").toStdString()});
   connect(operating_.get(), &OperatorController::chosen, this, [this](const ChosenSession& session) {
     const auto& setup = session.setup;
     chosen_ = QString::fromStdString(setup.protocol.id + " " + setup.participant + " " + setup.language +
@@ -35,7 +35,7 @@ double OperatorDesk::keptLatencyMs() const {
 }
 
 void OperatorDesk::tellLive(const QString& heading) {
-  app::LiveState state;
+  desk::LiveState state;
   state.heading = heading.toStdString();
   live_.take(state);
 }

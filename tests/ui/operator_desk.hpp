@@ -3,10 +3,10 @@
 #include <QTemporaryDir>
 #include <memory>
 
-#include "station/ui/latency_controller.hpp"
-#include "station/ui/live_model.hpp"
-#include "station/ui/operator_controller.hpp"
-#include "station/ui/session_bridge.hpp"
+#include "station/ui/operator/latency_controller.hpp"
+#include "station/ui/operator/live_model.hpp"
+#include "station/ui/operator/operator_controller.hpp"
+#include "station/ui/participant/session_bridge.hpp"
 
 namespace turnpoint::ui {
 

@@ -4,14 +4,14 @@
 #include <condition_variable>
 #include <mutex>
 
-#include "station/app/prepare.hpp"
+#include "station/setup/prepare.hpp"
 
 namespace turnpoint::ui {
 
 namespace {
 
-app::RunRequest request_for(const std::string& protocol, const std::string& database) {
-  app::RunRequest request;
+setup::RunRequest request_for(const std::string& protocol, const std::string& database) {
+  setup::RunRequest request;
   request.protocol = TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml";
   request.rig = TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml";
   request.participant = "P03";
@@ -26,43 +26,43 @@ struct FirstTrials : session::Monitor {
   session::Monitor& to;
   int left;
   FirstTrials(session::Monitor& monitor, int trials) : to(monitor), left(trials) {}
-  void trial_begins(const session::TrialSpec& spec, const protocol::Block& block,
+  void trial_begins(const trial::TrialSpec& spec, const protocol::Block& block,
                     const session::PlanAhead::Plans& plans) override {
     to.trial_begins(spec, block, plans);
     if (left == 0) throw std::runtime_error("enough");
   }
-  void trial_ended(const session::TrialSpec& spec, const store::TrialRow& row) override {
+  void trial_ended(const trial::TrialSpec& spec, const records::TrialRow& row) override {
     --left;
     to.trial_ended(spec, row);
   }
 };
 
 struct Nobody : session::Monitor {
-  void trial_begins(const session::TrialSpec&, const protocol::Block&,
+  void trial_begins(const trial::TrialSpec&, const protocol::Block&,
                     const session::PlanAhead::Plans&) override {}
-  void trial_ended(const session::TrialSpec&, const store::TrialRow&) override {}
+  void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override {}
 };
 
-void run_first(const app::RunRequest& request, session::Monitor& monitor, int trials) {
+void run_first(const setup::RunRequest& request, session::Monitor& monitor, int trials) {
   session::Inputs inputs;
   FirstTrials first(monitor, trials);
   try {
-    session::run(app::prepare(request), nullptr, inputs, &first);
+    session::run(setup::prepare(request), nullptr, inputs, &first);
   } catch (const std::runtime_error&) {
   }
 }
 
 }  // namespace
 
-app::LiveState live_exhibit(const std::string& protocol, int trials) {
+desk::LiveState live_exhibit(const std::string& protocol, int trials) {
   const QTemporaryDir folder;
   const auto request = request_for(protocol, folder.filePath("a.sqlite").toStdString());
-  const auto setup = app::prepare(request);
+  const auto setup = setup::prepare(request);
   std::mutex mutex;
   std::condition_variable told;
-  app::LiveState state;
+  desk::LiveState state;
   int news = 0;
-  app::LiveView view(setup.protocol, setup.rig, [&](app::LiveState next) {
+  desk::LiveView view(setup.protocol, setup.rig, [&](desk::LiveState next) {
     const std::lock_guard lock(mutex);
     state = std::move(next);
     ++news;
@@ -74,12 +74,12 @@ app::LiveState live_exhibit(const std::string& protocol, int trials) {
   return state;
 }
 
-app::ReportPages report_exhibit(const std::string& protocol) {
+desk::ReportPages report_exhibit(const std::string& protocol) {
   const QTemporaryDir folder;
   const auto database = folder.filePath("a.sqlite").toStdString();
   session::Inputs inputs;
-  const auto summary = session::run(app::prepare(request_for(protocol, database)), nullptr, inputs);
-  return app::report_pages(database, summary.session_id);
+  const auto summary = session::run(setup::prepare(request_for(protocol, database)), nullptr, inputs);
+  return desk::report_pages(database, summary.session_id);
 }
 
 std::string interrupted_exhibit(const std::string& folder) {

@@ -1,16 +1,16 @@
 #pragma once
 #include <string>
 
-#include "station/app/operator_live.hpp"
-#include "station/app/operator_report.hpp"
+#include "station/desk/live_view.hpp"
+#include "station/desk/report_pages.hpp"
 
 namespace turnpoint::ui {
 
 /// What an operator would see of a session that a simulated observer went through, up to its trial `trials`.
-app::LiveState live_exhibit(const std::string& protocol, int trials);
+desk::LiveState live_exhibit(const std::string& protocol, int trials);
 
 /// The report of a whole simulated session of that protocol.
-app::ReportPages report_exhibit(const std::string& protocol);
+desk::ReportPages report_exhibit(const std::string& protocol);
 
 /// A database in a separate folder that contains an interrupted session of participant P03.
 std::string interrupted_exhibit(const std::string& folder);

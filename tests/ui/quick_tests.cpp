@@ -4,7 +4,7 @@
 #include <QQmlExtensionPlugin>
 #include <QtQuickTest>
 
-#include "station/ui/screen.hpp"
+#include "station/ui/platform/screen.hpp"
 #include "tests/ui/operator_desk.hpp"
 #include "tests/ui/page_inspector.hpp"
 #include "tests/ui/real_session.hpp"

@@ -3,7 +3,7 @@
 #include <QFile>
 #include <chrono>
 
-#include "station/app/prepare.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/store/export.hpp"
 #include "tests/support/shared_lines.hpp"
 
@@ -31,8 +31,8 @@ void RealSession::start(const QString& protocol) {
   failure_.clear();
   ++sessions_;
   protocol_ = protocol.section('.', 0, 0);
-  lines_ = std::make_shared<panel::SimulatedLines>(SharedLines::count);
-  app::RunRequest request;
+  lines_ = std::make_shared<lines::SimulatedLines>(SharedLines::count);
+  setup::RunRequest request;
   request.protocol = TURNPOINT_SOURCE_DIR "/tests/ui/" + protocol.toStdString();
   request.rig = TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml";
   request.participant = "T1";
@@ -42,7 +42,7 @@ void RealSession::start(const QString& protocol) {
     try {
       session::Devices devices;
       devices.amplifier = guarded(lines_);
-      session::run(app::prepare(request), &bridge_, inputs_, std::move(devices));
+      session::run(setup::prepare(request), &bridge_, inputs_, std::move(devices));
     } catch (const std::exception& error) {
       failure = error.what();
     }

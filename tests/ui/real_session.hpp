@@ -5,9 +5,9 @@
 #include <memory>
 #include <thread>
 
-#include "station/panel/simulated_lines.hpp"
+#include "station/lines/simulated_lines.hpp"
 #include "station/session/session.hpp"
-#include "station/ui/session_bridge.hpp"
+#include "station/ui/participant/session_bridge.hpp"
 #include "tests/store/failing_disk.hpp"
 
 namespace turnpoint::ui {
@@ -52,7 +52,7 @@ class RealSession : public QObject {
 
   QTemporaryDir folder_;
   FailingDisk disk_;
-  std::shared_ptr<panel::SimulatedLines> lines_;
+  std::shared_ptr<lines::SimulatedLines> lines_;
   session::Inputs inputs_;
   SessionBridge bridge_;
   int sessions_ = 0;

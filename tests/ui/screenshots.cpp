@@ -12,15 +12,15 @@
 #include <QTest>
 #include <cstdio>
 
-#include "station/ui/latency_controller.hpp"
-#include "station/ui/live_model.hpp"
-#include "station/ui/operator_controller.hpp"
-#include "station/ui/operator_lock.hpp"
-#include "station/ui/preview_controller.hpp"
-#include "station/ui/report_model.hpp"
-#include "station/ui/screen.hpp"
-#include "station/ui/session_bridge.hpp"
-#include "station/ui/start_controller.hpp"
+#include "station/ui/operator/latency_controller.hpp"
+#include "station/ui/operator/live_model.hpp"
+#include "station/ui/operator/operator_controller.hpp"
+#include "station/ui/operator/operator_lock.hpp"
+#include "station/ui/operator/preview_controller.hpp"
+#include "station/ui/operator/report_model.hpp"
+#include "station/ui/participant/session_bridge.hpp"
+#include "station/ui/participant/start_controller.hpp"
+#include "station/ui/platform/screen.hpp"
 #include "tests/ui/gallery.hpp"
 #include "tests/ui/operator_gallery.hpp"
 
@@ -107,7 +107,7 @@ class Camera {
   turnpoint::ui::LiveModel live_;
   turnpoint::ui::ReportModel report_;
   StartController start_;
-  turnpoint::ui::OperatorLock lock_{turnpoint::app::OperatorCode()};
+  turnpoint::ui::OperatorLock lock_{turnpoint::desk::OperatorCode()};
   QQmlApplicationEngine engine_;
   QQuickWindow* window_ = nullptr;
   int count_ = 0;
@@ -142,7 +142,7 @@ class OperatorCamera {
     delete item;
   }
 
-  void shoot_live(const turnpoint::app::LiveState& state, const QString& name) {
+  void shoot_live(const turnpoint::desk::LiveState& state, const QString& name) {
     turnpoint::session::Page page;
     page.kind = turnpoint::session::PageKind::interval;
     page.run_mode = "pilot";
@@ -153,7 +153,7 @@ class OperatorCamera {
           {{"live", QVariant::fromValue(&live_)}, {"bridge", QVariant::fromValue(&bridge_)}});
   }
 
-  void shoot_report(const turnpoint::app::ReportPages& pages, const QString& name) {
+  void shoot_report(const turnpoint::desk::ReportPages& pages, const QString& name) {
     report_.take(pages);
     QGuiApplication::processEvents();
     shoot("ReportPage.qml", name, {{"report", QVariant::fromValue(&report_)}, {"runMode", "pilot"}});

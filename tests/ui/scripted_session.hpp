@@ -2,7 +2,7 @@
 #include <QObject>
 #include <QStringList>
 
-#include "station/ui/session_bridge.hpp"
+#include "station/ui/participant/session_bridge.hpp"
 
 namespace turnpoint::ui {
 

@@ -8,10 +8,10 @@
 #include <csignal>
 #include <fstream>
 
-#include "station/app/calibrate.hpp"
-#include "station/app/panel_latency.hpp"
-#include "station/app/prepare.hpp"
 #include "station/calibration/apply.hpp"
+#include "station/maintenance/calibrate.hpp"
+#include "station/maintenance/panel_latency.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/store/export.hpp"
 #include "tests/support/child.hpp"
 
@@ -65,10 +65,10 @@ void StationRoom::start(const QString& digits, Begins begins) {
   close();
   const bool locked = begins == Begins::locked;
   operating_ = std::make_unique<OperatorController>(
-      app::StationRequest{path("protocols"), path("rig.toml"), path("lab.sqlite"), locked});
+      setup::StationRequest{path("protocols"), path("rig.toml"), path("lab.sqlite"), locked});
   station_ = std::make_unique<StationWindow>(
       StationWindow::Place{5.9, QSize(1280, 800), false},
-      StationWindow::Operator{operating_.get(), app::OperatorCode::of_digits(digits.toStdString()), locked},
+      StationWindow::Operator{operating_.get(), desk::OperatorCode::of_digits(digits.toStdString()), locked},
       path("lab.sqlite"));
   emit opened();
 }
@@ -98,8 +98,8 @@ void StationRoom::calibrate() {
   measurements.friction_csv = path("friction.csv");
   measurements.sound_csv = path("sound.csv");
   const auto rig = rig::load(path("rig.toml"));
-  auto made = app::calibrate(rig, measurements, 30, "");
-  made.panel = app::known_panel(rig);
+  auto made = maintenance::calibrate(rig, measurements, 30, "");
+  made.panel = maintenance::known_panel(rig);
   write(calibration::file_for(rig.path, made.made_on), calibration::to_toml(made));
 }
 
@@ -113,7 +113,7 @@ double StationRoom::keepLatency() {
   if (!kept) return 0;
   const auto rig = rig::load(path("rig.toml"));
   write(calibration::file_for(rig.path, calibration::today()),
-        calibration::to_toml(app::with_panel(rig, *kept)));
+        calibration::to_toml(maintenance::with_panel(rig, *kept)));
   return kept->touch->median_s;
 }
 
@@ -144,14 +144,14 @@ void StationRoom::block(int ms) {
 }
 
 QStringList StationRoom::plannedLevels() const {
-  app::RunRequest request;
+  setup::RunRequest request;
   request.protocol = path("protocols/short.toml");
   request.rig = path("rig.toml");
   request.participant = "T1";
   request.database = path("unbroken.sqlite");
   request.observer = "sim";
   session::Inputs inputs;
-  session::run(app::prepare(request), nullptr, inputs);
+  session::run(setup::prepare(request), nullptr, inputs);
   return read(request.database, "trials.csv", "level", {}, {});
 }
 

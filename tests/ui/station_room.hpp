@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <memory>
 
-#include "station/ui/latency_controller.hpp"
-#include "station/ui/operator_controller.hpp"
-#include "station/ui/station_window.hpp"
+#include "station/ui/operator/latency_controller.hpp"
+#include "station/ui/operator/operator_controller.hpp"
+#include "station/ui/platform/station_window.hpp"
 
 namespace turnpoint::ui {
 

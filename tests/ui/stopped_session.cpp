@@ -10,9 +10,9 @@
 #include <cstdio>
 #include <exception>
 
-#include "station/store/records.hpp"
-#include "station/ui/screens.hpp"
-#include "station/ui/session_bridge.hpp"
+#include "station/records/records.hpp"
+#include "station/ui/participant/session_bridge.hpp"
+#include "station/ui/platform/screens.hpp"
 
 Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
 
@@ -45,7 +45,7 @@ void sit_down() {
 
 int main(int argc, char** argv) try {
   if (argc != 4) return 2;
-  app::RunRequest request;
+  setup::RunRequest request;
   request.protocol = argv[1];
   request.rig = argv[2];
   request.participant = "T1";

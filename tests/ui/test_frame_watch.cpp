@@ -1,6 +1,6 @@
 #include <QCoreApplication>
 
-#include "station/ui/frame_watch.hpp"
+#include "station/ui/participant/frame_watch.hpp"
 #include "tests/support/catch.hpp"
 
 using turnpoint::ui::LateFrames;

@@ -1,7 +1,7 @@
 #include <QCoreApplication>
 #include <chrono>
 
-#include "station/ui/operator_lock.hpp"
+#include "station/ui/operator/operator_lock.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -19,7 +19,7 @@ struct Keypad {
   QCoreApplication application{argc, argv};
   double now_s = 1000;
   int opened = 0, refused = 0;
-  ui::OperatorLock lock{app::OperatorCode::of_digits("7391"), [this] { return now_s; }};
+  ui::OperatorLock lock{desk::OperatorCode::of_digits("7391"), [this] { return now_s; }};
 
   Keypad() {
     QObject::connect(&lock, &ui::OperatorLock::opened, [this] { ++opened; });

@@ -5,7 +5,7 @@
 #include <memory>
 #include <thread>
 
-#include "station/ui/session_runner.hpp"
+#include "station/ui/participant/session_runner.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/fake_evdev.hpp"

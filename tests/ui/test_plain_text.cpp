@@ -20,7 +20,8 @@ TEST_CASE("every text of every page is plain", "[text]") {
   CHECK(rich_texts("Item {\n    Text { text: title }\n    Label {\n    }\n}") == 2);
   CHECK(rich_texts("PlainText { wrapMode: Text.Wrap }\nTextInput {}\nTexts { id: texts }") == 0);
   int files = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(TURNPOINT_SOURCE_DIR "/station/ui")) {
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(TURNPOINT_SOURCE_DIR "/station/ui")) {
     const auto name = entry.path().filename().string();
     if (entry.path().extension() != ".qml" || name == "PlainText.qml") continue;
     ++files;

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <string>
 
-#include "station/ui/service_watchdog.hpp"
+#include "station/ui/platform/service_watchdog.hpp"
 #include "tests/support/catch.hpp"
 
 using turnpoint::ui::ServiceWatchdog;

@@ -6,11 +6,11 @@
 #include <fstream>
 #include <mutex>
 
-#include "station/app/prepare.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/store/backup.hpp"
-#include "station/store/identity.hpp"
 #include "station/store/session_log.hpp"
-#include "station/ui/operator_controller.hpp"
+#include "station/system/clocks.hpp"
+#include "station/ui/operator/operator_controller.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -26,14 +26,14 @@ constexpr std::chrono::seconds kPatience{20};
 /// Checks that take as long as the test wants, and that do not notice when they are no longer needed.
 class HeldChecks {
  public:
-  app::Check operator()(const std::string& protocol, const std::stop_token& stop) {
+  simulation::Check operator()(const std::string& protocol, const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     begun_.push_back(std::filesystem::path(protocol).filename());
     running_ = stop;
     changed_.notify_all();
     changed_.wait_for(lock, kPatience, [this] { return open_; });
     ++ended_;
-    app::Check check;
+    simulation::Check check;
     check.rig_name = begun_.back();
     return check;
   }
@@ -88,7 +88,7 @@ struct StartPage {
 
   void open() {
     page = std::make_unique<OperatorController>(
-        app::StationRequest{folder.path, kSource + "/deploy/rigs/simulated.toml", folder / "lab.sqlite"},
+        setup::StationRequest{folder.path, kSource + "/deploy/rigs/simulated.toml", folder / "lab.sqlite"},
         [this](const std::string& protocol, const std::string&, const std::stop_token& stop) {
           return checks(protocol, stop);
         });
@@ -152,21 +152,21 @@ TEST_CASE("a check that ends late says nothing about the protocol chosen since",
 
 TEST_CASE("a session that cannot be resumed leaves the check of the chosen protocol as it was", "[start]") {
   StartPage start;
-  app::RunRequest request;
+  setup::RunRequest request;
   request.protocol = kSource + "/protocols/demo.toml";
   request.rig = kSource + "/deploy/rigs/simulated.toml";
   request.participant = "P01";
   request.database = start.folder / "lab.sqlite";
   request.observer = "sim";
   struct Cut : session::Monitor {
-    void trial_begins(const session::TrialSpec&, const protocol::Block&,
+    void trial_begins(const trial::TrialSpec&, const protocol::Block&,
                       const session::PlanAhead::Plans&) override {}
-    void trial_ended(const session::TrialSpec&, const store::TrialRow&) override {
+    void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override {
       throw std::runtime_error("cut");
     }
   } cut;
   session::Inputs inputs;
-  CHECK_THROWS(session::run(app::prepare(request), nullptr, inputs, &cut));
+  CHECK_THROWS(session::run(setup::prepare(request), nullptr, inputs, &cut));
   start.open();
   REQUIRE_FALSE(start.page->interrupted().isEmpty());
   REQUIRE(start.comes([&] { return start.checks.begun().size() == 1; }));
@@ -181,9 +181,9 @@ TEST_CASE("a session that cannot be resumed leaves the check of the chosen proto
 TEST_CASE("the start page says how old the last good backup is", "[start]") {
   StartPage start;
   const auto database = start.folder / "lab.sqlite", record = database + ".last-backup";
-  store::SessionStart session;
+  records::SessionStart session;
   session.participant = "P01";
-  store::SessionLog::begin(database, session, {}).finish(store::SessionStatus::stopped, "");
+  store::SessionLog::begin(database, session, {}).finish(records::SessionStatus::stopped, "");
   start.open();
   CHECK(start.page->backup()["state"] == "none");
 
@@ -191,7 +191,7 @@ TEST_CASE("the start page says how old the last good backup is", "[start]") {
   std::string id, time, path;
   std::ifstream(record) >> id >> time >> path;
   const auto aged = [&](double days) {
-    const auto at_ns = store::realtime_ns() - static_cast<std::int64_t>(days * 86'400e9);
+    const auto at_ns = system::realtime_ns() - static_cast<std::int64_t>(days * 86'400e9);
     std::ofstream(record) << id << "\n" << at_ns << "\n" << path << "\n";
     start.page->refresh();
     return start.page->backup();

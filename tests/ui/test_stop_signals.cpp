@@ -4,7 +4,7 @@
 #include <QTimer>
 
 #include "station/store/read.hpp"
-#include "station/ui/stop_signals.hpp"
+#include "station/ui/platform/stop_signals.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/child.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -104,7 +104,7 @@ TEST_CASE("a session that is told to stop amid a stimulus is closed in its log, 
   CHECK(child.said().find("interrupted, 2 trials: the program was told to end") != std::string::npos);
   const auto sessions = turnpoint::store::list_sessions(folder / "db");
   REQUIRE(sessions.size() == 1);
-  CHECK(sessions[0].status == turnpoint::store::SessionStatus::interrupted);
+  CHECK(sessions[0].status == turnpoint::records::SessionStatus::interrupted);
 }
 
 TEST_CASE("a stop signal ends the event loop once it is taken over, and a second one the process", "[stop]") {

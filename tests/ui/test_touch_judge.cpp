@@ -1,4 +1,4 @@
-#include "station/ui/touch_judge.hpp"
+#include "station/ui/participant/touch_judge.hpp"
 #include "tests/support/catch.hpp"
 
 using turnpoint::ui::Touch;

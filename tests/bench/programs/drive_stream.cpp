@@ -7,9 +7,10 @@
 #include <exception>
 
 #include "station/drive/engine.hpp"
-#include "station/drive/monotonic.hpp"
+#include "station/system/clocks.hpp"
 
 using namespace turnpoint::drive;
+using namespace turnpoint::system;
 
 namespace {
 

@@ -4,30 +4,30 @@
 #include <cstdlib>
 #include <exception>
 
-#include "station/drive/monotonic.hpp"
-#include "station/panel/buttons.hpp"
+#include "station/lines/buttons.hpp"
+#include "station/system/clocks.hpp"
 
 using namespace turnpoint;
 
 namespace {
 
 void run(const std::string& buttons, const std::string& contact, double seconds) {
-  panel::PanelHandlers handlers;
-  handlers.press = [](const panel::Press& press) {
+  lines::ButtonsHandlers handlers;
+  handlers.press = [](const lines::Press& press) {
     std::printf("press %d %lld\n", press.button, static_cast<long long>(press.time_ns));
     std::fflush(stdout);
   };
-  handlers.touch = [](const panel::Touch& touch) {
+  handlers.contact = [](const touch::Contact& touch) {
     std::printf("contact %d %lld %.3f\n", touch.on ? 1 : 0, static_cast<long long>(touch.time_ns),
                 touch.position.value_or(-1));
     std::fflush(stdout);
   };
-  handlers.glitch = [](const panel::Glitch& glitch) {
+  handlers.glitch = [](const lines::Glitch& glitch) {
     std::printf("glitch %s %lld %d %lld\n", glitch.line.c_str(), static_cast<long long>(glitch.time_ns),
                 glitch.edges, static_cast<long long>(glitch.length_ns));
     std::fflush(stdout);
   };
-  handlers.fault = [](const panel::PanelFault& fault) {
+  handlers.fault = [](const lines::ButtonsFault& fault) {
     std::printf("fault %s\n", fault.what.c_str());
     std::fflush(stdout);
   };
@@ -35,14 +35,14 @@ void run(const std::string& buttons, const std::string& contact, double seconds)
     std::printf("back %lld\n", static_cast<long long>(time_ns));
     std::fflush(stdout);
   };
-  using Buttons = std::optional<panel::ButtonsConfig>;
-  using Contact = std::optional<panel::ContactConfig>;
+  using Buttons = std::optional<lines::ButtonsConfig>;
+  using Contact = std::optional<lines::ContactConfig>;
   const auto opened =
-      panel::open_panel(buttons.empty() ? Buttons{} : panel::ButtonsConfig{buttons},
-                        contact.empty() ? Contact{} : panel::ContactConfig{contact}, handlers);
+      lines::open_buttons(buttons.empty() ? Buttons{} : lines::ButtonsConfig{buttons},
+                          contact.empty() ? Contact{} : lines::ContactConfig{contact}, handlers);
   std::printf("ready\n");
   std::fflush(stdout);
-  drive::sleep_until_ns(drive::monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9));
+  system::sleep_until_ns(system::monotonic_ns() + static_cast<std::int64_t>(seconds * 1e9));
 }
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include <exception>
 #include <string>
 
-#include "station/panel/amplifier.hpp"
-#include "station/panel/buttons.hpp"
+#include "station/lines/amplifier.hpp"
+#include "station/lines/buttons.hpp"
 
 namespace {
 
@@ -33,7 +33,7 @@ bool begin(turnpoint::drive::Amplifier& amplifier) {
 }
 
 void run_amplifier(const std::string& uri) {
-  const auto amplifier = turnpoint::panel::open_amplifier(uri);
+  const auto amplifier = turnpoint::lines::open_amplifier(uri);
   bool running = begin(*amplifier);
   for (say("ready");; ::usleep(10'000)) {
     amplifier->audio_alive();
@@ -52,14 +52,14 @@ void run_amplifier(const std::string& uri) {
 
 void run_buttons(const std::string& uri) {
   std::vector<std::string> names;
-  turnpoint::panel::PanelHandlers handlers;
+  turnpoint::lines::ButtonsHandlers handlers;
   handlers.press = [&names](const auto& press) {
     say("press " + names.at(static_cast<std::size_t>(press.button)) + " " + std::to_string(press.time_ns));
   };
   handlers.fault = [](const auto& fault) { say("fault " + fault.what); };
-  const auto panel =
-      turnpoint::panel::open_panel(turnpoint::panel::ButtonsConfig{uri}, std::nullopt, std::move(handlers));
-  names = panel->buttons();
+  const auto buttons =
+      turnpoint::lines::open_buttons(turnpoint::lines::ButtonsConfig{uri}, std::nullopt, std::move(handlers));
+  names = buttons->names();
   say("ready");
   ::pause();
 }

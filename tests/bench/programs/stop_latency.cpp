@@ -20,12 +20,12 @@
 #include <thread>
 #include <vector>
 
-#include "station/drive/monotonic.hpp"
-#include "station/panel/amplifier.hpp"
+#include "station/lines/amplifier.hpp"
+#include "station/system/clocks.hpp"
 
 namespace {
 
-using turnpoint::drive::monotonic_ns;
+using turnpoint::system::monotonic_ns;
 
 constexpr int edges_us[] = {50, 100, 150, 200, 300, 500, 1000, 10'000, 1'000'000'000};
 
@@ -112,7 +112,7 @@ class Stop {
 
 int run(int count, const Stop& stop) {
   const auto amplifier =
-      turnpoint::panel::open_amplifier("gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB");
+      turnpoint::lines::open_amplifier("gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB");
   const auto threads = crowd(*amplifier);
   std::mt19937 random(17);
   Times times;

@@ -1,0 +1,145 @@
+#include "station/desk/choices.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+#include "station/store/backup.hpp"
+#include "station/store/read.hpp"
+#include "station/system/clocks.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::desk {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using text::number;
+
+/// Above chance by this much a cue is named: what 20 trials could just show.
+constexpr double kNoticeable = 0.1;
+
+std::string range(const simulation::Spread& spread, double unit) {
+  const auto shown = [&](double value) { return number(std::round(value / unit * 10) / 10, 4); };
+  const auto low = shown(spread.low), median = shown(spread.median), high = shown(spread.high);
+  return low == high ? median : median + " (" + low + " to " + high + ")";
+}
+
+std::string joined(const std::set<std::string>& list) {
+  std::string text;
+  for (const auto& item : list) text += (text.empty() ? "" : ", ") + item;
+  return text;
+}
+
+void add_tones(const simulation::Check& check, CheckWords& words) {
+  const auto& sights = check.survey.sights;
+  if (sights.empty()) return;
+  double low = sights.front().lowest_Hz, high = 0, moved_um = 0, friction = 1;
+  for (const auto& sight : sights) {
+    low = std::min(low, sight.lowest_Hz);
+    high = std::max(high, sight.highest_Hz);
+    moved_um = std::max(moved_um, sight.displacement_um);
+    friction = std::min(friction, sight.lowest_friction);
+  }
+  words.facts.emplace_back("Tones", number(1e-3 * low, 4) + " to " + number(1e-3 * high, 4) + " kHz");
+  words.facts.emplace_back("Surface moves at most", number(moved_um, 3) + " \u00b5m");
+  words.facts.emplace_back("Lowest friction", number(friction, 3) + " of the surface at rest");
+  words.facts.emplace_back("Models", joined(check.survey.models));
+}
+
+}  // namespace
+
+std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    // Hidden files are those of editors, such as the lock that Emacs makes.
+    if (entry.path().extension() == ".toml" && entry.path().filename().string().front() != '.')
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  std::vector<ProtocolEntry> list;
+  for (const auto& file : files) {
+    ProtocolEntry entry;
+    entry.path = file.string();
+    try {
+      const auto protocol = protocol::load(entry.path);
+      entry.id = protocol.id, entry.version = protocol.version, entry.title = protocol.title;
+      entry.languages = protocol.languages;
+    } catch (const text::BadInput& bad) {
+      entry.problem = format(bad.problems().front());
+      if (bad.problems().size() > 1)
+        entry.problem += fmt::format(" (and {} more)", bad.problems().size() - 1);
+    } catch (const std::exception& error) {
+      // A file that cannot be read must not hide the others.
+      entry.problem = error.what();
+    }
+    list.push_back(std::move(entry));
+  }
+  return list;
+}
+
+std::vector<std::string> known_participants(const std::string& database) {
+  if (!fs::exists(database)) return {};
+  return store::participants(database);
+}
+
+BackupNote backup_note(const std::string& database) {
+  constexpr int old_hours = 7 * 24;
+  const auto last = store::last_backup(database);
+  if (!last) return {};
+  const auto age_ns = system::realtime_ns() - last->realtime_ns;
+  if (age_ns < 0) return {BackupNote::State::ahead, 0};
+  const auto hours = static_cast<int>(age_ns / 3'600'000'000'000);
+  return {hours < old_hours ? BackupNote::State::recent : BackupNote::State::old, hours};
+}
+
+std::optional<InterruptedNote> interrupted_note(const std::string& database) {
+  if (!fs::exists(database)) return std::nullopt;
+  const auto found = store::interrupted_session(database);
+  if (!found) return std::nullopt;
+  return InterruptedNote{found->session.session_id, found->session.start.participant,
+                         found->session.start.protocol_id, found->session.trials, found->age_s};
+}
+
+CheckWords words_of(const simulation::Check& check) {
+  CheckWords words;
+  for (const auto& problem : check.problems) words.problems.push_back(format(problem));
+  for (const auto& warning : check.warnings) words.warnings.push_back(format(warning));
+  if (!check.problems.empty()) return words;
+  words.facts.emplace_back("Rig", check.rig_name);
+  words.facts.emplace_back("Trials", range(check.trials, 1));
+  words.facts.emplace_back("Duration", range(check.duration_s, 60) + " min");
+  for (const auto& block : check.blocks)
+    words.facts.emplace_back(
+        block.practice ? "Practice" : "Block",
+        block.name +
+            (block.instruction.empty() || block.instruction == block.name ? ""
+                                                                          : " (" + block.instruction + ")") +
+            ", " + range(block.trials, 1) + " trials");
+  add_tones(check, words);
+  for (const auto& cue : check.cues.reports) {
+    const bool leaks = cue.accuracy > cue.chance + kNoticeable;
+    words.cues.push_back({cue.cue,
+                          fmt::format("{} % right by it alone (chance {} %)", std::lround(100 * cue.accuracy),
+                                      std::lround(100 * cue.chance)),
+                          leaks});
+  }
+  std::stable_sort(words.cues.begin(), words.cues.end(),
+                   [](const auto& a, const auto& b) { return a.leaks > b.leaks; });
+  return words;
+}
+
+std::string age_in_words(double age_s) {
+  if (age_s < 0) return "in the future (the clock was set back)";
+  const auto whole = [](double value, const char* unit) { return number(std::floor(value), 4) + " " + unit; };
+  if (age_s < 120) return whole(age_s, "s");
+  if (age_s < 7200) return whole(age_s / 60, "min");
+  if (age_s < 172800) return whole(age_s / 3600, "h");
+  return whole(age_s / 86400, "days");
+}
+
+}  // namespace turnpoint::desk

@@ -1,0 +1,58 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "station/simulation/check.hpp"
+
+namespace turnpoint::desk {
+
+/// A protocol file that an operator may choose.
+struct ProtocolEntry {
+  std::string path, id, version, title;
+  std::vector<std::string> languages;
+  std::string problem;  ///< why it cannot be used; then only `path` is set beside it
+};
+
+/// The protocol files of a folder by name, the unusable ones among them. Throws std::system_error where the
+/// folder cannot be read.
+std::vector<ProtocolEntry> list_protocols(const std::string& folder);
+
+/// Participant codes that the database has seen, in alphabetical order; none where there is no database yet.
+std::vector<std::string> known_participants(const std::string& database);
+
+/// How long ago the last good backup of the database was made, as its record says.
+struct BackupNote {
+  enum class State { none, recent, old, ahead } state = State::none;  ///< ahead: the clock was set back since
+  int hours = 0;
+  bool operator==(const BackupNote&) const = default;
+};
+/// Old after 7 days.
+BackupNote backup_note(const std::string& database);
+
+/// A session that could go on.
+struct InterruptedNote {
+  std::string session_id, participant, protocol_id;
+  int trials = 0;
+  double age_s = 0;
+};
+std::optional<InterruptedNote> interrupted_note(const std::string& database);
+
+/// A check in words for a page: what the session will be, and what else than the task might be used.
+struct CheckWords {
+  std::vector<std::string> problems, warnings;
+  std::vector<std::pair<std::string, std::string>> facts;  ///< (label, value)
+  /// A cue, how often an observer with it alone would be right, and whether that is notably above chance.
+  struct Cue {
+    std::string name, says;
+    bool leaks = false;
+  };
+  std::vector<Cue> cues;
+};
+CheckWords words_of(const simulation::Check& check);
+
+/// "3 min", "2 h", "4 days": an age as people say it.
+std::string age_in_words(double age_s);
+
+}  // namespace turnpoint::desk

@@ -1,0 +1,32 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace turnpoint::desk {
+
+/// How long a keypad takes no code after wrong ones: nothing after the first two, then 5 s, doubled with each
+/// further one, at most 5 min; the right code ends it. Ten thousand codes of four digits take over a month.
+/// Pure: the clock (s, monotonic) is the caller's.
+class CodeBackOff {
+ public:
+  static constexpr int free_tries = 2;
+  static constexpr double first_s = 5, longest_s = 300;
+
+  void wrong(double now_s) {
+    ++wrong_;
+    if (wrong_ <= free_tries) return;
+    const double wait_s = std::ldexp(first_s, std::min(wrong_ - free_tries - 1, 10));
+    until_s_ = now_s + std::min(wait_s, longest_s);
+  }
+  void right() { *this = {}; }
+  /// Seconds until the next try is taken, 0 for now.
+  double wait_s(double now_s) const { return std::max(0.0, until_s_ - now_s); }
+  int wrong_tries() const { return wrong_; }
+
+ private:
+  int wrong_ = 0;
+  double until_s_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace turnpoint::desk

@@ -1,0 +1,109 @@
+#pragma once
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "station/desk/preview.hpp"
+#include "station/desk/scene_figures.hpp"
+#include "station/plot/chart.hpp"
+#include "station/session/monitor.hpp"
+
+namespace turnpoint::desk {
+
+/// A running session as the operator sees it: words and pictures, ready to be shown.
+struct LiveState {
+  std::string heading;                                                     ///< which trial, at which level
+  std::vector<std::pair<std::string, std::string>> scene, course, limits;  ///< (label, value)
+  std::vector<Drawing> surfaces;  ///< one for each scene, in the order presented
+  Drawing profile, trace, times;  ///< of all scenes; levels; response times. Empty where none
+};
+
+/// What is kept of a trial that has ended.
+struct LiveTrial {
+  std::string procedure;
+  std::optional<double> level;
+  std::optional<bool> correct;
+  std::optional<double> response_time_s, threshold_est, threshold_sd;
+  terms::Outcome outcome = terms::Outcome::answered;
+  terms::TrialType type = terms::TrialType::experimental;
+  double onset_s = 0, ended_s = 0;  ///< of the session
+  double stimulus_s = 0;            ///< on the surface
+  int xruns = 0, extra_touches = 0;
+};
+
+/// Course of the session in words: accuracy, response times, what was lost. Pure.
+std::vector<std::pair<std::string, std::string>> course_of(const std::vector<LiveTrial>& trials);
+
+/// How much of the rig's limits is used, by what was presented in the last 60 s and the largest displacement
+/// of the trial at hand (m).
+std::vector<std::pair<std::string, std::string>> limits_used(const std::vector<LiveTrial>& trials,
+                                                             std::optional<double> peak_displacement_m,
+                                                             const rig::Rig& rig);
+
+/// Levels in order, one series a procedure; open markers are wrong answers, a line the running estimate.
+std::optional<plot::Figure> live_trace(const std::vector<LiveTrial>& trials, const std::string& label);
+std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials);
+
+/// Follows a session on a thread of its own, which describes and draws the session's own plans, and hands on
+/// a state whenever there is something new. While a slider moves it shows the newest setting, five times a
+/// second.
+class LiveView : public session::Monitor {
+ public:
+  /// `on_state` is called on the view's own thread.
+  using OnState = std::function<void(LiveState)>;
+  LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state);
+  ~LiveView() override;
+
+  void trial_begins(const trial::TrialSpec& spec, const protocol::Block& block,
+                    const session::PlanAhead::Plans& plans) override;
+  void surface_follows(const trial::TrialSpec& spec, const scene::DrivePlan& plan) override;
+  void trial_ended(const trial::TrialSpec& spec, const records::TrialRow& row) override;
+
+ private:
+  struct Begun {
+    trial::TrialSpec spec;
+    std::string block;
+    session::PlanAhead::Plans plans;
+  };
+  struct Setting {
+    protocol::Factors factors;
+    scene::DrivePlan plan;
+  };
+  struct News {
+    std::optional<Begun> begun;
+    std::optional<Setting> setting;
+    std::optional<LiveTrial> ended;
+  };
+  void push(News news);
+  void work(const std::stop_token& stop);
+  void take(const News& news);
+  void show();
+  void tell();
+
+  OnState on_state_;
+  std::string level_;     ///< what the protocol calls it
+  std::string adjusted_;  ///< the factor that a slider sets; "" where none does
+  rig::Rig rig_;
+  // Worker thread only.
+  scene::Planner planner_;
+  Begun trial_;                    ///< with what is on the surface now
+  std::optional<double> setting_;  ///< of the slider, once it has moved
+  std::chrono::steady_clock::time_point next_setting_;
+  std::vector<LiveTrial> trials_;
+  std::optional<double> peak_displacement_m_;
+  LiveState state_;
+  std::mutex mutex_;
+  std::condition_variable_any arrived_;
+  std::deque<News> queue_;
+  std::jthread thread_;  // last: joined before anything that it uses goes
+};
+
+}  // namespace turnpoint::desk

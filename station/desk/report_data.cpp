@@ -1,0 +1,92 @@
+#include "station/desk/report_data.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "station/protocol/protocol.hpp"
+#include "station/report/stored_trials.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::desk {
+
+namespace {
+
+/// How late the participant's screen was, as the log has it.
+std::string late_frames(const std::vector<records::EventRow>& events) {
+  int frames = 0, trials = 0;
+  for (const auto& event : events)
+    if (event.kind == "frames_lost") frames += std::stoi(event.value), ++trials;
+  return frames == 0 ? "none" : std::to_string(frames) + " in " + std::to_string(trials) + " trials";
+}
+
+void add_health(const store::StoredSession& stored, report::SessionData& data) {
+  int xruns = 0, extra = 0, trials = 0;
+  std::map<std::string, int> quality;
+  double offset_s = 0;
+  for (const auto& block : stored.blocks)
+    for (const auto& row : block.trials) {
+      ++trials;
+      xruns += row.xruns;
+      extra += row.extra_touches;
+      if (row.response_time_s) ++quality[row.response_time_quality];
+      offset_s = std::max(offset_s, row.response_offset_s);  // answers by button have none
+    }
+  std::string qualities;
+  for (const auto& [name, count] : quality)
+    qualities += (qualities.empty() ? "" : ", ") + name + " (" + std::to_string(count) + ")";
+  int attempts = 0;
+  for (const auto& block : stored.blocks) attempts += block.start.attempt > 0;
+  const auto& start = stored.session.start;
+  data.health = {
+      {"Trials stored", std::to_string(trials)},
+      {"Underruns and overruns", std::to_string(xruns)},
+      {"Touches that no answer claimed", std::to_string(extra)},
+      {"Frames that the screen was late by", late_frames(stored.events)},
+      {"Times the session was resumed", std::to_string(stored.session.segments - 1)},
+      {"Blocks begun again", std::to_string(attempts)},
+      {"Response times by", qualities.empty() ? "none" : qualities},
+      {"Response offset (not subtracted)", text::number(offset_s, 4) + " s"},
+      {"Calibration", start.calibration_id.value_or("none")},
+      {"Real-time rights", start.realtime_rights},
+      {"Kernel", start.kernel},
+      {"Checksum of the data",
+       stored.session.checksum.empty() ? "none: recorded by an earlier release" : stored.session.checksum},
+      {"Software", start.software_version}};
+}
+
+}  // namespace
+
+report::SessionData report_data(const std::string& database, const std::string& session_id) {
+  const auto stored = store::read_session(database, session_id);
+  const auto& start = stored.session.start;
+  const auto protocol = protocol::parse(start.protocol_text, start.protocol_path);
+  report::SessionData data;
+  data.title = protocol.title;
+  data.participant = stored.session.person;
+  data.session_id = stored.session.session_id;
+  data.run_mode = store::name(start.run_mode);
+  data.status = store::name(stored.session.status);
+  data.facts = {{"Protocol", start.protocol_id + " " + start.protocol_version},
+                {"Protocol SHA-256", start.protocol_sha256},
+                {"Started", start.started_local},
+                {"Rig", start.rig_name},
+                {"Station", start.station_id},
+                {"Seed", std::to_string(start.seed)}};
+  for (const auto& note : stored.session.annotations) data.facts.emplace_back("Note", note);
+  report::add_trials(stored.blocks, protocol, data);
+  data.seed = start.seed;
+  add_health(stored, data);
+  return data;
+}
+
+std::string session_to_report(const std::string& database, const store::SessionFilter& filter) {
+  const store::SessionRecord* newest = nullptr;
+  const auto sessions = store::list_sessions(database, filter);
+  for (const auto& session : sessions)
+    if (session.trials > 0 && (!newest || session.last_trial_id > newest->last_trial_id)) newest = &session;
+  if (!newest)
+    throw store::StoreError(store::Fault::missing, database + ": no session with trials to report");
+  return newest->session_id;
+}
+
+}  // namespace turnpoint::desk

@@ -1,0 +1,112 @@
+#include "station/desk/report_pages.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "station/desk/report_data.hpp"
+#include "station/report/figures.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::desk {
+
+namespace {
+
+using analysis::Estimate;
+using text::number;
+
+std::string with(double value, const analysis::Interval& interval) {
+  const auto shown = [&](double end) {
+    return text::estimated(end, text::uncertainty(value, interval.low, interval.high));
+  };
+  return fmt::format("{} [{}, {}]", shown(value), shown(interval.low), shown(interval.high));
+}
+
+std::string with(const std::optional<Estimate>& estimate, const std::string& unit) {
+  if (!estimate) return "not estimated";
+  return with(estimate->value, estimate->interval) + (unit.empty() ? "" : " " + unit);
+}
+
+Drawing drawing(const std::optional<plot::Figure>& figure) {
+  return figure ? drawing_of(*figure) : Drawing();
+}
+
+void add_outcomes(const report::Summary& summary, ReportPages& pages) {
+  const auto& counts = summary.outcomes;
+  pages.outcomes = {{"Presented", std::to_string(counts.presented)},
+                    {"Answered", std::to_string(counts.answered)},
+                    {"Too late, too early", fmt::format("{}, {}", counts.timeouts, counts.anticipations)},
+                    {"Void", std::to_string(counts.aborted + counts.faults)}};
+  if (summary.catch_trials)
+    pages.outcomes.emplace_back("Catch trials right", fmt::format("{} of {}", summary.catch_trials->right,
+                                                                  summary.catch_trials->trials));
+  if (summary.bias && summary.data.choices.size() > 1)
+    pages.outcomes.emplace_back("Chose \"" + summary.data.choices[1] + "\"",
+                                with(summary.bias->share_second, summary.bias->interval));
+}
+
+void add_fits(const report::Summary& summary, ReportPages& pages) {
+  const bool two_sided = summary.data.design == report::Design::two_sided;
+  for (const auto& named : summary.fits) {
+    if (!named.fit.parameters) continue;
+    const auto prefix = named.name.empty() ? "" : named.name + ": ";
+    const auto& p = *named.fit.parameters;
+    const auto& unit = summary.data.level_unit;
+    const auto in_unit = [&unit](const std::string& what) {
+      return unit.empty() ? what : what + " (" + unit + ")";
+    };
+    const auto line = [&](const std::string& what, double value, const auto& interval) {
+      pages.fit.emplace_back(prefix + what, interval ? with(value, interval->interval) : number(value, 3));
+    };
+    line(in_unit(two_sided ? "PSE" : "threshold"), p.threshold, named.intervals.threshold);
+    if (report::slope_estimated(named))
+      line(named.fit.options.function == terms::Function::normal ? in_unit("spread") : "slope", p.slope,
+           named.intervals.slope);
+    line("lapse rate", p.lapse, named.intervals.lapse);
+    pages.statements.push_back(prefix + report::describe_intervals(named, summary.data));
+    for (const auto& statement : named.fit.statements) pages.statements.push_back(prefix + statement.text);
+  }
+}
+
+void add_trade(const report::Summary& summary, ReportPages& pages) {
+  const auto& trade = summary.trade;
+  for (const auto& result : trade.instructions) {
+    const auto prefix = result.instruction.empty() ? "" : result.instruction + ": ";
+    if (!summary.data.scored) continue;
+    pages.speed_accuracy.emplace_back(prefix + "proportion right", with(result.proportion_correct, ""));
+    pages.speed_accuracy.emplace_back(prefix + "median response time", with(result.median_s, "s"));
+    for (const auto& statement : result.statements) pages.statements.push_back(prefix + statement.text);
+  }
+  for (const auto& difference : trade.differences)
+    if (difference.estimate)
+      pages.speed_accuracy.emplace_back(
+          difference.second + " \u2212 " + difference.first + ": " + difference.measure,
+          with(difference.estimate, difference.unit));
+  for (const auto& statement : trade.statements) pages.statements.push_back(statement.text);
+}
+
+}  // namespace
+
+ReportPages report_pages(const report::Summary& summary) {
+  ReportPages pages;
+  pages.title = summary.data.title + ", " + summary.data.participant + " (" + summary.data.run_mode + ", " +
+                summary.data.status + ")";
+  add_outcomes(summary, pages);
+  add_fits(summary, pages);
+  add_trade(summary, pages);
+  pages.health = summary.data.health;
+  if (summary.bias)
+    for (const auto& statement : summary.bias->statements) pages.statements.push_back(statement.text);
+  for (const auto& statement : summary.fatigue.statements) pages.statements.push_back(statement.text);
+  pages.trade = drawing(report::trade_figure(summary));
+  pages.fits = drawing(report::psychometric_figure(summary));
+  pages.levels = drawing(report::trace_figure(summary));
+  pages.times = drawing(report::response_time_figure(summary));
+  return pages;
+}
+
+ReportPages report_pages(const std::string& database, const std::string& session_id) {
+  return report_pages(report::summarise(report_data(database, session_id)));
+}
+
+}  // namespace turnpoint::desk

@@ -1,0 +1,23 @@
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "station/desk/scene_figures.hpp"
+#include "station/report/summary.hpp"
+
+namespace turnpoint::desk {
+
+/// A session's report as pages of a screen: words and pictures.
+struct ReportPages {
+  std::string title;
+  std::vector<std::pair<std::string, std::string>> outcomes, fit, speed_accuracy, health;  ///< (label, value)
+  std::vector<std::string> statements;  ///< what must be said beside the numbers
+  Drawing trade, fits, levels, times;   ///< pictures; empty where there is nothing to show
+};
+
+/// Of a stored session; as report_data() and report::summarise(), about 0.3 s.
+ReportPages report_pages(const std::string& database, const std::string& session_id);
+ReportPages report_pages(const report::Summary& summary);
+
+}  // namespace turnpoint::desk

@@ -1,0 +1,253 @@
+#include "station/desk/scene_figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "physics/surface.hpp"
+#include "station/plot/palette.hpp"
+#include "station/plot/svg.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::desk {
+
+namespace {
+
+const std::string kInk = "#16202a", kQuiet = "#3f4a54", kAccent = "#b3400a", kPaper = "#ffffff";
+
+plot::Paint stroke(const std::string& colour, double width, const std::string& dash = "") {
+  return {colour, "", width, dash, 1};
+}
+plot::Paint fill(const std::string& colour, double opacity = 1) { return {"", colour, 1, "", opacity}; }
+
+const std::string kMark = "mark";
+constexpr double kName_px = 14, kNameAbove_px = 20;  // the boundary's position, in words
+
+/// From this height on a drawing of the surface says what it shows.
+constexpr double kCaptionFrom_px = 165;
+
+void require_plan(const SceneLook& look) {
+  if (!look.problem.empty() || look.profile.x_m.size() < 2)
+    throw std::invalid_argument("scene " + look.scene + " has no plan to draw: " + look.problem);
+}
+
+std::optional<double> mark_of(const SceneLook& look) {
+  const auto found = look.factors.find("mark_mm");
+  if (found == look.factors.end()) return std::nullopt;
+  const auto* value = std::get_if<double>(&found->second);
+  return value ? std::optional(1e-3 * *value) : std::nullopt;
+}
+
+/// The strip on the page: x from the wide end whichever way it lies; slim strips are widened to be seen.
+struct Place {
+  double left, right, middle_y, across, length_m;
+  bool wide_left;
+  physics::Surface surface;
+
+  double x(double m) const {
+    const double share = m / length_m;
+    return wide_left ? left + share * (right - left) : right - share * (right - left);
+  }
+  double half(double m) const { return across * physics::half_width_m(surface, m); }
+  std::pair<double, double> above(double m, double beyond = 0) const {
+    return {x(m), middle_y - half(m) - beyond};
+  }
+  std::pair<double, double> below(double m, double beyond = 0) const {
+    return {x(m), middle_y + half(m) + beyond};
+  }
+};
+
+Place place_on(const rig::Rig& rig, double width_px, double height_px) {
+  const bool low = height_px < kCaptionFrom_px;
+  Place at{30,
+           width_px - 30,
+           low ? 0.5 * height_px : 0.46 * height_px,
+           1,
+           rig.surface.length_m,
+           rig.surface.wide_end == rig::WideEnd::left,
+           scene::surface_of(rig)};
+  double widest = 0;
+  for (int i = 0; i <= 20; ++i)
+    widest = std::max(widest, physics::half_width_m(at.surface, at.length_m * i / 20));
+  const double to_scale = (at.right - at.left) / at.length_m;
+  // Above and below there has to be room for labels, whatever is left.
+  const double most_px = std::min(0.24 * height_px, 0.5 * height_px - (low ? 33 : 46));
+  at.across = std::clamp(to_scale, 0.75 * most_px / widest, most_px / widest);
+  return at;
+}
+
+void draw_heat(plot::Svg& svg, const SceneLook& look, const Place& at) {
+  const auto& profile = look.profile;
+  const double top = *std::max_element(profile.displacement_m.begin(), profile.displacement_m.end());
+  for (std::size_t i = 0; i + 1 < profile.x_m.size(); ++i) {
+    const double a = profile.x_m[i], b = profile.x_m[i + 1];
+    const double value = 0.5 * (profile.displacement_m[i] + profile.displacement_m[i + 1]);
+    const auto colour = plot::shade(top > 0 ? value / top : 0);
+    // Each slice reaches under the next, so that no paper shows between two.
+    const double under = std::min(at.length_m, b + (b - a));
+    svg.polygon({at.above(a), at.above(under), at.below(under), at.below(a)}, fill(colour));
+  }
+  const double l = at.length_m;
+  svg.polygon({at.above(0), at.above(l), at.below(l), at.below(0)}, stroke(kInk, 1.2));
+}
+
+void draw_scale(plot::Svg& svg, const Place& at) {
+  const double y = at.middle_y + at.half(0) + 10;
+  for (int mm = 0; 1e-3 * mm <= at.length_m + 1e-9; mm += 10) {
+    const bool labelled = mm % 50 == 0;
+    const double x = at.x(1e-3 * mm);
+    svg.line({x, y}, {x, y + (labelled ? 7 : 4)}, stroke(kQuiet, 1));
+    if (labelled) svg.text({x, y + 20}, std::to_string(mm), 12, plot::Anchor::middle, kQuiet);
+  }
+}
+
+void draw_transducer(plot::Svg& svg, const Place& at) {
+  const double width = 14, half = at.half(0) + 4;
+  svg.rectangle({at.wide_left ? at.left - width : at.right, at.middle_y - half}, width, 2 * half,
+                fill("#4d565e"));
+}
+
+/// The mark where the participant sees it, its name on the side that is away from the boundary.
+void draw_mark(plot::Svg& svg, const SceneLook& look, const Place& at) {
+  const auto mark = mark_of(look);
+  if (!mark || *mark <= 0 || *mark >= at.length_m) return;
+  const auto [x, y] = at.above(*mark, 3);
+  svg.polygon({{x, y}, {x - 6, y - 9}, {x + 6, y - 9}}, fill(kInk));
+  const bool to_left = look.plan.boundary_m && at.x(*look.plan.boundary_m) >= x;
+  svg.text({to_left ? x - 10 : x + 10, y - 3}, kMark, 12, to_left ? plot::Anchor::end : plot::Anchor::start,
+           kInk);
+}
+
+/// Where the boundary's name has its lower end: above the mark and its name, where both would meet.
+double boundary_name_y(const SceneLook& look, const Place& at, const std::string& name) {
+  const double boundary = *look.plan.boundary_m, own = at.above(boundary).second;
+  const auto mark = mark_of(look);
+  if (!mark) return own - kNameAbove_px;
+  const double reach = 0.5 * plot::text_width(name, kName_px) + 10 + plot::text_width(kMark, 12);
+  const bool near = std::abs(at.x(*mark) - at.x(boundary)) < reach;
+  return (near ? std::min(own, at.above(*mark).second) : own) - kNameAbove_px;
+}
+
+void draw_boundary(plot::Svg& svg, const SceneLook& look, const Place& at) {
+  for (const auto& tone : look.plan.tones)
+    if (tone.turning_point_m)
+      svg.line(at.below(*tone.turning_point_m, -0.4 * at.half(*tone.turning_point_m)),
+               at.below(*tone.turning_point_m, 6), stroke(kQuiet, 1.2, "2 2"));
+  if (!look.plan.boundary_m) return;
+  const double b = *look.plan.boundary_m, e = look.plan.error_bound_m;
+  if (2 * e * (at.right - at.left) / at.length_m > 2) {
+    const double low = std::max(0.0, b - e), high = std::min(at.length_m, b + e);
+    svg.polygon({at.above(low, 6), at.above(high, 6), at.below(high, 6), at.below(low, 6)},
+                fill(kAccent, 0.25));
+  }
+  const auto name = text::number(1e3 * b, 5) + " mm";
+  const double name_y = boundary_name_y(look, at, name);
+  svg.line({at.x(b), name_y + 5}, at.below(b, 6), stroke(kAccent, 2.4));
+  svg.text({at.x(b), name_y}, name, kName_px, plot::Anchor::middle, kAccent, 600);
+}
+
+}  // namespace
+
+Drawing drawing_of(plot::Figure figure) {
+  return [figure = std::move(figure)](double width_px, double height_px) {
+    try {
+      return plot::render(plot::laid_out(figure, width_px, height_px));
+    } catch (const std::invalid_argument&) {
+      return plot::render(figure);  // a legend too long for that size: as it was made, then shown smaller
+    }
+  };
+}
+
+Drawing drawing_of_surface(const SceneLook& look, const rig::Rig& rig) {
+  require_plan(look);
+  return [look, rig](double width_px, double height_px) {
+    // Below that its scale and its labels have no room.
+    const double larger = std::max({1.0, 240 / width_px, 84 / height_px});
+    return surface_svg(look, rig, larger * width_px, larger * height_px);
+  };
+}
+
+std::string surface_svg(const SceneLook& look, const rig::Rig& rig, double width_px, double height_px) {
+  require_plan(look);
+  plot::Svg svg(width_px, height_px, "Surface from above, scene " + look.scene);
+  svg.rectangle({0, 0}, width_px, height_px, fill(kPaper));
+  const auto at = place_on(rig, width_px, height_px);
+  draw_transducer(svg, at);
+  draw_heat(svg, look, at);
+  draw_scale(svg, at);
+  draw_mark(svg, look, at);
+  draw_boundary(svg, look, at);
+  if (height_px < kCaptionFrom_px) return svg.finish();
+  svg.text({width_px / 2, height_px - 10}, "mm from the wide end; darker moves more", 12,
+           plot::Anchor::middle, kQuiet);
+  return svg.finish();
+}
+
+plot::Figure profile_figure(const std::vector<SceneLook>& looks) {
+  if (looks.empty()) throw std::invalid_argument("no scene to draw");
+  plot::Figure figure;
+  figure.title = "Displacement and friction";
+  plot::Panel displacement{"Displacement", {}, {"Displacement (\u00b5m)", 0, 1}, {}};
+  plot::Panel friction{"Friction under a fingertip", {}, {"Friction, relative", 0, 1.2}, {}};
+  const bool several = looks.size() > 1;
+  double most_um = 0;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const auto& look = looks[i];
+    require_plan(look);
+    figure.title += (i == 0 ? ", scene " : " and ") + look.scene;
+    plot::Line line;
+    line.series = static_cast<int>(i);
+    line.name = several ? std::to_string(i + 1) + " " + look.scene : "";
+    for (const double x : look.profile.x_m) line.x.push_back(1e3 * x);
+    line.y = look.profile.friction;
+    friction.layers.push_back(line);
+    for (std::size_t k = 0; k < line.y.size(); ++k) line.y[k] = 1e6 * look.profile.displacement_m[k];
+    most_um = std::max(most_um, *std::max_element(line.y.begin(), line.y.end()));
+    // A single picture has one series a panel; its friction curve looks different from its displacement.
+    if (!several) std::get<plot::Line>(friction.layers.back()).series = 1;
+    displacement.layers.push_back(line);
+  }
+  if (most_um > 0) displacement.y.high = 1.15 * most_um;
+  for (auto* panel : {&displacement, &friction}) {
+    panel->x = {"Distance from the wide end (mm)", 0, 1e3 * looks.front().profile.x_m.back()};
+    for (const auto& look : looks)
+      if (look.plan.boundary_m)
+        panel->layers.push_back(plot::Rule{plot::Rule::Direction::vertical, 1e3 * *look.plan.boundary_m,
+                                           several ? "" : "boundary"});
+    figure.panels.push_back(std::move(*panel));
+  }
+  figure.columns = 2;
+  figure.panel_width_px = 430, figure.panel_height_px = 260;
+  return figure;
+}
+
+plot::Figure spectrum_figure(const SceneLook& look) {
+  require_plan(look);
+  plot::Points points;
+  double most = 0;
+  for (const auto& tone : look.plan.tones) {
+    points.x.push_back(1e-3 * tone.frequency_Hz);
+    points.y.push_back(1e6 * tone.amplitude_m);
+    points.low.push_back(0);
+    points.high.push_back(1e6 * tone.amplitude_m);
+    most = std::max(most, 1e6 * tone.amplitude_m);
+  }
+  plot::Panel panel;
+  panel.title = "Drive";
+  panel.x = plot::fitted("Frequency (kHz)", points.x, 0.3);
+  panel.y = {"Drive edge (\u00b5m)", 0, most > 0 ? 1.2 * most : 1};
+  for (const auto& tone : look.plan.tones)
+    if (tone.nearest_resonance_Hz && 1e-3 * *tone.nearest_resonance_Hz > panel.x.low &&
+        1e-3 * *tone.nearest_resonance_Hz < panel.x.high && look.plan.tones.size() == 1)
+      panel.layers.push_back(
+          plot::Rule{plot::Rule::Direction::vertical, 1e-3 * *tone.nearest_resonance_Hz, "resonance"});
+  panel.layers.push_back(points);
+  plot::Figure figure;
+  figure.title = "Tones, scene " + look.scene;
+  figure.panels.push_back(panel);
+  figure.panel_width_px = 430, figure.panel_height_px = 260;
+  return figure;
+}
+
+}  // namespace turnpoint::desk

@@ -1,0 +1,128 @@
+#include "station/limits/finger_account.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+#include "station/trial/timing.hpp"
+
+namespace turnpoint::limits {
+
+namespace {
+
+constexpr double kUnlimited_s = 1e9;
+
+double wall_s(const records::SegmentStart& segment, std::int64_t time_ns) {
+  return 1e-9 * static_cast<double>(segment.realtime_ns) +
+         1e-9 * static_cast<double>(time_ns - segment.monotonic_ns);
+}
+
+/// From and to when a segment saw anything, s since 1970.
+struct Active {
+  double start_s = 0, end_s = 0;
+};
+
+void gather(const store::StoredSession& session, double longest_s, std::vector<Exposed>& stimuli,
+            std::vector<Active>& active) {
+  std::set<int> ended;
+  for (const auto& block : session.blocks)
+    for (const auto& trial : block.trials) ended.insert(trial.trial_index);
+  std::vector<Active> segments;
+  for (const auto& segment : session.segments)
+    segments.push_back(
+        {1e-9 * static_cast<double>(segment.realtime_ns), 1e-9 * static_cast<double>(segment.realtime_ns)});
+  for (const auto& event : session.events) {
+    const auto index = static_cast<std::size_t>(event.segment_index - 1);
+    if (index >= segments.size()) continue;
+    const double at_s = wall_s(session.segments[index], event.time_ns);
+    segments[index].end_s = std::max(segments[index].end_s, at_s);
+    const bool open = event.kind == "presented" && event.trial_index && !ended.count(*event.trial_index);
+    if (event.kind == "stimulus")
+      stimuli.push_back({at_s, at_s + std::strtod(event.value.c_str(), nullptr)});
+    else if (open)
+      stimuli.push_back({at_s, at_s + longest_s});
+  }
+  active.insert(active.end(), segments.begin(), segments.end());
+}
+
+}  // namespace
+
+ExposureLimits limits_of(const rig::Rig& rig, terms::RunMode mode) {
+  const bool person = mode != terms::RunMode::simulated;
+  return {rig.limits.displacement_m, rig.limits.continuous_s, rig.limits.duty,
+          person ? 60 * rig.limits.session_minutes : kUnlimited_s};
+}
+
+FingerHistory finger_history(const std::vector<store::StoredSession>& sessions, double now_s,
+                             double longest_s) {
+  FingerHistory history;
+  std::vector<Active> active;
+  for (const auto& session : sessions) gather(session, longest_s, history.stimuli, active);
+  for (auto& stimulus : history.stimuli) {
+    const double late_s = std::max(0.0, stimulus.end_s - now_s);
+    stimulus.start_s -= late_s, stimulus.end_s -= late_s;
+  }
+  std::sort(history.stimuli.begin(), history.stimuli.end(),
+            [](const auto& a, const auto& b) { return a.start_s < b.start_s; });
+  std::sort(active.begin(), active.end(), [](const auto& a, const auto& b) { return a.end_s > b.end_s; });
+  history.period_start_s = now_s;
+  for (const auto& segment : active)
+    if (history.period_start_s - segment.end_s < kNewPeriod_s)
+      history.period_start_s = std::min(history.period_start_s, segment.start_s);
+  return history;
+}
+
+FingerHistory read_finger_history(const std::string& database, const std::string& participant, double now_s,
+                                  double longest_s) {
+  std::vector<store::StoredSession> recent;
+  std::error_code ignored;
+  if (std::filesystem::exists(database, ignored))
+    for (const auto& session : store::list_sessions(database, {"", participant, ""})) {
+      const double idle_s = now_s - 1e-9 * static_cast<double>(session.last_activity_realtime_ns);
+      if (session.start.run_mode != terms::RunMode::simulated && idle_s < 3600 + kNewPeriod_s)
+        recent.push_back(store::read_session(database, session.session_id));
+    }
+  return finger_history(recent, now_s, longest_s);
+}
+
+namespace {
+
+// Counted from the origin: seconds since 1970 leave too few digits for a limit's edge.
+std::vector<Exposed> shifted(std::vector<Exposed> stimuli, double by_s) {
+  for (auto& stimulus : stimuli) stimulus.start_s -= by_s, stimulus.end_s -= by_s;
+  return stimuli;
+}
+
+}  // namespace
+
+FingerAccount::FingerAccount(const ExposureLimits& limits, const FingerHistory& history,
+                             std::int64_t origin_ns, double origin_s)
+    : exposure_(limits, history.period_start_s - origin_s, shifted(history.stimuli, origin_s)),
+      origin_ns_(origin_ns) {}
+
+double FingerAccount::seconds(std::int64_t time_ns) const {
+  return 1e-9 * static_cast<double>(time_ns - origin_ns_);
+}
+
+std::int64_t FingerAccount::earliest_ns(std::int64_t wanted_ns, const std::vector<Exposed>& trial) const {
+  const double wanted_s = seconds(wanted_ns);
+  const double later_s = exposure_.earliest_start_s(wanted_s, trial) - wanted_s;
+  return later_s < 1e-4 ? wanted_ns : wanted_ns + static_cast<std::int64_t>(later_s * 1e9);
+}
+
+void FingerAccount::add(std::int64_t on_ns, std::int64_t off_ns) {
+  exposure_.add({seconds(on_ns), seconds(std::max(on_ns, off_ns))});
+}
+
+std::vector<Exposed> stimuli_of(const protocol::Protocol& protocol, const trial::TrialSpec& trial) {
+  std::vector<Exposed> stimuli;
+  double at_s = trial::kCue_s;
+  for (const auto& interval : trial::interval_times(protocol, trial)) {
+    stimuli.push_back({at_s, at_s + interval.length_s});
+    at_s += interval.length_s + protocol.task.gap_s.value_or(0);
+  }
+  return stimuli;
+}
+
+}  // namespace turnpoint::limits

@@ -1,0 +1,58 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "station/limits/exposure.hpp"
+#include "station/rig/rig.hpp"
+#include "station/store/read.hpp"
+#include "station/trial/director.hpp"
+
+namespace turnpoint::limits {
+
+/// The rig's limits as the drive keeps them; a simulated finger's session may last any time.
+ExposureLimits limits_of(const rig::Rig& rig, terms::RunMode mode);
+
+/// What a participant's earlier segments put on the finger, from the database: stimuli in order of time and
+/// the start of the period, on the wall clock (s since 1970). A pause of half an hour begins a new period;
+/// a new process, or another session of the same participant, does not.
+struct FingerHistory {
+  std::vector<Exposed> stimuli;
+  double period_start_s = 0;
+};
+inline constexpr double kNewPeriod_s = 1800;
+
+/// Of sessions that end within the last half hour before `now_s`. A trial that was presented and never ended
+/// (a crash) counts as `longest_s` of stimulus. Times after now_s (a clock that was set back) count as now.
+FingerHistory finger_history(const std::vector<store::StoredSession>& sessions, double now_s,
+                             double longest_s);
+
+/// The same, read from a database that may not exist yet. Simulated sessions have no finger.
+FingerHistory read_finger_history(const std::string& database, const std::string& participant, double now_s,
+                                  double longest_s);
+
+/// Keeps a period of exposure within the rig's limits, on the stage's clock.
+class FingerAccount {
+ public:
+  /// `origin_ns` of the stage's clock is `origin_s` on the wall clock.
+  FingerAccount(const ExposureLimits& limits, const FingerHistory& history, std::int64_t origin_ns,
+                double origin_s);
+
+  /// When a trial may begin at the soonest, at or after `wanted_ns`. Throws LimitExceeded.
+  std::int64_t earliest_ns(std::int64_t wanted_ns, const std::vector<Exposed>& trial) const;
+  /// Throws LimitExceeded for a displacement that the rig does not allow.
+  void check(double displacement_m, double length_s) const { exposure_.check(displacement_m, length_s); }
+  /// What was on the surface in the end.
+  void add(std::int64_t on_ns, std::int64_t off_ns);
+
+ private:
+  double seconds(std::int64_t time_ns) const;
+
+  Exposure exposure_;
+  std::int64_t origin_ns_;
+};
+
+/// The stimuli of a trial by the times from its start, as long as they may last.
+std::vector<Exposed> stimuli_of(const protocol::Protocol& protocol, const trial::TrialSpec& trial);
+
+}  // namespace turnpoint::limits

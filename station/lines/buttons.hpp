@@ -1,0 +1,80 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/touch/contact.hpp"
+
+namespace turnpoint::lines {
+
+/// A press of a response button that lasted, at the first edge of its bouncing.
+struct Press {
+  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC, kernel's stamp of the first edge
+  int button = 0;            ///< index in the order of the URI
+};
+
+/// Interference on a line: it left its level and came back before that could count as a press or a touch.
+struct Glitch {
+  std::int64_t time_ns = 0;    ///< CLOCK_MONOTONIC, kernel's stamp of the first edge
+  std::string line;            ///< "left", "right", "contact"
+  int edges = 0;               ///< that the kernel reported
+  std::int64_t length_ns = 0;  ///< from the first to the last of them
+  int untold = 0;              ///< glitches of this line before, which were only counted
+};
+
+/// Something that went wrong with the buttons or the contact.
+struct ButtonsFault {
+  enum class Kind {
+    edges_lost,  ///< more than the kernel keeps
+    gone,        ///< a chip or a sensor; it is looked for until it is back
+  };
+  std::int64_t time_ns = 0;
+  Kind kind = Kind::gone;
+  std::string what;
+};
+
+/// Called on the thread that watches them; must return soon.
+struct ButtonsHandlers {
+  std::function<void(const Press&)> press;
+  std::function<void(const touch::Contact&)> contact;
+  std::function<void(const Glitch&)> glitch;  ///< at most one a second for each line
+  std::function<void(const ButtonsFault&)> fault;
+  std::function<void(std::int64_t time_ns)> back;  ///< what had gone; a button held at that time is no press
+};
+
+/// `sim:` or `gpio:left=BTN_L,right=BTN_R`, with `active=low` for buttons to ground. `hold_ms` (default 1.5)
+/// is how long a level must last to count, `refractory_ms` (default 50) how long after a press or release
+/// nothing else is told; see EdgeFilter.
+struct ButtonsConfig {
+  std::string uri = "sim:";
+};
+
+/// `sim:`, `gpio:line=FINGER` (with the same keys) or `evdev:NAME[,axis=x|y]` (a touch sensor on the
+/// surface; NAME is the device's).
+struct ContactConfig {
+  std::string uri = "sim:";
+};
+
+/// Response buttons and finger contact, watched by one thread of their own while this lives.
+class Buttons {
+ public:
+  virtual ~Buttons() = default;
+  /// Names in the order of the URI ("left", "right"); empty without buttons.
+  virtual const std::vector<std::string>& names() const = 0;
+  /// What has gone and is not back yet, and why; "" when all is there.
+  virtual std::string missing() const = 0;
+
+  /// Simulated buttons only: as if it had happened then. Throws std::logic_error on a real one.
+  virtual void simulate(const Press& press) = 0;
+  virtual void simulate(const touch::Contact& touch) = 0;
+};
+
+/// What the rig has; either may be absent. Throws terms::UsageError for a URI, LineError or
+/// std::system_error for a device that is not there.
+std::unique_ptr<Buttons> open_buttons(const std::optional<ButtonsConfig>& buttons,
+                                      const std::optional<ContactConfig>& contact, ButtonsHandlers handlers);
+
+}  // namespace turnpoint::lines

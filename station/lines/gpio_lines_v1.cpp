@@ -1,0 +1,148 @@
+// Kernel lines by libgpiod 1 (Debian 12). gpio_lines_v2.cpp is its counterpart for libgpiod 2.
+#include <gpiod.h>
+
+#include <cerrno>
+
+#include "station/lines/gpio_common.hpp"
+
+namespace turnpoint::lines {
+namespace {
+
+constexpr int kernel_buffer_edges = 16;  // of a line, by Linux's character device, version 1
+
+struct ChipCloser {
+  void operator()(gpiod_chip* chip) const noexcept { gpiod_chip_close(chip); }
+};
+using Chip = std::unique_ptr<gpiod_chip, ChipCloser>;
+
+struct Found {
+  Chip chip;
+  gpiod_line* line = nullptr;  ///< belongs to the chip
+};
+
+// Each found line keeps a chip handle of its own. A null chip must never reach the library: it does not
+// check.
+Found find(const std::string& name) {
+  Found found;
+  int denied = 0;
+  for (const std::string& path : chip_paths()) {
+    Chip chip(gpiod_chip_open(path.c_str()));
+    if (!chip) {
+      if (errno == EACCES || errno == EPERM) denied = errno;
+      continue;
+    }
+    gpiod_line* line = gpiod_chip_find_line(chip.get(), name.c_str());
+    if (!line) continue;
+    if (found.line) throw_line_error(EEXIST, name, "two lines have this name");
+    found = {std::move(chip), line};
+  }
+  if (!found.line && denied) throw_line_error(denied, name, "no right to open the chips (group gpio?)");
+  return found;
+}
+
+void request(const Found& found, const LineRequest& wanted) {
+  const bool output = wanted.use == LineUse::output_low;
+  const int result = output ? gpiod_line_request_output(found.line, wanted.consumer.c_str(), 0)
+                            : gpiod_line_request_both_edges_events(found.line, wanted.consumer.c_str());
+  if (result == 0) return;
+  const int error = errno;
+  const char* holder = gpiod_line_consumer(found.line);
+  throw_line_error(
+      error, wanted.name,
+      error == EBUSY ? std::string("in use by ") + (holder ? holder : "another program") : "request");
+}
+
+class GpioLines final : public Lines {
+ public:
+  explicit GpioLines(const std::vector<LineRequest>& requests) : last_(requests.size()) {
+    for (const LineRequest& wanted : requests) {
+      Found found = find(wanted.name);
+      if (!found.line) throw_line_error(ENOENT, wanted.name, "no chip has a line of this name");
+      request(found, wanted);
+      if (wanted.use == LineUse::input) {
+        descriptors_.push_back({gpiod_line_event_get_fd(found.line), POLLIN, 0});
+        inputs_.push_back(static_cast<int>(lines_.size()));
+      }
+      lines_.push_back(std::move(found));
+    }
+  }
+
+  std::optional<Edge> wait(std::int64_t timeout_ns, int wake) override {
+    auto ready = wait_readable(descriptors_, 0, -1);
+    if (!ready) {  // nothing was waiting: all buffers are empty
+      for (Last& last : last_) last.waiting = 0;
+      ready = wait_readable(descriptors_, timeout_ns, wake);
+    }
+    if (!ready) return std::nullopt;
+    gpiod_line_event event{};
+    if (gpiod_line_event_read_fd(descriptors_[*ready].fd, &event) != 0)
+      throw std::system_error(errno, std::generic_category(), "gpio lines: reading an edge");
+    const int line = inputs_[*ready];
+    Last& last = last_[static_cast<std::size_t>(line)];
+    const bool rising = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
+    // This interface does not number its events. A buffer that was found full has lost what came after it,
+    // but for a coincidence. Two edges in one direction prove nothing: the direction is the level when the
+    // interrupt was served, so a short spike looks like that.
+    const bool lost = last.was_full;
+    last.was_full = ++last.waiting >= kernel_buffer_edges;
+    if (last.was_full) last.waiting = 0;
+    last.sequence += lost ? 2 : 1;
+    return Edge{std::int64_t{1'000'000'000} * event.ts.tv_sec + event.ts.tv_nsec, line, rising,
+                last.sequence};
+  }
+
+  bool level(int index) override {
+    const int value = gpiod_line_get_value(lines_.at(static_cast<std::size_t>(index)).line);
+    if (value < 0) throw std::system_error(errno, std::generic_category(), "gpio lines: reading a level");
+    return value != 0;
+  }
+
+  void drive(int index, int level) override {
+    if (gpiod_line_set_value(lines_.at(static_cast<std::size_t>(index)).line, level) != 0)
+      throw std::system_error(errno, std::generic_category(), "gpio lines: driving a line");
+  }
+
+  std::optional<bool> read_back(int index) override {
+    const int value = gpiod_line_get_value(lines_.at(static_cast<std::size_t>(index)).line);
+    if (value < 0 && errno == ENODEV)
+      throw std::system_error(errno, std::generic_category(), "gpio lines: reading back a level");
+    return value < 0 ? std::nullopt : std::optional(value != 0);
+  }
+
+ private:
+  struct Last {
+    std::uint32_t sequence = 0;
+    int waiting = 0;  ///< edges read since the buffers were last seen empty
+    bool was_full = false;
+  };
+  std::vector<Found> lines_;
+  std::vector<pollfd> descriptors_;
+  std::vector<int> inputs_;  ///< line of each descriptor
+  std::vector<Last> last_;
+};
+
+}  // namespace
+
+std::unique_ptr<Lines> open_gpio_lines(const std::vector<LineRequest>& requests) {
+  return std::make_unique<GpioLines>(requests);
+}
+
+std::string gpio_library() { return std::string("libgpiod ") + gpiod_version_string(); }
+
+std::optional<LineState> find_line(const std::string& name) {
+  const Found found = find(name);
+  if (!found.line) return std::nullopt;
+  LineState state{name, gpiod_chip_name(found.chip.get()), static_cast<int>(gpiod_line_offset(found.line)),
+                  gpiod_line_is_used(found.line), ""};
+  if (const char* consumer = gpiod_line_consumer(found.line)) state.consumer = consumer;
+  return state;
+}
+
+std::vector<std::string> gpio_chips() {
+  std::vector<std::string> open;
+  for (const std::string& path : chip_paths())
+    if (const Chip chip(gpiod_chip_open(path.c_str())); chip) open.push_back(path);
+  return open;
+}
+
+}  // namespace turnpoint::lines

@@ -1,0 +1,64 @@
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <optional>
+
+#include "station/lines/guard.hpp"
+#include "station/system/wake_up.hpp"
+
+namespace turnpoint::lines {
+
+/// Orders from ordinary threads to the guard's thread, and its answers. An ordinary thread waits until its
+/// order has been carried out; the guard waits for nobody. An order that only ever switches off takes effect
+/// once it is posted, even if its caller never runs again.
+class GuardOrders {
+ public:
+  /// What an operator or the session asks for, and may be refused.
+  enum class Ask : std::uint32_t { nothing, arm, enable, clear };
+
+  /// What the guard finds when it looks. Orders that switch off win over what is asked for in the same look.
+  struct Taken {
+    std::uint32_t ticket = 0;
+    Ask ask = Ask::nothing;
+    bool disable = false, disarm = false;
+    std::uint32_t trips = 0;  ///< bit k: terms::FaultKind k
+  };
+
+  /// `scheduler_point` (may be empty) is called on the caller's thread between the steps of an order: a test
+  /// stalls it there.
+  explicit GuardOrders(std::function<void()> scheduler_point)
+      : scheduler_point_(std::move(scheduler_point)) {}
+
+  // Ordinary threads. ask() is for one at a time; others wait for their turn.
+  std::optional<Guard::Refusal> ask(Ask what);
+  void disable() noexcept { post(off_, disable_bit); }
+  void disarm() noexcept { post(off_, disarm_bit); }
+  void trip(terms::FaultKind kind) noexcept { post(trips_, 1u << static_cast<unsigned>(kind)); }
+
+  // The guard's thread.
+  std::optional<Taken> take() noexcept;
+  void done(const Taken& taken, std::optional<Guard::Refusal> refusal) noexcept;
+
+  /// Ends the guard's wait without an order.
+  void wake() noexcept { wake_.ring(); }
+  int descriptor() const noexcept { return wake_.descriptor(); }
+
+ private:
+  static constexpr std::uint32_t disable_bit = 1, disarm_bit = 2;
+
+  void post(std::atomic<std::uint32_t>& order, std::uint32_t bits) noexcept;
+  void await(std::uint32_t ticket) noexcept;
+  void scheduler_point() const noexcept;
+
+  std::function<void()> scheduler_point_;
+  std::mutex asking_;  ///< among ordinary threads only
+  std::atomic<Ask> ask_{Ask::nothing};
+  std::atomic<std::uint32_t> off_{0}, trips_{0};
+  std::atomic<std::uint32_t> posted_{0}, handled_{0};
+  std::optional<Guard::Refusal> refusal_;  ///< of the last ask; written before handled_ reaches its ticket
+  system::WakeUp wake_;
+};
+
+}  // namespace turnpoint::lines

@@ -1,0 +1,274 @@
+#include "station/lines/guarded_amplifier.hpp"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstring>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "station/lines/guard_orders.hpp"
+#include "station/lines/published.hpp"
+#include "station/system/clocks.hpp"
+#include "station/system/rights.hpp"
+
+namespace turnpoint::lines {
+namespace {
+
+using terms::FaultKind;
+using Ask = GuardOrders::Ask;
+
+constexpr int guard_priority = 75;
+constexpr std::int64_t open_again_ns = 100'000'000;
+constexpr std::int64_t look_ns = 500'000;  // how often fault and stop are read while the line is high
+static_assert(terms::fault_kinds.size() <= 32, "a trip is a bit of a word");
+
+/// What ordinary threads may know of the guard.
+struct Report {
+  drive::AmplifierState state = drive::AmplifierState::disarmed;
+  Guard::Fault fault;
+  std::int64_t reaction_ns = -1;
+};
+/// Why the lines are gone, cut to what fits.
+using Reason = std::array<char, 160>;
+
+/// Owns lines and rules; all of it belongs to the guard's thread, which publishes what others may know.
+class GuardThread {
+ public:
+  GuardThread(OpenLines open, const GuardLines& roles, const GuardOptions& options)
+      : orders(options.scheduler_point), open_(std::move(open)), roles_(roles), guard_(options.config) {
+    take_up();
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  }
+
+  ~GuardThread() {
+    thread_.request_stop();
+    orders.wake();
+    thread_.join();
+  }
+
+  GuardOrders orders;
+  Published<Report> report;
+  Published<Reason> gone;
+  std::atomic<std::int64_t> audio_ns{-1}, session_ns{-1}, page_ns{-1};
+
+ private:
+  void publish() noexcept { report.store({guard_.state(), guard_.fault(), reaction_ns_}); }
+
+  bool wants_high() const noexcept { return guard_.outputs().enable == 1; }
+
+  void drive_enable() {
+    lines_->drive(roles_.enable, wants_high() ? 1 : 0);
+    if (driven_high_ && !wants_high()) lowered_ns_ = system::monotonic_ns();
+    driven_high_ = wants_high();
+  }
+
+  bool fault_at(bool level) const noexcept { return level != roles_.fault_active_low; }
+  bool stop_at(bool level) const noexcept { return level != roles_.stop_active_low; }
+
+  void read_levels() {
+    const std::int64_t now = system::monotonic_ns();
+    if (roles_.fault >= 0) guard_.fault_line(now, fault_at(lines_->level(roles_.fault)));
+    if (roles_.stop >= 0) guard_.stop_line(now, stop_at(lines_->level(roles_.stop)));
+  }
+
+  void take_signs() noexcept {
+    if (const auto at = audio_ns.load(); at >= 0) guard_.audio_alive(at);
+    if (const auto at = session_ns.load(); at >= 0) guard_.session_alive(at);
+    if (const auto at = page_ns.load(); at >= 0) guard_.page_alive(at);
+  }
+
+  /// Lines whose outputs are low, and what was pressed or faulty before.
+  void take_up() {
+    lines_ = open_();
+    driven_high_ = false;
+    drive_enable();
+    read_levels();
+    publish();
+  }
+
+  /// Without its lines the guard cannot guard: the heartbeat ends, and what monitors it outside acts.
+  void let_go(const char* why) noexcept {
+    guard_.trip(system::monotonic_ns(), FaultKind::lines_gone);
+    lines_.reset();
+    next_open_ns_ = system::monotonic_ns() + open_again_ns;
+    Reason reason{};
+    std::strncpy(reason.data(), why, reason.size() - 1);
+    gone.store(reason);
+    publish();
+  }
+
+  /// The line goes low first; only then is anything else done.
+  void edge(const Edge& edge) {
+    const bool fault = edge.line == roles_.fault;
+    const bool active = fault ? fault_at(edge.rising) : stop_at(edge.rising);
+    if (active) {
+      lines_->drive(roles_.enable, 0);
+      // The levels may have told it before the edge did.
+      reaction_ns_ = (driven_high_ ? system::monotonic_ns() : lowered_ns_) - edge.time_ns;
+    }
+    fault ? guard_.fault_line(edge.time_ns, active) : guard_.stop_line(edge.time_ns, active);
+    drive_enable();
+    publish();
+  }
+
+  /// The kernel hands edges on by a thread of its own, which a busy real-time thread can hold up.
+  void look() {
+    read_levels();
+    drive_enable();
+    publish();
+    next_look_ns_ = system::monotonic_ns() + look_ns;
+  }
+
+  void beat() {
+    take_signs();
+    guard_.tick(system::monotonic_ns());
+    look();
+    // Compared with what has just been driven, not with what was wanted before.
+    if (const auto level = roles_.read_back ? lines_->read_back(roles_.enable) : std::nullopt)
+      guard_.enable_line(system::monotonic_ns(), *level);
+    drive_enable();
+    if (roles_.heartbeat >= 0) lines_->drive(roles_.heartbeat, guard_.outputs().heartbeat);
+    publish();
+  }
+
+  std::optional<Guard::Refusal> obey(const GuardOrders::Taken& taken) {
+    const std::int64_t now = system::monotonic_ns();
+    for (const FaultKind kind : terms::fault_kinds)
+      if (taken.trips >> static_cast<unsigned>(kind) & 1) guard_.trip(now, kind);
+    std::optional<Guard::Refusal> refusal;
+    if (taken.ask != Ask::nothing && !lines_) {
+      refusal = {FaultKind::lines_gone};
+    } else if (taken.ask != Ask::nothing) {
+      take_signs();
+      read_levels();
+      refusal = taken.ask == Ask::arm      ? guard_.arm(now)
+                : taken.ask == Ask::enable ? guard_.enable(now)
+                                           : guard_.clear();
+    }
+    if (taken.disable) guard_.disable();
+    if (taken.disarm) guard_.disarm();
+    if (lines_) drive_enable();
+    return refusal;
+  }
+
+  /// Every order is answered, whatever goes wrong with the lines: somebody waits for it.
+  void look_at_orders() noexcept {
+    const auto taken = orders.take();
+    if (!taken) return;
+    std::optional<Guard::Refusal> refusal;
+    try {
+      refusal = obey(*taken);
+    } catch (const std::exception& error) {
+      let_go(error.what());
+      refusal = {FaultKind::lines_gone};
+    }
+    publish();
+    orders.done(*taken, refusal);
+  }
+
+  /// Edges and orders until it is time to look or to beat.
+  void watch() {
+    const auto until_ns =
+        wants_high() ? std::min(guard_.next_tick_ns(), next_look_ns_) : guard_.next_tick_ns();
+    const auto wait_ns = std::max<std::int64_t>(0, until_ns - system::monotonic_ns());
+    if (const auto seen = lines_->wait(wait_ns, orders.descriptor())) edge(*seen);
+    const auto now = system::monotonic_ns();
+    if (now >= guard_.next_tick_ns()) return beat();
+    if (wants_high() && now >= next_look_ns_) look();
+  }
+
+  /// Orders are answered meanwhile, however many come.
+  void look_for_lines() {
+    const std::int64_t left_ns = std::max<std::int64_t>(0, next_open_ns_ - system::monotonic_ns());
+    pollfd order{orders.descriptor(), POLLIN, 0};
+    ::poll(&order, 1, static_cast<int>(left_ns / 1'000'000) + 1);
+    if (system::monotonic_ns() >= next_open_ns_) take_up();
+  }
+
+  void run(const std::stop_token& stop) noexcept {
+    static_cast<void>(system::become_realtime(guard_priority));
+    while (!stop.stop_requested()) {
+      try {
+        lines_ ? watch() : look_for_lines();
+      } catch (const std::exception& error) {
+        let_go(error.what());
+      }
+      look_at_orders();
+    }
+    try {
+      if (lines_) lines_->drive(roles_.enable, 0);
+    } catch (const std::exception&) {  // the chip has gone, and the line with it
+    }
+  }
+
+  OpenLines open_;
+  GuardLines roles_;
+  Guard guard_;
+  std::unique_ptr<Lines> lines_;   ///< none while they are gone
+  std::int64_t next_open_ns_ = 0;  ///< of lines that are gone
+  std::int64_t next_look_ns_ = 0;
+  bool driven_high_ = false;
+  std::int64_t lowered_ns_ = 0;  ///< when it was last driven low from high
+  std::int64_t reaction_ns_ = -1;
+  std::jthread thread_;
+};
+
+class GuardedAmplifier final : public drive::Amplifier {
+ public:
+  GuardedAmplifier(OpenLines open, const GuardLines& roles, const GuardOptions& options)
+      : guard_(std::move(open), roles, options) {}
+
+  Refusal arm() override { return ask(Ask::arm); }
+  Refusal enable() override { return ask(Ask::enable); }
+  Refusal clear() override { return ask(Ask::clear); }
+  void disarm() noexcept override { guard_.orders.disarm(); }
+  void disable() noexcept override { guard_.orders.disable(); }
+  void trip(FaultKind kind, std::string_view detail) noexcept override {
+    guard_.orders.trip(kind);  // first: the detail is of no use to the guard
+    const std::lock_guard lock(details_mutex_);
+    details_[static_cast<std::size_t>(kind)] = detail;
+  }
+
+  void audio_alive() noexcept override { guard_.audio_ns.store(system::monotonic_ns()); }
+  void session_alive() noexcept override { guard_.session_ns.store(system::monotonic_ns()); }
+  void page_alive(std::int64_t time_ns) noexcept override { guard_.page_ns.store(time_ns); }
+
+  drive::AmplifierState state() const noexcept override { return guard_.report.load().state; }
+  drive::AmplifierFault fault() const override {
+    const auto fault = guard_.report.load().fault;
+    return {{fault.kind, detail_of(fault.kind, fault.detail)}, fault.time_ns};
+  }
+  std::int64_t reaction_ns() const noexcept override { return guard_.report.load().reaction_ns; }
+
+ private:
+  Refusal ask(Ask what) {
+    const auto refusal = guard_.orders.ask(what);
+    if (!refusal) return std::nullopt;
+    return terms::Fault{refusal->kind,
+                        refusal->latched ? "latched; clear it first" : detail_of(refusal->kind, "")};
+  }
+
+  std::string detail_of(FaultKind kind, const char* constant) const {
+    if (kind == FaultKind::lines_gone) return guard_.gone.load().data();
+    if (*constant != '\0') return constant;
+    const std::lock_guard lock(details_mutex_);
+    return details_[static_cast<std::size_t>(kind)];
+  }
+
+  mutable std::mutex details_mutex_;                            ///< among ordinary threads only
+  std::array<std::string, terms::fault_kinds.size()> details_;  ///< of what the station tripped itself
+  GuardThread guard_;
+};
+
+}  // namespace
+
+std::unique_ptr<drive::Amplifier> guard_amplifier(OpenLines open, const GuardLines& roles,
+                                                  GuardOptions options) {
+  return std::make_unique<GuardedAmplifier>(std::move(open), roles, options);
+}
+
+}  // namespace turnpoint::lines

@@ -1,0 +1,54 @@
+#pragma once
+#include <deque>
+#include <mutex>
+#include <vector>
+
+#include "station/lines/lines.hpp"
+#include "station/system/wake_up.hpp"
+
+namespace turnpoint::lines {
+
+/// Lines without hardware, for development and tests: inputs are set by hand, outputs can be read back.
+/// All functions may be called from any thread.
+class SimulatedLines : public Lines {
+ public:
+  explicit SimulatedLines(int count)
+      : levels_(static_cast<std::size_t>(count), 0), sequences_(levels_.size(), 0) {}
+
+  std::optional<Edge> wait(std::int64_t timeout_ns, int wake = -1) override;
+  bool level(int index) override;
+  void drive(int index, int level) override;
+  std::optional<bool> read_back(int index) override { return level(index); }
+
+  /// An input changes, at that time.
+  void set(int index, bool level, std::int64_t time_ns);
+  /// An input leaves its level and comes back: both edges are there at once.
+  void pulse(int index, std::int64_t time_ns, std::int64_t length_ns);
+  /// Edges that the kernel's buffer had no room for.
+  void lose_edges(int index, std::uint32_t count);
+  /// What was driven, change by change: which output, its new level, when.
+  struct Driven {
+    std::int64_t time_ns = 0;
+    int line = 0;
+    int level = 0;
+  };
+  std::vector<Driven> driven() const;
+  /// The chip is unplugged: every further call throws ENODEV until it is plugged in again, outputs low.
+  void remove();
+  void put_back();
+
+ private:
+  void check() const;
+  std::optional<Edge> next_edge();
+  void change(int index, bool level, std::int64_t time_ns);
+
+  mutable std::mutex mutex_;
+  system::WakeUp changed_;
+  std::deque<Edge> edges_;
+  std::vector<int> levels_;
+  std::vector<std::uint32_t> sequences_;
+  std::vector<Driven> driven_;
+  bool gone_ = false;
+};
+
+}  // namespace turnpoint::lines

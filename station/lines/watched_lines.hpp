@@ -1,0 +1,33 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/lines/buttons.hpp"
+#include "station/lines/edge_filter.hpp"
+#include "station/lines/lines.hpp"
+
+namespace turnpoint::lines {
+
+/// Which lines are watched: buttons first, in order, then perhaps the contact.
+struct WatchedLines {
+  std::vector<LineRequest> requests;
+  std::vector<std::string> names;  ///< of each line: "left", "right", "contact"
+  int lines = 0;
+  int contact = -1;                               ///< index of the contact line
+  bool buttons_low = false, contact_low = false;  ///< active level
+  EdgeFilter::Rules button_rules, contact_rules;
+};
+
+/// open_buttons() on lines that `request` gives for those that the rig names.
+using RequestLines = std::function<std::unique_ptr<Lines>(const std::vector<LineRequest>&)>;
+std::unique_ptr<Buttons> open_buttons(const std::optional<ButtonsConfig>& buttons,
+                                      const std::optional<ContactConfig>& contact, ButtonsHandlers handlers,
+                                      const RequestLines& request);
+
+/// Buttons on lines, kernel or simulated. Throws what `open` throws at the start.
+std::unique_ptr<Buttons> watch_lines(OpenLines open, const WatchedLines& plan, ButtonsHandlers handlers);
+
+}  // namespace turnpoint::lines

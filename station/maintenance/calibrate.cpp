@@ -1,0 +1,161 @@
+#include "station/maintenance/calibrate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "station/calibration/apply.hpp"
+#include "station/rig/csv.hpp"
+
+namespace turnpoint::maintenance {
+
+namespace {
+
+using calibration::BoundaryFit;
+using calibration::Calibration;
+using calibration::Measurements;
+using plot::fitted;
+using plot::Line;
+using plot::Points;
+
+std::vector<std::vector<double>> rows_of(const std::string& path, const std::vector<std::string>& columns) {
+  text::Findings findings;
+  auto rows = rig::read_table(path, columns, {path, 0, 0}, findings);
+  findings.throw_if_any();
+  return rows;
+}
+
+/// Measured against fitted, and their difference underneath.
+struct Comparison {
+  std::string title, x_label, y_label, residual_label;
+  std::vector<double> x, measured, fit_x, fit_y, residuals;
+};
+
+void add(plot::Figure& figure, const Comparison& c) {
+  auto range = c.measured;
+  range.insert(range.end(), c.fit_y.begin(), c.fit_y.end());
+  plot::Panel fit{c.title, fitted(c.x_label, c.x), fitted(c.y_label, range), {}};
+  Line line;
+  line.x = c.fit_x, line.y = c.fit_y, line.series = 0, line.name = "fit";
+  Points points;
+  points.x = c.x, points.y = c.measured, points.series = 1, points.name = "measured";
+  fit.layers = {line, points};
+  plot::Panel rest{"Residuals", fitted(c.x_label, c.x), fitted(c.residual_label, c.residuals), {}};
+  Points residuals;
+  residuals.x = c.x, residuals.y = c.residuals, residuals.series = 1;
+  rest.layers = {plot::Rule{plot::Rule::Direction::horizontal, 0, ""}, residuals};
+  figure.panels.push_back(std::move(fit));
+  figure.panels.push_back(std::move(rest));
+}
+
+void add_response(plot::Figure& figure, const Calibration::Transducer& transducer,
+                  const Measurements::Sweep& sweep) {
+  Comparison level, phase;
+  level.title = transducer.name + ": response";
+  phase.title = transducer.name + ": phase";
+  level.x_label = phase.x_label = "Frequency (kHz)";
+  level.y_label = "Displacement at full scale (dB re 1 um)", level.residual_label = "Residual (dB)";
+  phase.y_label = "Phase (degrees)", phase.residual_label = "Residual (degrees)";
+  const auto rows = rows_of(sweep.csv, {"frequency_Hz", "displacement_um", "phase_deg"});
+  const auto& points = transducer.response.points;
+  const auto degrees = [](double rad) { return rad * 180 / std::numbers::pi; };
+  for (std::size_t k = 0; k < rows.size() && k < points.size(); ++k) {
+    const double fit_dB = 20 * std::log10(points[k].m_per_full_scale * 1e6);
+    const double measured_dB = 20 * std::log10(rows[k][1] / sweep.full_scale);
+    const double fit_deg = degrees(points[k].phase_rad);
+    // The fit unwraps: the measured phase is shown on the turn that is nearest.
+    const double measured_deg = rows[k][2] + 360 * std::round((fit_deg - rows[k][2]) / 360);
+    for (auto* c : {&level, &phase}) c->x.push_back(rows[k][0] * 1e-3), c->fit_x.push_back(rows[k][0] * 1e-3);
+    level.measured.push_back(measured_dB), level.fit_y.push_back(fit_dB);
+    level.residuals.push_back(measured_dB - fit_dB);
+    phase.measured.push_back(measured_deg), phase.fit_y.push_back(fit_deg);
+    phase.residuals.push_back(measured_deg - fit_deg);
+  }
+  add(figure, level);
+  add(figure, phase);
+}
+
+void add_boundary(plot::Figure& figure, const BoundaryFit& fit, const std::string& csv) {
+  Comparison c;
+  c.title = fit.law == BoundaryFit::Law::plate ? "Boundary: plate" : "Boundary: membrane";
+  c.x_label = "Frequency (kHz)", c.y_label = "Boundary (mm)", c.residual_label = "Residual (mm)";
+  for (const auto& row : rows_of(csv, {"frequency_Hz", "boundary_mm", "sd_mm"})) {
+    c.x.push_back(row[0] * 1e-3);
+    c.measured.push_back(row[1]);
+    c.residuals.push_back(row[1] - 1e3 * calibration::boundary_at(fit, row[0]));
+  }
+  const auto [low, high] = std::minmax_element(c.x.begin(), c.x.end());
+  for (int k = 0; k <= 100; ++k) {
+    const double f_kHz = *low + (*high - *low) * k / 100;
+    c.fit_x.push_back(f_kHz);
+    c.fit_y.push_back(1e3 * calibration::boundary_at(fit, f_kHz * 1e3));
+  }
+  add(figure, c);
+}
+
+double friction_at(const calibration::FrictionFit& fit, double displacement_m) {
+  const auto& points = fit.points;
+  const auto above = std::find_if(points.begin(), points.end(),
+                                  [=](const auto& p) { return p.displacement_m >= displacement_m; });
+  if (above == points.end()) return points.back().relative_friction;
+  if (above == points.begin()) return above->relative_friction;
+  const auto below = above - 1;
+  const double u = (displacement_m - below->displacement_m) / (above->displacement_m - below->displacement_m);
+  return below->relative_friction + u * (above->relative_friction - below->relative_friction);
+}
+
+void add_friction(plot::Figure& figure, const calibration::FrictionFit& fit, const std::string& csv) {
+  Comparison c;
+  c.title = "Friction";
+  c.x_label = "Displacement (um)", c.y_label = "Relative friction", c.residual_label = "Residual";
+  for (const auto& row : rows_of(csv, {"displacement_um", "relative_friction"})) {
+    c.x.push_back(row[0]);
+    c.measured.push_back(row[1]);
+    c.residuals.push_back(row[1] - friction_at(fit, row[0] * 1e-6));
+  }
+  for (const auto& point : fit.points) {
+    c.fit_x.push_back(point.displacement_m * 1e6);
+    c.fit_y.push_back(point.relative_friction);
+  }
+  add(figure, c);
+}
+
+void add_sound(plot::Figure& figure, const std::vector<calibration::SoundPoint>& sound) {
+  Line line;
+  for (const auto& point : sound) {
+    line.x.push_back(point.frequency_Hz * 1e-3);
+    line.y.push_back(point.level_dB);
+  }
+  plot::Panel panel{
+      "Sound level at full scale", fitted("Frequency (kHz)", line.x), fitted("Level (dB SPL)", line.y), {}};
+  panel.layers = {line};
+  figure.panels.push_back(std::move(panel));
+}
+
+}  // namespace
+
+Calibration calibrate(const rig::Rig& rig, const Measurements& measurements, int valid_days,
+                      const std::string& note) {
+  Calibration calibration = calibration::fit_measurements(measurements);
+  calibration.rig_name = rig.name;
+  calibration.rig_sha256 = rig.sha256;
+  calibration.made_on = calibration::today();
+  calibration.valid_days = valid_days;
+  calibration.note = note;
+  static_cast<void>(calibration::applied(calibration, rig));  // refuses what no session could use
+  return calibration;
+}
+
+plot::Figure calibration_figure(const Calibration& calibration, const Measurements& measurements) {
+  plot::Figure figure;
+  figure.title = "Calibration of " + calibration.rig_name + ", " + calibration.made_on;
+  figure.columns = 2;
+  for (std::size_t k = 0; k < calibration.transducers.size(); ++k)
+    add_response(figure, calibration.transducers[k], measurements.sweeps[k]);
+  if (calibration.boundary) add_boundary(figure, *calibration.boundary, measurements.boundaries_csv);
+  if (calibration.friction) add_friction(figure, *calibration.friction, measurements.friction_csv);
+  if (!calibration.sound.empty()) add_sound(figure, calibration.sound);
+  return figure;
+}
+
+}  // namespace turnpoint::maintenance

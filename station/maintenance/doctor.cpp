@@ -1,0 +1,247 @@
+#include "station/maintenance/doctor.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/resource.h>
+#include <sys/statvfs.h>
+#include <sys/timex.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+
+#include "station/drive/alsa_mixer.hpp"
+#include "station/drive/engine.hpp"
+#include "station/session/stage.hpp"
+#include "station/setup/places.hpp"
+#include "station/system/clocks.hpp"
+
+namespace turnpoint::maintenance {
+namespace {
+
+using Status = lines::Finding::Status;
+
+// Two and a half seconds of silence, to see the device's own clock; longer where its time stamps are coarse.
+lines::Finding measured_clock(drive::Stream& stream) {
+  for (int k = 0; k < 220; ++k) {
+    system::sleep_until_ns(system::monotonic_ns() + 100'000'000);
+    while (stream.poll()) {
+    }
+    if (const auto rate = stream.measured_rate()) {
+      const bool good = std::abs(rate->deviation_ppm) <= drive::RateCheck::tolerance_ppm;
+      return {"converter clock", good ? Status::ok : Status::failed,
+              fmt::format("{:.2f} Hz, {:+.1f} ppm (standard error {:.1f} ppm)", rate->rate_Hz,
+                          rate->deviation_ppm, rate->standard_error_ppm),
+              good ? ""
+                   : "something resamples behind the device, or its clock is wrong: another cable, port or "
+                     "device"};
+    }
+  }
+  return {"converter clock", Status::failed, "no time stamps came from the device",
+          "another device or kernel driver"};
+}
+
+// What amixer calls the card of alsa:hw:CARD=NAME,DEV=0, or of alsa:hw:NAME,0.
+std::string card_of(std::string_view uri) {
+  uri.remove_prefix(std::string_view("alsa:hw:").size());
+  if (uri.starts_with("CARD=")) uri.remove_prefix(5);
+  return std::string(uri.substr(0, uri.find(',')));
+}
+
+// A PCM512x mutes its analogue side after 1024 frames of zeros, 5 ms (TI, PCM512x data sheet, zero data
+// detection), and unmutes it at each onset. The stream of a session is zeros between stimuli.
+void converter_mute(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
+  const auto on = drive::card_switch(rig.output.uri, "Auto Mute Switch");
+  if (!on) return;
+  checks.push_back(
+      {"converter mute", *on ? Status::failed : Status::ok,
+       *on ? "Auto Mute is on: the converter mutes itself between stimuli, and each onset unmutes it"
+           : "Auto Mute is off",
+       *on ? fmt::format("amixer -c {} sset 'Auto Mute' off, then sudo alsactl store",
+                         card_of(rig.output.uri))
+           : ""});
+}
+
+void converter(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
+  if (!rig.output.uri.starts_with("alsa:")) {
+    checks.push_back({"converter", Status::ok, rig.output.uri + " (no converter)", ""});
+    return;
+  }
+  try {
+    const auto stream = drive::open_realtime(session::stream_of(rig));
+    checks.push_back({"converter", Status::ok,
+                      fmt::format("{} at {} Hz, {} bits, hardware, no conversion", rig.output.uri,
+                                  rig.output.rate_Hz, rig.output.bits),
+                      ""});
+    checks.push_back(measured_clock(*stream));
+    const auto underruns = stream->counters().underruns;
+    checks.push_back(
+        {"converter stream", underruns == 0 ? Status::ok : Status::failed,
+         fmt::format("{} underruns", underruns),
+         underruns == 0 ? "" : "larger period_frames, real-time rights, a kernel with less latency"});
+  } catch (const std::exception& error) {
+    checks.push_back({"converter", Status::failed, error.what(),
+                      "correct [output] in the rig file (aplay -l lists devices), plug the device in, or end "
+                      "what uses it"});
+  }
+}
+
+// A rig file begins with a simulated panel: easily forgotten beside a real converter.
+lines::Finding touch(const rig::Rig& rig) {
+  auto check = lines::check_touch("touch", *rig.touch_uri);
+  if (check.status == Status::ok && *rig.touch_uri == "sim:" && rig.output.uri.starts_with("alsa:"))
+    return {"touch", Status::warning, "simulated: answers by touch have no kernel time",
+            "[touch] uri = \"evdev:NAME\", the panel's name in /proc/bus/input/devices"};
+  return check;
+}
+
+void rights(std::vector<lines::Finding>& checks) {
+  rlimit priority{}, memory{};
+  ::getrlimit(RLIMIT_RTPRIO, &priority);
+  ::getrlimit(RLIMIT_MEMLOCK, &memory);
+  const bool root = ::geteuid() == 0;
+  const bool fifo = root || priority.rlim_cur >= 75;
+  checks.push_back(
+      {"real-time priority", fifo ? Status::ok : Status::failed,
+       root ? "granted to root" : fmt::format("up to {} (75 is needed)", priority.rlim_cur),
+       fifo ? "" : "LimitRTPRIO=80 in the service, or @audio - rtprio 80 in /etc/security/limits.d"});
+  const bool locked = root || memory.rlim_cur == RLIM_INFINITY || memory.rlim_cur >= (256u << 20);
+  checks.push_back(
+      {"locked memory", locked ? Status::ok : Status::failed,
+       memory.rlim_cur == RLIM_INFINITY || root ? "unlimited" : fmt::format("{} KiB", memory.rlim_cur >> 10),
+       locked ? "" : "LimitMEMLOCK=infinity in the service, or @audio - memlock unlimited in limits.d"});
+}
+
+void display(std::vector<lines::Finding>& checks) {
+  std::error_code ignored;
+  const bool session = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
+  const bool direct = !setup::screen_card().empty() || std::filesystem::exists("/dev/fb0", ignored);
+  checks.push_back(
+      {"display", session || direct ? Status::ok : Status::warning,
+       session  ? "a desktop session"
+       : direct ? "the kernel has a display"
+                : "no display",
+       session || direct ? "" : "sessions need a screen, --buttons-only or a simulated observer"});
+}
+
+// On a desktop its server hands touches on; a bare screen takes them from the devices.
+void input(std::vector<lines::Finding>& checks) {
+  if (std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY")) return;
+  const auto devices = lines::try_input_devices();
+  if (!devices.refused.empty())
+    checks.push_back(
+        {"input devices", Status::failed,
+         fmt::format("cannot be opened for reading and writing: {}", fmt::join(devices.refused, ", ")),
+         "touches on them do not reach the screen: put the user into the group input; in a service "
+         "that limits devices, DeviceAllow=char-input rw"});
+  else if (devices.opened == 0)
+    checks.push_back({"input devices", Status::warning, "none", "answers by touch need a touch panel"});
+  else
+    checks.push_back(
+        {"input devices", Status::ok,
+         fmt::format("{} open for reading and writing, as the screen needs them", devices.opened), ""});
+}
+
+void disk(const std::string& path, std::vector<lines::Finding>& checks) {
+  std::filesystem::path existing = std::filesystem::absolute(path);
+  std::error_code ignored;
+  while (!std::filesystem::exists(existing, ignored) && existing.has_relative_path())
+    existing = existing.parent_path();
+  struct statvfs state {};
+  if (::statvfs(existing.c_str(), &state) != 0) {
+    checks.push_back({"disk", Status::failed, fmt::format("{}: {}", existing.string(), std::strerror(errno)),
+                      "mount the data disk"});
+    return;
+  }
+  const double free_MiB = static_cast<double>(state.f_bavail) * static_cast<double>(state.f_frsize) / 1048576;
+  const bool writable = ::access(existing.c_str(), W_OK) == 0;
+  checks.push_back(
+      {"disk", free_MiB >= 200 && writable ? Status::ok : Status::failed,
+       fmt::format("{:.0f} MiB free in {}{}", free_MiB, existing.string(), writable ? "" : ", not writable"),
+       free_MiB < 200 ? "make room: 200 MiB are wanted before a session"
+       : writable     ? ""
+                      : "give the user the right to write there"});
+}
+
+void clock(std::vector<lines::Finding>& checks) {
+  std::ifstream file("/sys/devices/system/clocksource/clocksource0/current_clocksource");
+  std::string source = "unknown";
+  file >> source;
+  timex state{};
+  const bool steered = ::adjtimex(&state) != -1 && !(state.status & STA_UNSYNC);
+  const bool plausible = std::time(nullptr) > 1'700'000'000;
+  checks.push_back({"clock", plausible ? (steered ? Status::ok : Status::warning) : Status::failed,
+                    fmt::format("source {}, {}{}", source, steered ? "synchronised" : "not synchronised",
+                                plausible ? "" : ", the date is impossible"),
+                    !plausible ? "set the date; a board without a battery-backed clock needs a time service"
+                    : steered
+                        ? ""
+                        : "dates of records may be off; durations are not: systemd-timesyncd or chrony"});
+}
+
+}  // namespace
+
+lines::Finding check_swap(const std::string& swaps) {
+  std::ifstream file(swaps);
+  if (!file) return {"swap", Status::warning, swaps + " cannot be read", "look with: swapon --show"};
+  std::string line, active;
+  std::getline(file, line);  // the heading
+  while (std::getline(file, line))
+    if (const auto name = line.substr(0, line.find_first_of(" \t")); !name.empty())
+      active += (active.empty() ? "" : ", ") + name;
+  if (active.empty()) return {"swap", Status::ok, "off", ""};
+  return {
+      "swap", Status::failed, "on: " + active,
+      "Raspberry Pi OS 12: sudo systemctl disable --now dphys-swapfile; 13: Mechanism=none below [Main] in "
+      "/etc/rpi/swap.conf; elsewhere: sudo swapoff -a, and take swap out of /etc/fstab; then restart"};
+}
+
+lines::Finding check_watchdog(const std::string& folder) {
+  const char* const mend =
+      "sudo install -D -m 644 /usr/share/turnpoint/system/watchdog.conf "
+      "/etc/systemd/system.conf.d/turnpoint-watchdog.conf, then restart";
+  std::ifstream file(folder + "/watchdog0/state");
+  std::string state;
+  if (!(file >> state))
+    return {"hardware watchdog", Status::warning, "the kernel has none",
+            "on a Raspberry Pi: dtparam=watchdog=on in config.txt; a PC may have none"};
+  if (state != "active") return {"hardware watchdog", Status::warning, state, mend};
+  return {"hardware watchdog", Status::ok, state, ""};
+}
+
+std::vector<lines::Finding> examine(const rig::Rig& rig, const std::string& data_path) {
+  std::vector<lines::Finding> checks;
+  converter(rig, checks);
+  converter_mute(rig, checks);
+  const auto lines = [&checks](const char* device, const std::string& uri) {
+    for (auto& check : lines::check_lines(device, uri)) checks.push_back(std::move(check));
+  };
+  lines("amplifier", rig.amplifier_uri);
+  if (rig.buttons_uri) lines("buttons", *rig.buttons_uri);
+  if (rig.contact_uri && rig.contact_uri->starts_with("evdev:"))
+    checks.push_back(lines::check_touch("contact", *rig.contact_uri));
+  else if (rig.contact_uri)
+    lines("contact", *rig.contact_uri);
+  if (rig.touch_uri) checks.push_back(touch(rig));
+  display(checks);
+  input(checks);
+  rights(checks);
+  checks.push_back(check_swap());
+  checks.push_back(check_watchdog());
+  disk(data_path, checks);
+  clock(checks);
+  return checks;
+}
+
+bool fit_for_use(const std::vector<lines::Finding>& checks) {
+  return std::none_of(checks.begin(), checks.end(),
+                      [](const lines::Finding& check) { return check.status == Status::failed; });
+}
+
+}  // namespace turnpoint::maintenance

@@ -1,0 +1,65 @@
+#include "station/maintenance/panel_latency.hpp"
+
+#include <utility>
+
+#include "station/calibration/apply.hpp"
+#include "station/lines/buttons.hpp"
+#include "station/setup/open_touch.hpp"
+#include "station/terms/usage_error.hpp"
+#include "station/touch/touch_reader.hpp"
+
+namespace turnpoint::maintenance {
+
+namespace {
+
+std::optional<calibration::Calibration> in_force(const rig::Rig& rig) {
+  const auto path = calibration::newest_for(rig.path);
+  if (path.empty()) return std::nullopt;
+  auto newest = calibration::load(path);
+  if (!calibration::problems(newest, rig.sha256, calibration::today()).empty()) return std::nullopt;
+  return newest;
+}
+
+}  // namespace
+
+LatencyDevices::LatencyDevices(const rig::Rig& rig, OnEdge on_edge) {
+  if (!rig.buttons_uri || *rig.buttons_uri == "sim:")
+    throw terms::UsageError(
+        "the panel's latency is measured against a button or a photodiode, and the rig's "
+        "[buttons] are " +
+        rig.buttons_uri.value_or("absent") + "; allowed gpio:NAME=LINE");
+  touch_ = setup::open_touch(rig, [](touch::TouchPanelState) {});
+  lines::ButtonsHandlers handlers;
+  handlers.press = [edge = std::move(on_edge)](const lines::Press& press) { edge(press.time_ns); };
+  buttons_ = lines::open_buttons(lines::ButtonsConfig{*rig.buttons_uri}, std::nullopt, std::move(handlers));
+}
+
+LatencyDevices::~LatencyDevices() = default;
+
+std::optional<std::int64_t> LatencyDevices::claim(double x, double y, std::int64_t seen_ns) {
+  return touch_ ? touch_->claim(x, y, seen_ns) : std::nullopt;
+}
+
+calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured) {
+  auto made = in_force(rig).value_or(calibration::Calibration{});
+  if (made.rig_sha256.empty()) {
+    made.rig_name = rig.name;
+    made.rig_sha256 = rig.sha256;
+    made.made_on = calibration::today();
+  }
+  auto panel = measured;
+  panel.made_on = calibration::today();
+  if (made.panel && made.panel->quality == panel.quality) {
+    if (!panel.touch) panel.touch = made.panel->touch;
+    if (!panel.flash) panel.flash = made.panel->flash;
+  }
+  made.panel = panel;
+  return made;
+}
+
+std::optional<calibration::PanelLatency> known_panel(const rig::Rig& rig) {
+  const auto known = in_force(rig);
+  return known ? known->panel : std::nullopt;
+}
+
+}  // namespace turnpoint::maintenance

@@ -1,0 +1,55 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "station/calibration/calibration.hpp"
+#include "station/rig/rig.hpp"
+
+namespace turnpoint::lines {
+class Buttons;
+}
+namespace turnpoint::touch {
+class TouchReader;
+}
+
+namespace turnpoint::maintenance {
+
+/// What `turnpoint calibrate --panel` was asked for.
+struct LatencyRequest {
+  std::string rig;
+  calibration::LatencyReference reference = calibration::LatencyReference::button;
+};
+
+/// The devices that a panel's latency is measured with: the touch panel's kernel times, where the rig names
+/// the panel, and the rig's button lines, one of which is the reference.
+class LatencyDevices {
+ public:
+  using OnEdge = std::function<void(std::int64_t time_ns)>;
+
+  /// `on_edge` is called on the panel's thread. Throws terms::UsageError for a rig without real buttons,
+  /// and as lines::open_buttons, touch::TouchReader.
+  LatencyDevices(const rig::Rig& rig, OnEdge on_edge);
+
+  ~LatencyDevices();
+
+  /// True where touches get the kernel's time.
+  bool has_kernel_times() const { return touch_ != nullptr; }
+  /// See touch::TouchReader::claim(); none without kernel times.
+  std::optional<std::int64_t> claim(double x, double y, std::int64_t seen_ns);
+
+ private:
+  std::unique_ptr<touch::TouchReader> touch_;
+  std::unique_ptr<lines::Buttons> buttons_;
+};
+
+/// The calibration that a panel's latency goes into: the newest beside the rig where that is still in force,
+/// else a new one that holds nothing else; what was measured against the other reference stays. Made today.
+calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured);
+
+/// The panel's latency in the newest calibration in force beside the rig.
+std::optional<calibration::PanelLatency> known_panel(const rig::Rig& rig);
+
+}  // namespace turnpoint::maintenance

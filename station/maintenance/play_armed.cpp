@@ -1,0 +1,129 @@
+#include "station/maintenance/play_armed.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <stdexcept>
+
+#include "station/drive/prepared_burst.hpp"
+#include "station/lines/amplifier.hpp"
+#include "station/session/stage.hpp"
+#include "station/system/clocks.hpp"
+#include "station/system/stop_signals.hpp"
+
+namespace turnpoint::maintenance {
+
+namespace {
+
+constexpr double kLead_s = 0.5, kMargin_s = 0.5;
+constexpr std::int64_t kHeard_ns = 2'000'000'000;  // by which it is known that all was played
+constexpr std::int64_t kPoll_ns = 5'000'000;
+constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // by which the audio thread proves its life
+
+/// Why what was played cannot be used; "" for what belongs to playing.
+std::string trouble_of(const drive::Event& event, const drive::OutputConfig& output) {
+  switch (event.kind) {
+    case drive::EventKind::underrun:
+      return fmt::format("{}: {} frames were lost; begin again", output.uri, event.frames);
+    case drive::EventKind::device_lost:
+      return output.uri + ": the converter is gone";
+    case drive::EventKind::burst_missed:
+      return output.uri + ": a tone came too late to be played; begin again";
+    case drive::EventKind::rate_wrong:
+      return fmt::format("{}: runs at {:.1f} Hz, not at {} Hz: nothing that was played had its frequency",
+                         output.uri, 1e-3 * static_cast<double>(event.frames), output.rate_Hz);
+    case drive::EventKind::burst_started:
+    case drive::EventKind::burst_ended:
+    case drive::EventKind::burst_heard:
+    case drive::EventKind::device_back:
+      return "";
+  }
+  return "";
+}
+
+/// Attends to the stream until `done`, and shows the guard that somebody lives. Throws what went wrong, also
+/// a signal to end.
+void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::function<bool()>& done) {
+  for (;;) {
+    const bool last = done();  // asked before the events: what happened until then is among them
+    amplifier.session_alive();
+    while (const auto event = stream.poll())
+      if (const auto trouble = trouble_of(*event, stream.config().output); !trouble.empty())
+        throw std::runtime_error(trouble);
+    if (const auto clipped = stream.counters().saturated; clipped > 0)
+      throw std::runtime_error(
+          fmt::format("{}: {} samples were clipped", stream.config().output.uri, clipped));
+    if (amplifier.state() == drive::AmplifierState::faulted)
+      throw std::runtime_error("amplifier: " + terms::describe(amplifier.fault()));
+    if (const auto signal = system::StopSignals::told(); !signal.empty())
+      throw std::runtime_error("the program was told to end (" + signal + "); not all was played");
+    if (last) return;
+    system::sleep_until_ns(system::monotonic_ns() + kPoll_ns);
+  }
+}
+
+/// Returns the frame of the first onset.
+std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier,
+                  const std::vector<drive::Burst>& bursts) {
+  const int rate_Hz = stream.config().output.rate_Hz;
+  const auto margin = std::llround(kMargin_s * rate_Hz);
+  auto first = bursts.at(0);
+  first.start_frame = stream.earliest_frame() + std::llround(kLead_s * rate_Hz);
+  // However long the first one took to check, the others follow at their distance.
+  const auto onset = stream.schedule_soon(first).start_frame;
+  auto end = onset + first.length_frames;
+  for (std::size_t k = 1; k < bursts.size(); ++k) {
+    auto burst = bursts[k];
+    burst.start_frame += onset - bursts[0].start_frame;
+    // By what is rendered, which a device with a long buffer is far ahead of what is heard.
+    attend(stream, amplifier, [&] { return stream.earliest_frame() + margin >= burst.start_frame; });
+    stream.schedule(burst);
+    end = burst.start_frame + burst.length_frames;
+  }
+  const auto left = end - stream.counters().heard;
+  const auto due_ns = system::monotonic_ns() + left * 1'000'000'000 / rate_Hz + kHeard_ns;
+  attend(stream, amplifier, [&] {
+    if (system::monotonic_ns() > due_ns)
+      throw std::runtime_error(stream.config().output.uri + ": the device does not say what it has played");
+    return stream.counters().heard >= end;
+  });
+  return onset;
+}
+
+double largest_peak(const std::vector<drive::Burst>& bursts, const drive::StreamConfig& config) {
+  double peak = 0;
+  for (const auto& burst : bursts)
+    for (const double channel : drive::prepare(burst, format_of(config.output), config.limits).peak)
+      peak = std::max(peak, channel);
+  return peak;
+}
+
+}  // namespace
+
+drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
+                             const std::vector<drive::Burst>& bursts) {
+  auto config = session::stream_of(rig);
+  config.output.uri = uri;
+  const auto peak = largest_peak(bursts, config);                   // refused before anything is opened
+  const auto amplifier = lines::open_amplifier(rig.amplifier_uri);  // outlives the stream
+  config.amplifier = amplifier.get();
+  system::StopSignals signals;
+  signals.take_over();
+  const auto stream = drive::open_realtime(config);  // on its way out it ramps down what sounds
+  attend(*stream, *amplifier, [until_ns = system::monotonic_ns() + kFirstBlocks_ns] {
+    return system::monotonic_ns() >= until_ns;
+  });
+  for (const auto& refusal : {amplifier->arm(), amplifier->enable()})
+    if (refusal) throw std::runtime_error("amplifier: " + terms::describe(*refusal));
+  const auto onset_frame = play(*stream, *amplifier, bursts);
+  amplifier->disarm();
+  auto report = drive::report_of(*stream);
+  report.peak = peak;
+  report.onset_frame = onset_frame;
+  return report;
+}
+
+}  // namespace turnpoint::maintenance

@@ -1,0 +1,74 @@
+#include "station/protocol/conditions.hpp"
+
+#include <algorithm>
+
+#include "station/protocol/sources.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+std::string word_of(const std::string& factor, const protocol::FactorValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  const auto words = words_of(factor);
+  return words.name + " " + text::number(std::get<double>(value)) +
+         (words.unit.empty() ? "" : " " + words.unit);
+}
+
+/// Each level of the factors named, combined with each of those behind it.
+void combine(const protocol::Protocol& protocol, std::size_t next, protocol::Factors& factors,
+             std::vector<std::string>& names) {
+  const auto& by = protocol.analysis.by;
+  if (next == by.size()) {
+    names.push_back(condition_of(protocol, factors, ""));
+    return;
+  }
+  for (const auto& factor : protocol.factors)
+    if (factor.name == by[next])
+      for (const auto& level : factor.levels) {
+        factors[factor.name] = level;
+        combine(protocol, next + 1, factors, names);
+      }
+}
+
+}  // namespace
+
+FactorWords words_of(const std::string& factor) {
+  FactorWords words{factor, ""};
+  for (const auto* suffix : {"_dB", "_mm", "_um", "_Hz", "_kHz", "_s", "_ms"})
+    if (factor.ends_with(suffix)) {
+      words.unit = std::string(suffix) == "_um" ? "\u00b5m" : suffix + 1;
+      words.name.resize(factor.size() - std::string(suffix).size());
+      break;
+    }
+  std::replace(words.name.begin(), words.name.end(), '_', ' ');
+  return words;
+}
+
+std::string condition_of(const protocol::Protocol& protocol, const protocol::Factors& factors,
+                         const std::string& instruction) {
+  if (protocol.analysis.by.empty()) return instruction;
+  std::string name;
+  for (const auto& factor : protocol.analysis.by)
+    if (const auto found = factors.find(factor); found != factors.end())
+      name += (name.empty() ? "" : ", ") + word_of(factor, found->second);
+  return name;
+}
+
+std::vector<std::string> conditions(const protocol::Protocol& protocol) {
+  std::vector<std::string> names;
+  if (!protocol.analysis.by.empty()) {
+    protocol::Factors factors;
+    combine(protocol, 0, factors, names);
+    return names;
+  }
+  for (const auto& block : protocol::all_blocks(protocol))
+    if (const auto found = block.fixed.find("instruction"); found != block.fixed.end())
+      if (const auto* text = std::get_if<std::string>(&found->second);
+          text && std::find(names.begin(), names.end(), *text) == names.end())
+        names.push_back(*text);
+  return names;
+}
+
+}  // namespace turnpoint::protocol

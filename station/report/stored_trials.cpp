@@ -1,0 +1,220 @@
+#include "station/report/stored_trials.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "station/analysis/psychometric_posterior.hpp"
+#include "station/procedure/description.hpp"
+#include "station/protocol/answers.hpp"
+#include "station/protocol/conditions.hpp"
+
+namespace turnpoint::report {
+
+namespace {
+
+std::optional<int> index_of(const std::optional<std::string>& id, const protocol::Protocol& protocol) {
+  if (!id) return std::nullopt;
+  const auto& choices = protocol.task.choices;
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    if (choices[i].id == *id) return static_cast<int>(i);
+  return std::nullopt;
+}
+
+/// An adjustment's row has the setting where others have a choice.
+std::optional<double> setting_of(const std::string& response) {
+  double value = 0;
+  const auto* end = response.data() + response.size();
+  const auto read = std::from_chars(response.data(), end, value);
+  return read.ec == std::errc{} && read.ptr == end ? std::optional(value) : std::nullopt;
+}
+
+protocol::Factors factors_of(const records::TrialRow& row) {
+  protocol::Factors factors;
+  for (const auto& [name, value] : row.factors)
+    std::visit([&factors, &key = name](const auto& v) { factors[key] = v; }, value);
+  return factors;
+}
+
+analysis::TrialRecord record_of(const records::TrialRow& row, const records::BlockStart& block,
+                                const protocol::Protocol& protocol) {
+  analysis::TrialRecord record;
+  record.trial_index = row.trial_index;
+  record.block_index = block.block_index;
+  record.block = block.name;
+  record.type = block.practice ? terms::TrialType::practice : row.type;
+  record.procedure = row.procedure;
+  record.level = row.level;
+  record.right_choice = index_of(row.correct_response, protocol);
+  record.response = index_of(row.response, protocol);
+  record.correct = row.correct;
+  if (row.response && protocol.task.kind == protocol::TaskKind::adjustment)
+    record.setting = setting_of(*row.response);
+  record.outcome = row.outcome;
+  record.response_time_s = row.response_time_s;
+  const auto factors = factors_of(row);
+  record.instruction = protocol::condition_of(protocol, factors, block.instruction);
+  if (protocol.analysis.difficulty)
+    record.difficulty = protocol::evaluate(*protocol.analysis.difficulty, factors);
+  return record;
+}
+
+/// The blocks whose trials count: of each block the last attempt.
+std::vector<const records::BlockRecord*> last_attempts(const std::vector<records::BlockRecord>& blocks) {
+  std::map<int, const records::BlockRecord*> last;
+  for (const auto& block : blocks) {
+    auto& entry = last[block.start.block_index];
+    if (!entry || block.start.attempt >= entry->start.attempt) entry = &block;
+  }
+  std::vector<const records::BlockRecord*> result;
+  for (const auto& [index, block] : last) result.push_back(block);
+  return result;
+}
+
+report::Design design_of(const protocol::Protocol& protocol, const protocol::AnswerRule& rule,
+                         const std::vector<analysis::TrialRecord>& trials) {
+  if (protocol.task.kind == protocol::TaskKind::adjustment) return report::Design::adjustment;
+  if (protocol.task.kind == protocol::TaskKind::same_different) return report::Design::same_different;
+  if (rule.kind == protocol::AnswerKind::presence) return report::Design::yes_no;
+  bool below = false, above = false;
+  for (const auto& trial : trials) {
+    below = below || trial.level.value_or(0) < 0;
+    above = above || trial.level.value_or(0) > 0;
+  }
+  const bool single = protocol.task.kind == protocol::TaskKind::single_interval;
+  return single && below && above ? report::Design::two_sided : report::Design::forced_choice;
+}
+
+/// The function that the protocol's own procedure assumes, else what suits the levels of the signals.
+void choose_function(const protocol::Protocol& protocol, report::SessionData& data) {
+  const bool decibel = data.level_unit == "dB";
+  const bool detection = report::has_noise(data.design);
+  const bool positive = std::all_of(data.trials.begin(), data.trials.end(), [&](const auto& trial) {
+    return !trial.level || *trial.level > 0 || (detection && trial.right_choice != data.positive);
+  });
+  const bool rises = data.design == report::Design::forced_choice || detection;
+  data.function = terms::Function::normal;
+  if (rises && (decibel || positive)) data.function = terms::Function::weibull;
+  data.scale = rises && positive && !decibel ? analysis::Scale::log10 : analysis::Scale::linear;
+  for (const auto& spec : protocol.procedures) {
+    if (procedure::description(spec.kind).choice != procedure::Choice::posterior) continue;
+    // A Weibull function needs levels above 0, or in dB.
+    if (spec.function != terms::Function::weibull || decibel || positive) data.function = spec.function;
+    return;
+  }
+}
+
+using analysis::Range;
+
+/// The levels that an adaptive procedure can present, with the thresholds that its grid thinks possible.
+Range levels_of(const procedure::Spec& spec, const protocol::Protocol& protocol) {
+  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  const auto include = [&range](double level) {
+    range = {std::min(range.first, level), std::max(range.second, level)};
+  };
+  for (const double level : spec.stimuli.values) include(level);
+  for (const double level : spec.threshold.values) include(level);
+  if (spec.start) include(*spec.start);
+  if (spec.min) include(*spec.min);
+  if (spec.max) include(*spec.max);
+  if (spec.stimuli.values.empty() && !(spec.min && spec.max))
+    for (const auto& factor : protocol.factors)
+      if (factor.name == spec.level && factor.range)
+        include(factor.range->first), include(factor.range->second);
+  return range;
+}
+
+/// On a logarithmic axis a range that begins at 0 begins this far below its end: 60 dB.
+constexpr double kLowestRatio = 1e-3;
+
+/// Whether the slopes of a procedure's grid mean what those of the fit mean.
+bool same_function(const procedure::Spec& spec, const report::SessionData& data) {
+  const bool linear = spec.scale == procedure::Scale::linear;
+  return linear == (data.scale == analysis::Scale::linear) && spec.function == data.function;
+}
+
+/// From what the protocol can present, never from what was answered; none where no procedure is adaptive.
+std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, const report::SessionData& data) {
+  std::optional<Range> levels, slopes;
+  const auto widen = [](std::optional<Range>& range, const Range& by) {
+    range = range ? Range{std::min(range->first, by.first), std::max(range->second, by.second)} : by;
+  };
+  for (const auto& spec : protocol.procedures) {
+    if (!procedure::follows_answers(spec)) continue;
+    widen(levels, levels_of(spec, protocol));
+    if (same_function(spec, data))
+      for (const double slope : spec.slope.values) widen(slopes, {slope, slope});
+  }
+  if (!levels) return std::nullopt;
+  // Yes/no counts the size of the level alone.
+  if (data.design == report::Design::yes_no)
+    levels = Range{0, std::max(std::fabs(levels->first), std::fabs(levels->second))};
+  if (data.scale == analysis::Scale::log10)
+    levels->first = std::max(levels->first, levels->second * kLowestRatio);
+  return analysis::prior_around(data.function, data.scale, *levels, slopes);
+}
+
+/// `contrast_dB` -> `Contrast` and `dB`; the size of a yes/no task's signals counts without their sign.
+void set_level_words(const std::string& level, report::SessionData& data) {
+  const auto words = protocol::words_of(level);
+  auto name = level.empty() ? std::string("level") : words.name;
+  if (data.design == report::Design::yes_no &&
+      std::any_of(data.trials.begin(), data.trials.end(),
+                  [](const auto& trial) { return trial.level.value_or(0) < 0; })) {
+    name = "size of " + name;
+    for (auto& trial : data.trials)
+      if (trial.level) trial.level = std::fabs(*trial.level);
+  }
+  if (name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
+  data.level_unit = words.unit;
+  data.level_label = name + " (" + (words.unit.empty() ? "no unit" : words.unit) + ")";
+}
+
+/// What staircases estimate in the end, from their answers again.
+void add_staircases(const std::vector<const records::BlockRecord*>& blocks,
+                    const protocol::Protocol& protocol, report::SessionData& data) {
+  for (const auto& spec : protocol.procedures) {
+    if (procedure::description(spec.kind).choice != procedure::Choice::track) continue;
+    for (const auto* block : blocks) {
+      if (block->start.practice) continue;
+      const auto stairs = procedure::make_procedure(spec, {}, {});
+      for (const auto& row : block->trials) {
+        if (row.procedure != spec.name || row.type != terms::TrialType::experimental ||
+            row.outcome != terms::Outcome::answered)
+          continue;
+        const bool one = spec.tracks.empty() ? row.correct.value_or(false) : row.response == spec.tracks;
+        stairs->record(one ? procedure::Answer::one : procedure::Answer::zero);
+      }
+      for (const auto& [parameter, estimate] : stairs->estimates())
+        data.staircases.push_back({block->start.name, spec.name, estimate.mean, estimate.sd, estimate.basis});
+    }
+  }
+}
+
+}  // namespace
+
+void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,
+                report::SessionData& data) {
+  const auto counted = last_attempts(blocks);
+  for (const auto* block : counted)
+    for (const auto& row : block->trials) data.trials.push_back(record_of(row, block->start, protocol));
+  const auto level = protocol.procedures.empty() ? std::string() : protocol.procedures.front().level;
+  const auto rule = protocol::answer_rule(protocol, level);
+  data.positive = rule.positive;
+  data.design = design_of(protocol, rule, data.trials);
+  data.scored =
+      protocol.task.kind != protocol::TaskKind::single_interval || !protocol.task.correct_answer.empty();
+  set_level_words(level, data);
+  data.alternatives = protocol.task.kind == protocol::TaskKind::oddity ? 3 : 2;
+  choose_function(protocol, data);
+  data.prior = prior_of(protocol, data);
+  for (const auto& choice : protocol.task.choices) data.choices.push_back(choice.id);
+  data.conditions = protocol::conditions(protocol);
+  data.show = protocol.analysis.show;
+  data.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};
+  add_staircases(counted, protocol, data);
+}
+
+}  // namespace turnpoint::report

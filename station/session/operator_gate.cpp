@@ -1,0 +1,223 @@
+#include "station/session/operator_gate.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "station/session/rows.hpp"
+#include "station/store/error.hpp"
+
+namespace turnpoint::session {
+
+namespace {
+
+// A button that was pressed before anybody can have read a page does not turn it.
+constexpr std::int64_t kReading_ns = 500'000'000;
+
+/// The answer that a button chooses: the one of its name, else left is the first, right the second.
+std::optional<int> answer_of(const std::string& button, const protocol::Task& task) {
+  const auto& choices = task.choices;
+  for (std::size_t i = 0; i < choices.size(); ++i)
+    if (choices[i].id == button) return static_cast<int>(i);
+  const int place = button == "left" ? 0 : button == "right" ? 1 : button == "third" ? 2 : -1;
+  return place >= 0 && place < static_cast<int>(choices.size()) ? std::optional(place) : std::nullopt;
+}
+
+}  // namespace
+
+OperatorGate::OperatorGate(const Setup& setup, const Pages& pages, const trial::Director& director,
+                           Stage& stage, store::SessionLog& log, Display* display)
+    : setup_(setup), pages_(pages), director_(director), stage_(stage), log_(log), display_(display) {}
+
+Input OperatorGate::received(Input input) {
+  if (input.kind == InputKind::arm) {
+    auto refusal = stage_.clear();
+    if (!refusal) refusal = stage_.arm();
+    input.text = refusal ? "refused: " + terms::describe(*refusal) : "armed";
+  }
+  if (input.kind == InputKind::disarm) {
+    stage_.disarm();
+    input.text = "disarmed";
+  }
+  log(input);
+  if (input.kind == InputKind::note && !input.text.empty()) keep([&] { log_.annotate(input.text); });
+  if (input.kind != InputKind::button) return input;
+  const auto& names = stage_.buttons();
+  const auto index = static_cast<std::size_t>(input.value);
+  const auto answer = setup_.protocol.task.device != protocol::Device::touch && index < names.size()
+                          ? answer_of(names[index], setup_.protocol.task)
+                          : std::nullopt;
+  input.kind = answer ? InputKind::answer : InputKind::touch_down;
+  input.value = answer.value_or(0);
+  return input;
+}
+
+void OperatorGate::note(const Input& input) {
+  switch (input.kind) {
+    case InputKind::stop:
+      stop_asked_ = true;
+      stop_reason_ = input.text.empty() ? "stopped by the participant or the operator" : input.text;
+      break;
+    case InputKind::failure:
+      stop_asked_ = true;
+      stop_reason_ = input.text;
+      break;
+    case InputKind::pause:
+      pause_asked_ = true;
+      break;
+    case InputKind::fault:
+      fault_ = Fault{input.fault, input.text};
+      break;
+    case InputKind::disarm:
+      fault_ = Fault{FaultKind::disarmed, ""};
+      break;
+    default:
+      break;
+  }
+}
+
+void OperatorGate::keep(const std::function<void()>& write) {
+  for (;;) {
+    std::string detail;
+    try {
+      return write();
+    } catch (const store::StoreError& error) {
+      // Nobody stands before a simulated session who could make space.
+      if (error.fault() != store::Fault::disk_full || !setup_.observer.empty()) throw;
+      detail = error.what();
+    }
+    if (!space_again(detail)) throw store::StoreError(store::Fault::disk_full, detail);
+  }
+}
+
+/// Until somebody says that there is space again (true), or gives up (false).
+bool OperatorGate::space_again(const std::string& detail) {
+  stage_.close_amplifier();
+  show(pages_.fault(FaultKind::disk_full, detail, director_));
+  while (auto input = stage_.wait_until(kForever)) {
+    log(*input);
+    note(*input);
+    if (input->kind == InputKind::stop || input->kind == InputKind::failure) return false;
+    if (input->kind == InputKind::next) return true;
+  }
+  return false;
+}
+
+bool OperatorGate::armed() const {
+  const auto state = stage_.amplifier();
+  return state == drive::AmplifierState::armed || state == drive::AmplifierState::enabled;
+}
+
+Flow OperatorGate::until_armed(const Fault& why) {
+  auto page = pages_.fault(why.kind, why.detail, director_);
+  while (!armed()) {
+    page.amplifier = drive::name(stage_.amplifier());
+    show(page);
+    auto waited = stage_.wait_until(kForever);
+    if (!waited) continue;
+    const auto input = received(std::move(*waited));
+    note(input);
+    if (stop_asked_) return Flow::stop;
+    if (input.kind == InputKind::fault) page = pages_.fault(input.fault, input.text, director_);
+    if (input.kind == InputKind::arm && !armed()) page.detail = input.text;
+  }
+  fault_.reset();  // whatever came meanwhile was on the page
+  return Flow::go_on;
+}
+
+Flow OperatorGate::recover() {
+  stage_.close_amplifier();
+  while (const auto what = std::exchange(fault_, std::nullopt)) {
+    auto page = pages_.fault(what->kind, what->detail, director_);
+    if (!armed()) {
+      if (until_armed(*what) == Flow::stop) return Flow::stop;
+      page = pages_.paused(director_);
+    }
+    if (show_and_wait(page, 0) == Flow::stop) return Flow::stop;
+    if (const auto missing = stage_.missing(); !missing.empty())
+      fault_ = Fault{FaultKind::lines_gone, missing};
+  }
+  return Flow::go_on;
+}
+
+Flow OperatorGate::end_at_limit(const std::string& what) {
+  stage_.close_amplifier();
+  Input fault;
+  fault.time_ns = stage_.now_ns();
+  fault.kind = InputKind::fault;
+  fault.fault = FaultKind::limits;
+  fault.text = what;
+  log(fault);
+  show(pages_.fault(FaultKind::limits, what, director_));
+  for (auto over = false; !over;) {
+    const auto input = stage_.wait_until(kForever);
+    if (!input) continue;
+    log(*input);
+    over =
+        input->kind == InputKind::next || input->kind == InputKind::stop || input->kind == InputKind::failure;
+  }
+  stop(what);
+  return Flow::stop;
+}
+
+void OperatorGate::show(const Page& page) {
+  if (display_ != nullptr) display_->show(page);
+}
+
+Flow OperatorGate::show_and_wait(Page page, double at_least_s) {
+  const auto earliest = stage_.now_ns() + static_cast<std::int64_t>(at_least_s * 1e9);
+  show(page);
+  while (stage_.now_ns() < earliest)
+    if (auto waited = stage_.wait_until(earliest)) {
+      const auto input = received(std::move(*waited));
+      if (handle_on_page(input) == Flow::stop) return Flow::stop;
+      if (input.kind != InputKind::fault && input.kind != InputKind::disarm) continue;
+      page.remaining_s = std::max(0.0, 1e-9 * static_cast<double>(earliest - stage_.now_ns()));
+      show(page);
+    }
+  if (at_least_s > 0) {
+    page.remaining_s = 0;
+    show(page);
+  }
+  const bool buttons_turn = page.kind == PageKind::instructions || page.kind == PageKind::rest;
+  const auto read_ns = stage_.now_ns() + kReading_ns;
+  while (auto waited = stage_.wait_until(kForever)) {
+    const auto input = received(std::move(*waited));
+    if (handle_on_page(input) == Flow::stop) return Flow::stop;
+    if (input.kind == InputKind::next) return Flow::go_on;
+    if (buttons_turn && input.kind == InputKind::answer && input.time_ns >= read_ns) return Flow::go_on;
+    if (input.kind != InputKind::fault && input.kind != InputKind::disarm) continue;
+    // It has been repaired, and whoever did so has pressed Continue: for the fault before it too.
+    if (page.kind == PageKind::fault || page.kind == PageKind::paused) return Flow::go_on;
+    show(page);
+  }
+  return Flow::go_on;
+}
+
+Flow OperatorGate::handle_on_page(const Input& input) {
+  note(input);
+  if (stop_asked_) return Flow::stop;
+  return fault_ ? recover() : Flow::go_on;
+}
+
+Flow OperatorGate::until_clear() {
+  while (!stop_asked_) {
+    if (!fault_ && armed()) break;
+    if (!fault_) fault_ = Fault{FaultKind::disarmed, ""};
+    if (recover() == Flow::stop) return Flow::stop;
+  }
+  return stop_asked_ ? Flow::stop : Flow::go_on;
+}
+
+void OperatorGate::stop(const std::string& reason) {
+  stop_asked_ = true;
+  stop_reason_ = reason;
+}
+
+bool OperatorGate::take_pause() { return std::exchange(pause_asked_, false); }
+
+void OperatorGate::log(const Input& input) {
+  if (input.kind != InputKind::heard) log_.event(event_row(input, log_.session().trials));
+}
+
+}  // namespace turnpoint::session

@@ -1,0 +1,80 @@
+#pragma once
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "station/session/stage.hpp"
+
+namespace turnpoint::session {
+
+// What both stages do alike with a stream.
+
+/// What was scheduled last, one burst an interval, for what is asked of it later.
+struct Presented {
+  std::uint32_t burst = 0;
+  std::int64_t start_frame = 0, end_frame = 0;
+  drive::Ramp ramp;
+};
+
+/// The interval that a burst is; none where it belongs to an earlier trial.
+inline std::optional<int> interval_of(const std::vector<Presented>& presented, std::uint32_t burst) {
+  for (std::size_t i = 0; i < presented.size(); ++i)
+    if (presented[i].burst == burst) return static_cast<int>(i);
+  return std::nullopt;
+}
+
+/// None where the stream does not know its time.
+inline std::vector<Onset> schedule(drive::Stream& stream, std::span<const drive::PreparedBurst> intervals,
+                                   std::int64_t earliest_ns, std::vector<Presented>& presented) {
+  const auto earliest = stream.frame_at(earliest_ns);
+  if (!earliest) return {};
+  std::vector<drive::PreparedBurst> bursts(intervals.begin(), intervals.end());
+  const auto later = std::max<std::int64_t>(0, *earliest) - bursts.front().start_frame;
+  for (auto& burst : bursts) burst.start_frame += later;
+  const auto scheduled = stream.schedule_together(bursts);
+  presented.clear();
+  std::vector<Onset> onsets;
+  for (std::size_t i = 0; i < bursts.size(); ++i) {
+    const auto start = scheduled[i].start_frame;
+    presented.push_back({scheduled[i].burst, start, start + bursts[i].length_frames, bursts[i].ramp});
+    if (const auto time_ns = stream.time_of(start)) onsets.push_back({start, *time_ns});
+  }
+  if (onsets.size() == bursts.size()) return onsets;
+  stream.stop(0, drive::Ramp{});  // it has lost its time meanwhile
+  return {};
+}
+
+inline std::optional<std::int64_t> glide_to(drive::Stream& stream, const std::vector<Presented>& presented,
+                                            const drive::ToneSet& to, double seconds) {
+  if (presented.empty()) return std::nullopt;
+  const auto& sounding = presented.back();
+  const auto frames = static_cast<std::int64_t>(seconds * stream.config().output.rate_Hz);
+  const auto at = std::max(stream.earliest_frame(), sounding.start_frame);
+  // Towards its end a burst ramps down: nothing new begins there, and after it nothing sounds.
+  if (at + frames + sounding.ramp.frames >= sounding.end_frame) return std::nullopt;
+  stream.change(sounding.burst, {at - sounding.start_frame, frames, to});
+  return at;
+}
+
+inline std::optional<ClockFit> fit_of(drive::Stream& stream) {
+  const auto fit = stream.clock();
+  return fit.pairs > 0 ? std::optional(ClockFit{fit.ns_per_frame, fit.residual_ns}) : std::nullopt;
+}
+
+/// Ramps everything down; when the last ramp is over, at the latest.
+inline std::int64_t ramp_down(drive::Stream& stream, const std::vector<Presented>& presented,
+                              std::int64_t now_ns) {
+  const auto ramp = presented.empty() ? drive::Ramp{} : presented.back().ramp;
+  stream.stop(0, ramp);
+  if (const auto silent_ns = stream.time_of(stream.earliest_frame() + ramp.frames)) return *silent_ns;
+  const auto& output = stream.config().output;
+  const auto frames = std::int64_t{output.periods + 2} * output.period_frames + ramp.frames;
+  return now_ns + frames * 1'000'000'000 / output.rate_Hz;
+}
+
+/// What the operating system granted, for the record.
+std::string describe(const system::Rights& rights);
+
+}  // namespace turnpoint::session

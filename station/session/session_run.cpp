@@ -1,0 +1,88 @@
+#include "station/session/session_run.hpp"
+
+#include <utility>
+
+#include "station/trial/rows.hpp"
+
+namespace turnpoint::session {
+
+SessionRun::SessionRun(const Setup& setup, trial::Director director, store::SessionLog log,
+                       std::unique_ptr<Stage> stage, limits::FingerAccount account, Display* display,
+                       Monitor* monitor)
+    : setup_(setup),
+      log_(std::move(log)),
+      stage_(std::move(stage)),
+      account_(std::move(account)),
+      monitor_(monitor),
+      plans_(setup.rig, setup.protocol, log_.session().start.seed),
+      director_(std::move(director)),
+      pages_(setup),
+      gate_(setup, pages_, director_, *stage_, log_, display) {
+  summary_.session_id = log_.session().session_id;
+  summary_.participant = setup.participant;
+  summary_.protocol_id = setup.protocol.id;
+  summary_.database = setup.database;
+  summary_.run_mode = store::name(setup.run_mode);
+  summary_.realtime_rights = stage_->realtime_rights();
+  summary_.seed = log_.session().start.seed;
+}
+
+Summary SessionRun::run() {
+  started_ns_ = stage_->now_ns();
+  // A pilot without an amplifier has nothing that an operator could arm.
+  if (setup_.run_mode != terms::RunMode::live && setup_.rig.amplifier_uri == "sim:")
+    static_cast<void>(stage_->arm());  // a refusal shows below: it is not armed
+  if (gate_.until_armed({FaultKind::disarmed, ""}) == Flow::go_on)
+    while (director_.block() != nullptr)
+      if (run_block() == Flow::stop) break;
+  if (gate_.stop_asked())
+    finish(records::SessionStatus::interrupted, gate_.stop_reason());
+  else if (!director_.ended_because().empty())
+    finish(records::SessionStatus::stopped, director_.ended_because());
+  else
+    finish(records::SessionStatus::completed, "");
+  gate_.show(pages_.end(summary_, director_));
+  stage_->finish();
+  return summary_;
+}
+
+Flow SessionRun::run_block() {
+  const auto block = *director_.block();
+  gate_.keep(
+      [&] { log_.begin_block(trial::block_start(block, director_.block_index(), director_.attempt())); });
+  const auto first = director_.next();
+  if (first) plans_.begin(*first);
+  auto page = director_.attempt() > 0 && block.practice ? pages_.practice_again(block, director_)
+                                                        : pages_.instructions(block, director_);
+  if (first) pages_.add_mark(page, *first);
+  if (gate_.show_and_wait(std::move(page), 0) == Flow::stop) return Flow::stop;
+  int trials = 0;
+  while (const auto spec = director_.next()) {
+    if (run_trial(*spec) == Flow::stop) return Flow::stop;
+    ++trials;
+    if (rest_if_due(trials) == Flow::stop) return Flow::stop;
+  }
+  for (auto& e : director_.estimates()) summary_.estimates.push_back(std::move(e));
+  ++summary_.blocks;
+  director_.finish_block();
+  return Flow::go_on;
+}
+
+Flow SessionRun::rest_if_due(int trials) {
+  const auto& block = *director_.block();
+  if (!block.break_after || trials % block.break_after->trials != 0) return Flow::go_on;
+  if (!director_.next()) return Flow::go_on;  // nothing follows that a break could divide
+  return gate_.show_and_wait(pages_.rest(block, block.break_after->min_s, director_),
+                             block.break_after->min_s);
+}
+
+void SessionRun::finish(records::SessionStatus status, const std::string& reason) {
+  summary_.status = status;
+  summary_.reason = reason;
+  summary_.duration_s = static_cast<double>(stage_->now_ns() - started_ns_) * 1e-9;
+  if (scored_ > 0) summary_.accuracy = static_cast<double>(right_) / scored_;
+  gate_.keep([&] { log_.finish(status, reason); });
+  summary_.checksum = log_.session().checksum;
+}
+
+}  // namespace turnpoint::session

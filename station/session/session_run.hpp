@@ -1,0 +1,91 @@
+#pragma once
+#include <memory>
+#include <optional>
+
+#include "station/limits/finger_account.hpp"
+#include "station/session/operator_gate.hpp"
+#include "station/session/pages.hpp"
+#include "station/session/plan_ahead.hpp"
+#include "station/session/session.hpp"
+#include "station/session/stage.hpp"
+#include "station/store/session_log.hpp"
+#include "station/trial/director.hpp"
+#include "station/trial/machine.hpp"
+
+namespace turnpoint::session {
+
+/// Runs the blocks and trials of a session: joins director, planner, trial machine, stage and store behind
+/// the operator's gate. Everything happens on the thread that calls run(), but for the planning of the next
+/// trial.
+class SessionRun {
+ public:
+  /// `director` stands where the log does.
+  SessionRun(const Setup& setup, trial::Director director, store::SessionLog log,
+             std::unique_ptr<Stage> stage, limits::FingerAccount account, Display* display, Monitor* monitor);
+
+  /// To the end of the last block, or until somebody stops it.
+  Summary run();
+
+ private:
+  /// A trial while it runs.
+  struct Running {
+    trial::TrialSpec spec;
+    trial::Machine machine;
+    records::TrialRow row;
+    std::optional<trial::Slider> slider;  ///< in an adjustment
+    std::vector<Onset> onsets;            ///< of all intervals, once they are scheduled
+    std::size_t begun = 0;                ///< of them, so far
+    bool decided = false;
+    bool by_button = false;  ///< answered so: the touch panel's latency is not in it
+  };
+  /// An interval of the trial, as it is scheduled, on the surface, or was.
+  struct OnSurface {
+    std::int64_t on_ns = 0, off_ns = 0;
+  };
+
+  // session_run.cpp: blocks and pages
+  Flow run_block();
+  Flow rest_if_due(int trials_in_block);
+  int trial_index() const { return log_.session().trials; }
+  void finish(records::SessionStatus status, const std::string& reason);
+
+  // session_run_trial.cpp: one trial
+  Flow run_trial(const trial::TrialSpec& spec);
+  Flow prepare_trial(const trial::TrialSpec& spec);
+  Flow keep_limits(const trial::TrialSpec& spec);
+  Flow after_trial(const records::TrialRow& row);
+  void check_plans(const trial::TrialSpec& spec);
+  std::optional<trial::EventKind> open_amplifier();
+  void drive_trial(Running& trial, std::optional<trial::EventKind> cut_by);
+  void handle_in_trial(Input raw, Running& trial);
+  void perform(const std::vector<trial::Action>& actions, Running& trial);
+  void present(std::int64_t earliest_ns, Running& trial);
+  void interval_begins(Running& trial);
+  void ask_observer(const Running& trial, std::int64_t onset_ns);
+  void decide(Running& trial);
+  void finish_row(Running& trial);
+  void leave_surface();
+  void count(const trial::TrialSpec& spec, const records::TrialRow& row);
+
+  // session_run_adjustment.cpp
+  void show_phase(trial::Phase phase, const Running& trial);
+  std::optional<trial::Event> event_in_trial(const Input& input, Running& trial);
+  void glide(Running& trial);
+
+  const Setup& setup_;
+  store::SessionLog log_;
+  std::unique_ptr<Stage> stage_;
+  limits::FingerAccount account_;
+  Monitor* monitor_;
+  PlanAhead plans_;
+  trial::Director director_;
+  Pages pages_;
+  OperatorGate gate_;
+  Summary summary_;
+  int scored_ = 0, right_ = 0;
+  int voids_in_a_row_ = 0;
+  std::int64_t started_ns_ = 0;
+  std::vector<OnSurface> surface_;
+};
+
+}  // namespace turnpoint::session

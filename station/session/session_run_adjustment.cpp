@@ -1,0 +1,45 @@
+#include "station/session/burst.hpp"
+#include "station/session/rows.hpp"
+#include "station/session/session_run.hpp"
+#include "station/trial/timing.hpp"
+
+namespace turnpoint::session {
+
+// What an adjustment has beside an answer: a slider that the surface follows.
+
+void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
+  auto page = pages_.of_phase(phase, trial.machine.interval(), trial.spec, *director_.block(),
+                              trial.machine.result(), director_);
+  const bool adjusting = phase == trial::Phase::stimulus || phase == trial::Phase::response;
+  if (trial.slider && adjusting) pages_.add_slider(page, *trial.spec.slider, trial.slider->setting());
+  gate_.show(page);
+}
+
+std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Running& trial) {
+  if (!trial.slider) return event_of(input);
+  // Only while the surface moves: what is set in silence was not felt.
+  if (input.kind == InputKind::slider && trial.machine.phase() == trial::Phase::stimulus)
+    trial.slider->move(input.number);
+  if (input.kind == InputKind::next) return trial::Event{input.time_ns, trial::EventKind::answer, 0};
+  return event_of(input);
+}
+
+/// The surface follows the slider. The row keeps where it began, and the last setting with its onset; every
+/// move between is in the log of events.
+void SessionRun::glide(Running& trial) {
+  const double wanted = trial.slider->glide(stage_->now_ns());
+  if (trial.machine.phase() != trial::Phase::stimulus) return;
+  auto spec = trial.spec;
+  spec.factors[setup_.protocol.task.adjusts] = wanted;
+  plans_.begin(spec);
+  stage_->wait_for([&] { return plans_.ready(spec); });
+  const auto plan = plans_.take(spec).plans.front().back();
+  account_.check(plan.peak_displacement_m, trial::interval_times(setup_.protocol, spec).front().length_s);
+  const auto at_frame = stage_->glide(tones_of(plan), trial::kGlide_s);
+  if (!at_frame) return;
+  trial.slider->followed();
+  set_scene(trial.row, plan, *at_frame);
+  if (monitor_ != nullptr) monitor_->surface_follows(spec, plan);
+}
+
+}  // namespace turnpoint::session

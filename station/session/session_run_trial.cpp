@@ -1,0 +1,274 @@
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "station/session/rows.hpp"
+#include "station/session/session_run.hpp"
+#include "station/text/number.hpp"
+#include "station/trial/question.hpp"
+#include "station/trial/rows.hpp"
+#include "station/trial/timing.hpp"
+
+namespace turnpoint::session {
+
+namespace {
+
+constexpr int kVoidsBeforeStop = 3;
+
+bool is_over(trial::Phase phase) {
+  return phase == trial::Phase::feedback || phase == trial::Phase::late || phase == trial::Phase::interval ||
+         phase == trial::Phase::done;
+}
+
+records::EventRow event(std::int64_t time_ns, const char* kind, double value, int trial_index) {
+  records::EventRow row;
+  row.time_ns = time_ns;
+  row.kind = kind;
+  row.value = text::number(value, 9);
+  row.trial_index = trial_index;
+  return row;
+}
+
+}  // namespace
+
+Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
+  if (prepare_trial(spec) == Flow::stop) return Flow::stop;
+  Running trial{spec,
+                trial::Machine(trial::timing_of(setup_.protocol, *director_.block(), spec)),
+                trial::row_of(spec, setup_.protocol, trial_index()),
+                {},
+                {}};
+  if (spec.slider) trial.slider.emplace(*spec.slider, spec.level.value_or(spec.slider->low));
+  if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block(), plans_.take(spec).plans);
+  // Durable before the amplifier is on: a disk may take seconds, and nothing else happens meanwhile.
+  gate_.keep([&] { log_.presented(trial_index(), stage_->now_ns()); });
+  drive_trial(trial, open_amplifier());
+  stage_->close_amplifier();
+  if (!trial.decided) decide(trial);
+  leave_surface();
+  finish_row(trial);
+  gate_.keep([&] { log_.append(trial.row); });
+  count(spec, trial.row);
+  if (monitor_ != nullptr) monitor_->trial_ended(spec, trial.row);
+  return after_trial(trial.row);
+}
+
+/// Everything that may take time or go wrong before a trial: what has gathered since the last one, its plans,
+/// the rig's limits, an amplifier that is not armed.
+Flow SessionRun::prepare_trial(const trial::TrialSpec& spec) {
+  plans_.begin(spec);
+  try {
+    if (keep_limits(spec) == Flow::stop) return Flow::stop;
+    stage_->wait_for([&] { return plans_.ready(spec); });
+    check_plans(spec);
+  } catch (const scene::Unreachable& unreachable) {
+    gate_.stop(unreachable.what());
+  } catch (const limits::LimitExceeded& limit) {
+    return gate_.end_at_limit(limit.what());
+  } catch (const drive::BurstRefused& refused) {
+    gate_.stop(refused.what());
+  }
+  for (auto& stale : stage_->drain()) gate_.note(gate_.received(std::move(stale)));
+  return gate_.until_clear();
+}
+
+/// Whatever keeps the amplifier off now makes the trial void.
+std::optional<trial::EventKind> SessionRun::open_amplifier() {
+  if (gate_.stop_asked()) return trial::EventKind::abort;
+  if (!gate_.fault()) gate_.set_fault(stage_->open_amplifier());
+  return gate_.fault() ? std::optional(trial::EventKind::fault) : std::nullopt;
+}
+
+/// The interval between trials stretches as far as the rig's limits on duty and continuous time need.
+Flow SessionRun::keep_limits(const trial::TrialSpec& spec) {
+  const auto now = stage_->now_ns();
+  const auto begin = account_.earliest_ns(now, limits::stimuli_of(setup_.protocol, spec));
+  if (begin <= now) return Flow::go_on;
+  const double stretch_s = static_cast<double>(begin - now) * 1e-9;
+  summary_.stretched_s += stretch_s;
+  log_.event(event(now, "interval_stretched", stretch_s, trial_index()));
+  while (stage_->now_ns() < begin)
+    if (auto input = stage_->wait_until(begin))
+      if (gate_.handle_on_page(gate_.received(std::move(*input))) == Flow::stop) return Flow::stop;
+  return Flow::go_on;
+}
+
+/// The last look at what is about to be felt and heard. Throws limits::LimitExceeded.
+void SessionRun::check_plans(const trial::TrialSpec& spec) {
+  const auto& plans = plans_.take(spec).plans;
+  const auto times = trial::interval_times(setup_.protocol, spec);
+  for (std::size_t i = 0; i < plans.size(); ++i)
+    for (const auto& plan : plans[i]) {
+      account_.check(plan.peak_displacement_m, times[i].length_s);
+      if (setup_.run_mode != terms::RunMode::live) continue;
+      for (const auto& tone : plan.tones)
+        if (const auto problem = limits::sound_problem(tone.frequency_Hz, tone.full_scale, setup_.sound);
+            !problem.empty())
+          throw limits::LimitExceeded(problem);
+    }
+}
+
+Flow SessionRun::after_trial(const records::TrialRow& row) {
+  if (gate_.stop_asked()) return Flow::stop;
+  const bool paused = gate_.take_pause();
+  const bool is_void = row.outcome == terms::Outcome::fault;
+  voids_in_a_row_ = is_void ? voids_in_a_row_ + 1 : 0;
+  if (voids_in_a_row_ >= kVoidsBeforeStop) {
+    gate_.stop("three trials in a row were void" +
+               (gate_.fault() ? "; the last: " + terms::describe(*gate_.fault()) : ""));
+    return Flow::stop;
+  }
+  if (gate_.fault()) return gate_.recover();
+  return paused ? gate_.show_and_wait(pages_.paused(director_), 0) : Flow::go_on;
+}
+
+void SessionRun::drive_trial(Running& trial, std::optional<trial::EventKind> cut_by) {
+  auto& machine = trial.machine;
+  perform(machine.start(stage_->now_ns()), trial);
+  if (cut_by) perform(machine.handle({stage_->now_ns(), *cut_by, 0}), trial);
+  while (!machine.done()) {
+    const auto wake = machine.wake_ns();
+    const auto follow_ns = trial.slider ? trial.slider->glide_due_ns().value_or(kForever) : kForever;
+    const auto until = std::min(wake.value_or(kForever), follow_ns);
+    auto input = stage_->wait_until(until);
+    if (input)
+      handle_in_trial(std::move(*input), trial);
+    else if (follow_ns <= until && follow_ns != kForever)
+      glide(trial);
+    else
+      perform(machine.handle({*wake, trial::EventKind::tick, 0}), trial);
+  }
+}
+
+void SessionRun::handle_in_trial(Input raw, Running& trial) {
+  const bool by_button = raw.kind == InputKind::button;
+  const auto input = gate_.received(std::move(raw));
+  gate_.note(input);
+  const bool answers = input.kind == InputKind::answer || (trial.slider && input.kind == InputKind::next);
+  if (answers && !trial.machine.result().response) {
+    trial.row.response_time_quality = name(input.quality);
+    trial.by_button = by_button;
+  }
+  if (const auto event = event_in_trial(input, trial)) perform(trial.machine.handle(*event), trial);
+}
+
+void SessionRun::perform(const std::vector<trial::Action>& actions, Running& trial) {
+  for (const auto& action : actions) {
+    switch (action.kind) {
+      case trial::ActionKind::enter: {
+        const auto phase = static_cast<trial::Phase>(action.value);
+        if (phase == trial::Phase::response || is_over(phase)) stage_->close_amplifier();
+        if (phase == trial::Phase::done) break;
+        if (phase == trial::Phase::stimulus) interval_begins(trial);
+        if (trial.machine.decided() && !trial.decided) decide(trial);
+        show_phase(phase, trial);
+        break;
+      }
+      case trial::ActionKind::present:
+        present(action.time_ns, trial);
+        break;
+      case trial::ActionKind::silence: {
+        const auto silent_ns = stage_->silence();
+        for (auto& interval : surface_) interval.off_ns = std::min(interval.off_ns, silent_ns);
+        break;
+      }
+    }
+  }
+  if (trial.machine.decided() && !trial.machine.done() && !trial.decided) decide(trial);
+}
+
+/// All intervals at once: what comes between two of them is then a number of frames.
+void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
+  const auto& bursts = plans_.take(trial.spec).bursts;
+  trial.onsets = stage_->present(bursts, earliest_ns);
+  if (trial.onsets.empty()) return;  // a fault that says why is on its way
+  const auto times = trial::interval_times(setup_.protocol, trial.spec);
+  for (std::size_t i = 0; i < bursts.size(); ++i) {
+    const auto on_ns = trial.onsets[i].time_ns;
+    surface_.push_back({on_ns, on_ns + static_cast<std::int64_t>(times[i].length_s * 1e9)});
+    perform(trial.machine.handle({on_ns, trial::EventKind::onset, static_cast<int>(i)}), trial);
+  }
+  ask_observer(trial, trial.onsets.back().time_ns);
+}
+
+/// What reaches the surface is in the row, and what is cancelled before is not.
+void SessionRun::interval_begins(Running& trial) {
+  const auto i = trial.begun++;
+  const auto& planned = plans_.take(trial.spec);
+  add_tones(trial.row, planned.plans[i], static_cast<int>(i), trial.onsets[i].frame, planned.bursts[i]);
+}
+
+void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
+  const auto last = trial::interval_times(setup_.protocol, trial.spec).back();
+  const auto ns = [](double s) { return static_cast<std::int64_t>(s * 1e9); };
+  auto zero_ns = onset_ns;
+  if (setup_.protocol.timing.response_zero == terms::ResponseZero::interval_off) zero_ns += ns(last.length_s);
+  if (setup_.protocol.timing.response_zero == terms::ResponseZero::change)
+    zero_ns += ns(last.starts_s.front());
+  if (trial.slider)
+    stage_->adjustment(trial::adjustment_of(trial.spec, summary_.seed), zero_ns);
+  else
+    stage_->question(trial::question_of(trial.spec, setup_.protocol, summary_.seed), zero_ns);
+}
+
+/// The outcome stands: what follows from it is known, and planned while the interval between trials lasts.
+void SessionRun::decide(Running& trial) {
+  trial.decided = true;
+  auto& row = trial.row;
+  trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_);
+  trial::TrialEnd end{row.outcome, trial.machine.result().response, row.correct, {}};
+  if (trial.slider && end.response) end.setting = trial.slider->felt();
+  director_.record(end);
+  row.state_hash = director_.state_hash();
+  if (const auto threshold = director_.threshold()) {
+    row.threshold_est = threshold->first;
+    row.threshold_sd = threshold->second;
+  }
+  if (const auto next = director_.next()) plans_.begin(*next);
+}
+
+/// Books what was on the surface, for the finger's account and for the log.
+void SessionRun::leave_surface() {
+  for (const auto& left : std::exchange(surface_, {})) {
+    if (left.off_ns <= left.on_ns) continue;
+    account_.add(left.on_ns, left.off_ns);
+    log_.event(
+        event(left.on_ns, "stimulus", static_cast<double>(left.off_ns - left.on_ns) * 1e-9, trial_index()));
+  }
+}
+
+void SessionRun::finish_row(Running& trial) {
+  auto& row = trial.row;
+  trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_);
+  if (trial.slider && row.response) row.response = text::exact(trial.slider->felt());
+  const auto& found_for = setup_.response_offset_quality;
+  const bool applies = !trial.by_button && (found_for.empty() || found_for == row.response_time_quality);
+  row.response_offset_s = applies ? setup_.response_offset_s : 0;
+  if (const auto fit = stage_->clock_fit()) {
+    row.clock_slope_ns_per_frame = fit->slope_ns_per_frame;
+    row.clock_residual_ns = fit->residual_ns;
+  }
+}
+
+void SessionRun::count(const trial::TrialSpec& spec, const records::TrialRow& row) {
+  ++summary_.trials;
+  summary_.xruns += row.xruns;
+  switch (row.outcome) {
+    case terms::Outcome::answered:
+      ++summary_.answered;
+      break;
+    case terms::Outcome::timeout:
+      ++summary_.timeouts;
+      break;
+    case terms::Outcome::anticipation:
+      ++summary_.anticipations;
+      break;
+    case terms::Outcome::aborted:
+    case terms::Outcome::fault:
+      ++summary_.voided;
+      break;
+  }
+  if (spec.type == terms::TrialType::experimental && row.correct) ++scored_, right_ += *row.correct ? 1 : 0;
+}
+
+}  // namespace turnpoint::session

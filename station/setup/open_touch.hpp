@@ -1,0 +1,13 @@
+#pragma once
+#include <memory>
+
+#include "station/rig/rig.hpp"
+#include "station/touch/touch_reader.hpp"
+
+namespace turnpoint::setup {
+
+/// The reader that gives touches their kernel time, for a rig whose `[touch] uri` is `evdev:DEVICE`; null for
+/// `qt:`, `sim:` and rigs without touch, whose touches have the toolkit's time. Throws as touch::TouchReader.
+std::unique_ptr<touch::TouchReader> open_touch(const rig::Rig& rig, touch::TouchReader::OnState on_state);
+
+}  // namespace turnpoint::setup

@@ -1,0 +1,59 @@
+#include "station/setup/places.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <ostream>
+#include <tuple>
+#include <vector>
+
+#include "station/text/problem.hpp"
+
+namespace turnpoint::setup {
+
+namespace fs = std::filesystem;
+
+std::string shipped(const std::string& folder) {
+  const auto program = fs::read_symlink("/proc/self/exe").parent_path();
+  // Installed: PREFIX/bin beside PREFIX/share/turnpoint; in a checkout: build/<preset>/bin.
+  const auto installed = program.parent_path() / "share/turnpoint" / fs::path(folder).filename();
+  if (fs::is_directory(installed)) return installed.lexically_normal().string();
+  return (program.parent_path().parent_path().parent_path() / folder).lexically_normal().string();
+}
+
+std::string rig_or_default(const std::string& named, std::ostream& messages) {
+  if (!named.empty()) return named;
+  const fs::path candidates[] = {"/etc/turnpoint/rig.toml",
+                                 fs::path(shipped("deploy/rigs")) / "simulated.toml"};
+  for (const auto& candidate : candidates)
+    if (fs::exists(candidate)) {
+      messages << "rig: " << candidate.string() << " (no --rig was given)\n";
+      return candidate.string();
+    }
+  throw text::BadInput({{{}, "no rig: none was named and none is installed", "give --rig FILE"}});
+}
+
+std::string screen_card(const std::string& drm) {
+  std::vector<std::tuple<bool, std::size_t, std::string>> cards;  // without a screen, then by number
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(drm, ignored)) {
+    const auto connector = entry.path().filename().string();  // card1-HDMI-A-1
+    const auto dash = connector.find('-');
+    if (dash == std::string::npos || !connector.starts_with("card")) continue;
+    std::string status;
+    std::ifstream(entry.path() / "status") >> status;
+    cards.emplace_back(status != "connected", dash, "/dev/dri/" + connector.substr(0, dash));
+  }
+  return cards.empty() ? "" : std::get<std::string>(*std::min_element(cards.begin(), cards.end()));
+}
+
+std::string default_database() {
+  const char* data = std::getenv("XDG_DATA_HOME");
+  const char* home = std::getenv("HOME");
+  const std::filesystem::path root = data != nullptr && *data != '\0'
+                                         ? std::filesystem::path(data)
+                                         : std::filesystem::path(home ? home : "/var/lib") / ".local/share";
+  return (root / "turnpoint" / "turnpoint.sqlite").string();
+}
+
+}  // namespace turnpoint::setup

@@ -1,0 +1,143 @@
+#include "station/setup/prepare.hpp"
+
+#include <algorithm>
+#include <regex>
+
+#include "station/calibration/apply.hpp"
+#include "station/limits/exposure.hpp"
+#include "station/protocol/survey.hpp"
+#include "station/text/number.hpp"
+#include "station/text/toml.hpp"
+
+namespace turnpoint::setup {
+
+namespace {
+
+using text::Problem;
+
+void check_participant(const std::string& code, std::vector<Problem>& problems) {
+  static const std::regex allowed("[A-Za-z0-9][A-Za-z0-9_-]{0,31}");
+  if (!std::regex_match(code, allowed))
+    problems.push_back(
+        {{},
+         "--participant \"" + code + "\" is not a code",
+         "1 to 32 letters, digits, - and _ are allowed, the first a letter or digit; no names"});
+}
+
+std::string choose_language(const std::string& wanted, const protocol::Protocol& protocol,
+                            std::vector<Problem>& problems) {
+  if (wanted.empty()) return protocol.languages.front();
+  const auto& known = protocol.languages;
+  if (std::find(known.begin(), known.end(), wanted) != known.end()) return wanted;
+  std::string list;
+  for (const auto& language : known) list += (list.empty() ? "" : ", ") + language;
+  problems.push_back({{}, "--language " + wanted + ": the protocol does not have it", "it has " + list});
+  return wanted;
+}
+
+/// What the panel's latency is, without any transducer's response, lets no live session drive one.
+bool has_response(const session::Setup& setup) {
+  return !setup.calibration_text.empty() &&
+         !calibration::parse(setup.calibration_text, "calibration").transducers.empty();
+}
+
+/// A live session needs what a pilot may do without: what the finger gets must have been measured.
+void check_live(const session::Setup& setup, const protocol::Survey& survey, std::vector<Problem>& problems) {
+  const auto& rig = setup.rig;
+  const auto add = [&](const std::string& what, const std::string& allowed) {
+    problems.push_back({{rig.path, 0, 0}, "--mode live: " + what, allowed});
+  };
+  if (!rig.friction.measured)
+    add("the rig's friction is the illustrative curve",
+        "give [friction] a measured table_csv, or run with --mode pilot");
+  if (rig.reproduction)
+    add("this rig reproduces a historical one", "live sessions need a rig with reproduction = false");
+  if (!has_response(setup) && rig.amplifier_uri != "sim:")
+    add("the rig has no calibration in force", "turnpoint calibrate --rig " + rig.path + " makes one");
+  for (const auto& sight : survey.sights) {
+    // However soft: whether the level is allowed is known only with each tone's amplitude, at its trial.
+    const auto problem = limits::sound_problem(sight.lowest_Hz, 1e-9, setup.sound);
+    if (problem.empty()) continue;
+    add("scene \"" + sight.scene + "\": " + problem, "measured levels around it in the calibration");
+    break;
+  }
+}
+
+void check_buttons_only(const session::Setup& setup, std::vector<Problem>& problems) {
+  const auto& task = setup.protocol.task;
+  if (!setup.rig.buttons_uri)
+    problems.push_back(
+        {{setup.rig.path, 0, 0}, "--buttons-only: the rig has no buttons", "a rig with [buttons]"});
+  if (task.device == protocol::Device::touch)
+    problems.push_back({task.device_place, "--buttons-only: the task is answered by touch",
+                        "device = \"buttons\" or \"either\""});
+}
+
+}  // namespace
+
+void take_calibration(const std::string& source, const std::string& path, session::Setup& setup) {
+  const auto calibration = calibration::parse(source, path);
+  setup.rig = calibration::applied(calibration, std::move(setup.rig));
+  setup.calibration_id = text::sha256(source);
+  setup.calibration_text = source;
+  if (calibration.panel && calibration.panel->touch) {
+    setup.response_offset_s = calibration.panel->touch->median_s;
+    setup.response_offset_quality = calibration.panel->quality;
+  }
+  for (const auto& point : calibration.sound) setup.sound.push_back({point.frequency_Hz, point.level_dB});
+}
+
+namespace {
+
+/// The calibration that was named, or the newest beside the rig.
+void find_calibration(const RunRequest& request, session::Setup& setup, std::vector<Problem>& problems) {
+  const auto path =
+      request.calibration.empty() ? calibration::newest_for(setup.rig.path) : request.calibration;
+  if (path.empty()) return;
+  const auto source = text::read_text_file(path);
+  const auto faults =
+      calibration::problems(calibration::parse(source, path), setup.rig.sha256, calibration::today());
+  const bool live = request.observer.empty() && request.mode == "live";
+  if (faults.empty()) return take_calibration(source, path, setup);
+  if (request.calibration.empty() && !live) return;
+  for (const auto& fault : faults)
+    problems.push_back({{path, 0, 0}, fault, "calibrate again, or give another file with --calibration"});
+}
+
+}  // namespace
+
+session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
+  session::Setup setup;
+  std::vector<Problem> problems;
+  const auto gather = [&problems](auto&& load) {
+    try {
+      load();
+    } catch (const text::BadInput& bad) {
+      problems.insert(problems.end(), bad.problems().begin(), bad.problems().end());
+    }
+  };
+  gather([&] { setup.rig = rig::load(request.rig); });
+  gather([&] { setup.protocol = protocol::load(request.protocol); });
+  check_participant(request.participant, problems);
+  if (!problems.empty()) throw text::BadInput(problems);
+
+  setup.language = choose_language(request.language, setup.protocol, problems);
+  gather([&] { find_calibration(request, setup, problems); });
+  const auto survey = protocol::survey(setup.protocol, setup.rig, stop);
+  problems.insert(problems.end(), survey.problems.begin(), survey.problems.end());
+  if (request.observer.empty() && request.mode == "live") check_live(setup, survey, problems);
+  if (request.observer.empty() && request.buttons_only) check_buttons_only(setup, problems);
+  if (!problems.empty()) throw text::BadInput(problems);
+
+  setup.participant = request.participant;
+  setup.database = request.database;
+  setup.observer = request.observer;
+  setup.seed = request.seed;
+  setup.consent_version = request.consent_version;
+  setup.run_mode = !request.observer.empty() ? terms::RunMode::simulated
+                   : request.mode == "live"  ? terms::RunMode::live
+                                             : terms::RunMode::pilot;
+  return setup;
+}
+
+}  // namespace turnpoint::setup

@@ -1,0 +1,33 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "station/session/session.hpp"
+
+namespace turnpoint::setup {
+
+/// What `turnpoint run` was asked for, as typed.
+struct RunRequest {
+  std::string protocol, rig, participant, database;
+  std::string mode = "pilot";  ///< live | pilot
+  std::string language;        ///< "" takes the protocol's first
+  std::string observer;        ///< "" for a person
+  std::optional<std::uint64_t> seed;
+  std::string consent_version;  ///< of the consent form, "" where none is asked for
+  bool headless = false, buttons_only = false;
+  std::string calibration;  ///< file; "" takes the newest one beside the rig file, if there is one
+};
+
+/// Loads and checks everything that a session needs. Throws text::BadInput with all problems of both files,
+/// of the protocol on this rig, of participant code, language and mode. A calibration is applied to the rig;
+/// one that has expired or belongs to another rig is refused where it was named or the session is live, and
+/// left out otherwise. Throws protocol::Abandoned soon after `stop` asks it to.
+session::Setup prepare(const RunRequest& request, const std::stop_token& stop = {});
+
+/// Puts a calibration file's text in force: rig, sound levels, and what the session's row keeps of it.
+/// Throws text::BadInput, terms::UsageError.
+void take_calibration(const std::string& source, const std::string& path, session::Setup& setup);
+
+}  // namespace turnpoint::setup

@@ -1,0 +1,68 @@
+#include "station/setup/resume.hpp"
+
+#include <fmt/format.h>
+
+#include <ostream>
+
+#include "station/setup/prepare.hpp"
+#include "station/store/read.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::setup {
+
+namespace {
+
+using session::ResumeAt;
+
+ResumeAt resume_at(const std::string& policy, const protocol::Resume& rules) {
+  if (policy == "restart") return ResumeAt::session_start;
+  if (policy == "block") return ResumeAt::block_start;
+  if (policy == "resume") return ResumeAt::next_trial;
+  switch (rules.incomplete) {
+    case protocol::ResumePolicy::restart:
+      return ResumeAt::session_start;
+    case protocol::ResumePolicy::block:
+      return ResumeAt::block_start;
+    case protocol::ResumePolicy::ask:
+    case protocol::ResumePolicy::resume:
+      break;
+  }
+  return rules.restart_unit == "block" ? ResumeAt::block_start : ResumeAt::next_trial;
+}
+
+}  // namespace
+
+std::optional<session::Setup> prepare_resume(const ResumeRequest& request, std::ostream& messages) {
+  const auto found = store::interrupted_session(request.database, request.session_id);
+  if (!found) return std::nullopt;
+  const auto& start = found->session.start;
+  session::Setup setup;
+  setup.rig = rig::parse(start.rig_text, start.rig_path);
+  setup.protocol = protocol::parse(start.protocol_text, start.protocol_path);
+  if (start.calibration_id) take_calibration(start.calibration_text, "the session's calibration", setup);
+  setup.consent_version = start.consent_version;
+  const double age_h = found->age_s / 3600, allowed_h = setup.protocol.resume.max_age_h;
+  if (age_h < 0)
+    messages << "resume: the clock was set back since the session was interrupted; its age is not known\n";
+  if (age_h > allowed_h && !request.any_age)
+    throw text::BadInput(
+        {{{start.protocol_path, 0, 0},
+          fmt::format("session {} was interrupted {} h ago", found->session.session_id,
+                      text::number(age_h, 3)),
+          fmt::format("the protocol allows {} h (resume.max_age_h); begin a new session with "
+                      "turnpoint run, or, if the clock is or was wrong, resume it with --any-age",
+                      text::number(allowed_h))}});
+  setup.participant = start.participant;
+  setup.database = request.database;
+  setup.run_mode = start.run_mode;
+  setup.language = start.language;
+  setup.observer = start.observer;
+  setup.seed = start.seed;
+  setup.resume_session = found->session.session_id;
+  setup.resume_at = resume_at(request.policy, setup.protocol.resume);
+  messages << "resume: session " << found->session.session_id << " of participant " << start.participant
+           << ", " << found->session.trials << " trials stored\n";
+  return setup;
+}
+
+}  // namespace turnpoint::setup

@@ -1,0 +1,157 @@
+#include "station/simulation/check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "station/observer/observer.hpp"
+#include "station/protocol/design_advice.hpp"
+#include "station/simulation/parallel.hpp"
+#include "station/simulation/rehearsal.hpp"
+
+namespace turnpoint::simulation {
+
+namespace {
+
+using protocol::Protocol;
+
+// What people need beside what a rehearsal has: reading an instruction, exploring before they decide (a share
+// of the time that the tones last), one setting of a slider.
+constexpr double instruction_s = 12, explored_share = 0.5, setting_s = 15;
+
+/// A simulated session: its duration for a person, and the trials of each block, all attempts together.
+struct Estimate {
+  double duration_s = 0;
+  std::vector<CheckedBlock> blocks;
+  std::vector<double> trials;
+};
+
+double longest_s(const Protocol& protocol) {
+  return protocol.task.duration_s.value_or(protocol.timing.explore_s.value_or(0));
+}
+
+/// The observer of `run --observer sim`, but a slider is set in the time that people take.
+Rehearser person(const Protocol& protocol) {
+  auto person = rehearser(observer::Observer{observer::Parameters{}});
+  person.adjust = [adjust = person.adjust, done_s = std::min(setting_s, longest_s(protocol))](
+                      const trial::TrialSpec& spec, const observer::Adjustment& asked) {
+    auto setting = adjust(spec, asked);
+    setting.done_s = done_s;
+    return setting;
+  };
+  return person;
+}
+
+/// How long people explore in each trial before they decide, where the task leaves that to them.
+double exploring_s(const Protocol& protocol) {
+  const auto& task = protocol.task;
+  const bool free = task.kind == protocol::TaskKind::single_interval && !task.foreperiod_s;
+  return free ? explored_share * longest_s(protocol) : 0;
+}
+
+/// The breaks inside a block of that many trials; none follows the last.
+double breaks_s(const protocol::Block& block, std::size_t trials) {
+  if (!block.break_after || trials == 0) return 0;
+  const auto every = static_cast<std::size_t>(block.break_after->trials);
+  return static_cast<double>((trials - 1) / every) * block.break_after->min_s;
+}
+
+Estimate simulate(const Protocol& protocol, std::uint64_t seed) {
+  // Sequence index 0 throughout: the blocks of all rows are the same, in another order.
+  const auto order = protocol::block_order(protocol, 0);
+  const auto rehearsal = rehearse(protocol, 0, seed, person(protocol));
+  Estimate estimate;
+  estimate.duration_s = rehearsal.duration_s + rehearsal.trials * exploring_s(protocol);
+  for (const auto& [start, trials] : rehearsal.blocks) {
+    // Practice that is repeated is one block of as many trials as were needed.
+    if (start.attempt == 0) {
+      estimate.blocks.push_back({start.name, start.instruction, start.practice, {}});
+      estimate.trials.push_back(0);
+    }
+    estimate.trials.back() += static_cast<double>(trials.size());
+    estimate.duration_s +=
+        instruction_s + breaks_s(order[static_cast<std::size_t>(start.block_index)], trials.size());
+  }
+  return estimate;
+}
+
+Spread spread_of(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  const auto at = [&](double share) {
+    return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
+  };
+  return {at(0.05), at(0.5), at(0.95)};
+}
+
+void estimate(const Protocol& protocol, int sessions, const std::stop_token& stop, Check& check) {
+  std::vector<double> durations, trials;
+  std::vector<Estimate> estimates(static_cast<std::size_t>(sessions));
+  in_parallel(sessions, processors(), {}, [&](int i) {
+    if (stop.stop_requested()) throw protocol::Abandoned();
+    estimates[static_cast<std::size_t>(i)] = simulate(protocol, static_cast<std::uint64_t>(i));
+  });
+  if (!estimates.empty()) check.blocks = estimates.front().blocks;
+  std::vector<std::vector<double>> by_block(check.blocks.size());
+  for (const auto& estimate : estimates) {
+    for (std::size_t b = 0; b < std::min(by_block.size(), estimate.trials.size()); ++b)
+      by_block[b].push_back(estimate.trials[b]);
+    durations.push_back(estimate.duration_s);
+    trials.push_back(std::accumulate(estimate.trials.begin(), estimate.trials.end(), 0.0));
+  }
+  for (std::size_t b = 0; b < check.blocks.size(); ++b) check.blocks[b].trials = spread_of(by_block[b]);
+  check.trials = spread_of(trials);
+  check.duration_s = spread_of(durations);
+  check.simulated_sessions = sessions;
+}
+
+}  // namespace
+
+Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options,
+            const std::stop_token& stop) {
+  Check check;
+  std::optional<Protocol> protocol;
+  std::optional<rig::Rig> rig;
+  const auto gather = [&](auto&& load) {
+    try {
+      load();
+    } catch (const text::BadInput& bad) {
+      check.problems.insert(check.problems.end(), bad.problems().begin(), bad.problems().end());
+    }
+  };
+  gather([&] { protocol = protocol::load(protocol_path); });
+  gather([&] { rig = rig::load(rig_path); });
+  if (!check.problems.empty()) return check;
+  check.id = protocol->id, check.title = protocol->title, check.rig_name = rig->name;
+  check.protocol_defaults = protocol->defaults_used;
+  check.rig_defaults = rig->defaults_used;
+  check.survey = protocol::survey(*protocol, *rig, stop);
+  check.problems = check.survey.problems;
+  check.warnings = check.survey.warnings;
+  check.notes = protocol::notes(*protocol);
+  try {
+    estimate(*protocol, options.sessions, stop, check);
+    if (stop.stop_requested()) throw protocol::Abandoned();
+    if (check.problems.empty()) check.cues = cue_guard(*protocol, *rig, check.survey, stop);
+  } catch (const protocol::Abandoned&) {
+    throw;
+  } catch (const std::exception& error) {
+    // What the procedures cannot do must stop a session before anybody sits down.
+    check.problems.push_back({{protocol_path, 0, 0}, error.what(), ""});
+  }
+  if (!check.cues.not_compared.empty())
+    check.warnings.push_back(
+        {{protocol_path, 0, 0},
+         "the cues of " + check.cues.not_compared + " are not known: nothing is known of leaks",
+         "fewer combinations of factors in one scene"});
+  if (check.duration_s.median > 60 * rig->limits.session_minutes)
+    check.warnings.push_back({{protocol_path, 0, 0},
+                              "the session will last about " +
+                                  std::to_string(std::lround(check.duration_s.median / 60)) +
+                                  " minutes, longer than the rig's session_minutes",
+                              "at most " + std::to_string(std::lround(rig->limits.session_minutes))});
+  return check;
+}
+
+}  // namespace turnpoint::simulation

@@ -1,0 +1,49 @@
+#pragma once
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "station/protocol/protocol.hpp"
+#include "station/protocol/survey.hpp"
+#include "station/rig/rig.hpp"
+#include "station/simulation/cue_guard.hpp"
+
+namespace turnpoint::simulation {
+
+/// A number over simulated sessions: its median, and what nine of ten sessions lie between.
+struct Spread {
+  double low = 0, median = 0, high = 0;
+};
+
+/// A block as a participant will run it.
+struct CheckedBlock {
+  std::string name, instruction;
+  bool practice = false;
+  Spread trials;
+};
+
+/// What `turnpoint check` says of a protocol on a rig.
+struct Check {
+  std::vector<text::Problem> problems;  ///< of both files and of one on the other; then all else is empty
+  std::vector<text::Problem> warnings;
+  std::vector<text::Problem> notes;  ///< matters of taste
+  std::string id, title, rig_name;
+  std::vector<CheckedBlock> blocks;
+  Spread trials, duration_s;
+  int simulated_sessions = 0;
+  protocol::Survey survey;
+  CueGuard cues;
+  std::vector<std::string> protocol_defaults, rig_defaults;
+};
+
+/// How many sessions to simulate for the number of trials and the duration; 0: none.
+struct CheckOptions {
+  int sessions = 21;
+};
+
+/// Reads and checks both files as `run` would. Throws std::system_error where one cannot be read, and
+/// protocol::Abandoned soon after `stop` asks it to.
+Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options = {},
+            const std::stop_token& stop = {});
+
+}  // namespace turnpoint::simulation

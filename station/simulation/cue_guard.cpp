@@ -1,0 +1,410 @@
+#include "station/simulation/cue_guard.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <tuple>
+
+#include "station/protocol/combinations.hpp"
+#include "station/random/draws.hpp"
+#include "station/simulation/cue_table.hpp"
+#include "station/simulation/one_cue.hpp"
+#include "station/simulation/trial_census.hpp"
+#include "station/trial/orders.hpp"
+
+namespace turnpoint::simulation {
+
+namespace {
+
+using protocol::Protocol;
+using protocol::TaskKind;
+using trial::TrialSpec;
+
+enum class Source { surface, duration, nothing };
+
+struct CueKind {
+  const char* name;
+  const char* unit;
+  double scale;
+  Source source;
+  double scene::Cues::*cue;
+  bool follows_strength;  ///< roving always moves it
+};
+
+constexpr CueKind cue_kinds[] = {
+    {"pitch", "Hz", 1, Source::surface, &scene::Cues::pitch_Hz, false},
+    {"loudness", "dB", 1, Source::surface, &scene::Cues::loudness_dB, true},
+    {"amplitude at the wide end", "um", 1e6, Source::surface, &scene::Cues::wide_end_amplitude_m, true},
+    {"stripe pitch at the wide end", "mm", 1e3, Source::surface, &scene::Cues::stripe_pitch_m, false},
+    {"edge sharpness", "mm", 1e3, Source::surface, &scene::Cues::edge_width_m, false},
+    {"strip width", "mm", 1e3, Source::surface, &scene::Cues::strip_width_m, false},
+    {"duration", "s", 1, Source::duration, nullptr, false},
+    {"always the same key", "", 1, Source::nothing, nullptr, false},
+};
+
+constexpr double smallest_difference = 1e-3, smallest_difference_dB = 0.01;
+
+// Three standard errors of what an observer of one cue reaches in its own sessions, and how many sessions
+// there are to find out how many that takes, and at most.
+constexpr double precision = 0.01;
+constexpr int first_sessions = 30, most_sessions = 1000;
+
+/// Trials for which a cue cannot be known.
+struct NotPlanned : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// What one interval of a trial offers, before its strength is drawn.
+struct Interval {
+  RovedCues first, last;
+  double duration_s = 0;
+};
+
+struct Presentation {
+  std::vector<Interval> intervals;
+  int correct = 0;
+  double share = 0;   ///< of the trials of its cell
+  double turn = 0.5;  ///< where its draws of the strength begin
+};
+
+/// A cell of the census: its presentations, and how many trials it has.
+using Cells = std::vector<std::pair<const std::vector<Presentation>*, double>>;
+
+/// How many trials there are, in how many the answer is right, and in how many it would be with each key.
+struct Score {
+  double trials = 0, right = 0;
+  std::array<double, 3> keys{};
+
+  void add(const Score& other, double times) {
+    trials += times * other.trials, right += times * other.right;
+    for (std::size_t i = 0; i < keys.size(); ++i) keys[i] += times * other.keys[i];
+  }
+  double accuracy() const { return trials > 0 ? right / trials : 0; }
+  std::size_t best_key() const {
+    return static_cast<std::size_t>(std::max_element(keys.begin(), keys.end()) - keys.begin());
+  }
+  double one_key() const { return trials > 0 ? keys[best_key()] / trials : 0; }
+};
+
+/// Which number of an interval of two scenes is attended to.
+enum class Feature { last, change, first };
+
+/// Two sets of draws of the strength, equally many. A rule that was chosen on one set looks better there than
+/// it is.
+enum class Draws { to_choose, to_judge };
+
+struct Strategy {
+  Feature feature = Feature::last;
+  Rule rule;
+};
+
+/// Sessions in which the observer's answers lead to the next level. A cue that gives the same answers to all
+/// trials that came up leads to the same sessions.
+struct OwnSessions {
+  std::vector<Score> done;
+  std::map<const std::vector<Presentation>*, Score> scores;  ///< of one trial of each cell that came up
+  Cells visited;
+  std::vector<std::array<double, 3>> answers;  ///< to the visited cells
+  Reached reached;
+};
+
+double number_of(const CueKind& kind, const Interval& interval, Feature feature, double rove_dB) {
+  if (kind.source == Source::nothing) return 0;
+  if (kind.source == Source::duration) return interval.duration_s;
+  if (feature == Feature::first) return interval.first.at(rove_dB).*kind.cue;
+  const double last = interval.last.at(rove_dB).*kind.cue;
+  return feature == Feature::last ? last : last - interval.first.at(rove_dB).*kind.cue;
+}
+
+std::pair<double, double> range_of(const std::vector<Look>& looks, std::size_t intervals) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const auto& look : looks)
+    for (std::size_t i = 0; i < intervals; ++i)
+      low = std::min(low, look.x[i]), high = std::max(high, look.x[i]);
+  return {low, high};
+}
+
+Score sum_of(const std::vector<Score>& sessions) {
+  Score sum;
+  for (const auto& one : sessions) sum.add(one, 1);
+  return sum;
+}
+
+// Of what is right, and of what is more than one key gets right: the larger one.
+double standard_error(const std::vector<Score>& sessions) {
+  const auto all = sum_of(sessions);
+  if (all.trials == 0) return 0;
+  double error = 0;
+  for (const double less : {0.0, 1.0}) {
+    const auto more = [&](const Score& score) { return score.right - less * score.keys[all.best_key()]; };
+    const double share = more(all) / all.trials;
+    double squares = 0;
+    for (const auto& one : sessions) squares += std::pow(more(one) - share * one.trials, 2);
+    error = std::max(error, std::sqrt(squares) / all.trials);
+  }
+  return error;
+}
+
+class Guard {
+ public:
+  Guard(const Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey,
+        const std::stop_token& stop)
+      : protocol_(protocol), stop_(stop), table_(protocol, rig, survey) {}
+
+  std::vector<CueReport> reports();
+
+ private:
+  Interval interval_of(const std::vector<std::string>& scenes, const protocol::Factors& factors);
+  const std::vector<Interval>& intervals_of(const TrialSpec& trial);
+  const std::vector<Presentation>& presentations(const protocol::Factors& cell, const TrialCensus& census);
+  Cells cells_of(const TrialCensus& census);
+  std::vector<Look> looks(const CueKind& kind, Feature feature, const Cells& cells, Draws draws) const;
+  Score score(const CueKind& kind, const Strategy& strategy, const Cells& cells) const;
+  int answer(const CueKind& kind, const Strategy& strategy, const TrialSpec& trial, std::uint64_t seed);
+  std::vector<std::array<double, 3>> answers_to(const Cells& cells, const CueKind& kind,
+                                                const Strategy& strategy) const;
+  void run_sessions(const CueKind& kind, const Strategy& strategy, int count, OwnSessions& own);
+  std::optional<Reached> same_everywhere(const CueKind& kind, const Strategy& strategy,
+                                         const Cells& all) const;
+  Reached by_itself(const CueKind& kind, const Strategy& strategy, const Cells& all);
+  CueReport report(const CueKind& kind, const Cells& all);
+  double guessing() const { return 1.0 / static_cast<double>(protocol_.task.choices.size()); }
+  double chance(const Score& score) const { return std::max(guessing(), score.one_key()); }
+
+  const Protocol& protocol_;
+  const std::stop_token& stop_;
+  CueTable table_;
+  int points_ = 256;
+  double turn_ = 0.5;
+  std::map<protocol::Factors, std::vector<Presentation>> presentations_;
+  std::map<std::pair<std::vector<std::vector<std::string>>, protocol::Factors>, std::vector<Interval>>
+      intervals_;
+  std::vector<OwnSessions> own_sessions_;
+};
+
+Interval Guard::interval_of(const std::vector<std::string>& scenes, const protocol::Factors& factors) {
+  const auto cues = [&](const std::string& scene) {
+    const auto found = table_.find(scene, factors);
+    if (!found) throw NotPlanned("scene \"" + scene + "\" at " + protocol::format(factors));
+    return *found;
+  };
+  const double longest_s = protocol_.task.duration_s.value_or(protocol_.timing.explore_s.value_or(0));
+  return {cues(scenes.front()), cues(scenes.back()),
+          longest_s - 1e-3 * protocol_.scenes.at(scenes.front()).ramp_ms};
+}
+
+const std::vector<Interval>& Guard::intervals_of(const TrialSpec& trial) {
+  auto& intervals = intervals_[{trial.intervals, trial.factors}];
+  if (intervals.empty())
+    for (const auto& scenes : trial.intervals) intervals.push_back(interval_of(scenes, trial.factors));
+  return intervals;
+}
+
+const std::vector<Presentation>& Guard::presentations(const protocol::Factors& cell,
+                                                      const TrialCensus& census) {
+  const auto [found, is_new] = presentations_.try_emplace(cell);
+  auto& all = found->second;
+  if (!is_new) return all;
+  const auto orders = trial::orders_of(protocol_.task);
+  const auto combinations = census.combinations(cell);
+  for (const auto& factors : combinations)
+    for (const auto& order : orders) {
+      const auto correct = order.correct ? order.correct : trial::correct_choice(protocol_.task, factors);
+      if (!correct) continue;  // no answer is right: it counts neither way
+      turn_ += 0.7548776662466927;
+      Presentation presentation;
+      presentation.correct = *correct, presentation.turn = turn_;
+      presentation.share = 1.0 / static_cast<double>(orders.size() * combinations.size());
+      for (const auto& scenes : order.intervals)
+        presentation.intervals.push_back(interval_of(scenes, factors));
+      all.push_back(std::move(presentation));
+    }
+  return all;
+}
+
+Cells Guard::cells_of(const TrialCensus& census) {
+  Cells cells;
+  for (const auto& [cell, trials] : census.cells()) cells.emplace_back(&presentations(cell, census), trials);
+  return cells;
+}
+
+// Roving is uniform: points of a low-discrepancy sequence (Roberts 2018) stand for the draws of the
+// intervals.
+std::vector<Look> Guard::looks(const CueKind& kind, Feature feature, const Cells& cells, Draws draws) const {
+  constexpr double g = 1.2207440846057596;
+  constexpr double steps[] = {1 / g, 1 / (g * g), 1 / (g * g * g)};
+  const auto moves = [&](const Interval& interval) {
+    const bool by_edge = interval.first.low || interval.last.low;
+    return interval.first.rove_dB > 0 && kind.source == Source::surface && (kind.follows_strength || by_edge);
+  };
+  std::vector<Look> looks;
+  for (const auto& [presentations, trials] : cells)
+    for (const auto& presentation : *presentations) {
+      const auto& intervals = presentation.intervals;
+      const int points = std::any_of(intervals.begin(), intervals.end(), moves) ? points_ : 1;
+      const int begin = draws == Draws::to_choose ? 1 : points + 1;
+      for (int k = begin; k < begin + points; ++k) {
+        Look look;
+        look.correct = presentation.correct, look.weight = trials * presentation.share / points;
+        for (std::size_t i = 0; i < intervals.size(); ++i) {
+          const double u = points == 1 ? 0.5 : std::fmod(presentation.turn + k * steps[i], 1.0);
+          look.x[i] = number_of(kind, intervals[i], feature, intervals[i].first.rove_dB * (2 * u - 1));
+        }
+        looks.push_back(look);
+      }
+    }
+  return looks;
+}
+
+Score Guard::score(const CueKind& kind, const Strategy& strategy, const Cells& cells) const {
+  Score score;
+  for (const auto& look : looks(kind, strategy.feature, cells, Draws::to_judge)) {
+    const auto correct = static_cast<std::size_t>(look.correct);
+    score.trials += look.weight, score.keys[correct] += look.weight;
+    score.right += look.weight * shares(strategy.rule, protocol_.task.kind, look.x)[correct];
+  }
+  return score;
+}
+
+int Guard::answer(const CueKind& kind, const Strategy& strategy, const TrialSpec& trial, std::uint64_t seed) {
+  const auto& intervals = intervals_of(trial);
+  std::array<double, 3> x{};
+  for (std::size_t i = 0; i < intervals.size(); ++i)
+    x[i] = number_of(kind, intervals[i], strategy.feature, trial.rove_dB[i]);
+  const auto answers = shares(strategy.rule, protocol_.task.kind, x);
+  random::Draws draws(
+      {seed, random::Stream::observer, trial.block_index, trial.attempt, trial.trial_in_block});
+  double left = draws.uniform();
+  int choice = 0;
+  while (choice < 2 && left >= answers[static_cast<std::size_t>(choice)])
+    left -= answers[static_cast<std::size_t>(choice++)];
+  return std::min(choice, static_cast<int>(protocol_.task.choices.size()) - 1);
+}
+
+std::vector<std::array<double, 3>> Guard::answers_to(const Cells& cells, const CueKind& kind,
+                                                     const Strategy& strategy) const {
+  std::vector<std::array<double, 3>> answers;
+  for (const auto& look : looks(kind, strategy.feature, cells, Draws::to_judge))
+    answers.push_back(shares(strategy.rule, protocol_.task.kind, look.x));
+  return answers;
+}
+
+// Adds sessions until there are `count`.
+void Guard::run_sessions(const CueKind& kind, const Strategy& strategy, int count, OwnSessions& own) {
+  while (static_cast<int>(own.done.size()) < count) {
+    if (stop_.stop_requested()) throw protocol::Abandoned();
+    const auto seed = static_cast<std::uint64_t>(own.done.size());
+    const auto census = census_of_session(
+        protocol_, seed, [&](const TrialSpec& trial) { return answer(kind, strategy, trial, seed); });
+    Score sum;
+    for (const auto& [presentations, trials] : cells_of(census)) {
+      const auto [found, is_new] = own.scores.try_emplace(presentations);
+      if (is_new) found->second = score(kind, strategy, {{presentations, 1.0}});
+      sum.add(found->second, trials);
+    }
+    own.done.push_back(sum);
+  }
+}
+
+// What a rule reaches that is as good at one level as at any other, whichever levels its answers lead to.
+std::optional<Reached> Guard::same_everywhere(const CueKind& kind, const Strategy& strategy,
+                                              const Cells& all) const {
+  if (protocol_.task.kind == TaskKind::single_interval) return std::nullopt;
+  double low = 1, high = 0;
+  for (const auto& cell : all) {
+    const auto here = score(kind, strategy, {cell});
+    low = std::min(low, here.accuracy()), high = std::max(high, here.accuracy());
+  }
+  if (high - low > 2 * precision) return std::nullopt;
+  const double by_guessing = chance(score(kind, strategy, all));
+  return Reached{std::max(0.5 * (low + high), by_guessing), by_guessing, 0.5 * (high - low)};
+}
+
+// The number of sessions follows from the first ones only, not from what is reached in the others.
+Reached Guard::by_itself(const CueKind& kind, const Strategy& strategy, const Cells& all) {
+  if (const auto same = same_everywhere(kind, strategy, all)) return *same;
+  for (const auto& known : own_sessions_)
+    if (answers_to(known.visited, kind, strategy) == known.answers) return known.reached;
+  OwnSessions own;
+  run_sessions(kind, strategy, first_sessions, own);
+  const double error = 3 * standard_error(own.done) / precision;
+  run_sessions(kind, strategy,
+               static_cast<int>(std::min<double>(most_sessions, first_sessions * error * error)), own);
+  const auto sum = sum_of(own.done);
+  own.reached = {std::max(sum.accuracy(), chance(sum)), chance(sum), 3 * standard_error(own.done)};
+  for (const auto& [presentations, unused] : own.scores) own.visited.emplace_back(presentations, 1.0);
+  own.answers = answers_to(own.visited, kind, strategy);
+  return own_sessions_.emplace_back(std::move(own)).reached;
+}
+
+CueReport Guard::report(const CueKind& kind, const Cells& all) {
+  CueReport report;
+  report.cue = kind.name, report.unit = kind.unit;
+  const auto task = protocol_.task.kind;
+  const bool change = kind.source == Source::surface && task == TaskKind::single_interval &&
+                      protocol_.task.intervals.front().size() > 1;
+  auto features = std::vector<Feature>{Feature::last};
+  if (change) features.insert(features.end(), {Feature::change, Feature::first});
+  Grain grain{smallest_difference_dB, 0};
+  Strategy best;
+  double most = -1;
+  for (const auto feature : features) {
+    const auto looked = looks(kind, feature, all, Draws::to_choose);
+    if (feature == Feature::last) {
+      std::tie(report.low, report.high) =
+          range_of(looked, trial::orders_of(protocol_.task).front().intervals.size());
+      if (std::string(kind.unit) != "dB")
+        grain = {smallest_difference * std::max(std::fabs(report.low), std::fabs(report.high)),
+                 smallest_difference};
+    }
+    const Strategy strategy{feature, best_rule(task, looked, grain)};
+    const double right = accuracy(strategy.rule, task, looked);
+    if (right > most) most = right, best = strategy;
+  }
+  const auto reached = score(kind, best, all);
+  report.chance = kind.source == Source::nothing ? guessing() : chance(reached);
+  report.accuracy = std::max(reached.accuracy(), report.chance);
+  if (levels_follow_right_answers(protocol_) && kind.source != Source::nothing) {
+    report.whole_sessions = by_itself(kind, best, all);
+    const auto& [accuracy, chance, error] = *report.whole_sessions;
+    if (accuracy - chance > report.accuracy - report.chance)
+      report.accuracy = accuracy, report.chance = chance, report.error = error;
+  }
+  report.low *= kind.scale, report.high *= kind.scale;
+  return report;
+}
+
+std::vector<CueReport> Guard::reports() {
+  const auto all = cells_of(census_of(protocol_));
+  std::size_t count = 0;
+  for (const auto& [presentations, trials] : all) count += presentations->size();
+  if (count == 0) return {};
+  points_ = std::clamp(static_cast<int>(40'000 / (count + 1)), 16, 256);
+  std::vector<CueReport> reports;
+  for (const auto& kind : cue_kinds) reports.push_back(report(kind, all));
+  return reports;
+}
+
+}  // namespace
+
+CueGuard cue_guard(const Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey,
+                   const std::stop_token& stop) {
+  CueGuard guard;
+  if (protocol.task.kind == TaskKind::adjustment) {
+    guard.nothing_to_tell = "in an adjustment no setting is right or wrong";
+    return guard;
+  }
+  try {
+    guard.reports = Guard(protocol, rig, survey, stop).reports();
+    if (guard.reports.empty()) guard.nothing_to_tell = "no answer outside practice is right or wrong";
+  } catch (const NotPlanned& missing) {
+    guard.not_compared = missing.what();
+  }
+  return guard;
+}
+
+}  // namespace turnpoint::simulation

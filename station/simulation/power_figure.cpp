@@ -1,0 +1,56 @@
+#include "station/simulation/power_figure.hpp"
+
+#include <algorithm>
+
+#include "station/text/number.hpp"
+
+namespace turnpoint::simulation {
+
+namespace {
+
+constexpr int bins = 24;
+
+plot::Panel panel_of(const Recovery& recovery) {
+  plot::Panel panel;
+  panel.title = recovery.source + ": " + recovery.parameter;
+  auto sorted = recovery.estimates;
+  std::sort(sorted.begin(), sorted.end());
+  // The outermost hundredth may lie anywhere; the picture is of the others.
+  const auto at = [&](double share) {
+    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+  };
+  std::vector<double> ends{at(0.01), at(0.99)};
+  if (recovery.truth) ends.push_back(*recovery.truth);
+  panel.x = plot::fitted(
+      recovery.parameter + " (" + (recovery.unit.empty() ? "no unit" : recovery.unit) + ")", ends, 0.1);
+  std::vector<double> shown;
+  std::copy_if(sorted.begin(), sorted.end(), std::back_inserter(shown),
+               [&](double value) { return value >= panel.x.low && value <= panel.x.high; });
+  auto bars = plot::histogram(shown, panel.x.low, panel.x.high, bins);
+  auto heights = bars.heights;
+  heights.push_back(0);
+  panel.y = plot::fitted("Sessions (number)", heights, 0.05);
+  panel.y.low = 0;
+  panel.layers.emplace_back(std::move(bars));
+  if (recovery.truth)
+    panel.layers.emplace_back(plot::Rule{plot::Rule::Direction::vertical, *recovery.truth,
+                                         "truth " + text::estimated(*recovery.truth, ends[1] - ends[0])});
+  return panel;
+}
+
+}  // namespace
+
+plot::Figure figure_of(const Power& power, const std::string& title) {
+  plot::Figure figure;
+  figure.title = title;
+  for (const auto& recovery : power.recoveries)
+    if (recovery.estimates.size() > 1) figure.panels.push_back(panel_of(recovery));
+  figure.columns = 3;
+  figure.panel_width_px = 360, figure.panel_height_px = 240;
+  figure.caption = title + ". " + std::to_string(power.observers) + " simulated sessions; mean length " +
+                   text::number(power.trials, 3) + " trials and " + text::number(power.minutes, 2) +
+                   " minutes.";
+  return figure;
+}
+
+}  // namespace turnpoint::simulation

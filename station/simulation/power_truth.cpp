@@ -1,0 +1,164 @@
+#include "station/simulation/power_truth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "physics/root.hpp"
+#include "station/analysis/diffusion.hpp"
+#include "station/analysis/proportion.hpp"
+#include "station/procedure/description.hpp"
+#include "station/protocol/conditions.hpp"
+#include "station/trial/question.hpp"
+
+namespace turnpoint::simulation {
+
+namespace {
+
+/// Probability of a 1 by level; empty where the level alone does not decide it.
+std::function<double(double)> share_of_ones(const protocol::Protocol& protocol, const procedure::Spec& spec,
+                                            const observer::Observer& observer) {
+  trial::TrialSpec trial;
+  trial.procedure = spec.name;
+  trial.level = 0;
+  trial.deadline_s = protocol.timing.deadline_s.value_or(0);
+  auto question = trial::question_of(trial, protocol, 0);
+  int choice = 0;
+  if (question.decides == observer::Decides::right_answer) {
+    if (!spec.tracks.empty()) return {};
+    question.correct = 0;
+  } else {
+    const auto& choices = protocol.task.choices;
+    const auto tracked = std::find_if(choices.begin(), choices.end(),
+                                      [&](const auto& entry) { return entry.id == spec.tracks; });
+    if (tracked == choices.end()) return {};
+    choice = static_cast<int>(tracked - choices.begin());
+  }
+  return [question, choice, &observer](double level) mutable {
+    question.level = level;
+    return observer.share(question, choice);
+  };
+}
+
+/// Where a monotone function crosses a value between two levels; none where it does not.
+std::optional<double> crossing(const std::function<double(double)>& share, double low, double high,
+                               double value) {
+  const bool rises = share(high) > share(low);
+  const auto below = [&](double level) { return (share(level) < value) == rises; };
+  if (!below(low) || below(high)) return std::nullopt;
+  return physics::bisect({high, low}, [&](double level) { return !below(level); }).middle();
+}
+
+/// All levels between both asymptotes, whatever the unit.
+struct Reach {
+  double low = 0, high = 0;
+};
+Reach reach_of(const observer::Question& question) {
+  if (question.decibel) return {-400, 400};
+  return {question.decides == observer::Decides::side ? -1e6 : 0, 1e6};
+}
+
+/// A bisection's last digits are rounding: what is a millionth of a millionth of the threshold is 0.
+std::optional<double> without_rounding(const std::optional<double>& level, double threshold) {
+  return level && std::fabs(*level) < 1e-9 * std::fabs(threshold) ? 0 : level;
+}
+
+}  // namespace
+
+std::optional<double> settled_level(const protocol::Protocol& protocol, const procedure::Spec& spec,
+                                    const observer::Observer& observer) {
+  const auto share = share_of_ones(protocol, spec, observer);
+  if (!share) return std::nullopt;
+  trial::TrialSpec trial;
+  trial.procedure = spec.name;
+  const auto question = trial::question_of(trial, protocol, 0);
+  const auto [low, high] = reach_of(question);
+  const double threshold = observer.parameters().threshold.value_or(question.default_threshold);
+  const auto crosses = [&, low = low, high = high](double value) {
+    return without_rounding(crossing(share, low, high, value), threshold);
+  };
+  const auto target = procedure::description(spec.kind).settles_at(spec, share(low), share(high));
+  return target ? crosses(*target) : std::nullopt;
+}
+
+void GeneratingValues::add(const protocol::Protocol& protocol, const trial::TrialSpec& trial,
+                           const observer::Question& question, const observer::Observer& observer) {
+  if (trial.type != terms::TrialType::experimental || !trial.level) return;
+  std::string instruction;
+  if (const auto found = trial.factors.find("instruction"); found != trial.factors.end())
+    if (const auto* text = std::get_if<std::string>(&found->second)) instruction = *text;
+  const auto condition = protocol::condition_of(protocol, trial.factors, instruction);
+  auto [entry, is_new] = conditions_.try_emplace(condition);
+  auto& made = entry->second;
+  if (is_new) made.question = question;
+  made.one_deadline = made.one_deadline && made.question.deadline_s == question.deadline_s;
+  if (!trial.correct) return;
+  ++made.trials;
+  made.correct += observer.share(question, *trial.correct);
+}
+
+void GeneratingValues::add(const GeneratingValues& other) {
+  for (const auto& [condition, more] : other.conditions_) {
+    auto [entry, is_new] = conditions_.try_emplace(condition, more);
+    if (is_new) continue;
+    auto& made = entry->second;
+    made.one_deadline =
+        made.one_deadline && more.one_deadline && made.question.deadline_s == more.question.deadline_s;
+    made.trials += more.trials, made.correct += more.correct;
+  }
+}
+
+const GeneratingValues::Condition* GeneratingValues::find(const std::string& condition) const {
+  const auto found = conditions_.find(condition);
+  if (found != conditions_.end()) return &found->second;
+  return condition.empty() && conditions_.size() == 1 ? &conditions_.begin()->second : nullptr;
+}
+
+std::optional<double> GeneratingValues::share_correct(const std::string& condition) const {
+  const auto* made = find(condition);
+  if (!made || made->trials == 0) return std::nullopt;
+  return made->correct / made->trials;
+}
+
+std::optional<double> GeneratingValues::boundary(const std::string& condition,
+                                                 const observer::Observer& observer) const {
+  const auto* made = find(condition);
+  if (!made || !made->one_deadline) return std::nullopt;
+  return 2 * analysis::kDiffusionScale * observer.bound(made->question.deadline_s);
+}
+
+FitTruth GeneratingValues::fit(const std::string& condition, const analysis::FitOptions& options,
+                               const observer::Observer& observer) const {
+  const auto* made = find(condition);
+  if (!made || !made->one_deadline) return {};
+  const auto& p = observer.parameters();
+  auto question = made->question;
+  question.absent = false, question.correct = 0;
+  const auto decides = question.decides;
+  const int choice = decides == observer::Decides::right_answer ? 0 : question.positive;
+  const auto share = [&](double level) {
+    question.level = level;
+    return observer.share(question, choice);
+  };
+  const auto [low, high] = reach_of(question);
+  const double threshold = p.threshold.value_or(question.default_threshold);
+  const auto crosses = [&, low = low, high = high](double value) {
+    return without_rounding(crossing(share, low, high, value), threshold);
+  };
+  FitTruth truth;
+  const double way = analysis::core(options.function, 0);
+  truth.threshold =
+      decides == observer::Decides::side ? p.bias : crosses(share(low) + way * (share(high) - share(low)));
+  truth.level_75 = crosses(0.75);
+  const bool own_function =
+      observer.bound(question.deadline_s) == p.bound && p.drift_sd == 0 && p.start_range == 0;
+  if (own_function && decides == observer::Decides::right_answer &&
+      options.function == terms::Function::weibull)
+    truth.slope = p.slope;
+  if (own_function && decides == observer::Decides::side && p.slope == 1 &&
+      options.function == terms::Function::normal && options.scale == analysis::Scale::linear)
+    truth.slope = std::fabs(threshold) / analysis::normal_quantile(0.75);
+  return truth;
+}
+
+}  // namespace turnpoint::simulation

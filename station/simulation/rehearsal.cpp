@@ -1,0 +1,166 @@
+#include "station/simulation/rehearsal.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
+#include "station/text/number.hpp"
+#include "station/trial/machine.hpp"
+#include "station/trial/question.hpp"
+#include "station/trial/rows.hpp"
+#include "station/trial/slider.hpp"
+#include "station/trial/timing.hpp"
+
+namespace turnpoint::simulation {
+
+namespace {
+
+using trial::TrialSpec;
+
+// A page is read for so long, as on the virtual clock of a session.
+constexpr std::int64_t page_ns = 1'000'000'000;
+// A procedure without a rule that ends it would be refused; this only guards against one that never does.
+constexpr int most_trials = 100'000;
+
+std::int64_t ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
+
+/// When the last interval's response times begin to count, from its onset.
+std::int64_t zero_after_onset_ns(const protocol::Protocol& protocol, const TrialSpec& spec) {
+  const auto last = trial::interval_times(protocol, spec).back();
+  switch (protocol.timing.response_zero) {
+    case terms::ResponseZero::interval_off:
+      return ns(last.length_s);
+    case terms::ResponseZero::change:
+      return ns(last.starts_s.front());
+    default:
+      return 0;
+  }
+}
+
+/// One trial on a clock that only its machine moves: the intervals sound when they are asked for, the answer
+/// comes when the observer gives it.
+class Bench {
+ public:
+  Bench(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec,
+        std::int64_t now_ns)
+      : protocol_(protocol),
+        spec_(spec),
+        machine_(trial::timing_of(protocol, block, spec)),
+        now_ns_(now_ns) {}
+
+  const trial::Result& run(const observer::Reply& reply) {
+    perform(machine_.start(now_ns_), reply);
+    while (!machine_.done()) {
+      const auto wake_ns = machine_.wake_ns();
+      if (answer_ && (!wake_ns || answer_->time_ns <= *wake_ns)) {
+        const auto answer = *answer_;
+        answer_.reset();
+        handle(answer, reply);
+      } else if (wake_ns) {
+        handle({*wake_ns, trial::EventKind::tick, 0}, reply);
+      } else {
+        throw std::logic_error("rehearsal: a trial waits for an event that nobody sends");
+      }
+    }
+    return machine_.result();
+  }
+
+  std::int64_t now_ns() const { return now_ns_; }
+
+ private:
+  void handle(const trial::Event& event, const observer::Reply& reply) {
+    now_ns_ = std::max(now_ns_, event.time_ns);
+    perform(machine_.handle(event), reply);
+  }
+
+  void perform(const std::vector<trial::Action>& actions, const observer::Reply& reply) {
+    for (const auto& action : actions) {
+      if (action.kind != trial::ActionKind::present) continue;
+      const auto onset_ns = present(std::max(now_ns_, action.time_ns), reply);
+      if (!reply.choice) continue;
+      const auto at_ns = onset_ns + zero_after_onset_ns(protocol_, spec_) + ns(reply.response_time_s);
+      answer_ = trial::Event{std::max(now_ns_, at_ns), trial::EventKind::answer, *reply.choice};
+    }
+  }
+
+  /// Returns the onset of the last interval. Nothing is lost on the way to the surface.
+  std::int64_t present(std::int64_t onset_ns, const observer::Reply& reply) {
+    const auto times = trial::interval_times(protocol_, spec_);
+    for (int i = 0; i < static_cast<int>(times.size()); ++i) {
+      if (i > 0)
+        onset_ns += ns(times[static_cast<std::size_t>(i) - 1].length_s + protocol_.task.gap_s.value_or(0));
+      perform(machine_.handle({onset_ns, trial::EventKind::onset, i}), reply);
+      perform(machine_.handle({now_ns_, trial::EventKind::heard, i}), reply);
+    }
+    return onset_ns;
+  }
+
+  const protocol::Protocol& protocol_;
+  const TrialSpec& spec_;
+  trial::Machine machine_;
+  std::int64_t now_ns_;
+  std::optional<trial::Event> answer_;
+};
+
+/// What the participant does in a trial: an answer, or a setting and when it is done.
+struct Doing {
+  observer::Reply reply;
+  std::optional<double> setting;
+};
+
+Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol::Protocol& protocol,
+              std::uint64_t seed) {
+  if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}};
+  const auto set = rehearser.adjust(spec, trial::adjustment_of(spec, seed));
+  trial::Slider slider(*spec.slider, spec.level.value_or(spec.slider->low));
+  // What is set in silence is not felt.
+  const double sounds_s = trial::interval_times(protocol, spec).back().length_s;
+  for (const auto& move : set.moves)
+    if (move.time_s < sounds_s) slider.move(move.value);
+  Doing doing;
+  doing.reply.choice = 0, doing.reply.response_time_s = set.done_s;
+  doing.setting = slider.setting();
+  return doing;
+}
+
+}  // namespace
+
+Rehearsal rehearse(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed,
+                   const Rehearser& rehearser) {
+  Rehearsal rehearsal;
+  trial::Director director(protocol, sequence_index, seed);
+  std::int64_t now_ns = 0;
+  while (const auto* block = director.block()) {
+    auto& record = rehearsal.blocks.emplace_back();
+    record.start = trial::block_start(*block, director.block_index(), director.attempt());
+    now_ns += page_ns;
+    while (const auto spec = director.next()) {
+      auto row = trial::row_of(*spec, protocol, rehearsal.trials);
+      Bench bench(protocol, *block, *spec, now_ns);
+      const auto doing = done_by(rehearser, *spec, protocol, seed);
+      const auto& result = bench.run(doing.reply);
+      trial::fill_result(row, result, *spec, protocol, 0);
+      trial::TrialEnd end{row.outcome, result.response, row.correct, {}};
+      if (doing.setting && result.response) {
+        end.setting = doing.setting;
+        row.response = text::exact(*doing.setting);
+      }
+      director.record(end);
+      now_ns = bench.now_ns();
+      record.trials.push_back(std::move(row));
+      if (++rehearsal.trials > most_trials)
+        throw std::runtime_error(protocol.path + ": block \"" + block->name + "\" does not end");
+    }
+    for (auto& estimate : director.estimates()) rehearsal.estimates.push_back(std::move(estimate));
+    director.finish_block();
+  }
+  rehearsal.duration_s = static_cast<double>(now_ns) * 1e-9;
+  return rehearsal;
+}
+
+Rehearser rehearser(const observer::Observer& observer) {
+  return {[observer](const trial::TrialSpec&, const observer::Question& q) { return observer.answer(q); },
+          [observer](const trial::TrialSpec&, const observer::Adjustment& a) { return observer.adjust(a); }};
+}
+
+}  // namespace turnpoint::simulation

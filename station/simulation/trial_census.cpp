@@ -1,0 +1,162 @@
+#include "station/simulation/trial_census.hpp"
+
+#include <algorithm>
+
+#include "station/procedure/description.hpp"
+#include "station/protocol/sources.hpp"
+
+namespace turnpoint::simulation {
+
+namespace {
+
+using procedure::follows_answers;
+using protocol::Block;
+using protocol::Protocol;
+using trial::TrialSpec;
+
+constexpr int most_trials_of_a_block = 20'000, enough_trials = 40'000;
+
+double trials_of(const procedure::Spec& spec) {
+  if (!follows_answers(spec)) return static_cast<double>(spec.values.size()) * spec.repeats;
+  return spec.stop.trials.value_or(spec.stop.reversals ? 6 * *spec.stop.reversals : 60);
+}
+
+double trials_of(const Protocol& protocol, const Block& block) {
+  double trials = 0;
+  for (const auto& name : block.procedures)
+    if (const auto* spec = protocol::find_procedure(protocol, name)) trials += trials_of(*spec);
+  return trials;
+}
+
+// Of a shuffled list any part has the same trials on average; of these the first ones differ from the rest.
+bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
+  if (block.practice || !block.trials || *block.trials >= trials_of(protocol, block)) return false;
+  bool unlike = block.procedures.size() > 1;
+  for (const auto& name : block.procedures) {
+    const auto* spec = protocol::find_procedure(protocol, name);
+    if (!spec || follows_answers(*spec)) return false;
+    unlike = unlike || spec->shuffle == procedure::Shuffle::none || spec->max_run;
+  }
+  return unlike;
+}
+
+// Calls count(block, trial) for each trial of a session.
+template <typename Count>
+void run_session(const Protocol& protocol, std::uint64_t seed, const Answers& answers, Count&& count) {
+  trial::Director director(protocol, 0, seed);
+  while (const auto* block = director.block()) {
+    int trials = 0;
+    while (const auto trial = director.next()) {
+      count(*block, *trial);
+      trial::TrialEnd end;
+      end.response = answers(*trial);
+      if (trial->correct) end.correct = end.response == trial->correct;
+      if (block->practice) end.correct = true;  // who does not pass practice never sees the other blocks
+      director.record(end);
+      if (++trials > most_trials_of_a_block) return;
+    }
+    director.finish_block();
+  }
+}
+
+}  // namespace
+
+TrialCensus::TrialCensus(const Protocol& protocol) : protocol_(&protocol) {
+  const auto used = protocol::factors_used(protocol);
+  for (const auto& factor : protocol.factors)
+    if (used.count(factor.name)) relevant_.push_back(&factor);
+}
+
+void TrialCensus::add(const Block& block, const procedure::Spec* spec, const std::vector<double>& levels,
+                      double trials) {
+  protocol::Factors fixed;
+  for (const auto* factor : relevant_)
+    if (const auto found = block.fixed.find(factor->name); found != block.fixed.end()) fixed.insert(*found);
+  const auto count = [&](const std::string& name, const std::vector<double>& values, double of_these) {
+    const bool matters =
+        std::any_of(relevant_.begin(), relevant_.end(), [&](const auto* f) { return f->name == name; });
+    auto cell = fixed;
+    for (const double value : values) {
+      if (matters) cell[name] = value;
+      cells_[cell] += of_these / static_cast<double>(values.size());
+    }
+  };
+  count(spec ? spec->level : block.level, levels, trials);
+  // Before each trial of a procedure there are as many catch trials as draws for them succeed in turn.
+  if (const auto& caught = block.catch_trials; caught && spec)
+    count(caught->factor, caught->levels, trials * caught->rate / (1 - caught->rate));
+}
+
+void TrialCensus::add(const Block& block, const TrialSpec& trial) {
+  if (trial.type != terms::TrialType::experimental) return;
+  add(block, protocol::find_procedure(*protocol_, trial.procedure), {trial.level.value_or(0)}, 1);
+}
+
+void TrialCensus::add(const TrialCensus& other) {
+  for (const auto& [cell, trials] : other.cells_) cells_[cell] += trials;
+}
+
+std::vector<protocol::Factors> TrialCensus::combinations(const protocol::Factors& cell) const {
+  std::vector<protocol::Factors> all{cell};
+  for (const auto* factor : relevant_) {
+    if (cell.count(factor->name) || factor->levels.empty()) continue;
+    std::vector<protocol::Factors> next;
+    for (const auto& factors : all)
+      for (const auto& level : factor->levels) {
+        next.push_back(factors);
+        next.back()[factor->name] = level;
+      }
+    all = std::move(next);
+  }
+  return all;
+}
+
+bool levels_follow_right_answers(const Protocol& protocol) {
+  for (const auto& source : protocol::sources_of(protocol))
+    if (source.spec && !source.block->practice && follows_answers(*source.spec) &&
+        source.spec->tracks.empty())
+      return true;
+  return false;
+}
+
+TrialCensus census_of_session(const Protocol& protocol, std::uint64_t seed, const Answers& answers) {
+  TrialCensus census(protocol);
+  run_session(protocol, seed, answers,
+              [&](const Block& block, const TrialSpec& trial) { census.add(block, trial); });
+  return census;
+}
+
+TrialCensus census_of(const Protocol& protocol) {
+  TrialCensus census(protocol);
+  const auto blocks = protocol::block_order(protocol, 0);
+  const bool sampled = std::any_of(blocks.begin(), blocks.end(), [&](const Block& block) {
+    return begins_unlike_it_goes_on(protocol, block);
+  });
+  int trials = 0;
+  const auto count = [&](const Block& block, const TrialSpec& trial) {
+    census.add(block, trial);
+    trials += block.practice ? 0 : 1;
+  };
+  for (std::uint64_t seed = 0; sampled && trials < enough_trials && seed < enough_trials; ++seed)
+    run_session(
+        protocol, seed, [](const TrialSpec&) { return 0; }, count);
+  if (sampled) return census;
+  std::map<const procedure::Spec*, std::vector<double>> levels;
+  for (const auto& source : protocol::sources_of(protocol))
+    if (source.spec)
+      levels[source.spec] = follows_answers(*source.spec) ? source.levels : source.spec->values;
+  for (const auto& block : blocks) {
+    if (block.practice) continue;
+    const double all = trials_of(protocol, block);
+    for (const auto& name : block.procedures)
+      if (const auto* spec = protocol::find_procedure(protocol, name))
+        census.add(block, spec, levels[spec],
+                   trials_of(*spec) * (block.trials ? std::min(1.0, *block.trials / all) : 1.0));
+    const auto fixed = block.trials.value_or(static_cast<int>(block.levels.size()));
+    for (int i = 0; i < fixed && !block.levels.empty(); ++i)
+      census.add(block, nullptr, {block.levels[static_cast<std::size_t>(i) % block.levels.size()]}, 1);
+  }
+  return census;
+}
+
+}  // namespace turnpoint::simulation

@@ -1,0 +1,26 @@
+#pragma once
+#include <cstdint>
+
+namespace turnpoint::system {
+
+/// CLOCK_MONOTONIC in nanoseconds: the station's one clock for events.
+std::int64_t monotonic_ns() noexcept;
+
+/// CLOCK_MONOTONIC_RAW minus CLOCK_MONOTONIC now: what time services have added since the start; ns.
+std::int64_t raw_minus_monotonic_ns() noexcept;
+
+/// Wall-clock time in ns since 1970: for records only, never for durations.
+std::int64_t realtime_ns() noexcept;
+
+/// The three clocks of the machine, read together; ns.
+struct Clocks {
+  std::int64_t monotonic_ns = 0;  ///< stands still in suspend
+  std::int64_t boottime_ns = 0;   ///< the same, with suspend
+  std::int64_t realtime_ns = 0;   ///< wall time: may be set
+};
+Clocks read_clocks() noexcept;
+
+/// Sleeps until that time, through signals.
+void sleep_until_ns(std::int64_t time_ns) noexcept;
+
+}  // namespace turnpoint::system

@@ -1,0 +1,31 @@
+#pragma once
+#include <unistd.h>
+
+#include <utility>
+
+namespace turnpoint::system {
+
+/// Owns a descriptor of the kernel and closes it. Move-only.
+class FileDescriptor {
+ public:
+  /// Takes over an open descriptor; a negative number is none.
+  explicit FileDescriptor(int number = -1) noexcept : number_(number) {}
+  FileDescriptor(FileDescriptor&& other) noexcept : number_(other.release()) {}
+  FileDescriptor& operator=(FileDescriptor&& other) noexcept {
+    std::swap(number_, other.number_);
+    return *this;
+  }
+  ~FileDescriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+
+  bool is_open() const noexcept { return number_ >= 0; }
+  int get() const noexcept { return number_; }
+  /// The caller closes it from now on.
+  int release() noexcept { return std::exchange(number_, -1); }
+
+ private:
+  int number_;
+};
+
+}  // namespace turnpoint::system

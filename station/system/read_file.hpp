@@ -1,0 +1,28 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "station/system/file_descriptor.hpp"
+
+namespace turnpoint::system {
+
+/// Reads a file piece by piece. Throws std::system_error naming it where it cannot be opened or read, and
+/// where it is no regular file (a folder, a pipe, a device).
+class FileReader {
+ public:
+  explicit FileReader(const std::string& path);
+
+  /// The next bytes, valid until the next call; none at the end.
+  std::string_view read();
+
+ private:
+  std::string path_;
+  FileDescriptor file_;
+  std::vector<char> buffer_ = std::vector<char>(1 << 16);
+};
+
+/// The bytes of a file. Throws as FileReader, and where the file has more than `most_bytes`.
+std::string read_file(const std::string& path, std::size_t most_bytes = std::size_t{256} << 20);
+
+}  // namespace turnpoint::system

@@ -1,0 +1,26 @@
+#include "station/system/wake_up.hpp"
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <system_error>
+
+namespace turnpoint::system {
+
+WakeUp::WakeUp() : event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+  if (!event_.is_open()) throw std::system_error(errno, std::generic_category(), "eventfd");
+}
+
+void WakeUp::ring() noexcept {
+  const std::uint64_t one = 1;  // fails only when the counter is full, and then the waiter is awake anyway
+  [[maybe_unused]] const auto written = ::write(event_.get(), &one, sizeof one);
+}
+
+void WakeUp::clear() noexcept {
+  std::uint64_t rings = 0;
+  [[maybe_unused]] const auto read = ::read(event_.get(), &rings, sizeof rings);
+}
+
+}  // namespace turnpoint::system

@@ -1,0 +1,15 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+namespace turnpoint::touch {
+
+/// A finger on the surface of the rig, or gone from it.
+struct Contact {
+  std::int64_t time_ns = 0;
+  bool on = false;
+  std::optional<double>
+      position;  ///< along the surface, 0 at one end of the sensor and 1 at the other, where it can tell
+};
+
+}  // namespace turnpoint::touch

@@ -1,0 +1,197 @@
+#include "station/trial/director.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "station/procedure/description.hpp"
+#include "station/procedure/state_hash.hpp"
+#include "station/text/number.hpp"
+#include "station/trial/director_state.hpp"
+#include "station/trial/orders.hpp"
+
+namespace turnpoint::trial {
+
+using protocol::Block;
+using random::Stream;
+
+void Director::State::enter_block() {
+  trial = shown = right = 0;
+  specs.clear();
+  procedures.clear();
+  practice_levels.clear();
+  current.reset();
+  const auto* b = now();
+  if (b == nullptr) return;
+  for (const auto& name : b->procedures) {
+    specs.push_back(find_spec(name));
+    // The place of a procedure in its block keeps the draws of two that interleave apart.
+    random::Key key{seed, Stream::level_order, static_cast<int>(block * 64 + procedures.size()), attempt, 0};
+    procedures.push_back(procedure::make_procedure(*specs.back(), context_for(*specs.back()), key));
+  }
+  if (!b->levels.empty()) {
+    const auto n = static_cast<std::size_t>(b->trials.value_or(static_cast<int>(b->levels.size())));
+    for (std::size_t i = 0; i < n; ++i) practice_levels.push_back(b->levels[i % b->levels.size()]);
+    draws(Stream::practice, 0).shuffle(practice_levels);
+  }
+}
+
+const procedure::Spec* Director::State::find_spec(const std::string& name) const {
+  for (const auto& spec : protocol.procedures)
+    if (spec.name == name) return &spec;
+  throw std::out_of_range("no procedure named \"" + name + "\"");
+}
+
+procedure::Context Director::State::context_for(const procedure::Spec& spec) const {
+  procedure::Context context;
+  for (const auto& factor : protocol.factors) context.factor_levels[factor.name] = factor.levels.size();
+  const auto fixed = now()->fixed;
+  context.right_answer = [this, fixed, level = spec.level](double value) {
+    auto factors = fixed;
+    factors[level] = value;
+    for (const auto& factor : protocol.factors)
+      if (!factors.count(factor.name) && !factor.levels.empty()) factors[factor.name] = factor.levels.front();
+    return correct_choice(protocol.task, factors).value_or(-1);
+  };
+  context.unanswered_are_data = timeouts_are_data();
+  return context;
+}
+
+void Director::State::learn(const TrialEnd& end) {
+  if (current_procedure == no_procedure) return;
+  const auto index = static_cast<std::size_t>(current_procedure);
+  if (specs[index]->kind == procedure::Kind::adjustment && end.setting &&
+      end.outcome == terms::Outcome::answered)
+    return procedures[index]->record_setting(*end.setting);
+  auto answer = procedure::Answer::none;
+  if (end.outcome == terms::Outcome::answered && end.response) {
+    const auto& tracks = specs[index]->tracks;
+    const auto& choice = protocol.task.choices[static_cast<std::size_t>(*end.response)];
+    const bool one = tracks.empty() ? end.correct.value_or(false) : choice.id == tracks;
+    answer = one ? procedure::Answer::one : procedure::Answer::zero;
+  }
+  procedures[index]->record(answer);
+}
+
+int Director::State::block_expected(const Block& b) const {
+  if (!b.levels.empty()) return b.trials.value_or(static_cast<int>(b.levels.size()));
+  if (b.trials) return *b.trials;
+  double trials = 0;
+  for (const auto& name : b.procedures) {
+    const auto& spec = *find_spec(name);
+    if (procedure::follows_answers(spec))
+      trials += spec.stop.trials.value_or(6 * spec.stop.reversals.value_or(8));
+    else
+      trials += static_cast<double>(spec.values.size()) * spec.repeats;
+  }
+  return static_cast<int>(std::lround(trials * (1 + (b.catch_trials ? b.catch_trials->rate : 0))));
+}
+
+Director::Director(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed)
+    : state_(std::make_unique<State>(protocol, sequence_index, seed)) {}
+Director::~Director() = default;
+Director::Director(Director&&) noexcept = default;
+
+const Block* Director::block() const { return state_->now(); }
+int Director::block_index() const { return static_cast<int>(state_->block); }
+int Director::attempt() const { return state_->attempt; }
+int Director::blocks() const { return static_cast<int>(state_->blocks.size()); }
+
+std::optional<TrialSpec> Director::next() {
+  if (!state_->current) state_->current = state_->make();
+  return state_->current;
+}
+
+void Director::record(const TrialEnd& end) {
+  auto& s = *state_;
+  if (!s.current) throw std::logic_error("director: nothing was given that could have ended");
+  if (end.outcome == terms::Outcome::fault || end.outcome == terms::Outcome::aborted) return;
+  const auto type = s.current->type;
+  s.current.reset();
+  if (type == terms::TrialType::warmup) {
+    --s.warmups, ++s.warmups_given;
+    return;
+  }
+  s.learn(end);
+  ++s.trial, ++s.done;
+  if (type != terms::TrialType::catch_trial) ++s.shown;
+  if (end.correct.value_or(false)) ++s.right;
+}
+
+void Director::finish_block() {
+  auto& s = *state_;
+  const auto* b = s.now();
+  if (b == nullptr) return;
+  const bool failed = b->pass && s.trial > 0 && s.right < b->pass->accuracy * s.trial;
+  if (failed && s.attempt - s.first_attempt < b->pass->retries) {
+    ++s.attempt;
+  } else if (failed) {
+    s.ended = "practice \"" + b->name + "\" was not passed in " + std::to_string(s.attempt + 1) + " attempts";
+  } else {
+    s.expected_before += s.trial - s.block_expected(*b);
+    ++s.block;
+    s.attempt = s.first_attempt;
+  }
+  s.enter_block();
+}
+
+void Director::restart_block() {
+  ++state_->attempt;
+  state_->enter_block();
+}
+
+void Director::restart_session() {
+  state_->first_attempt = state_->attempt = std::max(state_->first_attempt, state_->attempt) + 1;
+  state_->block = 0;
+  state_->ended.clear();
+  state_->enter_block();
+}
+
+void Director::warm_up(int trials) {
+  state_->warmups = trials;
+  state_->current.reset();
+}
+
+const std::string& Director::ended_because() const { return state_->ended; }
+int Director::trials_done() const { return state_->done; }
+
+int Director::trials_expected() const {
+  int sum = state_->expected_before;
+  for (const auto& block : state_->blocks) sum += state_->block_expected(block);
+  return std::max(sum, state_->done);
+}
+
+std::vector<ProcedureEstimate> Director::estimates() const {
+  std::vector<ProcedureEstimate> all;
+  for (std::size_t i = 0; i < state_->procedures.size(); ++i)
+    for (const auto& [parameter, e] : state_->procedures[i]->estimates())
+      all.push_back({state_->specs[i]->name, parameter, e.mean, e.sd, e.basis});
+  return all;
+}
+
+std::optional<std::pair<double, std::optional<double>>> Director::threshold() const {
+  if (state_->current_procedure == State::no_procedure) return std::nullopt;
+  const auto estimates = state_->procedures[static_cast<std::size_t>(state_->current_procedure)]->estimates();
+  auto found = estimates.find("threshold");
+  if (found == estimates.end()) found = estimates.find("pse");
+  if (found == estimates.end()) return std::nullopt;
+  return std::pair(found->second.mean, found->second.sd);
+}
+
+std::string in_words(const ProcedureEstimate& estimate) {
+  std::string rest = estimate.sd ? "SD " + text::number(*estimate.sd, 3) : "";
+  if (!estimate.basis.empty()) rest += (rest.empty() ? "" : ", ") + estimate.basis;
+  return text::number(estimate.mean, 4) + (rest.empty() ? "" : " (" + rest + ")");
+}
+
+std::uint64_t Director::state_hash() const {
+  procedure::StateHash hash;
+  for (const int word :
+       {static_cast<int>(state_->block), state_->attempt, state_->trial, state_->right, state_->done})
+    hash.add(static_cast<std::uint64_t>(word));
+  for (const auto& p : state_->procedures) hash.add(p->state_hash());
+  // 63 bits: SQLite's integers are signed.
+  return hash.value() >> 1;
+}
+
+}  // namespace turnpoint::trial

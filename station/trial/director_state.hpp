@@ -1,0 +1,66 @@
+// What director.cpp and director_trials.cpp share; nobody else includes it.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "station/procedure/procedure.hpp"
+#include "station/trial/director.hpp"
+
+namespace turnpoint::trial {
+
+struct Director::State {
+  static constexpr int no_procedure = -1;
+
+  const protocol::Protocol& protocol;
+  std::uint64_t seed;
+  std::vector<protocol::Block> blocks;
+  std::size_t block = 0;
+  int attempt = 0, first_attempt = 0;  ///< of this block; of a block that is entered
+  int trial = 0;                       ///< trials of the block that counted: the key of the next one's draws
+  int shown = 0, right = 0;
+  int warmups = 0, warmups_given = 0;
+  int done = 0, expected_before = 0;
+  std::string ended;
+  std::vector<const procedure::Spec*> specs;
+  std::vector<std::unique_ptr<procedure::Procedure>> procedures;
+  std::vector<double> practice_levels;
+  std::optional<TrialSpec> current;
+  int current_procedure = no_procedure;
+
+  State(const protocol::Protocol& p, int sequence_index, std::uint64_t s)
+      : protocol(p), seed(s), blocks(protocol::block_order(p, sequence_index)) {
+    enter_block();
+  }
+
+  const protocol::Block* now() const {
+    return ended.empty() && block < blocks.size() ? &blocks[block] : nullptr;
+  }
+  random::Draws draws(random::Stream stream, int key) const {
+    return random::Draws({seed, stream, static_cast<int>(block), attempt, key});
+  }
+
+  // Blocks and procedures (director.cpp).
+  void enter_block();
+  const procedure::Spec* find_spec(const std::string& name) const;
+  procedure::Context context_for(const procedure::Spec& spec) const;
+  void learn(const TrialEnd& end);
+  int block_expected(const protocol::Block& b) const;
+
+  // One trial (director_trials.cpp).
+  bool timeouts_are_data() const;
+  double deadline() const;
+  protocol::Factors drawn_factors() const;
+  std::optional<int> pick_procedure() const;
+  bool catch_due() const;
+  TrialSpec blank(terms::TrialType type) const;
+  void complete(TrialSpec& spec) const;
+  std::optional<SliderSpan> slider(int key) const;
+  TrialSpec warmup_trial() const;
+  TrialSpec catch_trial() const;
+  std::optional<TrialSpec> practice_trial() const;
+  TrialSpec procedure_trial(int index) const;
+  std::optional<TrialSpec> make();
+};
+
+}  // namespace turnpoint::trial

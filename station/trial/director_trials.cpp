@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <cmath>
+
+#include "station/trial/director_state.hpp"
+#include "station/trial/orders.hpp"
+
+namespace turnpoint::trial {
+
+using random::Stream;
+
+namespace {
+
+/// The largest |level| that the protocol knows for warm-up: an easy trial on a side drawn at random.
+std::vector<double> easy_levels(const std::vector<double>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  if (values.empty()) return {};
+  return *low < 0 && *high > 0 ? std::vector<double>{*low, *high} : std::vector<double>{*high};
+}
+
+}  // namespace
+
+bool Director::State::timeouts_are_data() const {
+  const auto found = now()->fixed.find("instruction");
+  if (found == now()->fixed.end()) return false;
+  const auto* name = std::get_if<std::string>(&found->second);
+  const auto instruction = name ? protocol.instructions.find(*name) : protocol.instructions.end();
+  return instruction != protocol.instructions.end() && instruction->second.deadline_s.has_value();
+}
+
+double Director::State::deadline() const {
+  if (timeouts_are_data())
+    return *protocol.instructions.at(std::get<std::string>(now()->fixed.at("instruction"))).deadline_s;
+  return protocol.timing.deadline_s.value_or(0);
+}
+
+/// Factors with levels that nothing else sets are drawn; text factors of the block are as it says.
+protocol::Factors Director::State::drawn_factors() const {
+  auto factors = now()->fixed;
+  auto draw = draws(Stream::factor_level, trial);
+  for (const auto& factor : protocol.factors)
+    if (!factors.count(factor.name) && !factor.levels.empty())
+      factors[factor.name] = factor.levels[draw.below(factor.levels.size())];
+  return factors;
+}
+
+std::optional<int> Director::State::pick_procedure() const {
+  std::vector<int> open;
+  for (std::size_t i = 0; i < procedures.size(); ++i)
+    if (procedures[i]->next()) open.push_back(static_cast<int>(i));
+  if (open.empty()) return std::nullopt;
+  switch (now()->interleave) {
+    case protocol::Interleave::none:
+      return open.front();
+    case protocol::Interleave::alternate:
+      return open[static_cast<std::size_t>(trial) % open.size()];
+    case protocol::Interleave::random:
+      break;
+  }
+  return open[draws(Stream::interleave, trial).below(open.size())];
+}
+
+bool Director::State::catch_due() const {
+  return now()->catch_trials && draws(Stream::catch_trial, trial).uniform() < now()->catch_trials->rate;
+}
+
+TrialSpec Director::State::blank(terms::TrialType type) const {
+  TrialSpec spec;
+  spec.block_index = static_cast<int>(block);
+  spec.attempt = attempt;
+  spec.trial_in_block = trial;
+  spec.type = now()->practice ? terms::TrialType::practice : type;
+  spec.factors = drawn_factors();
+  spec.deadline_s = deadline();
+  spec.timeouts_are_data = timeouts_are_data();
+  return spec;
+}
+
+/// Everything that follows once level and factors stand: order of intervals, right answer, roving, times.
+void Director::State::complete(TrialSpec& spec) const {
+  const int key = spec.type == terms::TrialType::warmup ? -1 - warmups_given : trial;
+  const auto order = order_for(protocol.task, seed, static_cast<int>(block), attempt,
+                               spec.type == terms::TrialType::warmup ? warmups_given : trial);
+  spec.intervals = order.intervals;
+  spec.correct = order.correct ? order.correct : correct_choice(protocol.task, spec.factors);
+  spec.slider = slider(key);
+  auto rove = draws(Stream::roving, key);
+  for (const auto& interval : spec.intervals) {
+    const double range = protocol.scenes.at(interval.front()).rove_dB;
+    spec.rove_dB.push_back(range > 0 ? rove.uniform(-range, range) : 0);
+  }
+  const auto& iti = protocol.timing.iti_s;
+  spec.iti_s = draws(Stream::intertrial, key).uniform(iti.low, iti.high);
+  if (const auto& foreperiod = protocol.task.foreperiod_s)
+    spec.foreperiod_s = draws(Stream::foreperiod, key).uniform(foreperiod->low, foreperiod->high);
+}
+
+/// The window shown is wider than the range by a fifth, split between its ends at random in whole steps.
+std::optional<SliderSpan> Director::State::slider(int key) const {
+  const auto& task = protocol.task;
+  for (const auto& factor : protocol.factors) {
+    if (task.kind != protocol::TaskKind::adjustment || factor.name != task.adjusts || !factor.range) continue;
+    SliderSpan span;
+    span.low = factor.range->first, span.high = factor.range->second;
+    span.step = task.step.value_or((span.high - span.low) / 100);
+    const auto spare = std::llround(0.2 * (span.high - span.low) / span.step);
+    const auto below = draws(Stream::adjustment_start, key).below(static_cast<std::uint64_t>(spare) + 1);
+    span.shown_low = span.low - static_cast<double>(below) * span.step;
+    span.shown_high = span.high + static_cast<double>(spare - static_cast<long long>(below)) * span.step;
+    return span;
+  }
+  return std::nullopt;
+}
+
+TrialSpec Director::State::warmup_trial() const {
+  auto spec = blank(terms::TrialType::warmup);
+  spec.type = terms::TrialType::warmup;
+  std::vector<double> levels = practice_levels;
+  std::string factor = now()->level;
+  if (!specs.empty()) {
+    factor = specs.front()->level;
+    levels = specs.front()->values.empty() ? specs.front()->stimuli.values : specs.front()->values;
+    if (levels.empty() && specs.front()->start) levels = {*specs.front()->start};
+  }
+  const auto easy = easy_levels(levels);
+  if (!easy.empty()) {
+    auto draw = draws(Stream::warmup, warmups_given);
+    spec.level = easy[draw.below(easy.size())];
+    spec.factors[factor] = *spec.level;
+  }
+  complete(spec);
+  return spec;
+}
+
+TrialSpec Director::State::catch_trial() const {
+  auto spec = blank(terms::TrialType::catch_trial);
+  const auto& wanted = *now()->catch_trials;
+  auto draw = draws(Stream::catch_trial, trial);
+  draw.uniform();  // the one that decided that this is a catch trial
+  spec.level = wanted.levels[draw.below(wanted.levels.size())];
+  spec.factors[wanted.factor] = *spec.level;
+  complete(spec);
+  return spec;
+}
+
+std::optional<TrialSpec> Director::State::practice_trial() const {
+  if (static_cast<std::size_t>(trial) >= practice_levels.size()) return std::nullopt;
+  auto spec = blank(terms::TrialType::experimental);
+  spec.level = practice_levels[static_cast<std::size_t>(trial)];
+  spec.factors[now()->level] = *spec.level;
+  complete(spec);
+  return spec;
+}
+
+TrialSpec Director::State::procedure_trial(int index) const {
+  const auto& from = *specs[static_cast<std::size_t>(index)];
+  const auto proposal = procedures[static_cast<std::size_t>(index)]->next();
+  auto spec = blank(terms::TrialType::experimental);
+  spec.procedure = from.name;
+  spec.level = proposal->level;
+  spec.factors[from.level] = proposal->level;
+  for (const auto& [name, level] : proposal->balanced)
+    for (const auto& factor : protocol.factors)
+      if (factor.name == name) spec.factors[name] = factor.levels.at(level);
+  complete(spec);
+  return spec;
+}
+
+std::optional<TrialSpec> Director::State::make() {
+  if (now() == nullptr) return std::nullopt;
+  current_procedure = no_procedure;
+  if (warmups > 0) return warmup_trial();
+  if (!practice_levels.empty()) return practice_trial();
+  if (now()->trials && shown >= *now()->trials) return std::nullopt;
+  const auto index = pick_procedure();
+  if (!index) return std::nullopt;
+  if (catch_due()) return catch_trial();
+  current_procedure = *index;
+  return procedure_trial(*index);
+}
+
+}  // namespace turnpoint::trial

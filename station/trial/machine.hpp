@@ -1,0 +1,155 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/terms/trial.hpp"
+
+namespace turnpoint::trial {
+
+/// The moment from which a response time counts; the names are those of the protocol file.
+using terms::ResponseZero;
+
+enum class Phase {
+  idle,      ///< not started
+  cue,       ///< the participant gets ready; the surface is silent, and all intervals are scheduled
+  stimulus,  ///< an interval is being presented
+  gap,       ///< between two intervals
+  response,  ///< silence; an answer is accepted
+  feedback,  ///< the page says whether the answer was right
+  late,      ///< the page shows a message after a timeout or an anticipation
+  interval,  ///< pause between trials
+  done,
+};
+
+using terms::Outcome;
+
+/// One interval: its duration, and when its second and later scenes begin, relative to its onset.
+struct IntervalTiming {
+  std::int64_t duration_ns = 0;
+  std::vector<std::int64_t> scene_starts_ns;  ///< ascending, without the first scene (which starts at 0)
+};
+
+/// The timing of a trial; all times in ns. Durations must not be negative.
+struct Timing {
+  std::int64_t cue_ns = 0;
+  std::vector<IntervalTiming> intervals;
+  std::int64_t gap_ns = 0;
+  /// true: the surface may be explored until the answer; false: answers are accepted after the last interval
+  bool answer_ends_stimulus = false;
+  ResponseZero response_zero = ResponseZero::go_cue;
+  std::int64_t deadline_ns = 0;      ///< counted from response_zero
+  std::int64_t anticipation_ns = 0;  ///< an answer sooner than this after response_zero is an anticipation
+  std::int64_t feedback_ns = 0;      ///< 0: no feedback phase
+  std::int64_t late_ns = 0;          ///< 0: no message
+  std::int64_t iti_ns = 0;
+  /// How long a time stamp may take to arrive. Deadlines are decided this much later, by the stamps.
+  std::int64_t watermark_ns = 20'000'000;
+  int answers = 2;             ///< number of possible answers
+  std::optional<int> correct;  ///< index of the right answer; empty if no answer is right or wrong
+};
+
+enum class EventKind {
+  tick,     ///< time has passed
+  onset,    ///< value: interval; time_ns: when its first frame reaches the surface (may be in the future)
+  heard,    ///< value: interval; all of it has been played as scheduled
+  answer,   ///< value: index of the answer
+  touch,    ///< a touch outside all answers
+  contact,  ///< value 1: finger on the surface; 0: finger lifted
+  xrun,     ///< the drive lost frames; value 1: in an interval of this trial, 0: in silence
+  fault,    ///< drive, amplifier or panel cannot continue
+  abort,    ///< stopped by the participant or the operator
+};
+
+struct Event {
+  std::int64_t time_ns = 0;
+  EventKind kind = EventKind::tick;
+  int value = 0;
+};
+
+enum class ActionKind {
+  enter,  ///< value: the new phase, whose page must be shown
+  /// schedule all intervals at the plan's distances, the first no earlier than time_ns; reply with an onset
+  /// event for each interval, and with a heard event once it has been played
+  present,
+  silence,  ///< ramp down what sounds now, and cancel what has not begun
+};
+
+struct Action {
+  ActionKind kind = ActionKind::enter;
+  int value = 0;
+  std::int64_t time_ns = 0;
+};
+
+/// The result of the trial. It has a response and a response time only if it was answered.
+struct Result {
+  Outcome outcome = Outcome::aborted;
+  std::optional<int> response;
+  std::optional<bool> correct;
+  std::optional<std::int64_t> zero_ns;  ///< when response_zero happened
+  std::optional<std::int64_t> response_time_ns, decision_time_ns, movement_time_ns;
+  std::vector<std::int64_t> onsets_ns;
+  std::int64_t started_ns = 0, ended_ns = 0;
+  int extra_touches = 0;  ///< late, early, repeated or outdated touches: logged, never scored
+  int xruns = 0;
+};
+
+/// A trial as a pure state machine: time-stamped events in, actions out. Events must come in the order of
+/// their time stamps, except that an answer stamped before a deadline is accepted until watermark_ns after
+/// it. There is no clock and no thread inside; the same events give the same actions.
+/// Whether a stimulus was played without loss is known only some time after it was felt. An outcome is
+/// therefore final only once every interval has been heard. A loss reported before that, however late, makes
+/// the trial void. The phases continue meanwhile, and the trial does not end before its outcome is final.
+class Machine {
+ public:
+  /// Throws std::invalid_argument for a plan without intervals, with a negative time, no answers, or a
+  /// response_zero that cannot happen (change without a second scene).
+  explicit Machine(Timing plan);
+
+  std::vector<Action> start(std::int64_t now_ns);
+  std::vector<Action> handle(const Event& event);
+
+  /// When the next tick is due; empty if only an event can make progress, or when done.
+  std::optional<std::int64_t> wake_ns() const;
+
+  Phase phase() const { return phase_; }
+  bool done() const { return phase_ == Phase::done; }
+  bool answers_open() const;
+  /// True once the outcome is final: later events cannot change it.
+  bool decided() const;
+  int interval() const { return interval_; }
+  const Result& result() const { return result_; }
+
+ private:
+  void enter(Phase phase, std::int64_t until_ns);
+  void advance(std::int64_t now_ns);
+  bool step(std::int64_t now_ns);
+  void answer(const Event& event);
+  void contact(const Event& event);
+  void onset(const Event& event);
+  void begin_interval(std::int64_t onset_ns);
+  void end_stimulus(std::int64_t at_ns);
+  void set_zero(std::int64_t at_ns);
+  void conclude(Outcome outcome, std::int64_t at_ns);
+  void end(Outcome outcome, std::int64_t at_ns);
+  void settle(std::int64_t at_ns);
+  std::int64_t deadline_at() const;
+
+  Timing plan_;
+  Phase phase_ = Phase::idle;
+  std::int64_t until_ns_ = 0;
+  std::int64_t now_ns_ = 0;
+  int interval_ = 0;
+  std::vector<std::int64_t> onsets_ns_;  ///< scheduled onsets of all intervals
+  std::vector<bool> heard_;
+  bool concluded_ = false;
+  bool touching_ = false;
+  std::optional<std::int64_t> lift_off_ns_, no_contact_deadline_ns_;
+  Result result_;
+  std::vector<Action> actions_;
+};
+
+const char* name(Phase phase);
+
+}  // namespace turnpoint::trial

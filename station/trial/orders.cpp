@@ -1,0 +1,88 @@
+#include "station/trial/orders.hpp"
+
+#include <algorithm>
+
+#include "station/random/draws.hpp"
+
+namespace turnpoint::trial {
+
+namespace {
+
+using protocol::TaskKind;
+
+constexpr int kRun = 12;  // a multiple of every number of orders
+
+int choice_index(const protocol::Task& task, const std::string& id) {
+  for (std::size_t i = 0; i < task.choices.size(); ++i)
+    if (task.choices[i].id == id) return static_cast<int>(i);
+  return -1;
+}
+
+std::vector<IntervalOrder> two_interval_orders(const protocol::Task& task) {
+  std::vector<IntervalOrder> orders;
+  for (const bool swapped : {false, true}) {
+    IntervalOrder order{task.intervals, {}};
+    if (swapped) std::reverse(order.intervals.begin(), order.intervals.end());
+    for (std::size_t i = 0; i < order.intervals.size(); ++i)
+      if (std::find(order.intervals[i].begin(), order.intervals[i].end(), task.correct_scene) !=
+          order.intervals[i].end())
+        order.correct = static_cast<int>(i);
+    orders.push_back(std::move(order));
+  }
+  return orders;
+}
+
+std::vector<IntervalOrder> same_different_orders(const protocol::Task& task) {
+  const int same = choice_index(task, "same"), different = choice_index(task, "different");
+  const std::vector<std::string> a{task.standard}, b{task.target};
+  return {{{a, a}, same}, {{b, b}, same}, {{a, b}, different}, {{b, a}, different}};
+}
+
+std::vector<IntervalOrder> oddity_orders(const protocol::Task& task) {
+  std::vector<IntervalOrder> orders;
+  const auto add = [&orders](const std::string& odd, const std::string& common) {
+    for (int position = 0; position < 3; ++position) {
+      IntervalOrder order{{{common}, {common}, {common}}, position};
+      order.intervals[static_cast<std::size_t>(position)] = {odd};
+      orders.push_back(std::move(order));
+    }
+  };
+  if (task.odd != protocol::Odd::standard) add(task.target, task.standard);
+  if (task.odd != protocol::Odd::target) add(task.standard, task.target);
+  return orders;
+}
+
+}  // namespace
+
+std::vector<IntervalOrder> orders_of(const protocol::Task& task) {
+  switch (task.kind) {
+    case TaskKind::two_interval:
+      return two_interval_orders(task);
+    case TaskKind::same_different:
+      return same_different_orders(task);
+    case TaskKind::oddity:
+      return oddity_orders(task);
+    case TaskKind::single_interval:
+    case TaskKind::adjustment:
+      break;
+  }
+  return {{task.intervals, {}}};
+}
+
+IntervalOrder order_for(const protocol::Task& task, std::uint64_t seed, int block, int attempt, int trial) {
+  const auto orders = orders_of(task);
+  if (orders.size() == 1) return orders.front();
+  std::vector<std::size_t> run;
+  for (int i = 0; i < kRun; ++i) run.push_back(static_cast<std::size_t>(i) % orders.size());
+  random::Draws draws({seed, random::Stream::interval_order, block, attempt, trial / kRun});
+  draws.shuffle(run);
+  return orders[run[static_cast<std::size_t>(trial % kRun)]];
+}
+
+std::optional<int> correct_choice(const protocol::Task& task, const protocol::Factors& factors) {
+  for (const auto& [id, comparison] : task.correct_answer)
+    if (protocol::holds(comparison, factors)) return choice_index(task, id);
+  return std::nullopt;
+}
+
+}  // namespace turnpoint::trial

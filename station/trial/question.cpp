@@ -1,0 +1,58 @@
+#include "station/trial/question.hpp"
+
+#include <string>
+
+#include "station/protocol/answers.hpp"
+#include "station/protocol/sources.hpp"
+
+namespace turnpoint::trial {
+
+namespace {
+
+/// The factor that the trial's level is of: its procedure's, else that of the first trials that have one.
+std::string level_factor(const TrialSpec& spec, const protocol::Protocol& protocol) {
+  if (const auto* procedure = protocol::find_procedure(protocol, spec.procedure)) return procedure->level;
+  if (!protocol.procedures.empty()) return protocol.procedures.front().level;
+  const auto sources = protocol::sources_of(protocol);
+  return sources.empty() ? "" : sources.front().level;
+}
+
+}  // namespace
+
+observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& protocol,
+                               std::uint64_t seed) {
+  observer::Question question;
+  question.level = spec.level.value_or(0);
+  question.correct = spec.correct;
+  question.deadline_s = spec.deadline_s;
+  question.answers = static_cast<int>(protocol.task.choices.size());
+  question.key = {seed, random::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
+  const auto level = level_factor(spec, protocol);
+  question.decibel = level.ends_with("_dB");
+  question.default_threshold = protocol::middle_level(protocol, level);
+  const auto rule = protocol::answer_rule(protocol, level);
+  question.positive = rule.positive;
+  switch (rule.kind) {
+    case protocol::AnswerKind::right_answer:
+      break;
+    case protocol::AnswerKind::side:
+      question.decides = observer::Decides::side;
+      break;
+    case protocol::AnswerKind::presence:
+      question.decides = observer::Decides::presence;
+      question.absent = protocol.task.kind == protocol::TaskKind::same_different && spec.correct &&
+                        *spec.correct != rule.positive;
+      break;
+  }
+  return question;
+}
+
+observer::Adjustment adjustment_of(const TrialSpec& spec, std::uint64_t seed) {
+  observer::Adjustment adjustment;
+  adjustment.start = spec.level.value_or(spec.slider->low);
+  adjustment.low = spec.slider->low, adjustment.high = spec.slider->high;
+  adjustment.key = {seed, random::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
+  return adjustment;
+}
+
+}  // namespace turnpoint::trial

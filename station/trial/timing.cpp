@@ -1,0 +1,62 @@
+#include "station/trial/timing.hpp"
+
+#include <cmath>
+
+#include "station/terms/limits.hpp"
+
+namespace turnpoint::trial {
+
+namespace {
+
+std::int64_t ns(double s) { return std::llround(s * 1e9); }
+
+bool explored(const protocol::Task& task) {
+  return task.kind == protocol::TaskKind::single_interval || task.kind == protocol::TaskKind::adjustment;
+}
+
+}  // namespace
+
+std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, const TrialSpec& spec) {
+  const auto& task = protocol.task;
+  std::vector<IntervalTimes> times;
+  for (const auto& scenes : spec.intervals) {
+    IntervalTimes interval;
+    // Explored until answered, at most explore_s; without one, until the deadline has passed.
+    const double whole = explored(task)
+                             ? protocol.timing.explore_s.value_or(spec.foreperiod_s + spec.deadline_s)
+                             : task.duration_s.value_or(0);
+    interval.length_s = whole;
+    const double step =
+        scenes.size() > 1 ? (task.foreperiod_s ? spec.foreperiod_s : whole / scenes.size()) : 0;
+    for (std::size_t i = 1; i < scenes.size(); ++i)
+      interval.starts_s.push_back(step * static_cast<double>(i));
+    times.push_back(std::move(interval));
+  }
+  return times;
+}
+
+Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec) {
+  Timing plan;
+  plan.cue_ns = ns(kCue_s);
+  plan.watermark_ns = terms::kWatermark_ns;
+  for (const auto& interval : interval_times(protocol, spec)) {
+    IntervalTiming timed{ns(interval.length_s), {}};
+    for (const double start : interval.starts_s) timed.scene_starts_ns.push_back(ns(start));
+    plan.intervals.push_back(std::move(timed));
+  }
+  plan.gap_ns = ns(protocol.task.gap_s.value_or(0));
+  plan.answer_ends_stimulus = explored(protocol.task);
+  plan.response_zero = protocol.timing.response_zero;
+  plan.deadline_ns = ns(spec.deadline_s);
+  plan.anticipation_ns = ns(protocol.timing.anticipation_s);
+  plan.feedback_ns = block.feedback == protocol::Feedback::trial ? ns(kFeedback_s) : 0;
+  plan.late_ns = ns(kLate_s);
+  plan.iti_ns = ns(spec.iti_s);
+  plan.answers = protocol.task.kind == protocol::TaskKind::adjustment
+                     ? 1
+                     : static_cast<int>(protocol.task.choices.size());
+  plan.correct = spec.correct;
+  return plan;
+}
+
+}  // namespace turnpoint::trial

@@ -1,0 +1,41 @@
+#pragma once
+#include <QQuickPaintedItem>
+
+#include "station/desk/scene_figures.hpp"
+
+namespace turnpoint::ui {
+
+/// A drawing as QML passes it on.
+struct Picture {
+  Q_GADGET
+
+ public:
+  desk::Drawing draw;
+};
+
+/// The same as a property's value.
+QVariant to_variant(const desk::Drawing& drawing);
+
+/// Shows one picture, laid out for this item's size with text of `textPixels`. Still: it draws once a
+/// picture.
+class FigureView : public QQuickPaintedItem {
+  Q_OBJECT
+  QML_ELEMENT
+  Q_PROPERTY(QVariant picture READ picture WRITE set_picture NOTIFY pictureChanged)
+  Q_PROPERTY(double textPixels MEMBER text_pixels_)
+
+ public:
+  explicit FigureView(QQuickItem* parent = nullptr);
+  QVariant picture() const { return QVariant::fromValue(picture_); }
+  void set_picture(const QVariant& picture);  // NOLINT: the setter of a QML property
+  void paint(QPainter* painter) override;
+
+ signals:
+  void pictureChanged();
+
+ private:
+  Picture picture_;
+  double text_pixels_ = 12;
+};
+
+}  // namespace turnpoint::ui

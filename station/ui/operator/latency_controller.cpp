@@ -1,0 +1,73 @@
+#include "station/ui/operator/latency_controller.hpp"
+
+#include "station/system/clocks.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+/// The reader beside Qt may be later than Qt: a tap waits so long for its kernel time.
+constexpr int kClaim_ms = 100;
+}  // namespace
+
+LatencyController::LatencyController(calibration::LatencyReference reference, QObject* parent)
+    : QObject(parent), reference_(reference) {
+  claim_.setSingleShot(true);
+  claim_.setInterval(kClaim_ms);
+  connect(&claim_, &QTimer::timeout, this, &LatencyController::claim);
+}
+
+void LatencyController::edge(std::int64_t time_ns) {
+  QMetaObject::invokeMethod(
+      this,
+      [this, time_ns] {
+        edges_ns_.push_back(time_ns);
+        measure();
+      },
+      Qt::QueuedConnection);
+}
+
+void LatencyController::tap(double x, double y) {
+  pending_.push_back({x, y, system::monotonic_ns()});
+  claim_.start();
+}
+
+void LatencyController::claim() {
+  for (const auto& touch : pending_) {
+    const auto time_ns =
+        kernel_time_ ? kernel_time_(touch.x, touch.y, touch.seen_ns) : std::optional(touch.seen_ns);
+    if (time_ns) touches_ns_.push_back(*time_ns);
+  }
+  pending_.clear();
+  measure();
+}
+
+void LatencyController::measure() {
+  delay_ = calibration::pair_delays(touches_ns_, edges_ns_, reference_);
+  emit changed();
+}
+
+QString LatencyController::result() const {
+  if (!delay_) return "";
+  return QStringLiteral("median %1 ms, jitter (SD) %2 ms, %3 of %4 taps unmatched")
+      .arg(1e3 * delay_->median_s, 0, 'f', 2)
+      .arg(1e3 * delay_->sd_s, 0, 'f', 2)
+      .arg(delay_->unmatched)
+      .arg(taps());
+}
+
+void LatencyController::again() {
+  touches_ns_.clear();
+  edges_ns_.clear();
+  measure();
+}
+
+void LatencyController::keep() {
+  if (pairs() < wanted()) return;
+  calibration::PanelLatency panel;
+  panel.quality = quality().toStdString();
+  (by_button() ? panel.touch : panel.flash) = delay_;
+  kept_ = panel;
+  emit finished();
+}
+
+}  // namespace turnpoint::ui

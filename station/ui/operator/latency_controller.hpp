@@ -1,0 +1,77 @@
+#pragma once
+#include <QObject>
+#include <QQmlEngine>
+#include <QString>
+#include <QTimer>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "station/maintenance/panel_latency.hpp"
+
+namespace turnpoint::ui {
+
+/// Measures a touch panel's latency: each tap on the page answers with a flash, and a button under the finger
+/// or a photodiode on the flash tells when. GUI thread only, but for edge().
+class LatencyController : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_UNCREATABLE("made by the program")
+  Q_PROPERTY(bool byButton READ by_button CONSTANT)
+  Q_PROPERTY(int taps READ taps NOTIFY changed)
+  Q_PROPERTY(int edges READ edges NOTIFY changed)
+  Q_PROPERTY(int pairs READ pairs NOTIFY changed)
+  Q_PROPERTY(int wanted READ wanted CONSTANT)            ///< fewest pairs that may be kept
+  Q_PROPERTY(QString result READ result NOTIFY changed)  ///< "" with fewer than two pairs
+  Q_PROPERTY(QString quality READ quality NOTIFY changed)
+
+ public:
+  using KernelTime = std::function<std::optional<std::int64_t>(double x, double y, std::int64_t seen_ns)>;
+
+  explicit LatencyController(calibration::LatencyReference reference, QObject* parent = nullptr);
+
+  /// From now on taps get the kernel's time; a tap without one is left out.
+  void set_kernel_time(KernelTime kernel_time) { kernel_time_ = std::move(kernel_time); }
+
+  /// Any thread: the reference line's edge.
+  void edge(std::int64_t time_ns);
+
+  bool by_button() const { return reference_ == calibration::LatencyReference::button; }
+  int taps() const { return static_cast<int>(touches_ns_.size()); }
+  int edges() const { return static_cast<int>(edges_ns_.size()); }
+  int pairs() const { return delay_ ? delay_->pairs : 0; }
+  static int wanted() { return calibration::kLeastPairs; }
+  QString result() const;
+  QString quality() const { return kernel_time_ ? "kernel" : "toolkit"; }
+
+  /// A finger came down at (x, y), each 0 ... 1 of the window.
+  Q_INVOKABLE void tap(double x, double y);
+  Q_INVOKABLE void again();
+  /// The operator takes this result; only with enough pairs.
+  Q_INVOKABLE void keep();
+  std::optional<calibration::PanelLatency> kept() const { return kept_; }
+
+ signals:
+  void changed();
+  /// The page is done with.
+  void finished();
+
+ private:
+  struct Pending {
+    double x = 0, y = 0;
+    std::int64_t seen_ns = 0;
+  };
+  void claim();
+  void measure();
+
+  calibration::LatencyReference reference_;
+  KernelTime kernel_time_;
+  std::vector<Pending> pending_;
+  QTimer claim_;
+  std::vector<std::int64_t> touches_ns_, edges_ns_;
+  std::optional<calibration::Delay> delay_;
+  std::optional<calibration::PanelLatency> kept_;
+};
+
+}  // namespace turnpoint::ui

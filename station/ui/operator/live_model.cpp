@@ -1,0 +1,52 @@
+#include "station/ui/operator/live_model.hpp"
+
+#include <utility>
+
+#include "station/ui/operator/facts.hpp"
+
+namespace turnpoint::ui {
+
+LiveModel::LiveModel(SessionBridge& bridge, QObject* parent) : QObject(parent), bridge_(bridge) {
+  connect(bridge_.page(), &PageModel::changed, this, &LiveModel::hold_or_show);
+}
+
+void LiveModel::take(desk::LiveState state) {
+  QMetaObject::invokeMethod(
+      this,
+      [this, state = std::move(state)]() mutable {
+        waiting_ = std::move(state);
+        hold_or_show();
+      },
+      Qt::QueuedConnection);
+}
+
+void LiveModel::hold_or_show() {
+  const auto kind = bridge_.page()->kind();
+  const bool hold = kind == PageModel::Kind::Stimulus || kind == PageModel::Kind::Pause ||
+                    kind == PageModel::Kind::Response || kind == PageModel::Kind::Adjust;
+  if (hold != held_) {
+    held_ = hold;
+    emit heldChanged();
+  }
+  if (!waiting_ || (held_ && kind != PageModel::Kind::Adjust)) return;
+  state_.heading = waiting_->heading;
+  state_.scene = waiting_->scene;
+  state_.course = waiting_->course;
+  state_.limits = waiting_->limits;
+  emit wordsChanged();
+  if (held_) return;
+  state_ = std::move(*waiting_);
+  waiting_.reset();
+  emit picturesChanged();
+}
+
+QVariantList LiveModel::scene() const { return to_list(state_.scene); }
+QVariantList LiveModel::course() const { return to_list(state_.course); }
+QVariantList LiveModel::limits() const { return to_list(state_.limits); }
+QVariantList LiveModel::surfaces() const {
+  QVariantList list;
+  for (const auto& surface : state_.surfaces) list += to_variant(surface);
+  return list;
+}
+
+}  // namespace turnpoint::ui

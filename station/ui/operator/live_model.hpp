@@ -1,0 +1,67 @@
+#pragma once
+#include <QObject>
+#include <QQmlEngine>
+#include <optional>
+
+#include "station/desk/live_view.hpp"
+#include "station/ui/operator/figure_view.hpp"
+#include "station/ui/participant/session_bridge.hpp"
+
+namespace turnpoint::ui {
+
+/// The operator's view of a running session, and what the operator may do to it. What is new is held back
+/// while a stimulus runs or answers are open, so that drawing it can never delay the participant's screen.
+/// Only in an adjustment, which lasts many seconds, the words follow the slider; pictures wait there as well.
+class LiveModel : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_UNCREATABLE("made by the program")
+  Q_PROPERTY(QString heading READ heading NOTIFY wordsChanged)
+  Q_PROPERTY(QVariantList scene READ scene NOTIFY wordsChanged)
+  Q_PROPERTY(QVariantList course READ course NOTIFY wordsChanged)
+  Q_PROPERTY(QVariantList limits READ limits NOTIFY wordsChanged)
+  Q_PROPERTY(QVariantList surfaces READ surfaces NOTIFY picturesChanged)
+  Q_PROPERTY(QVariant profile READ profile NOTIFY picturesChanged)
+  Q_PROPERTY(QVariant trace READ trace NOTIFY picturesChanged)
+  Q_PROPERTY(QVariant times READ times NOTIFY picturesChanged)
+  Q_PROPERTY(bool held READ held NOTIFY heldChanged)
+
+ public:
+  explicit LiveModel(SessionBridge& bridge, QObject* parent = nullptr);
+
+  /// Any thread; returns at once.
+  void take(desk::LiveState state);
+
+  QString heading() const { return QString::fromStdString(state_.heading); }
+  QVariantList scene() const;
+  QVariantList course() const;
+  QVariantList limits() const;
+  QVariantList surfaces() const;
+  QVariant profile() const { return to_variant(state_.profile); }
+  QVariant trace() const { return to_variant(state_.trace); }
+  QVariant times() const { return to_variant(state_.times); }
+  /// A stimulus runs or answers are open: no new picture is shown.
+  bool held() const { return held_; }
+
+  Q_INVOKABLE void pause() { bridge_.pause(); }
+  Q_INVOKABLE void proceed() { bridge_.next(); }
+  Q_INVOKABLE void stop() { bridge_.stop(); }
+  Q_INVOKABLE void repeat() { bridge_.repeat(); }
+  Q_INVOKABLE void arm() { bridge_.arm(); }
+  Q_INVOKABLE void annotate(const QString& text) { bridge_.annotate(text); }
+
+ signals:
+  void wordsChanged();
+  void picturesChanged();
+  void heldChanged();
+
+ private:
+  void hold_or_show();
+
+  SessionBridge& bridge_;
+  desk::LiveState state_;
+  std::optional<desk::LiveState> waiting_;
+  bool held_ = false;
+};
+
+}  // namespace turnpoint::ui

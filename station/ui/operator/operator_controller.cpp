@@ -1,0 +1,259 @@
+#include "station/ui/operator/operator_controller.hpp"
+
+#include <QFileInfo>
+#include <chrono>
+#include <filesystem>
+#include <sstream>
+#include <utility>
+
+#include "station/setup/prepare.hpp"
+#include "station/setup/resume.hpp"
+#include "station/ui/operator/facts.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+/// Stands in for a code that the keypad will ask for, so that everything else is checked before.
+constexpr const char* kCodeToCome = "keypad";
+/// Simulated sessions behind trials and duration on the start page: quick, and good to some minutes.
+constexpr int kSessions = 5;
+
+std::vector<std::string> lines_of(const std::exception& error) {
+  std::vector<std::string> lines;
+  std::istringstream text(error.what());
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+}  // namespace
+
+OperatorController::OperatorController(setup::StationRequest request, QObject* parent)
+    : OperatorController(
+          std::move(request),
+          [](const std::string& protocol, const std::string& rig, const std::stop_token& stop) {
+            return simulation::check(protocol, rig, {kSessions}, stop);
+          },
+          parent) {}
+
+OperatorController::OperatorController(setup::StationRequest request, Checker checker, QObject* parent)
+    : QObject(parent), request_(std::move(request)), checker_(std::move(checker)), worker_(*this) {
+  std::filesystem::create_directories(std::filesystem::absolute(request_.database).parent_path());
+  connect(&minutes_, &QTimer::timeout, this, &OperatorController::look_at_backup);
+  minutes_.start(std::chrono::minutes(1));
+  refresh();
+}
+
+OperatorController::~OperatorController() = default;
+
+void OperatorController::refresh() {
+  armed_ = false;
+  participant_.clear();
+  protocols_ = desk::list_protocols(request_.protocols);
+  try {
+    participants_ = to_list(desk::known_participants(request_.database));
+    interrupted_ = desk::interrupted_note(request_.database);
+    backup_ = desk::backup_note(request_.database);
+  } catch (const std::exception& error) {
+    words_.problems = lines_of(error);
+  }
+  emit changed();
+  if (selected_ < 0 && !protocols_.empty()) return select(0);
+  if (checking_) check_selected();  // its check was abandoned for the session
+}
+
+void OperatorController::look_at_backup() {
+  const auto now = desk::backup_note(request_.database);
+  if (now == std::exchange(backup_, now)) return;
+  emit changed();
+}
+
+/// The job runs on the worker; what it returns runs here, unless something newer was asked for meanwhile.
+void OperatorController::work(std::function<Then(const std::stop_token&)> job,
+                              void (OperatorController::*failed)(std::vector<std::string>)) {
+  worker_.start([this, failed, job = std::move(job)](const std::stop_token& stop) -> Then {
+    try {
+      return job(stop);
+    } catch (const protocol::Abandoned&) {
+      return {};
+    } catch (const std::exception& error) {
+      return [this, failed, lines = lines_of(error)] { (this->*failed)(lines); };
+    }
+  });
+}
+
+void OperatorController::fail(std::vector<std::string> problems) {
+  words_.problems = std::move(problems);
+  checking_ = preparing_ = false;
+  emit changed();
+}
+
+/// What is chosen cannot begin so; something else of the same protocol may.
+void OperatorController::refuse(std::vector<std::string> reasons) {
+  refused_ = std::move(reasons);
+  stay();
+}
+
+/// The page goes on without a session.
+void OperatorController::stay() {
+  preparing_ = false;
+  if (checking_) check_selected();  // its check was abandoned for the session
+  emit changed();
+}
+
+const desk::ProtocolEntry* OperatorController::entry() const {
+  return selected_ >= 0 && selected_ < static_cast<int>(protocols_.size())
+             ? &protocols_[static_cast<std::size_t>(selected_)]
+             : nullptr;
+}
+
+void OperatorController::select(int index) {
+  if (index < 0 || index >= static_cast<int>(protocols_.size()) || preparing_) return;
+  selected_ = index;
+  language_ = -1;
+  words_ = {};
+  refused_.clear();
+  worker_.abandon();
+  if (!entry()->problem.empty()) return fail({entry()->problem});
+  checking_ = true;
+  emit changed();
+  check_selected();
+}
+
+void OperatorController::check_selected() {
+  if (entry() == nullptr) return;
+  work(
+      [this, path = entry()->path, rig = request_.rig](const std::stop_token& stop) -> Then {
+        auto words = desk::words_of(checker_(path, rig, stop));
+        return [this, words = std::move(words)] {
+          words_ = words;
+          checking_ = false;
+          emit changed();
+        };
+      },
+      &OperatorController::fail);
+}
+
+void OperatorController::chooseLanguage(int index) {
+  if (index < -1 || index >= languages().size()) return;
+  language_ = index;
+  refused_.clear();
+  emit changed();
+}
+
+void OperatorController::enterParticipant(const QString& code) {
+  participant_ = code;
+  refused_.clear();
+  emit changed();
+}
+
+void OperatorController::setLive(bool live) {
+  live_ = live;
+  refused_.clear();
+  emit changed();
+}
+
+void OperatorController::setArmed(bool armed) {
+  armed_ = armed;
+  emit changed();
+}
+
+bool OperatorController::may_begin() const {
+  return entry() != nullptr && !checking_ && !preparing_ && words_.problems.empty();
+}
+
+void OperatorController::begin() {
+  if (!may_begin()) return;
+  setup::RunRequest request;
+  request.protocol = entry()->path;
+  request.rig = request_.rig;
+  request.database = request_.database;
+  request.mode = live_ ? "live" : "pilot";
+  const bool ask_code = participant_.isEmpty();
+  const bool ask_language = language_ < 0 && languages().size() > 1;
+  request.participant = ask_code ? kCodeToCome : participant_.toStdString();
+  if (language_ >= 0) request.language = languages()[language_].toStdString();
+  preparing_ = true;
+  refused_.clear();
+  emit changed();
+  work(
+      [this, request, ask_code, ask_language, arm = armed_](const std::stop_token& stop) -> Then {
+        ChosenSession session{setup::prepare(request, stop), ask_language, ask_code, arm};
+        return [this, session] {
+          preparing_ = false;
+          emit changed();
+          emit chosen(session);
+        };
+      },
+      &OperatorController::refuse);
+}
+
+void OperatorController::resume() {
+  if (preparing_ || !interrupted_) return;
+  preparing_ = true;
+  refused_.clear();
+  emit changed();
+  work(
+      [this, arm = armed_](const std::stop_token&) -> Then {
+        std::ostringstream messages;
+        setup::ResumeRequest request;
+        request.database = request_.database;
+        request.session_id = interrupted_->session_id;
+        const auto setup = setup::prepare_resume(request, messages);
+        return [this, setup, arm] {
+          if (!setup) return stay();
+          preparing_ = false;
+          emit changed();
+          emit chosen({*setup, false, false, arm});
+        };
+      },
+      &OperatorController::refuse);
+}
+
+QVariantList OperatorController::protocols() const {
+  QVariantList list;
+  for (const auto& entry : protocols_) {
+    const auto file = QFileInfo(QString::fromStdString(entry.path)).fileName();
+    list += QVariantMap{{"id", entry.id.empty() ? file : QString::fromStdString(entry.id)},
+                        {"title", QString::fromStdString(entry.title)},
+                        {"problem", QString::fromStdString(entry.problem)}};
+  }
+  return list;
+}
+
+QVariantList OperatorController::facts() const { return to_list(words_.facts); }
+QStringList OperatorController::problems() const { return to_list(words_.problems) + to_list(refused_); }
+QStringList OperatorController::warnings() const { return to_list(words_.warnings); }
+
+QVariantList OperatorController::cues() const {
+  QVariantList list;
+  for (const auto& cue : words_.cues)
+    list += QVariantMap{{"name", QString::fromStdString(cue.name)},
+                        {"says", QString::fromStdString(cue.says)},
+                        {"leaks", cue.leaks}};
+  return list;
+}
+
+QStringList OperatorController::languages() const {
+  return entry() != nullptr ? to_list(entry()->languages) : QStringList();
+}
+
+QVariantMap OperatorController::backup() const {
+  using State = desk::BackupNote::State;
+  const auto* state = backup_.state == State::none     ? "none"
+                      : backup_.state == State::recent ? "recent"
+                      : backup_.state == State::old    ? "old"
+                                                       : "ahead";
+  return {{"state", state}, {"hours", backup_.hours}};
+}
+
+QString OperatorController::interrupted() const {
+  if (!interrupted_) return {};
+  return QStringLiteral("%1, %2: %3 trials stored, interrupted %4 ago")
+      .arg(QString::fromStdString(interrupted_->participant),
+           QString::fromStdString(interrupted_->protocol_id))
+      .arg(interrupted_->trials)
+      .arg(QString::fromStdString(desk::age_in_words(interrupted_->age_s)));
+}
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,126 @@
+#pragma once
+#include <QObject>
+#include <QQmlEngine>
+#include <QStringList>
+#include <QTimer>
+#include <QVariantList>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "station/desk/choices.hpp"
+#include "station/session/session.hpp"
+#include "station/setup/station_request.hpp"
+#include "station/simulation/check.hpp"
+#include "station/ui/platform/newest_job.hpp"
+
+namespace turnpoint::ui {
+
+/// A session that an operator has chosen and that has passed every check.
+struct ChosenSession {
+  session::Setup setup;
+  bool ask_language = false, ask_code = false;  ///< of the participant, on the screen
+  bool arm = false;                             ///< the amplifier, as soon as it is there
+};
+
+/// The operator's start page: protocols with their check, participant, language, run mode, arming, and the
+/// interrupted session. Files are read and checked on a thread of its own, so that the page never waits:
+/// choosing another protocol abandons the check that runs. The rest is GUI thread only.
+class OperatorController : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_UNCREATABLE("made by the program")
+  Q_PROPERTY(QVariantList protocols READ protocols NOTIFY changed)  ///< {id, title, problem}
+  Q_PROPERTY(int selected READ selected NOTIFY changed)
+  Q_PROPERTY(bool checking READ checking NOTIFY changed)
+  Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
+  Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)  ///< {name, says, leaks}
+  Q_PROPERTY(QStringList problems READ problems NOTIFY changed)
+  Q_PROPERTY(QStringList warnings READ warnings NOTIFY changed)
+  Q_PROPERTY(QStringList languages READ languages NOTIFY changed)
+  Q_PROPERTY(int language READ language NOTIFY changed)  ///< -1: asked on the screen
+  Q_PROPERTY(QString participant READ participant NOTIFY changed)
+  Q_PROPERTY(bool participantKnown READ participant_known NOTIFY changed)
+  Q_PROPERTY(QStringList participants READ participants NOTIFY changed)
+  Q_PROPERTY(bool live READ live NOTIFY changed)
+  Q_PROPERTY(bool armed READ armed NOTIFY changed)
+  Q_PROPERTY(QString interrupted READ interrupted NOTIFY changed)  ///< "" where nothing was
+  Q_PROPERTY(QVariantMap backup READ backup NOTIFY changed)  ///< {state: none | recent | old | ahead, hours}
+  Q_PROPERTY(bool mayBegin READ may_begin NOTIFY changed)
+  Q_PROPERTY(bool preparing READ preparing NOTIFY changed)
+  Q_PROPERTY(QString rig READ rig CONSTANT)
+  Q_PROPERTY(QString database READ database CONSTANT)
+
+ public:
+  /// Checks a protocol file on a rig file, on the worker; as simulation::check().
+  using Checker = std::function<simulation::Check(const std::string& protocol, const std::string& rig,
+                                                  const std::stop_token& stop)>;
+
+  explicit OperatorController(setup::StationRequest request, QObject* parent = nullptr);
+  OperatorController(setup::StationRequest request, Checker checker, QObject* parent = nullptr);
+  ~OperatorController() override;
+
+  QVariantList protocols() const;
+  int selected() const { return selected_; }
+  bool checking() const { return checking_; }
+  QVariantList facts() const;
+  QVariantList cues() const;
+  QStringList problems() const;
+  QStringList warnings() const;
+  QStringList languages() const;
+  int language() const { return language_; }
+  QString participant() const { return participant_; }
+  bool participant_known() const { return participants().contains(participant_); }
+  QStringList participants() const { return participants_; }
+  bool live() const { return live_; }
+  bool armed() const { return armed_; }
+  QString interrupted() const;
+  QVariantMap backup() const;
+  bool may_begin() const;
+  bool preparing() const { return preparing_; }
+  QString rig() const { return QString::fromStdString(request_.rig); }
+  QString database() const { return QString::fromStdString(request_.database); }
+
+  /// Reads protocols, participants and what was interrupted anew: at the start and after each session.
+  Q_INVOKABLE void refresh();
+  Q_INVOKABLE void select(int index);
+  Q_INVOKABLE void chooseLanguage(int index);
+  Q_INVOKABLE void enterParticipant(const QString& code);
+  Q_INVOKABLE void setLive(bool live);
+  Q_INVOKABLE void setArmed(bool armed);
+  /// Prepares the session chosen; ends in chosen(), or in problems.
+  Q_INVOKABLE void begin();
+  Q_INVOKABLE void resume();
+
+ signals:
+  void changed();
+  void chosen(const turnpoint::ui::ChosenSession& session);
+
+ private:
+  using Then = std::function<void()>;
+  void work(std::function<Then(const std::stop_token&)> job,
+            void (OperatorController::*failed)(std::vector<std::string>));
+  void check_selected();
+  void look_at_backup();
+  void stay();
+  void fail(std::vector<std::string> problems);
+  void refuse(std::vector<std::string> reasons);
+  const desk::ProtocolEntry* entry() const;
+
+  setup::StationRequest request_;
+  Checker checker_;
+  std::vector<desk::ProtocolEntry> protocols_;
+  QStringList participants_;
+  std::optional<desk::InterruptedNote> interrupted_;
+  desk::BackupNote backup_;
+  QTimer minutes_;  ///< the page may stand for days
+  desk::CheckWords words_;
+  std::vector<std::string> refused_;  ///< why the last session chosen did not begin
+  int selected_ = -1, language_ = -1;
+  QString participant_;
+  bool live_ = false, armed_ = false, checking_ = false, preparing_ = false;
+  NewestJob worker_;  // last: its thread has ended before what it uses goes
+};
+
+}  // namespace turnpoint::ui

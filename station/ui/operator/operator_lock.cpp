@@ -1,0 +1,59 @@
+#include "station/ui/operator/operator_lock.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace turnpoint::ui {
+
+OperatorLock::OperatorLock(desk::OperatorCode code, QObject* parent)
+    : OperatorLock(
+          std::move(code),
+          [] {
+            return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+          },
+          parent) {}
+
+OperatorLock::OperatorLock(desk::OperatorCode code, Clock clock, QObject* parent)
+    : QObject(parent), code_(std::move(code)), clock_(std::move(clock)), job_(*this) {
+  second_.setInterval(1000);
+  connect(&second_, &QTimer::timeout, this, [this] {
+    if (wait_s() == 0) second_.stop();
+    emit changed();
+  });
+}
+
+int OperatorLock::wait_s() const { return static_cast<int>(std::ceil(back_off_.wait_s(clock_()))); }
+
+void OperatorLock::enter(const QString& typed) {
+  if (checking_ || wait_s() > 0 || typed.isEmpty()) return;
+  checking_ = true;
+  emit changed();
+  job_.start([this, code = code_, text = typed.toStdString()](const std::stop_token&) {
+    bool right = false;
+    try {
+      right = code.opens(text);
+    } catch (const std::exception& error) {
+      qWarning("%s", error.what());
+    }
+    return [this, right] { judge(right); };
+  });
+}
+
+void OperatorLock::judge(bool right) {
+  checking_ = false;
+  if (right) {
+    back_off_.right();
+    emit changed();
+    emit opened();
+    return;
+  }
+  back_off_.wrong(clock_());
+  qWarning("operator's code: wrong, %d in a row; the next is taken in %d s", back_off_.wrong_tries(),
+           wait_s());
+  if (wait_s() > 0) second_.start();
+  emit changed();
+  emit refused();
+}
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,112 @@
+#include "station/ui/operator/preview_controller.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "station/desk/scene_figures.hpp"
+#include "station/terms/usage_error.hpp"
+#include "station/ui/operator/facts.hpp"
+
+namespace turnpoint::ui {
+
+PreviewController::PreviewController(const desk::PreviewRequest& request, QObject* parent)
+    : QObject(parent), preview_(request.protocol, request.rig), scenes_(preview_.scenes()) {
+  std::vector<std::string> assumed;
+  factors_ = desk::factors_for(preview_.protocol(), request.set, assumed);
+  if (!request.scene.empty()) {
+    const auto found = std::find(scenes_.begin(), scenes_.end(), request.scene);
+    if (found == scenes_.end())
+      throw terms::UsageError("--scene " + request.scene + ": the protocol has no such scene");
+    scene_ = static_cast<int>(found - scenes_.begin());
+  }
+  worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
+  plan();
+}
+
+PreviewController::~PreviewController() = default;
+
+QString PreviewController::title() const { return QString::fromStdString(preview_.protocol().title); }
+QString PreviewController::rig() const { return QString::fromStdString(preview_.rig().name); }
+QStringList PreviewController::scenes() const { return to_list(scenes_); }
+QVariantList PreviewController::facts() const { return to_list(look_.facts); }
+QVariantList PreviewController::cues() const { return to_list(look_.cues); }
+
+QVariantList PreviewController::knobs() const {
+  QVariantList list;
+  for (const auto& knob : preview_.knobs(scenes_[static_cast<std::size_t>(scene_)])) {
+    QVariantList levels;
+    for (const double level : knob.levels) levels += level;
+    const auto* value = std::get_if<double>(&factors_.at(knob.name));
+    list += QVariantMap{{"name", QString::fromStdString(knob.name)},
+                        {"low", knob.low},
+                        {"high", knob.high},
+                        {"levels", levels},
+                        {"value", value != nullptr ? *value : knob.value}};
+  }
+  return list;
+}
+
+void PreviewController::choose(int scene) {
+  if (scene < 0 || scene >= static_cast<int>(scenes_.size()) || scene == scene_) return;
+  scene_ = scene;
+  emit sceneChanged();
+  plan();
+}
+
+void PreviewController::set(const QString& factor, double value) {
+  const auto found = factors_.find(factor.toStdString());
+  if (found == factors_.end() || !std::holds_alternative<double>(found->second)) return;
+  if (std::get<double>(found->second) == value) return;
+  found->second = value;
+  plan();
+}
+
+void PreviewController::plan() {
+  busy_ = true;
+  emit changed();
+  {
+    const std::lock_guard lock(mutex_);
+    wanted_ = Wanted{scenes_[static_cast<std::size_t>(scene_)], factors_};
+  }
+  arrived_.notify_one();
+}
+
+void PreviewController::work(const std::stop_token& stop) {
+  for (;;) {
+    Wanted wanted;
+    {
+      std::unique_lock lock(mutex_);
+      if (!arrived_.wait(lock, stop, [this] { return wanted_.has_value(); })) return;
+      wanted = *std::exchange(wanted_, std::nullopt);
+    }
+    QMetaObject::invokeMethod(
+        this, [this, drawn = draw(wanted)]() mutable { take(std::move(drawn)); }, Qt::QueuedConnection);
+  }
+}
+
+/// Worker: the planner is its alone once it runs.
+PreviewController::Drawn PreviewController::draw(const Wanted& wanted) {
+  Drawn drawn;
+  try {
+    drawn.look = preview_.look(wanted.scene, wanted.factors);
+  } catch (const std::exception& error) {
+    drawn.look.problem = error.what();
+  }
+  if (!drawn.look.problem.empty()) return drawn;
+  drawn.surface = to_variant(desk::drawing_of_surface(drawn.look, preview_.rig()));
+  drawn.profile = to_variant(desk::drawing_of(desk::profile_figure({drawn.look})));
+  drawn.spectrum = to_variant(desk::drawing_of(desk::spectrum_figure(drawn.look)));
+  return drawn;
+}
+
+void PreviewController::take(Drawn drawn) {
+  look_ = std::move(drawn.look);
+  surface_ = drawn.surface, profile_ = drawn.profile, spectrum_ = drawn.spectrum;
+  {
+    const std::lock_guard lock(mutex_);
+    busy_ = wanted_.has_value();
+  }
+  emit changed();
+}
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,89 @@
+#pragma once
+#include <QObject>
+#include <QQmlEngine>
+#include <QStringList>
+#include <QVariantList>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "station/desk/preview.hpp"
+#include "station/ui/operator/figure_view.hpp"
+
+namespace turnpoint::ui {
+
+/// Scenes of a protocol with a slider for each of their factors. Plans are made on a thread of its own,
+/// always the newest asked for; everything else is GUI thread only.
+class PreviewController : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_UNCREATABLE("made by the program")
+  Q_PROPERTY(QString title READ title CONSTANT)
+  Q_PROPERTY(QString rig READ rig CONSTANT)
+  Q_PROPERTY(QStringList scenes READ scenes CONSTANT)
+  Q_PROPERTY(int scene READ scene NOTIFY sceneChanged)
+  Q_PROPERTY(QVariantList knobs READ knobs NOTIFY sceneChanged)  ///< {name, low, high, levels, value}
+  Q_PROPERTY(bool busy READ busy NOTIFY changed)
+  Q_PROPERTY(QString problem READ problem NOTIFY changed)
+  Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
+  Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
+  Q_PROPERTY(QVariant surface READ surface NOTIFY changed)
+  Q_PROPERTY(QVariant profile READ profile NOTIFY changed)
+  Q_PROPERTY(QVariant spectrum READ spectrum NOTIFY changed)
+
+ public:
+  /// Throws text::BadInput, terms::UsageError for a scene or a factor that the protocol does not have.
+  explicit PreviewController(const desk::PreviewRequest& request, QObject* parent = nullptr);
+  ~PreviewController() override;
+
+  QString title() const;
+  QString rig() const;
+  QStringList scenes() const;
+  int scene() const { return scene_; }
+  QVariantList knobs() const;
+  bool busy() const { return busy_; }
+  QString problem() const { return QString::fromStdString(look_.problem); }
+  QVariantList facts() const;
+  QVariantList cues() const;
+  QVariant surface() const { return surface_; }
+  QVariant profile() const { return profile_; }
+  QVariant spectrum() const { return spectrum_; }
+
+  Q_INVOKABLE void choose(int scene);
+  Q_INVOKABLE void set(const QString& factor, double value);
+
+ signals:
+  void sceneChanged();
+  void changed();
+
+ private:
+  /// A look with its pictures, as the worker makes it.
+  struct Drawn {
+    desk::SceneLook look;
+    QVariant surface, profile, spectrum;
+  };
+  struct Wanted {
+    std::string scene;
+    protocol::Factors factors;
+  };
+  void plan();
+  void work(const std::stop_token& stop);
+  Drawn draw(const Wanted& wanted);
+  void take(Drawn drawn);
+
+  desk::Preview preview_;
+  std::vector<std::string> scenes_;
+  protocol::Factors factors_;
+  int scene_ = 0;
+  bool busy_ = false;
+  desk::SceneLook look_;
+  QVariant surface_, profile_, spectrum_;
+  std::mutex mutex_;
+  std::condition_variable_any arrived_;
+  std::optional<Wanted> wanted_;
+  std::jthread worker_;  // last: joined before anything that it uses goes
+};
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,57 @@
+#include "station/ui/operator/report_model.hpp"
+
+#include <utility>
+
+#include "station/ui/operator/facts.hpp"
+#include "station/ui/operator/figure_view.hpp"
+
+namespace turnpoint::ui {
+
+void ReportModel::take(desk::ReportPages pages) {
+  QMetaObject::invokeMethod(
+      this,
+      [this, pages = std::move(pages)]() mutable {
+        pages_ = std::move(pages);
+        ready_ = true;
+        emit changed();
+      },
+      Qt::QueuedConnection);
+}
+
+void ReportModel::clear() {
+  pages_ = {};
+  ready_ = false;
+  emit changed();
+}
+
+QVariantList ReportModel::outcomes() const { return to_list(pages_.outcomes); }
+QVariantList ReportModel::fit() const { return to_list(pages_.fit); }
+QVariantList ReportModel::trade() const { return to_list(pages_.speed_accuracy); }
+QVariantList ReportModel::health() const { return to_list(pages_.health); }
+QStringList ReportModel::statements() const { return to_list(pages_.statements); }
+
+std::vector<std::pair<QString, desk::Drawing>> ReportModel::all_pictures() const {
+  std::vector<std::pair<QString, desk::Drawing>> list;
+  const auto add = [&list](const char* name, const desk::Drawing& drawing) {
+    if (drawing) list.emplace_back(name, drawing);
+  };
+  add("Speed and accuracy", pages_.trade);
+  add("Fit", pages_.fits);
+  add("Levels", pages_.levels);
+  add("Response times", pages_.times);
+  return list;
+}
+
+QStringList ReportModel::picture_names() const {
+  QStringList names;
+  for (const auto& [name, drawing] : all_pictures()) names += name;
+  return names;
+}
+
+QVariantList ReportModel::pictures() const {
+  QVariantList list;
+  for (const auto& [name, drawing] : all_pictures()) list += to_variant(drawing);
+  return list;
+}
+
+}  // namespace turnpoint::ui

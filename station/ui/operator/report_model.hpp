@@ -1,0 +1,51 @@
+#pragma once
+#include <QObject>
+#include <QQmlEngine>
+
+#include "station/desk/report_pages.hpp"
+
+namespace turnpoint::ui {
+
+/// The report of the session that has just ended, for the operator. GUI thread, but for take().
+class ReportModel : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_UNCREATABLE("made by the program")
+  Q_PROPERTY(bool ready READ ready NOTIFY changed)
+  Q_PROPERTY(QString title READ title NOTIFY changed)
+  Q_PROPERTY(QVariantList outcomes READ outcomes NOTIFY changed)
+  Q_PROPERTY(QVariantList fit READ fit NOTIFY changed)
+  Q_PROPERTY(QVariantList trade READ trade NOTIFY changed)
+  Q_PROPERTY(QVariantList health READ health NOTIFY changed)
+  Q_PROPERTY(QStringList statements READ statements NOTIFY changed)
+  /// Names and drawings of the pictures that there are, the trade first.
+  Q_PROPERTY(QStringList pictureNames READ picture_names NOTIFY changed)
+  Q_PROPERTY(QVariantList pictures READ pictures NOTIFY changed)
+
+ public:
+  using QObject::QObject;
+
+  /// Any thread.
+  void take(desk::ReportPages pages);
+  void clear();
+
+  bool ready() const { return ready_; }
+  QString title() const { return QString::fromStdString(pages_.title); }
+  QVariantList outcomes() const;
+  QVariantList fit() const;
+  QVariantList trade() const;
+  QVariantList health() const;
+  QStringList statements() const;
+  QStringList picture_names() const;
+  QVariantList pictures() const;
+
+ signals:
+  void changed();
+
+ private:
+  std::vector<std::pair<QString, desk::Drawing>> all_pictures() const;
+  desk::ReportPages pages_;
+  bool ready_ = false;
+};
+
+}  // namespace turnpoint::ui

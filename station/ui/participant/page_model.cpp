@@ -1,0 +1,66 @@
+#include "station/ui/participant/page_model.hpp"
+
+namespace turnpoint::ui {
+
+void PageModel::set(session::Page page) {
+  page_ = std::move(page);
+  emit changed();
+}
+
+PageModel::Kind PageModel::kind() const {
+  using session::PageKind;
+  switch (page_.kind) {
+    case PageKind::instructions:
+      return Kind::Instructions;
+    case PageKind::cue:
+      return Kind::Cue;
+    case PageKind::stimulus:
+      return Kind::Stimulus;
+    case PageKind::pause:
+      return Kind::Pause;
+    case PageKind::response:
+      return Kind::Response;
+    case PageKind::feedback:
+      return Kind::Feedback;
+    case PageKind::interval:
+      return Kind::Interval;
+    case PageKind::rest:
+      return Kind::Rest;
+    case PageKind::adjust:
+      return Kind::Adjust;
+    case PageKind::fault:
+      return Kind::Fault;
+    case PageKind::paused:
+      return Kind::Paused;
+    case PageKind::end:
+      return Kind::End;
+    case PageKind::failed:
+      return Kind::Failed;
+  }
+  return Kind::Interval;
+}
+
+PageModel::Verdict PageModel::verdict() const {
+  if (!page_.correct) return Verdict::Message;
+  return *page_.correct ? Verdict::Right : Verdict::Wrong;
+}
+
+QStringList PageModel::answers() const {
+  QStringList labels;
+  for (const auto& answer : page_.answers) labels += QString::fromStdString(answer.label);
+  return labels;
+}
+
+QStringList PageModel::summary_labels() const {
+  QStringList labels;
+  for (const auto& line : page_.summary) labels += QString::fromStdString(line.label);
+  return labels;
+}
+
+QStringList PageModel::summary_values() const {
+  QStringList values;
+  for (const auto& line : page_.summary) values += QString::fromStdString(line.value);
+  return values;
+}
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,127 @@
+#include "station/ui/participant/session_bridge.hpp"
+
+#include <QMouseEvent>
+#include <QTouchEvent>
+#include <QWindow>
+#include <algorithm>
+#include <utility>
+
+#include "station/terms/limits.hpp"
+
+namespace turnpoint::ui {
+
+SessionBridge::SessionBridge(Clock clock, Sink sink, QObject* parent)
+    : QObject(parent), clock_(std::move(clock)), sink_(std::move(sink)), page_(this) {
+  flush_.setSingleShot(true);
+  flush_.setInterval(static_cast<int>(terms::kTouchToAnswer_ns / 1'000'000) + 1);
+  connect(&flush_, &QTimer::timeout, this, &SessionBridge::flush);
+}
+
+void SessionBridge::show(const session::Page& page) {
+  QMetaObject::invokeMethod(
+      this,
+      [this, page] {
+        page_.set(page);
+        emit shown();
+      },
+      Qt::QueuedConnection);
+}
+
+void SessionBridge::watch(QObject* window) { window->installEventFilter(this); }
+
+std::int64_t SessionBridge::began_ns(int touch_id) const {
+  const auto found =
+      std::find_if(pending_.rbegin(), pending_.rend(), [&](const Pending& p) { return p.id == touch_id; });
+  return found != pending_.rend() ? found->time_ns : clock_();
+}
+
+void SessionBridge::answer(int index, std::int64_t time_ns) {
+  const auto found =
+      std::find_if(pending_.begin(), pending_.end(), [&](const Pending& p) { return p.time_ns == time_ns; });
+  Pending touch{kMouse, time_ns, -1, -1};
+  if (found != pending_.end()) {
+    touch = *found;
+    pending_.erase(found);
+  }
+  push_touch(session::InputKind::answer, index, touch);
+}
+
+void SessionBridge::note_touch(int id, QPointF position, const QObject* window) {
+  const auto* area = qobject_cast<const QWindow*>(window);
+  const double width = area != nullptr ? area->width() : 1, height = area != nullptr ? area->height() : 1;
+  pending_.push_back({id, clock_(), position.x() / width, position.y() / height});
+  if (!flush_.isActive()) flush_.start();
+}
+
+void SessionBridge::flush() {
+  const auto due_ns = clock_() - terms::kTouchToAnswer_ns;
+  for (const auto& touch : pending_)
+    if (touch.time_ns <= due_ns) push_touch(session::InputKind::touch_down, 0, touch);
+  std::erase_if(pending_, [&](const Pending& p) { return p.time_ns <= due_ns; });
+  if (!pending_.empty()) flush_.start();
+}
+
+void SessionBridge::push_touch(session::InputKind kind, int value, const Pending& touch) {
+  session::Input input;
+  input.time_ns = touch.time_ns;
+  input.kind = kind;
+  input.value = value;
+  const auto kernel_ns = kernel_time_ ? kernel_time_(touch.x, touch.y, touch.time_ns) : std::nullopt;
+  if (kernel_ns) {
+    input.time_ns = *kernel_ns;
+    input.quality = session::TimeQuality::kernel;
+  }
+  sink_(std::move(input));
+}
+
+void SessionBridge::next() { push(session::InputKind::next); }
+void SessionBridge::moveSlider(double value) { push(session::InputKind::slider, 0, value); }
+void SessionBridge::pause() { push(session::InputKind::pause); }
+void SessionBridge::stop() { push(session::InputKind::stop); }
+
+void SessionBridge::repeat() { push(session::InputKind::repeat); }
+void SessionBridge::arm() { push(session::InputKind::arm); }
+
+void SessionBridge::annotate(const QString& text) {
+  session::Input input;
+  input.time_ns = clock_();
+  input.kind = session::InputKind::note;
+  input.text = text.trimmed().toStdString();
+  if (!input.text.empty()) sink_(std::move(input));
+}
+
+void SessionBridge::frames_lost(int frames) {
+  if (frames <= 0) return;
+  session::Input input;  // not by push(): nobody has pressed anything
+  input.time_ns = clock_();
+  input.kind = session::InputKind::frames_lost;
+  input.value = frames;
+  sink_(std::move(input));
+}
+
+void SessionBridge::push(session::InputKind kind, int value, double number) {
+  pending_.clear();  // the tap that pressed this button; it must not arrive as a stray one in the next trial
+  session::Input input;
+  input.time_ns = clock_();
+  input.kind = kind;
+  input.value = value;
+  input.number = number;
+  sink_(std::move(input));
+}
+
+bool SessionBridge::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() == QEvent::TouchBegin || event->type() == QEvent::TouchUpdate) {
+    const auto& touch = *static_cast<QTouchEvent*>(event);
+    for (const auto& point : touch.points()) {
+      if (point.state() == QEventPoint::Pressed) note_touch(point.id(), point.scenePosition(), watched);
+    }
+  }
+  // A mouse event that Qt makes up from a touch has been counted as that touch.
+  if (event->type() == QEvent::MouseButtonPress &&
+      static_cast<QMouseEvent*>(event)->pointerType() != QPointingDevice::PointerType::Finger) {
+    note_touch(kMouse, static_cast<QMouseEvent*>(event)->scenePosition(), watched);
+  }
+  return QObject::eventFilter(watched, event);
+}
+
+}  // namespace turnpoint::ui

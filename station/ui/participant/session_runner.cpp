@@ -1,0 +1,138 @@
+#include "station/ui/participant/session_runner.hpp"
+
+#include <QScreen>
+#include <utility>
+
+#include "station/desk/report_pages.hpp"
+#include "station/setup/open_touch.hpp"
+#include "station/system/clocks.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+/// Several signs of life within the two seconds after which the amplifier's guard switches off.
+constexpr int kLife_ms = 250;
+
+/// Pages on which a late frame could be felt, and is counted.
+bool is_trial(PageModel::Kind kind) {
+  using Kind = PageModel::Kind;
+  return kind == Kind::Cue || kind == Kind::Stimulus || kind == Kind::Pause || kind == Kind::Response ||
+         kind == Kind::Feedback || kind == Kind::Adjust;
+}
+
+}  // namespace
+
+SessionRunner::SessionRunner(QObject* parent)
+    : QObject(parent),
+      bridge_(system::monotonic_ns, [this](session::Input input) { inputs_.push(std::move(input)); }),
+      live_(bridge_),
+      frames_(system::monotonic_ns) {
+  connect(&life_, &QTimer::timeout, this, [this] { inputs_.page_alive(system::monotonic_ns()); });
+  connect(this, &SessionRunner::over, &life_, &QTimer::stop);
+  connect(&bridge_, &SessionBridge::shown, this, [this] {
+    const auto kind = bridge_.page()->kind();
+    if (is_trial(kind)) return frames_.asked();
+    const int lost = frames_.end();
+    // Each trial that counts ends in an interval; what a fault or a pause has cut off comes again.
+    if (kind == PageModel::Kind::Interval) bridge_.frames_lost(lost);
+  });
+  connect(&bridge_, &SessionBridge::acknowledged, this, [this] {
+    if (is_trial(bridge_.page()->kind())) frames_.asked();
+  });
+}
+
+SessionRunner::~SessionRunner() {
+  if (running()) ask_to_stop();
+}
+
+void SessionRunner::watch(QQuickWindow* window) {
+  bridge_.watch(window);
+  frames_.follow(window, window->screen() != nullptr ? window->screen()->refreshRate() : 0);
+}
+
+void SessionRunner::begin(session::Setup setup) {
+  if (thread_.joinable()) thread_.join();
+  setup_ = std::move(setup);
+  inputs_.drain();
+  summary_.reset();
+  failure_ = nullptr;
+  over_ = false;
+  report_.clear();
+  open_touch();
+  view_ = std::make_unique<desk::LiveView>(setup_.protocol, setup_.rig,
+                                           [this](desk::LiveState state) { live_.take(std::move(state)); });
+  inputs_.page_alive(system::monotonic_ns());
+  life_.start(kLife_ms);
+  thread_ = std::jthread([this] { run(); });
+}
+
+/// Session thread.
+void SessionRunner::run() {
+  try {
+    summary_ = session::run(setup_, &bridge_, inputs_, view_.get());
+  } catch (...) {
+    failure_ = std::current_exception();
+    show_failure();
+  }
+  over_ = true;
+  try {
+    if (summary_ && summary_->trials > 0)
+      report_.take(desk::report_pages(summary_->database, summary_->session_id));
+  } catch (const std::exception& error) {
+    // The session is whole and stored; only its report could not be made.
+    desk::ReportPages pages;
+    pages.title = "No report";
+    pages.statements = {error.what()};
+    report_.take(pages);
+  }
+  emit over();
+}
+
+/// Kernel times for touches, where the rig names its panel.
+void SessionRunner::open_touch() {
+  touch_ = setup::open_touch(setup_.rig, [this](touch::TouchPanelState state) {
+    if (state == touch::TouchPanelState::back) return;
+    session::Input input;
+    input.time_ns = system::monotonic_ns();
+    input.kind = session::InputKind::fault;
+    input.fault = session::FaultKind::touch_gone;
+    input.text = "the touch panel is gone";
+    inputs_.push(std::move(input));
+  });
+  if (!touch_) return bridge_.set_kernel_time({});
+  bridge_.set_kernel_time(
+      [this](double x, double y, std::int64_t seen_ns) { return touch_->claim(x, y, seen_ns); });
+}
+
+/// Session thread: says on the screen what ended the session, since nobody may be looking at a terminal.
+void SessionRunner::show_failure() {
+  session::Page page;
+  page.kind = session::PageKind::failed;
+  page.language = setup_.language;
+  page.run_mode = store::name(setup_.run_mode);
+  try {
+    std::rethrow_exception(failure_);
+  } catch (const std::exception& error) {
+    page.text = error.what();
+  }
+  bridge_.show(page);
+}
+
+void SessionRunner::ask_to_stop() {
+  if (!running()) return;
+  session::Input input;
+  input.time_ns = system::monotonic_ns();
+  input.kind = session::InputKind::stop;
+  input.text = "the program was told to end (by a signal, or its window was closed)";
+  inputs_.push(std::move(input));
+}
+
+std::optional<session::Summary> SessionRunner::finish() {
+  ask_to_stop();
+  if (thread_.joinable()) thread_.join();
+  if (failure_) std::rethrow_exception(failure_);
+  return summary_;
+}
+
+}  // namespace turnpoint::ui

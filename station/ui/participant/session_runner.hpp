@@ -1,0 +1,72 @@
+#pragma once
+#include <QObject>
+#include <QTimer>
+#include <atomic>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "station/desk/live_view.hpp"
+#include "station/session/session.hpp"
+#include "station/ui/operator/live_model.hpp"
+#include "station/ui/operator/report_model.hpp"
+#include "station/ui/participant/frame_watch.hpp"
+#include "station/ui/participant/session_bridge.hpp"
+
+namespace turnpoint::touch {
+class TouchReader;
+}
+
+namespace turnpoint::ui {
+
+/// Runs sessions behind the pages, one at a time, each on a thread of its own: pages and inputs, kernel times
+/// of touches, the operator's live view, the report at the end. GUI thread only.
+class SessionRunner : public QObject {
+  Q_OBJECT
+
+ public:
+  explicit SessionRunner(QObject* parent = nullptr);
+  ~SessionRunner() override;  ///< stops a session that is still running
+
+  SessionBridge& bridge() { return bridge_; }
+  LiveModel& live() { return live_; }
+  ReportModel& report() { return report_; }
+
+  /// The window that shows the pages: its touches are stamped, its late frames counted.
+  void watch(QQuickWindow* window);
+
+  /// Begins a session, after the one before has ended. Throws as touch::TouchReader where the rig's touch
+  /// panel is not there.
+  void begin(session::Setup setup);
+  bool running() const { return thread_.joinable() && !over_; }
+  void ask_to_stop();
+
+  /// Waits for the session's end. Throws what ended it; none where none has begun.
+  std::optional<session::Summary> finish();
+
+ signals:
+  /// The session is over and its end page is on the screen.
+  void over();
+
+ private:
+  void run();
+  void open_touch();
+  void show_failure();
+
+  session::Setup setup_;
+  session::Inputs inputs_;
+  SessionBridge bridge_;
+  LiveModel live_;
+  ReportModel report_;
+  FrameWatch frames_;
+  QTimer life_;  ///< tells the session that the pages' event loop turns
+  std::unique_ptr<touch::TouchReader> touch_;
+  std::unique_ptr<desk::LiveView> view_;
+  std::optional<session::Summary> summary_;
+  std::exception_ptr failure_;
+  std::atomic<bool> over_ = false;
+  std::jthread thread_;  // last: joined before anything that it uses goes
+};
+
+}  // namespace turnpoint::ui

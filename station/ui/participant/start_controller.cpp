@@ -1,0 +1,68 @@
+#include "station/ui/participant/start_controller.hpp"
+
+#include <QLocale>
+#include <utility>
+
+namespace turnpoint::ui {
+
+StartController::StartController(Known known, QObject* parent) : QObject(parent), known_(std::move(known)) {}
+
+void StartController::await_operator() {
+  with_operator_ = true;
+  questions_ = {};
+  emit changed();
+}
+
+void StartController::ask(Questions questions) {
+  questions_ = std::move(questions);
+  if (questions_.language.isEmpty() && questions_.languages.size() == 1)
+    questions_.language = questions_.languages.front();
+  with_operator_ = consented_ = false;
+  proceed();
+}
+
+StartController::Stage StartController::stage() const {
+  if (with_operator_) return Stage::Operator;
+  if (questions_.language.isEmpty() && !questions_.languages.isEmpty()) return Stage::Language;
+  if (!questions_.consent_version.isEmpty() && !consented_) return Stage::Consent;
+  return questions_.participant.isEmpty() ? Stage::Code : Stage::Session;
+}
+
+QStringList StartController::language_names() const {
+  QStringList names;
+  for (const auto& code : questions_.languages) {
+    // A language is offered under the name that its own speakers give it; English ones by the plain word.
+    const QString own = code == "en" ? "English" : QLocale(code).nativeLanguageName();
+    names += own.isEmpty() ? code : own;
+  }
+  return names;
+}
+
+QString StartController::language() const {
+  const auto& languages = questions_.languages;
+  return questions_.language.isEmpty() && !languages.isEmpty() ? languages.front() : questions_.language;
+}
+
+void StartController::chooseLanguage(int index) {
+  if (index < 0 || index >= questions_.languages.size()) return;
+  questions_.language = questions_.languages[index];
+  proceed();
+}
+
+void StartController::consent() {
+  consented_ = true;
+  proceed();
+}
+
+void StartController::enterCode(const QString& code) {
+  if (code.isEmpty()) return;
+  questions_.participant = code;
+  proceed();
+}
+
+void StartController::proceed() {
+  emit changed();
+  if (stage() == Stage::Session) emit ready();
+}
+
+}  // namespace turnpoint::ui

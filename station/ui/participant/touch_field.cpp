@@ -1,0 +1,83 @@
+#include "station/ui/participant/touch_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace turnpoint::ui {
+
+TouchField::TouchField(QQuickItem* parent) : QQuickItem(parent) {
+  setAcceptTouchEvents(true);
+  setAcceptedMouseButtons(Qt::LeftButton);
+  timer_.setSingleShot(true);
+  timer_.setTimerType(Qt::PreciseTimer);
+  connect(&timer_, &QTimer::timeout, this, &TouchField::settle);
+}
+
+void TouchField::set_open(bool open) {
+  if (open == judge_.is_open()) return;
+  if (open) {
+    judge_.open();
+  } else {
+    judge_.close();
+  }
+  timer_.stop();
+  update_pressed();
+  emit openChanged();
+}
+
+int TouchField::target_at(QPointF position) const {
+  if (row_ == nullptr || count_ <= 0) return -1;
+  const QPointF inside = mapToItem(row_, position);
+  if (inside.y() < 0 || inside.y() >= row_->height()) return -1;
+  const double pitch = (row_->width() + gap_) / count_;
+  const int column = static_cast<int>(std::floor(inside.x() / pitch));
+  if (column < 0 || column >= count_) return -1;
+  return inside.x() - column * pitch < pitch - gap_ ? column : -1;
+}
+
+void TouchField::down(int id, QPointF position, double diameter_mm) {
+  judge_.down({bridge_->began_ns(id), target_at(position), diameter_mm});
+  if (const auto due_ns = judge_.due_ns()) {
+    const auto left_ms = (*due_ns - bridge_->now_ns()) / 1'000'000 + 1;
+    timer_.start(std::max(1, static_cast<int>(left_ms)));
+  }
+  update_pressed();
+}
+
+void TouchField::settle() {
+  if (const auto answer = judge_.decide(bridge_->now_ns())) {
+    bridge_->answer(answer->target, answer->time_ns);
+  } else if (judge_.due_ns()) {
+    timer_.start(1);
+  }
+  update_pressed();
+}
+
+void TouchField::update_pressed() {
+  const int pressed = judge_.pressed();
+  if (pressed == pressed_) return;
+  pressed_ = pressed;
+  if (pressed_ >= 0) bridge_->pressed();
+  emit pressedChanged();
+}
+
+void TouchField::touchEvent(QTouchEvent* event) {
+  event->accept();
+  if (event->type() == QEvent::TouchCancel) {
+    judge_.cancel();
+    update_pressed();
+    return;
+  }
+  for (const auto& point : event->points()) {
+    if (point.state() != QEventPoint::Pressed) continue;
+    const auto size = point.ellipseDiameters();
+    down(point.id(), point.position(), std::max(size.width(), size.height()) / pixels_per_mm_);
+  }
+}
+
+void TouchField::mousePressEvent(QMouseEvent* event) {
+  event->accept();
+  down(SessionBridge::kMouse, event->position(), 0);
+}
+
+}  // namespace turnpoint::ui

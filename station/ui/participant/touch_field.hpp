@@ -1,0 +1,55 @@
+#pragma once
+#include <QQuickItem>
+#include <QTimer>
+
+#include "station/ui/participant/session_bridge.hpp"
+#include "station/ui/participant/touch_judge.hpp"
+
+namespace turnpoint::ui {
+
+/// Takes every touch (and mouse press) on the area that it covers and lets a TouchJudge find the answer.
+/// `row` is the item that the answer buttons fill in `count` equal columns with `gap` pixels between; it must
+/// lie inside the field. The judge opens when `open` rises and closes when it falls.
+class TouchField : public QQuickItem {
+  Q_OBJECT
+  QML_ELEMENT
+  Q_PROPERTY(turnpoint::ui::SessionBridge* bridge MEMBER bridge_ REQUIRED)
+  Q_PROPERTY(QQuickItem* row MEMBER row_ REQUIRED)
+  Q_PROPERTY(int count MEMBER count_)
+  Q_PROPERTY(double gap MEMBER gap_)
+  Q_PROPERTY(double pixelsPerMm MEMBER pixels_per_mm_)
+  Q_PROPERTY(bool open READ is_open WRITE set_open NOTIFY openChanged)
+  Q_PROPERTY(int pressed READ pressed NOTIFY pressedChanged)
+
+ public:
+  explicit TouchField(QQuickItem* parent = nullptr);
+
+  bool is_open() const { return judge_.is_open(); }
+  void set_open(bool open);  // NOLINT: the setter of a QML property
+  int pressed() const { return pressed_; }
+
+ signals:
+  void openChanged();
+  void pressedChanged();
+
+ protected:
+  void touchEvent(QTouchEvent* event) override;
+  void mousePressEvent(QMouseEvent* event) override;
+
+ private:
+  int target_at(QPointF position) const;
+  void down(int id, QPointF position, double diameter_mm);
+  void settle();
+  void update_pressed();
+
+  SessionBridge* bridge_ = nullptr;
+  QQuickItem* row_ = nullptr;
+  int count_ = 0;
+  double gap_ = 0;
+  double pixels_per_mm_ = 4;
+  TouchJudge judge_;
+  QTimer timer_;
+  int pressed_ = -1;
+};
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,99 @@
+#include "station/ui/platform/platform.hpp"
+
+#include <QTemporaryFile>
+
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "station/maintenance/doctor.hpp"
+#include "station/setup/places.hpp"
+#include "station/terms/usage_error.hpp"
+#include "station/ui/platform/screen.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+/// eglfs takes the first card, which may have no connector; the file tells it which one has. Nothing where
+/// somebody has said it already.
+std::unique_ptr<QTemporaryFile> eglfs_config(const std::string& card) {
+  if (qEnvironmentVariableIsSet("QT_QPA_EGLFS_KMS_CONFIG")) return nullptr;
+  auto file = std::make_unique<QTemporaryFile>();
+  if (!file->open())
+    throw std::runtime_error("screen: a temporary file: " + file->errorString().toStdString());
+  file->write(QByteArray("{\"device\": \"") + card.c_str() + "\"}\n");
+  file->close();
+  qputenv("QT_QPA_EGLFS_KMS_CONFIG", file->fileName().toUtf8());
+  return file;
+}
+
+/// Nobody wants a mouse pointer on a participant's page. 0 in the environment shows it, for work with a
+/// mouse.
+void hide_pointer() {
+  for (const char* variable : {"QT_QPA_EGLFS_HIDECURSOR", "QT_QPA_FB_HIDECURSOR"})
+    if (!qEnvironmentVariableIsSet(variable)) qputenv(variable, "1");
+}
+
+/// Returns what the platform reads while it starts.
+std::unique_ptr<QTemporaryFile> choose_platform() {
+  const auto wanted = qgetenv("QT_QPA_PLATFORM");
+  const bool desktop = qEnvironmentVariableIsSet("DISPLAY") || qEnvironmentVariableIsSet("WAYLAND_DISPLAY");
+  if (wanted.isEmpty() ? desktop : !wanted.startsWith("eglfs")) return nullptr;
+  if (const auto card = setup::screen_card(); !card.empty()) {
+    if (wanted.isEmpty()) qputenv("QT_QPA_PLATFORM", "eglfs");
+    return eglfs_config(card);
+  }
+  if (!wanted.isEmpty()) return nullptr;  // another kind of eglfs finds its screen by itself
+  if (!std::filesystem::exists("/dev/fb0"))
+    throw terms::UsageError(
+        "no screen: no DISPLAY, no WAYLAND_DISPLAY, no graphics card with a connector and no /dev/fb0; give "
+        "--headless --observer sim, or --buttons-only (turnpoint preview: --out DIR)");
+  qputenv("QT_QPA_PLATFORM", "linuxfb");
+  qputenv("QT_QUICK_BACKEND", "software");
+  return nullptr;
+}
+
+/// Qt itself is silent about a device that it cannot open.
+void tell_refused_input() {
+  const QString platform = QGuiApplication::platformName();
+  if (platform != "eglfs" && platform != "linuxfb") return;
+  for (const auto& device : lines::try_input_devices().refused)
+    std::cerr << "input: " << device << "; its touches and keys do not arrive (see turnpoint doctor)\n";
+}
+
+}  // namespace
+
+Application::Application() {
+  hide_pointer();
+  const auto read_at_start = choose_platform();
+  qputenv("QT_QPA_NO_SIGNAL_HANDLER", "1");  // the stop signals are ours, see there
+  application_ = std::make_unique<QGuiApplication>(argc_, argv_);
+  tell_refused_input();
+  set_fonts();
+  watchdog_ = std::make_unique<ServiceWatchdog>();
+  stop_signals_ = std::make_unique<StopSignals>();
+}
+
+QScreen& Application::screen() const {
+  auto* screen = QGuiApplication::primaryScreen();
+  if (screen == nullptr) throw std::runtime_error("no screen is connected");
+  return *screen;
+}
+
+QScreen* Application::second_screen() const {
+  const auto screens = QGuiApplication::screens();
+  return screens.size() > 1 ? screens[1] : nullptr;
+}
+
+bool Application::is_bare_panel() const {
+  const QString platform = QGuiApplication::platformName();
+  return platform == "eglfs" || platform == "linuxfb" || screen().size().width() <= kWindow.width();
+}
+
+QSize Application::window_size() const { return kWindow.boundedTo(screen().size()); }
+
+}  // namespace turnpoint::ui

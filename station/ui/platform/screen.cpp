@@ -1,0 +1,36 @@
+#include "station/ui/platform/screen.hpp"
+
+#include <QFont>
+#include <QGuiApplication>
+
+#include "station/terms/usage_error.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+constexpr double kLowest_dpi = 60, kHighest_dpi = 500, kFallback_dpi = 96, kInch_mm = 25.4;
+
+bool believable(double dpi) { return dpi >= kLowest_dpi && dpi <= kHighest_dpi; }
+}  // namespace
+
+double pixels_per_mm(const QScreen& screen) {
+  const QString stated = qEnvironmentVariable("TURNPOINT_DPI");
+  if (!stated.isEmpty()) {
+    bool is_number = false;
+    const double dpi = stated.toDouble(&is_number);
+    if (!is_number || !believable(dpi)) {
+      throw terms::UsageError("TURNPOINT_DPI: " + stated.toStdString() + " dpi; allowed: 60 to 500");
+    }
+    return dpi / kInch_mm;
+  }
+  const double reported = screen.physicalDotsPerInch();
+  return (believable(reported) ? reported : kFallback_dpi) / kInch_mm;
+}
+
+void set_fonts() {
+  QFont font;
+  font.setFamilies({"Inter", "DejaVu Sans", "M PLUS 1", "VL PGothic", "VL Gothic"});
+  QGuiApplication::setFont(font);
+}
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,108 @@
+#include "station/ui/platform/screens.hpp"
+
+#include <QQmlApplicationEngine>
+#include <stdexcept>
+
+#include "station/ui/operator/latency_controller.hpp"
+#include "station/ui/operator/operator_controller.hpp"
+#include "station/ui/operator/preview_controller.hpp"
+#include "station/ui/platform/load_page.hpp"
+#include "station/ui/platform/platform.hpp"
+#include "station/ui/platform/screen.hpp"
+#include "station/ui/platform/station_window.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+/// Stands in for a code that the keypad will ask for, so that everything else is checked before a window
+/// opens.
+constexpr const char* kCodeToCome = "keypad";
+
+StationWindow::Place place_on(const Application& application) {
+  return {pixels_per_mm(application.screen()), application.window_size(), application.is_bare_panel()};
+}
+
+/// A signal to stop ends the process at once until the first page stands, and the event loop from then on.
+void stop_in_order(const Application& application, const QQuickWindow& window) {
+  auto& stop = application.stop_signals();
+  QObject::connect(
+      &window, &QQuickWindow::frameSwapped, &stop, [&stop] { stop.take_over(); },
+      static_cast<Qt::ConnectionType>(Qt::AutoConnection | Qt::SingleShotConnection));
+}
+
+/// A session may begin before any page was on the screen.
+void stop_in_order(const Application& application, StationWindow& window) {
+  stop_in_order(application, window.window());
+  QObject::connect(&window, &StationWindow::beginning, &application.stop_signals(), &StopSignals::take_over);
+}
+
+void use_second_screen(const Application& application, StationWindow& window) {
+  if (auto* second = application.second_screen()) window.show_live_window(*second);
+}
+
+/// A window of one page and its controller, until somebody closes it.
+void show_until_closed(const Application& application, const QString& page, const QVariant& controller) {
+  QQmlApplicationEngine engine;
+  auto& window = load_page(engine, page,
+                           {{"controller", controller},
+                            {"pixelsPerMm", pixels_per_mm(application.screen())},
+                            {"width", application.window_size().width()},
+                            {"height", application.window_size().height()}});
+  if (application.is_bare_panel()) window.showFullScreen();
+  stop_in_order(application, window);
+  QGuiApplication::exec();
+}
+
+}  // namespace
+
+session::Summary run_on_screen(setup::RunRequest request, std::optional<session::Setup> prepared) {
+  ChosenSession chosen;
+  chosen.ask_code = !prepared && request.participant.empty();
+  if (chosen.ask_code) request.participant = kCodeToCome;
+  chosen.setup = prepared ? std::move(*prepared) : setup::prepare(request);
+  chosen.ask_language = !prepared && request.language.empty() && chosen.setup.protocol.languages.size() > 1;
+  chosen.arm = true;  // the command was the operator's
+  const Application application;
+  StationWindow window(place_on(application), {nullptr, desk::operator_code()}, chosen.setup.database);
+  use_second_screen(application, window);
+  stop_in_order(application, window);
+  window.ask(chosen);
+  const auto summary = window.run();
+  if (!summary) throw std::runtime_error("it was ended before the session began; nothing was recorded");
+  return *summary;
+}
+
+void run_station(const setup::StationRequest& request) {
+  const Application application;
+  OperatorController operating(request);
+  StationWindow window(place_on(application), {&operating, desk::operator_code(), request.locked},
+                       request.database);
+  use_second_screen(application, window);
+  stop_in_order(application, window);
+  try {
+    window.run();
+  } catch (const std::exception&) {
+    // What ended a session stood on the screen; leaving the station afterwards is no failure.
+  }
+}
+
+void show_preview(const desk::PreviewRequest& request) {
+  const Application application;
+  PreviewController controller(request);
+  show_until_closed(application, "PreviewWindow.qml", QVariant::fromValue(&controller));
+}
+
+std::optional<calibration::PanelLatency> measure_latency(const maintenance::LatencyRequest& request) {
+  const Application application;
+  LatencyController controller(request.reference);
+  maintenance::LatencyDevices devices(rig::load(request.rig),
+                                      [&controller](std::int64_t time_ns) { controller.edge(time_ns); });
+  if (devices.has_kernel_times())
+    controller.set_kernel_time(
+        [&devices](double x, double y, std::int64_t seen_ns) { return devices.claim(x, y, seen_ns); });
+  show_until_closed(application, "LatencyWindow.qml", QVariant::fromValue(&controller));
+  return controller.kept();
+}
+
+}  // namespace turnpoint::ui

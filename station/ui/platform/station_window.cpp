@@ -1,0 +1,121 @@
+#include "station/ui/platform/station_window.hpp"
+
+#include <time.h>
+#include <unistd.h>
+#include <QGuiApplication>
+#include <QLoggingCategory>
+#include <QScreen>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <utility>
+
+#include "station/ui/platform/load_page.hpp"
+#include "station/ui/platform/screen.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+/// `QT_LOGGING_RULES=turnpoint.startup=true` says how long the first page took.
+Q_LOGGING_CATEGORY(startup, "turnpoint.startup", QtWarningMsg)
+
+/// Milliseconds since the kernel started this process, to its 10 ms.
+double process_age_ms() {
+  std::ifstream stat("/proc/self/stat");
+  const std::string line{std::istreambuf_iterator<char>(stat), {}};
+  std::istringstream fields(line.substr(line.rfind(')') + 1));
+  std::string field;
+  for (int i = 3; i <= 22; ++i) fields >> field;  // 22: start time in ticks since boot
+  timespec now{};
+  ::clock_gettime(CLOCK_BOOTTIME, &now);
+  const double started_s = std::stod(field) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+  return 1e3 * (static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) - started_s);
+}
+
+void tell_first_page(QQuickWindow& window) {
+  if (!startup().isInfoEnabled()) return;
+  QObject::connect(
+      &window, &QQuickWindow::frameSwapped, &window,
+      [] { qCInfo(startup) << "first page after" << process_age_ms() << "ms"; },
+      static_cast<Qt::ConnectionType>(Qt::DirectConnection | Qt::SingleShotConnection));
+}
+
+bool is_known(const std::string& database, const QString& code) {
+  const auto known = desk::known_participants(database);
+  return std::find(known.begin(), known.end(), code.toStdString()) != known.end();
+}
+
+}  // namespace
+
+StationWindow::StationWindow(const Place& place, const Operator& allowed, const std::string& database)
+    : operating_(allowed.page),
+      start_([database](const QString& code) { return is_known(database, code); }),
+      lock_(allowed.code) {
+  connect(&start_, &StartController::ready, this, &StationWindow::begin);
+  connect(&start_, &StartController::closed, this, &StationWindow::close);
+  if (operating_ != nullptr) connect(operating_, &OperatorController::chosen, this, &StationWindow::ask);
+  window_ = &load_page(engine_, "Main.qml",
+                       {{"bridge", QVariant::fromValue(&runner_.bridge())},
+                        {"start", QVariant::fromValue(&start_)},
+                        {"live", QVariant::fromValue(&runner_.live())},
+                        {"report", QVariant::fromValue(&runner_.report())},
+                        {"operating", QVariant::fromValue(operating_)},
+                        {"operatorLock", QVariant::fromValue(&lock_)},
+                        {"locked", allowed.locked},
+                        {"pixelsPerMm", place.pixels_per_mm},
+                        {"width", place.size.width()},
+                        {"height", place.size.height()}});
+  tell_first_page(*window_);
+  runner_.watch(window_);
+  if (place.bare_panel) window_->showFullScreen();
+}
+
+void StationWindow::ask(const ChosenSession& chosen) {
+  setup_ = chosen.setup;
+  arm_ = chosen.arm;
+  StartController::Questions questions;
+  questions.run_mode = store::name(setup_.run_mode);
+  if (!chosen.ask_language) questions.language = QString::fromStdString(setup_.language);
+  for (const auto& language : setup_.protocol.languages)
+    if (chosen.ask_language) questions.languages += QString::fromStdString(language);
+  if (!chosen.ask_code) questions.participant = QString::fromStdString(setup_.participant);
+  // Who goes on with a session has consented when it began.
+  if (setup_.resume_session.empty())
+    questions.consent_version = QString::fromStdString(setup_.consent_version);
+  start_.ask(std::move(questions));
+}
+
+std::optional<session::Summary> StationWindow::run() {
+  QGuiApplication::exec();
+  return runner_.finish();
+}
+
+QQuickWindow& StationWindow::show_live_window(QScreen& screen) {
+  auto& window = load_page(live_engine_, "LiveWindow.qml",
+                           {{"live", QVariant::fromValue(&runner_.live())},
+                            {"bridge", QVariant::fromValue(&runner_.bridge())},
+                            {"pixelsPerMm", pixels_per_mm(screen)}});
+  window.setScreen(&screen);
+  window.showFullScreen();
+  return window;
+}
+
+void StationWindow::begin() {
+  setup_.participant = start_.participant().toStdString();
+  if (!start_.language().isEmpty()) setup_.language = start_.language().toStdString();
+  emit beginning();
+  runner_.begin(setup_);
+  if (arm_) runner_.bridge().arm();
+}
+
+void StationWindow::close() {
+  if (operating_ == nullptr) return void(window_->close());
+  if (runner_.running()) return;
+  start_.await_operator();
+  operating_->refresh();
+}
+
+}  // namespace turnpoint::ui

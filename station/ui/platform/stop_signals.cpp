@@ -1,0 +1,19 @@
+#include "station/ui/platform/stop_signals.hpp"
+
+#include <QCoreApplication>
+
+namespace turnpoint::ui {
+
+StopSignals::StopSignals() : woken_(signals_.descriptor(), QSocketNotifier::Read) {
+  // Not quit(): that asks the windows first, and one of them might object.
+  connect(&woken_, &QSocketNotifier::activated, this, [this] {
+    woken_.setEnabled(false);
+    QCoreApplication::exit(0);
+  });
+}
+
+StopSignals::~StopSignals() { woken_.setEnabled(false); }
+
+void StopSignals::take_over() { signals_.take_over(); }
+
+}  // namespace turnpoint::ui

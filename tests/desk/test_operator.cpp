@@ -1,0 +1,325 @@
+#include <sys/stat.h>
+
+#include <unistd.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+
+#include "station/desk/choices.hpp"
+#include "station/desk/live_view.hpp"
+#include "station/desk/report_pages.hpp"
+#include "station/setup/prepare.hpp"
+#include "station/store/read.hpp"
+#include "station/text/number.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string kSource = TURNPOINT_SOURCE_DIR;
+
+struct Folder {
+  fs::path path = fs::temp_directory_path() / ("turnpoint-operator-" + std::to_string(::getpid()));
+  Folder() {
+    fs::remove_all(path);
+    fs::create_directories(path);
+  }
+  ~Folder() { fs::remove_all(path); }
+};
+
+std::string value_of(const std::vector<std::pair<std::string, std::string>>& facts,
+                     const std::string& label) {
+  for (const auto& [name, value] : facts)
+    if (name == label) return value;
+  return "";
+}
+
+desk::LiveTrial answered(bool correct, double response_time_s) {
+  desk::LiveTrial trial;
+  trial.procedure = "levels";
+  trial.level = 4;
+  trial.correct = correct;
+  trial.response_time_s = response_time_s;
+  return trial;
+}
+
+/// Passes on the beginnings of the first trials, then ends the session.
+struct FirstTrials : session::Monitor {
+  session::Monitor& to;
+  int left;
+  FirstTrials(session::Monitor& monitor, int trials) : to(monitor), left(trials) {}
+  void trial_begins(const trial::TrialSpec& spec, const protocol::Block& block,
+                    const session::PlanAhead::Plans& plans) override {
+    to.trial_begins(spec, block, plans);
+  }
+  void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override {
+    if (--left == 0) throw std::runtime_error("enough");
+  }
+};
+
+/// The drive of each displayed tone, such as "0.512 um on", in order.
+std::vector<std::string> drives_shown(const desk::LiveState& state) {
+  std::vector<std::string> drives;
+  for (const auto& [label, value] : state.scene) {
+    if (label != "Tone") continue;
+    const auto from = value.find("drive ") + 6;
+    drives.push_back(value.substr(from, value.find(" on ") + 3 - from));
+  }
+  return drives;
+}
+
+setup::RunRequest demo_in(const Folder& folder) {
+  setup::RunRequest request;
+  request.protocol = kSource + "/protocols/demo.toml";
+  request.rig = kSource + "/deploy/rigs/simulated.toml";
+  request.participant = "P09";
+  request.database = (folder.path / "a.sqlite").string();
+  request.observer = "sim";
+  request.seed = 4;
+  return request;
+}
+
+}  // namespace
+
+TEST_CASE("the course of a session counts what was scored, and timeouts give no time", "[operator]") {
+  auto late = answered(false, 0);
+  late.correct.reset();
+  late.response_time_s.reset();
+  late.outcome = terms::Outcome::timeout;
+  auto caught = answered(true, 3);
+  caught.type = terms::TrialType::catch_trial;
+  const auto facts =
+      desk::course_of({answered(true, 1), answered(false, 2), answered(true, 1.5), late, caught});
+  CHECK(value_of(facts, "Trials") == "5");
+  CHECK(value_of(facts, "Right") == "2 of 3 (66.7 %)");
+  CHECK(value_of(facts, "Catch trials right") == "1 of 1");
+  CHECK(value_of(facts, "Response time") == "median 1.75 s, last 3 s");
+  CHECK(value_of(facts, "Too late, too early") == "1, 0");
+  CHECK(value_of(desk::course_of({}), "Right") == "none scored yet");
+}
+
+TEST_CASE("limits used look back one minute", "[operator]") {
+  rig::Rig rig;
+  rig.limits.displacement_m = 8e-6;
+  std::vector<desk::LiveTrial> trials(3, answered(true, 1));
+  for (int i = 0; i < 3; ++i) {
+    trials[static_cast<std::size_t>(i)].onset_s = 60.0 * i;
+    trials[static_cast<std::size_t>(i)].stimulus_s = 15;
+    trials[static_cast<std::size_t>(i)].ended_s = 60.0 * i + 20;
+  }
+  const auto facts = desk::limits_used(trials, 2e-6, rig);
+  CHECK(value_of(facts, "Displacement") == "2 of 8 \u00b5m (25 %)");
+  // The minute before 140 s contains only the trial that starts at 120 s.
+  CHECK(value_of(facts, "Stimulus time, last minute") == "25 % (limit 80 %)");
+}
+
+TEST_CASE("the live view follows a session trial by trial and draws what is on the surface", "[operator]") {
+  const Folder folder;
+  const auto setup = setup::prepare(demo_in(folder));
+  std::mutex mutex;
+  std::condition_variable told;
+  desk::LiveState state;
+  int news = 0;
+  desk::LiveView view(setup.protocol, setup.rig, [&](desk::LiveState next) {
+    const std::lock_guard lock(mutex);
+    state = std::move(next);
+    ++news;
+    told.notify_one();
+  });
+  session::Inputs inputs;
+  const auto summary = session::run(setup, nullptr, inputs, &view);
+  std::unique_lock lock(mutex);
+  told.wait(lock, [&] { return news == 2 * summary.trials; });
+  CHECK(value_of(state.course, "Trials") == std::to_string(summary.trials));
+  CHECK(state.heading.find("Block main, trial 10") == 0);
+  REQUIRE(state.surfaces.size() == 1);
+  CHECK(state.surfaces.front()(600, 120).find(" mm</text>") != std::string::npos);
+  CHECK(state.trace);
+  CHECK(state.times);
+}
+
+TEST_CASE("the live view shows what is played: each scene of each interval, with its roved amplitude",
+          "[operator]") {
+  const auto* protocol = GENERATE("demo", "speed-accuracy", "two-spots-oddity");
+  CAPTURE(protocol);
+  constexpr int trials = 6;
+  const Folder folder;
+  auto request = demo_in(folder);
+  request.protocol = kSource + "/protocols/" + protocol + ".toml";
+  const auto setup = setup::prepare(request);
+  std::vector<desk::LiveState> begun;
+  {
+    std::mutex mutex;
+    std::condition_variable told;
+    desk::LiveView view(setup.protocol, setup.rig, [&](desk::LiveState state) {
+      const std::lock_guard lock(mutex);
+      begun.push_back(std::move(state));
+      told.notify_one();
+    });
+    FirstTrials first(view, trials);
+    session::Inputs inputs;
+    CHECK_THROWS(session::run(setup, nullptr, inputs, &first));
+    std::unique_lock lock(mutex);
+    told.wait(lock, [&] { return begun.size() == trials; });
+  }
+  const auto stored = desk::interrupted_note(request.database);
+  REQUIRE(stored.has_value());
+  int trial = 0, roved = 0, scenes = 0;
+  for (const auto& block : store::read_session(request.database, stored->session_id).blocks)
+    for (const auto& row : block.trials) {
+      const auto& state = begun.at(static_cast<std::size_t>(trial++));
+      std::vector<std::string> played;
+      scenes = 0;
+      for (const auto& tone : row.tones) {
+        played.push_back(text::number(tone.amplitude_um, 3) + " \u00b5m on");
+        roved += tone.rove_dB != 0 ? 1 : 0;
+        scenes += tone.tone_index == 0 ? 1 : 0;
+      }
+      CHECK(drives_shown(state) == played);
+      CHECK(state.surfaces.size() == static_cast<std::size_t>(scenes));
+    }
+  CHECK(trial == trials);
+  CHECK((roved > 0 || scenes > 1));  // otherwise the first request of a scene's plan would have been enough
+}
+
+TEST_CASE("a slider that moves fast is shown a few times a second, and in the end where it stands",
+          "[operator]") {
+  const Folder folder;
+  auto request = demo_in(folder);
+  request.protocol = kSource + "/protocols/boundary-adjustment.toml";
+  const auto setup = setup::prepare(request);
+  trial::Director director(setup.protocol, 0, 3);
+  session::PlanAhead plans(setup.rig, setup.protocol, 3);
+  auto spec = *director.next();
+  std::mutex mutex;
+  std::condition_variable told;
+  std::vector<desk::LiveState> states;
+  desk::LiveView view(setup.protocol, setup.rig, [&](desk::LiveState state) {
+    const std::lock_guard lock(mutex);
+    states.push_back(std::move(state));
+    told.notify_one();
+  });
+  const auto from = std::chrono::steady_clock::now();
+  view.trial_begins(spec, *director.block(), plans.take(spec).plans);
+  for (double offset_mm = -25; offset_mm < 25; offset_mm += 0.5) {
+    spec.factors["offset_mm"] = offset_mm;
+    view.surface_follows(spec, plans.take(spec).plans.front().back());
+  }
+  std::unique_lock lock(mutex);
+  CHECK(told.wait_for(lock, std::chrono::seconds(20), [&] {
+    return !states.empty() && states.back().heading.find(", now 24.5:") != std::string::npos;
+  }));
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - from;
+  CHECK(states.size() <= 2 + took / std::chrono::milliseconds(200));  // the beginning, and slider settings
+  const auto plan = plans.take(spec).plans.front().back();
+  CHECK(drives_shown(states.back()) ==
+        std::vector<std::string>{text::number(1e6 * plan.tones.front().amplitude_m, 3) + " \u00b5m on"});
+  CHECK(states.back().surfaces.size() == 1);
+}
+
+TEST_CASE("the report on the screen has the trade's numbers and pictures", "[operator]") {
+  const Folder folder;
+  session::Inputs inputs;
+  const auto summary = session::run(setup::prepare(demo_in(folder)), nullptr, inputs);
+  const auto pages = desk::report_pages(summary.database, summary.session_id);
+  CHECK(value_of(pages.outcomes, "Presented") == "10");
+  CHECK_FALSE(value_of(pages.speed_accuracy, "proportion right").empty());
+  CHECK(pages.levels);
+  CHECK_FALSE(pages.health.empty());
+}
+
+TEST_CASE("protocol files of a folder are listed with the ones that cannot be used", "[operator]") {
+  const Folder folder;
+  fs::copy_file(kSource + "/protocols/demo.toml", folder.path / "a.toml");
+  std::ofstream(folder.path / "b.toml") << "format = 3\n";
+  std::ofstream(folder.path / "notes.txt") << "no protocol\n";
+  const auto list = desk::list_protocols(folder.path.string());
+  REQUIRE(list.size() == 2);
+  CHECK(list[0].id == "demo");
+  CHECK(list[0].languages.size() == 3);
+  CHECK(list[1].problem.find("b.toml: ") != std::string::npos);
+}
+
+TEST_CASE("odd entries among the protocols have a message and hide no other", "[operator]") {
+  const Folder folder;
+  const auto shipped = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/demo.toml";
+  fs::copy_file(shipped, folder.path / "demo.toml");
+  fs::create_symlink("/nowhere/at/all", folder.path / "dangling.toml");
+  fs::create_symlink("anna@host.1234", folder.path / ".#demo.toml");
+  fs::create_directory(folder.path / "folder.toml");
+  REQUIRE(::mkfifo((folder.path / "pipe.toml").c_str(), 0600) == 0);
+  const auto list = desk::list_protocols(folder.path.string());
+  REQUIRE(list.size() == 4);
+  for (const auto& entry : list) {
+    INFO(entry.path);
+    CHECK(entry.problem.empty() == (entry.id == "demo"));
+  }
+}
+
+TEST_CASE("participants are known once a session of theirs is stored, and an interrupted one is offered",
+          "[operator]") {
+  const Folder folder;
+  const auto request = demo_in(folder);
+  CHECK(desk::known_participants(request.database).empty());
+  CHECK_FALSE(desk::interrupted_note(request.database).has_value());
+  struct Cut : session::Monitor {
+    int left = 3;
+    void trial_begins(const trial::TrialSpec&, const protocol::Block&,
+                      const session::PlanAhead::Plans&) override {}
+    void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override {
+      if (--left == 0) throw std::runtime_error("cut");
+    }
+  } cut;
+  session::Inputs inputs;
+  CHECK_THROWS(session::run(setup::prepare(request), nullptr, inputs, &cut));
+  CHECK(desk::known_participants(request.database) == std::vector<std::string>{"P09"});
+  const auto note = desk::interrupted_note(request.database);
+  REQUIRE(note.has_value());
+  CHECK(note->participant == "P09");
+  CHECK(note->trials == 3);
+}
+
+TEST_CASE("a check in words names the cues that would give answers away first", "[operator]") {
+  simulation::Check check;
+  check.cues.reports = {{"pitch", 0, 0, "Hz", 0.5, 0.5}, {"loudness", 0, 1, "dB", 0.9, 0.5}};
+  const auto words = desk::words_of(check);
+  REQUIRE(words.cues.size() == 2);
+  CHECK(words.cues[0].name == "loudness");
+  CHECK(words.cues[0].leaks);
+  CHECK_FALSE(words.cues[1].leaks);
+  check.problems.push_back({{"a.toml", 3, 1}, "what", "allowed"});
+  CHECK(desk::words_of(check).facts.empty());
+  CHECK(desk::words_of(check).problems.front() == "a.toml:3:1: what; allowed");
+}
+
+TEST_CASE("a check that is no longer wanted is abandoned before it plans anything", "[operator]") {
+  std::stop_source stop;
+  const auto check = [&] {
+    return simulation::check(kSource + "/protocols/friction-2ifc.toml",
+                             kSource + "/deploy/rigs/simulated.toml", {}, stop.get_token());
+  };
+  CHECK(check().problems.empty());
+  stop.request_stop();
+  CHECK_THROWS_AS(check(), protocol::Abandoned);
+}
+
+TEST_CASE("preparing a session that is no longer wanted is abandoned before it plans anything",
+          "[operator]") {
+  const Folder folder;
+  std::stop_source stop;
+  CHECK(setup::prepare(demo_in(folder), stop.get_token()).participant == "P09");
+  stop.request_stop();
+  CHECK_THROWS_AS(setup::prepare(demo_in(folder), stop.get_token()), protocol::Abandoned);
+}
+
+TEST_CASE("ages are said as people say them", "[operator]") {
+  CHECK(desk::age_in_words(30) == "30 s");
+  CHECK(desk::age_in_words(600) == "10 min");
+  CHECK(desk::age_in_words(3 * 3600) == "3 h");
+  CHECK(desk::age_in_words(80 * 3600) == "3 days");
+}

@@ -1,0 +1,119 @@
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "station/desk/code_back_off.hpp"
+#include "station/desk/operator_code.hpp"
+#include "station/terms/usage_error.hpp"
+#include "station/text/problem.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace turnpoint;
+namespace fs = std::filesystem;
+
+namespace {
+
+mode_t mode_of(const std::string& path) {
+  struct stat status {};
+  REQUIRE(::stat(path.c_str(), &status) == 0);
+  return status.st_mode & 0777;
+}
+
+std::string content(const std::string& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void write(const std::string& path, const std::string& text, mode_t mode) {
+  std::ofstream(path) << text;
+  REQUIRE(::chmod(path.c_str(), mode) == 0);
+}
+
+std::string problem_with(const std::string& file) {
+  try {
+    desk::operator_code({file});
+  } catch (const text::BadInput& error) {
+    return error.what();
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a code opens by its digits alone, and its hash tells nothing about them", "[code]") {
+  const auto code = desk::OperatorCode::of_digits("7391");
+  CHECK(code.opens("7391"));
+  for (const auto* wrong : {"", "739", "73911", "7392", "2468", "1937"}) CHECK_FALSE(code.opens(wrong));
+  CHECK(code.hash().substr(0, 3) == "$y$");  // the prefix of yescrypt
+  CHECK(code.hash().find("7391") == std::string::npos);
+  CHECK(desk::OperatorCode::of_digits("7391").hash() != code.hash());  // hashes are salted
+  CHECK(desk::OperatorCode::of_hash(code.hash()).opens("7391"));
+}
+
+TEST_CASE("the hash is the one that other programs make of a password", "[code]") {
+  // Made by perl -e 'print crypt("7391", "\$y\$j9T\$abcdefghijklmnopqrstu.")' on Debian 12; the format is
+  // that of crypt(5).
+  const auto known = desk::OperatorCode::of_hash(
+      "$y$j9T$abcdefghijklmnopqrstu.$Cc1pVTPQa0zlBFjGhM8JKmhg2p/63he89aBGE3QLOPC");
+  CHECK(known.opens("7391"));
+  CHECK_FALSE(known.opens("7392"));
+}
+
+TEST_CASE("codes that no keypad has, that are short, or that everybody knows are refused", "[code]") {
+  for (const auto* digits : {"", "739", "24b8", "7391 ", "1234567890123", "2468"})
+    CHECK_THROWS_AS(desk::OperatorCode::of_digits(digits), terms::UsageError);
+  CHECK_NOTHROW(desk::OperatorCode::of_digits("123456789012"));
+}
+
+TEST_CASE("a code is stored for its owner alone, and the first file that is there counts", "[code]") {
+  const TemporaryFolder folder;
+  const auto own = folder / "config/turnpoint/operator-code", station = folder / "etc/operator-code";
+  CHECK(desk::operator_code({own, station}).is_built_in());
+  CHECK(desk::operator_code({own, station}).opens("2468"));
+
+  desk::store_operator_code(desk::OperatorCode::of_digits("7391"), station);
+  CHECK(mode_of(station) == 0600);
+  CHECK(content(station).find("7391") == std::string::npos);
+  CHECK(desk::operator_code({own, station}).opens("7391"));
+  CHECK_FALSE(desk::operator_code({own, station}).opens("2468"));
+  desk::store_operator_code(desk::OperatorCode::of_digits("8520"), own);
+  CHECK(desk::operator_code({own, station}).opens("8520"));
+  CHECK_FALSE(desk::operator_code({own, station}).opens("7391"));
+}
+
+TEST_CASE("a file that holds no code, or that everybody may read, is refused by name", "[code]") {
+  const TemporaryFolder folder;
+  const auto file = folder / "operator-code";
+  for (const auto* text : {"7391\n", "\n", "$y$\n", "$9$abc$def\n"}) {
+    write(file, text, 0600);
+    CAPTURE(text);
+    CHECK(problem_with(file) ==
+          file + ":1:1: holds no operator's code; `turnpoint operator-code` stores one");
+  }
+  write(file, desk::OperatorCode::of_digits("7391").hash() + "\n", 0640);
+  CHECK(problem_with(file).empty());
+  write(file, desk::OperatorCode::of_digits("7391").hash() + "\n", 0644);
+  CHECK(problem_with(file).find("everybody may read") != std::string::npos);
+}
+
+TEST_CASE("wrong codes are taken ever more slowly, and the right one ends that", "[code]") {
+  desk::CodeBackOff back_off;
+  double now_s = 100;
+  std::vector<double> waits_s;
+  for (int i = 0; i < 10; ++i) {
+    back_off.wrong(now_s);
+    waits_s.push_back(back_off.wait_s(now_s));
+    now_s += back_off.wait_s(now_s);
+    CHECK(back_off.wait_s(now_s) == 0);
+  }
+  CHECK(waits_s == std::vector<double>{0, 0, 5, 10, 20, 40, 80, 160, 300, 300});
+  back_off.wrong(now_s);
+  CHECK(back_off.wait_s(now_s + 299) == 1);
+  back_off.right();
+  CHECK(back_off.wait_s(now_s) == 0);
+  back_off.wrong(now_s);
+  CHECK(back_off.wait_s(now_s) == 0);
+}

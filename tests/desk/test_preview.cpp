@@ -1,0 +1,127 @@
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "station/desk/preview.hpp"
+#include "station/desk/scene_figures.hpp"
+#include "station/terms/usage_error.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/svg_geometry.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+const std::string kSource = TURNPOINT_SOURCE_DIR;
+
+desk::Preview preview_of(const std::string& protocol) {
+  return desk::Preview(kSource + "/protocols/" + protocol + ".toml", kSource + "/deploy/rigs/simulated.toml");
+}
+
+protocol::Factors factors(const desk::Preview& preview, const std::vector<std::string>& set) {
+  std::vector<std::string> assumed;
+  return desk::factors_for(preview.protocol(), set, assumed);
+}
+
+/// The position of the boundary in a surface's picture: the only line of this colour.
+double boundary_x(const std::string& svg) {
+  for (const auto& line : svg_geometry::elements(svg, "line"))
+    if (svg_geometry::attribute(line, "stroke") == "#b3400a") return svg_geometry::number(line, "x1");
+  throw std::runtime_error("no boundary drawn");
+}
+
+/// Finds words in a surface's picture that overlap others, the boundary or the edge; "" if there are none.
+std::string clash(const std::string& svg, double height) {
+  const auto texts = svg_geometry::texts(svg);
+  const double line_x = boundary_x(svg);
+  for (const auto& text : texts) {
+    if (text.box.top < 0 || text.box.bottom > height) return text.words + " over the edge";
+    if (text.words == "mark" && text.box.left < line_x && line_x < text.box.right)
+      return "mark on the boundary";
+    for (const auto& other : texts)
+      if (&other != &text && svg_geometry::meet(other.box, text.box))
+        return text.words + " on " + other.words;
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("a scene's knobs are the factors that it depends on, with their ranges and levels", "[preview]") {
+  const auto preview = preview_of("demo");
+  const auto knobs = preview.knobs("edge");
+  REQUIRE(knobs.size() == 2);
+  CHECK(knobs[0].name == "offset_mm");
+  CHECK(knobs[0].low == -24);
+  CHECK(knobs[0].high == 24);
+  CHECK(knobs[0].levels.empty());
+  CHECK(knobs[1].name == "mark_mm");
+  CHECK(knobs[1].levels == std::vector<double>{150, 160});
+}
+
+TEST_CASE("a look puts the boundary where the factors say, and the displacement falls to a half there",
+          "[preview]") {
+  auto preview = preview_of("demo");
+  const auto look = preview.look("edge", factors(preview, {"offset_mm=9"}));
+  REQUIRE(look.problem.empty());
+  CHECK(*look.plan.boundary_m == Approx(0.159).margin(1e-4));
+  const auto& profile = look.profile;
+  REQUIRE(profile.x_m.size() == desk::kProfilePoints);
+  const auto last_peak = std::max_element(profile.displacement_m.begin(), profile.displacement_m.end());
+  const auto beyond = std::lower_bound(profile.x_m.begin(), profile.x_m.end(), *look.plan.boundary_m);
+  const auto at = static_cast<std::size_t>(beyond - profile.x_m.begin());
+  // The boundary is that of the lossless first mode. The profile also contains loss and is sampled every 0.75
+  // mm.
+  CHECK(profile.displacement_m[at] / *last_peak == Approx(0.5).margin(0.05));
+  CHECK(look.facts.front().second.find("159 mm") != std::string::npos);
+  CHECK_FALSE(look.cues.empty());
+}
+
+TEST_CASE("what a rig cannot present is the look's problem, in words", "[preview]") {
+  auto preview = preview_of("demo");
+  const auto look = preview.look("edge", factors(preview, {"mark_mm=290"}));
+  CHECK_FALSE(look.problem.empty());
+  CHECK(look.facts.empty());
+  CHECK_THROWS_AS(desk::surface_svg(look, preview.rig()), std::invalid_argument);
+  CHECK_THROWS_AS(preview.look("nowhere", {}), std::out_of_range);
+}
+
+TEST_CASE("factors that are set must exist and be numbers", "[preview]") {
+  const auto preview = preview_of("demo");
+  CHECK_THROWS_AS(factors(preview, {"offset_mm"}), terms::UsageError);
+  CHECK_THROWS_AS(factors(preview, {"offset=3"}), terms::UsageError);
+  CHECK_THROWS_AS(factors(preview, {"offset_mm=left"}), terms::UsageError);
+  std::vector<std::string> assumed;
+  desk::factors_for(preview.protocol(), {"offset_mm=3"}, assumed);
+  CHECK(assumed == std::vector<std::string>{"mark_mm"});
+}
+
+TEST_CASE("in a surface's picture no words stand on other words or on the boundary, wherever the mark is",
+          "[preview]") {
+  auto preview = preview_of("demo");
+  auto look = preview.look("edge", factors(preview, {}));
+  const auto [width, height] =
+      GENERATE(std::pair{240.0, 84.0}, std::pair{700.0, 130.0}, std::pair{900.0, 400.0});
+  for (double boundary_mm = 40; boundary_mm <= 260; boundary_mm += 10.37)
+    for (double off_mm = -60; off_mm <= 60; off_mm += 1.5) {
+      look.plan.boundary_m = 1e-3 * boundary_mm;
+      const double mark_mm = boundary_mm + off_mm;
+      if (mark_mm < 20 || mark_mm > 280) continue;
+      look.factors["mark_mm"] = mark_mm;
+      const auto svg = desk::surface_svg(look, preview.rig(), width, height);
+      CAPTURE(width, height, boundary_mm, mark_mm);
+      REQUIRE(clash(svg, height).empty());
+    }
+}
+
+TEST_CASE("the same look is the same picture, and another boundary another one", "[preview]") {
+  auto preview = preview_of("demo");
+  const auto draw = [&](const std::string& offset) {
+    return desk::surface_svg(preview.look("edge", factors(preview, {"offset_mm=" + offset})), preview.rig());
+  };
+  CHECK(draw("9") == draw("9"));
+  CHECK(draw("9") != draw("-9"));
+  const auto look = preview.look("edge", factors(preview, {}));
+  CHECK(plot::render(desk::profile_figure({look})).find("<svg") != std::string::npos);
+  CHECK(desk::spectrum_figure(look).panels.front().layers.size() >= 1);
+}

@@ -1,0 +1,71 @@
+#include "station/limits/exposure.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::limits;
+
+namespace {
+const ExposureLimits limits{8e-6, 30, 0.8, 3600};
+}
+
+TEST_CASE("a stimulus beyond a limit is refused with the limit's name and value", "[drive][exposure]") {
+  const Exposure exposure(limits, 0);
+  CHECK_NOTHROW(exposure.check(8e-6, 30));
+  CHECK_THROWS_WITH(exposure.check(8.1e-6, 1), "displacement of 8.100 um; the rig allows 8.000 um");
+  CHECK_THROWS_WITH(exposure.check(1e-6, 31), "stimulus of 31.000 s; the rig allows 30.000 s without a rest");
+  CHECK_THROWS_AS(Exposure({8e-6, 50, 0.5, 3600}, 0).check(1e-6, 40), LimitExceeded);
+  CHECK_THROWS_AS(Exposure({8e-6, 50, 1.5, 3600}, 0), std::invalid_argument);
+}
+
+TEST_CASE("the interval stretches just as far as the duty needs, and no sliding minute exceeds it",
+          "[drive][exposure]") {
+  Exposure exposure(limits, 0);
+  double time = 0;
+  std::vector<Exposed> all;
+  for (int k = 0; k < 100; ++k) {
+    const double start = exposure.earliest_start_s(time, 9.0);
+    all.push_back({start, start + 9.0});
+    exposure.add(all.back());
+    time = start + 9.0 + 0.6;  // requests a duty cycle of 0.94
+  }
+  double largest = 0;
+  for (double from = 0; from < all.back().end_s; from += 0.25) {
+    double on = 0;
+    for (const Exposed& e : all)
+      on += std::max(0.0, std::min(e.end_s, from + 60) - std::max(e.start_s, from));
+    largest = std::max(largest, on);
+  }
+  CHECK(largest <= 48.0 + 1e-6);
+  CHECK(largest > 47.5);
+  CHECK(all.back().end_s < 100 * 9.0 / 0.8 * 1.02);
+}
+
+TEST_CASE("stimuli without a rest between them count as one continuous exposure", "[drive][exposure]") {
+  Exposure exposure(limits, 0);
+  exposure.add({0, 20});
+  CHECK(exposure.earliest_start_s(20.1, 5) == Approx(20.1));
+  CHECK(exposure.earliest_start_s(20.1, 15) == Approx(20.5));  // after a rest
+}
+
+TEST_CASE("a restart forgets nothing: history and session start come from the database",
+          "[drive][exposure]") {
+  Exposure before(limits, 1000);
+  std::vector<Exposed> presented;
+  for (double t = 1000; t < 1050; t += 10) presented.push_back({t, t + 9.4});
+  for (const Exposed& e : presented) before.add(e);
+  const Exposure after(limits, 1000, presented);
+  CHECK(after.earliest_start_s(1051, 9) == before.earliest_start_s(1051, 9));
+  CHECK(after.earliest_start_s(1051, 9) > 1051);
+  CHECK_THROWS_WITH(after.earliest_start_s(4595, 9), "the session's time of 60.0 min is used up");
+}
+
+TEST_CASE("a live session needs a measured sound level below 22.4 kHz", "[drive][exposure]") {
+  const std::vector<SoundLevel> measured{{8000, 80}, {20000, 70}, {30000, 120}};
+  CHECK(sound_problem(22400, 1, {}).empty());
+  CHECK_FALSE(sound_problem(22399, 1, {}).empty());
+  CHECK_FALSE(sound_problem(7000, 0.1, measured).empty());  // outside the measured range
+  CHECK_FALSE(sound_problem(8000, 1, measured).empty());
+  CHECK(sound_problem(8000, 0.5, measured).empty());         // 74 dB
+  CHECK_FALSE(sound_problem(15000, 0.6, measured).empty());  // the louder neighbour counts
+  CHECK_FALSE(sound_problem(26000, 1, measured).empty());
+  CHECK(sound_problem(26000, 0.3, measured).empty());
+}

@@ -1,0 +1,109 @@
+#include "station/limits/finger_account.hpp"
+#include "station/system/clock_watch.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+using limits::finger_history;
+
+namespace {
+
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr double kNow_s = 1.8e9;
+
+/// A session of one segment that began `ago_s` before now, with its monotonic clock at 5 s.
+store::StoredSession session_of(double ago_s) {
+  store::StoredSession session;
+  records::SegmentStart segment;
+  segment.monotonic_ns = 5 * kSecond_ns;
+  segment.realtime_ns = static_cast<std::int64_t>(kNow_s - ago_s) * kSecond_ns;
+  session.segments.push_back(segment);
+  return session;
+}
+
+void add(store::StoredSession& session, double at_s, const std::string& kind, const std::string& value) {
+  records::EventRow event;
+  event.time_ns = 5 * kSecond_ns + static_cast<std::int64_t>(at_s * 1e9);
+  event.kind = kind;
+  event.value = value;
+  event.trial_index = 0;
+  session.events.push_back(event);
+}
+
+}  // namespace
+
+TEST_CASE("stimuli come back from the database at their wall-clock times", "[session][limits]") {
+  auto session = session_of(100);
+  add(session, 60, "stimulus", "8.5");
+  const auto history = finger_history({session}, kNow_s, 30);
+  REQUIRE(history.stimuli.size() == 1);
+  CHECK(history.stimuli[0].start_s - kNow_s == Approx(-40).margin(1e-5));
+  CHECK(history.stimuli[0].end_s - kNow_s == Approx(-31.5).margin(1e-5));
+  CHECK(history.period_start_s == Approx(kNow_s - 100).epsilon(1e-12));
+}
+
+TEST_CASE("a trial that a crash cut off counts as the longest stimulus", "[session][limits]") {
+  auto session = session_of(20);
+  add(session, 10, "presented", "");
+  const auto history = finger_history({session}, kNow_s, 30);
+  REQUIRE(history.stimuli.size() == 1);
+  CHECK(history.stimuli[0].end_s - kNow_s == Approx(0).margin(1e-5));  // not in the future
+  records::BlockRecord block;
+  block.trials.emplace_back();
+  session.blocks.push_back(block);  // negative control: the trial ended and has recorded its stimulus itself
+  CHECK(finger_history({session}, kNow_s, 30).stimuli.empty());
+}
+
+TEST_CASE("a crash does not begin a new period of exposure, a pause of half an hour does",
+          "[session][limits]") {
+  auto earlier = session_of(3000);
+  add(earlier, 1500, "stimulus", "1");  // active until 1500 s ago
+  CHECK(finger_history({earlier}, kNow_s, 30).period_start_s == Approx(kNow_s - 3000).epsilon(1e-12));
+  auto long_ago = session_of(5000);
+  add(long_ago, 1000, "stimulus", "1");  // active until 4000 s ago, that is, 1000 s before the other began
+  CHECK(finger_history({earlier, long_ago}, kNow_s, 30).period_start_s ==
+        Approx(kNow_s - 5000).epsilon(1e-12));
+  auto rested = session_of(3000);
+  add(rested, 1000, "stimulus", "1");  // active until 2000 s ago
+  CHECK(finger_history({rested}, kNow_s, 30).period_start_s == kNow_s);
+}
+
+TEST_CASE("the intervals of a trial keep the limits together, however long the session",
+          "[session][limits]") {
+  const limits::ExposureLimits limits{8e-6, 30, 0.8, 1e9};
+  limits::FingerAccount account(limits, {{}, kNow_s}, 0, kNow_s);
+  const std::vector<limits::Exposed> trial{{0.8, 9.8}, {10.4, 19.4}};
+  double shown_s = 0;
+  std::int64_t now_ns = 0;
+  for (int k = 0; k < 20; ++k) {
+    now_ns = account.earliest_ns(now_ns, trial);
+    for (const auto& part : trial)
+      account.add(now_ns + static_cast<std::int64_t>(1e9 * part.start_s),
+                  now_ns + static_cast<std::int64_t>(1e9 * part.end_s));
+    now_ns += 19'500'000'000;
+    shown_s += 18;
+  }
+  CHECK(shown_s / (1e-9 * static_cast<double>(now_ns)) < 0.81);
+  CHECK(shown_s / (1e-9 * static_cast<double>(now_ns)) > 0.75);
+}
+
+TEST_CASE("an exact stretch of the continuous time is allowed, a longer one never", "[session][limits]") {
+  const limits::ExposureLimits limits{8e-6, 30, 0.8, 1e9};
+  const limits::FingerAccount account(limits, {{}, kNow_s}, 0, kNow_s);
+  CHECK(account.earliest_ns(0, {{0.8, 30.8}}) == 0);
+  CHECK_THROWS_AS(account.earliest_ns(0, {{0.8, 30.9}}), limits::LimitExceeded);
+}
+
+TEST_CASE("sleep and a clock that was set are told apart, and steering is neither", "[session][clock]") {
+  system::ClockWatch watch({0, 0, 100 * kSecond_ns});
+  auto news = watch.look({kSecond_ns, kSecond_ns, 101 * kSecond_ns + 400'000});
+  CHECK_FALSE(news.suspended_s.has_value());
+  CHECK_FALSE(news.jump_s.has_value());
+  news = watch.look({2 * kSecond_ns, 62 * kSecond_ns, 162 * kSecond_ns});
+  REQUIRE(news.suspended_s.has_value());
+  CHECK(*news.suspended_s == Approx(60));
+  CHECK_FALSE(news.jump_s.has_value());
+  news = watch.look({3 * kSecond_ns, 63 * kSecond_ns, 103 * kSecond_ns});
+  CHECK_FALSE(news.suspended_s.has_value());
+  REQUIRE(news.jump_s.has_value());
+  CHECK(*news.jump_s == Approx(-60));
+}

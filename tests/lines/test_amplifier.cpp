@@ -1,0 +1,132 @@
+#include <thread>
+
+#include "station/lines/amplifier.hpp"
+#include "station/lines/guarded_amplifier.hpp"
+#include "station/lines/simulated_lines.hpp"
+#include "station/system/clocks.hpp"
+#include "station/terms/usage_error.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/shared_lines.hpp"
+
+using namespace turnpoint;
+using namespace turnpoint::lines;
+using drive::AmplifierState;
+using terms::FaultKind;
+
+namespace {
+
+// Waits for something that another thread does. After 5 s the test fails; the limit is not a measurement.
+template <typename Condition>
+bool eventually(Condition&& condition) {
+  const std::int64_t end = system::monotonic_ns() + 5'000'000'000;
+  while (!condition()) {
+    if (system::monotonic_ns() > end) return false;
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+struct Bench {
+  std::shared_ptr<SimulatedLines> lines = std::make_shared<SimulatedLines>(SharedLines::count);
+  std::unique_ptr<drive::Amplifier> amplifier = guarded(lines);
+
+  void enable() {
+    amplifier->audio_alive();
+    amplifier->session_alive();
+    REQUIRE_FALSE(amplifier->arm());
+    REQUIRE_FALSE(amplifier->enable());
+  }
+};
+
+/// "" on success, otherwise the reason.
+std::string why_not(const drive::Amplifier::Refusal& refusal) {
+  return refusal ? terms::describe(*refusal) : "";
+}
+
+}  // namespace
+
+TEST_CASE("the guard thread drops the enable line on a fault edge and latches it",
+          "[lines][amplifier][threads]") {
+  Bench bench;
+  bench.enable();
+  CHECK(bench.lines->level(0));
+  bench.lines->set(2, true, system::monotonic_ns());
+  CHECK(eventually([&] { return bench.amplifier->state() == AmplifierState::faulted; }));
+  CHECK_FALSE(bench.lines->level(0));
+  CHECK(bench.amplifier->reaction_ns() >= 0);
+  CHECK(why_not(bench.amplifier->enable()) == "amplifier reports a fault: latched; clear it first");
+  CHECK(why_not(bench.amplifier->clear()) == "amplifier reports a fault");
+  bench.lines->set(2, false, system::monotonic_ns());
+  CHECK_FALSE(bench.amplifier->clear());  // the level is read even if no edge was seen
+  CHECK(bench.amplifier->state() == AmplifierState::disarmed);
+}
+
+TEST_CASE("a stop that was pressed before the start is seen, and silence of the audio thread trips",
+          "[lines][amplifier][threads]") {
+  const auto lines = std::make_shared<SimulatedLines>(SharedLines::count);
+  lines->set(SharedLines::stop, true, 0);
+  const auto amplifier = guarded(lines);
+  amplifier->audio_alive();
+  amplifier->session_alive();
+  CHECK(why_not(amplifier->arm()) == "emergency stop pressed");
+  Bench other;
+  other.enable();
+  CHECK(eventually([&] { return other.amplifier->state() == AmplifierState::faulted; }));
+  CHECK(other.amplifier->fault().kind == FaultKind::audio_silent);
+  CHECK_FALSE(other.lines->level(0));
+}
+
+TEST_CASE(
+    "a chip that vanishes is a latched fault; once it is back, an operator can arm, and nothing does so "
+    "alone",
+    "[lines][amplifier][threads]") {
+  Bench bench;
+  bench.enable();
+  bench.lines->remove();
+  CHECK(eventually([&] { return bench.amplifier->state() == AmplifierState::faulted; }));
+  CHECK(bench.amplifier->fault().kind == FaultKind::lines_gone);
+  CHECK(bench.amplifier->fault().detail == "simulated gpio chip: No such device");
+  bench.amplifier->disable();
+  bench.amplifier->trip(FaultKind::suspended, "another reason");  // the first fault is kept
+  CHECK(bench.amplifier->fault().kind == FaultKind::lines_gone);
+  CHECK(why_not(bench.amplifier->clear()) == "GPIO lines disconnected: simulated gpio chip: No such device");
+  bench.lines->set(SharedLines::stop, true, system::monotonic_ns());  // pressed while the chip was away
+  bench.lines->put_back();
+  const auto cleared = [&] { return why_not(bench.amplifier->clear()); };
+  CHECK(eventually([&] { return cleared() == "emergency stop pressed"; }));
+  CHECK(bench.amplifier->state() == AmplifierState::faulted);
+  bench.lines->set(SharedLines::stop, false, system::monotonic_ns());
+  CHECK(eventually([&] { return cleared().empty(); }));
+  CHECK(bench.amplifier->state() == AmplifierState::disarmed);
+  CHECK_FALSE(bench.lines->level(SharedLines::enable));
+  bench.enable();
+  CHECK(bench.lines->level(SharedLines::enable));
+}
+
+TEST_CASE("an amplifier is opened from the rig's text, with every mistake named", "[lines][amplifier]") {
+  CHECK(open_amplifier("sim:")->state() == AmplifierState::disarmed);
+  CHECK_THROWS_WITH(open_amplifier("gpio:fault=F"), "amplifier 'gpio:fault=F' has no enable line");
+  CHECK_THROWS_WITH(open_amplifier("gpio:enable=A,foo=B"),
+                    "'gpio:enable=A,foo=B': unknown 'foo'; allowed enable, heartbeat, fault, stop, active, "
+                    "fault_active, stop_active, read_back");
+  CHECK_THROWS_AS(open_amplifier("gpio:enable=NO_SUCH_LINE"), LineError);
+  CHECK_THROWS_AS(open_amplifier("usb:1"), terms::UsageError);
+  CHECK_THROWS_AS(open_amplifier("nothing"), terms::UsageError);
+}
+
+TEST_CASE("the simulated amplifier keeps the same order of states", "[lines][amplifier]") {
+  const auto amplifier = open_amplifier("sim:");
+  CHECK(why_not(amplifier->enable()) == "amplifier not armed");
+  CHECK(why_not(amplifier->arm()) == "audio thread not responding");
+  amplifier->audio_alive();
+  CHECK(why_not(amplifier->arm()) == "session not responding");
+  amplifier->session_alive();
+  CHECK_FALSE(amplifier->arm());
+  CHECK_FALSE(amplifier->enable());
+  amplifier->trip(FaultKind::suspended, "for 3 s");
+  CHECK(amplifier->state() == AmplifierState::faulted);
+  CHECK(terms::describe(amplifier->fault()) == "machine was suspended: for 3 s");
+  CHECK(amplifier->arm());
+  CHECK_FALSE(amplifier->clear());
+  CHECK(amplifier->state() == AmplifierState::disarmed);
+}

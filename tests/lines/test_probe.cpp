@@ -1,0 +1,28 @@
+#include "station/lines/probe.hpp"
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace turnpoint::lines;
+
+TEST_CASE("an input device that can be read but not written is reported with the kernel's reason",
+          "[lines][probe]") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "event0");
+  std::ofstream(folder / "mouse0");
+  // Even root can only read a directory. This simulates the station's service, which may only read what was
+  // allowed as "r".
+  std::filesystem::create_directory(folder / "event1");
+  const auto devices = try_input_devices(folder.path);
+  CHECK(devices.opened == 1);
+  CHECK(devices.refused == std::vector<std::string>{folder / "event1" + ": Is a directory"});
+}
+
+TEST_CASE("a machine without input devices has none to report", "[lines][probe]") {
+  const auto devices = try_input_devices("/no/such/folder");
+  CHECK(devices.opened == 0);
+  CHECK(devices.refused.empty());
+}

@@ -1,0 +1,191 @@
+#include "station/report/stored_trials.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "station/protocol/conditions.hpp"
+#include "station/report/html.hpp"
+#include "station/simulation/rehearsal.hpp"
+#include "station/system/read_file.hpp"
+#include "station/text/toml.hpp"
+#include "tests/support/catch.hpp"
+
+// Tests the way from a protocol file and its rows to a report.
+
+using namespace turnpoint;
+
+namespace {
+
+std::string shipped(const std::string& name) {
+  return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  REQUIRE(text.find(from) != std::string::npos);
+  return text.replace(text.find(from), from.size(), to);
+}
+
+report::SessionData data_of(const std::string& source, const std::string& observer = "sim",
+                            int sequence_index = 0) {
+  const auto protocol = protocol::parse(source, "p.toml");
+  const auto rehearsal = simulation::rehearse(
+      protocol, sequence_index, 5, simulation::rehearser(observer::Observer(observer::parse(observer))));
+  report::SessionData data;
+  report::add_trials(rehearsal.blocks, protocol, data);
+  data.replicates = 40;
+  return data;
+}
+
+nlohmann::json report_of(const report::SessionData& data) {
+  return nlohmann::json::parse(report::to_json(report::summarise(data)));
+}
+
+/// A change of friction that is present in half of the trials; `sign` -1 makes it a decrease.
+std::string yes_no(const std::string& analysis, int sign = 1, int repeats = 40) {
+  auto source = shipped("speed-accuracy");
+  source.erase(source.find("[[sequence]]"));
+  source.erase(source.find("[instructions.speed]"));
+  const auto list = sign > 0 ? "[0.0, 0.0, 0.0, 0.05, 0.1, 0.3]" : "[0.0, 0.0, 0.0, -0.05, -0.1, -0.3]";
+  source = replaced(source, "values = [-0.4, -0.2, -0.1, 0.1, 0.2, 0.4]", std::string("values = ") + list);
+  source = replaced(source, "repeats = 14", "repeats = " + std::to_string(repeats));
+  source = replaced(source, "range = [-0.4, 0.4]", sign > 0 ? "range = [0.0, 0.4]" : "range = [-0.4, 0.0]");
+  source = replaced(source, "smoother = \"change < 0\", rougher = \"change > 0\"",
+                    sign > 0 ? "smoother = \"change == 0\", rougher = \"change > 0\""
+                             : "smoother = \"change < 0\", rougher = \"change == 0\"");
+  source = replaced(source, "explore_s = 5.0", "explore_s = 5.0\ndeadline_s = 4.0");
+  const auto factor = source.find("[[factor]]\nname = \"instruction\"");
+  source.erase(factor, source.find("[scene.before]") - factor);
+  return source + "\n[[block]]\nname = \"main\"\nprocedures = [\"levels\"]\n\n" + analysis;
+}
+
+}  // namespace
+
+TEST_CASE("a numeric factor gives one curve a level, two factors one a combination", "[app]") {
+  auto source = replaced(shipped("demo"), "repeats = 2", "repeats = 12") + "\n[analysis]\n";
+  const auto pooled = data_of(source);
+  CHECK(pooled.conditions.empty());
+  CHECK(report_of(pooled)["fits"].size() == 1);
+  const auto by_mark = report_of(data_of(source + "by = \"mark_mm\"\n"));
+  REQUIRE(by_mark["fits"].size() == 2);
+  CHECK(by_mark["fits"][0]["name"] == "mark 150 mm");
+  CHECK(by_mark["fits"][1]["name"] == "mark 160 mm");
+  CHECK(by_mark["differences"][0]["first"] == "mark 150 mm");
+  const auto finger = replaced(source, "[scene.edge]",
+                               "[[factor]]\nname = \"finger\"\nlevels = [\"wet\", \"dry\"]\n\n[scene.edge]");
+  const auto both = data_of(finger + "by = [\"finger\", \"mark_mm\"]\n");
+  CHECK(both.conditions == std::vector<std::string>{"wet, mark 150 mm", "wet, mark 160 mm",
+                                                    "dry, mark 150 mm", "dry, mark 160 mm"});
+  CHECK(report_of(both)["fits"].size() == 4);
+}
+
+TEST_CASE("settings are told apart by the levels of a factor", "[app]") {
+  const auto source = shipped("boundary-adjustment");
+  REQUIRE(source.find("mark_mm") != std::string::npos);
+  const auto settings = report_of(data_of(source + "\n[analysis]\nby = \"mark_mm\"\n"))["settings"];
+  CHECK(settings.size() > 1);
+  CHECK(settings[0]["condition"].get<std::string>().find("mark ") == 0);
+}
+
+TEST_CASE("the order of conditions is the file's, whatever block came first", "[app]") {
+  const auto first = report_of(data_of(shipped("speed-accuracy"), "sim", 0));
+  const auto second = report_of(data_of(shipped("speed-accuracy"), "sim", 1));
+  const auto began = [](int index) {
+    return data_of(shipped("speed-accuracy"), "sim", index).trials.back().instruction;
+  };
+  CHECK(began(0) != began(1));  // the order is counterbalanced
+  for (const auto& report : {first, second}) {
+    REQUIRE(report["instructions"].size() == 2);
+    CHECK(report["instructions"][0]["instruction"] == "speed");
+    CHECK(report["differences"][0]["first"] == "speed");
+    CHECK(report["differences"][0]["second"] == "accuracy");
+  }
+}
+
+TEST_CASE("by that names another factor takes the instructions together", "[app]") {
+  auto source = replaced(shipped("speed-accuracy"), "by = \"instruction\"", "by = \"finger\"");
+  source = replaced(source, "[scene.before]",
+                    "[[factor]]\nname = \"finger\"\nlevels = [\"wet\", \"dry\"]\n\n[scene.before]");
+  const auto report = report_of(data_of(source));
+  REQUIRE(report["instructions"].size() == 2);
+  CHECK(report["instructions"][0]["instruction"] == "wet");
+}
+
+TEST_CASE("yes/no is analysed as yes/no", "[app]") {
+  // d' grows in proportion to the change, with 1.349 at .1; 15 % false alarms.
+  const auto* observer = "sim:threshold=0.1,lapse=0,criterion=1.036";
+  for (const int sign : {1, -1}) {
+    const auto data = data_of(yes_no("", sign, 120), observer);
+    CHECK(data.design == report::Design::yes_no);
+    CHECK(data.positive == (sign > 0 ? 1 : 0));
+    const auto report = report_of(data);
+    REQUIRE(report["detection"].size() == 4);
+    CHECK(report["detection"][1]["level"] == 0.1);
+    CHECK(report["detection"][1]["d_prime"]["value"].get<double>() == Approx(1.349).margin(0.45));
+    CHECK(report["detection"][1]["criterion"]["value"].get<double>() == Approx(1.036 - 0.6745).margin(0.25));
+    const auto& fit = report["fits"][0];
+    CHECK(fit["guess"].get<double>() == Approx(0.15).margin(0.05));
+    CHECK(fit["threshold"].is_number());
+    CHECK(fit["positive"].get<std::string>() == (sign > 0 ? "\u201crougher\u201d" : "\u201csmoother\u201d"));
+    const auto html = report::to_html(report::summarise(data));
+    CHECK(html.find("Sensitivity and criterion") != std::string::npos);
+    CHECK(html.find("reversed") == std::string::npos);
+    CHECK(html.find("inf") == std::string::npos);
+  }
+}
+
+TEST_CASE("same-different counts pairs that are the same as false alarms", "[app]") {
+  const auto data = data_of(shipped("friction-same-different"), "sim:threshold=-14,lapse=0");
+  const auto report = report_of(data);
+  CHECK(report["fits"][0]["levels"][0]["level"].is_null());
+  CHECK(report["fits"][0]["guess"].get<double>() == Approx(0.25).margin(0.12));
+}
+
+TEST_CASE("show decides what the report contains, each of its values", "[app]") {
+  const auto source = [](const std::string& show) {
+    return replaced(shipped("speed-accuracy"),
+                    "show = [\"psychometric\", \"ez\", \"bis\", \"lisas\", \"caf\"]",
+                    "show = [" + show + "]");
+  };
+  const auto none = data_of(source(""), "sim:threshold=0.2");
+  struct Part {
+    const char *word, *mark;
+  };
+  const Part parts[] = {{"psychometric", "Psychometric function"},
+                        {"ez", "EZ boundary"},
+                        {"bis", "BIS"},
+                        {"lisas", "LISAS"},
+                        {"ies", "Inverse efficiency"},
+                        {"caf", "Conditional accuracy"},
+                        {"dprime", "Sensitivity and criterion"},
+                        {"trace", "Levels in the order presented"}};
+  const auto page = [](const report::SessionData& data) { return report::to_html(report::summarise(data)); };
+  const auto bare = page(none), bare_json = report::to_json(report::summarise(none));
+  CHECK(bare.find("Proportion correct") != std::string::npos);
+  for (const auto& part : parts) {
+    INFO(part.word);
+    CHECK(bare.find(part.mark) == std::string::npos);
+    auto data = none;
+    data.show = {part.word};
+    const auto html = page(data);
+    CHECK(html.find(part.mark) != std::string::npos);
+    for (const auto& other : parts)
+      if (&other != &part) CHECK(html.find(other.mark) == std::string::npos);
+    if (std::string(part.word) != "trace") CHECK(report::to_json(report::summarise(data)) != bare_json);
+  }
+}
+
+TEST_CASE("a report has the ids of answers, and the reversals that a staircase averaged", "[app]") {
+  const auto source = replaced(shipped("friction-staircase"), "initial_down = 1 ",
+                               "discard_reversals = 4\ninitial_down = 1 ");
+  const auto data = data_of(source, "sim:threshold=-16");
+  CHECK(data.choices == std::vector<std::string>{"first", "second"});
+  CHECK(data.level_label == "Contrast (dB)");
+  REQUIRE(data.staircases.size() == 2);
+  CHECK(data.staircases[0].basis == "reversals 5 to 10 of 10");
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("reversals 5 to 10 of 10") != std::string::npos);
+  CHECK(html.find("Threshold (dB)") != std::string::npos);
+  CHECK(html.find("BIS") == std::string::npos);  // a single condition has no BIS
+  const auto demo =
+      data_of(replaced(shipped("demo"), "[\"en\", \"de\", \"ja\"]", "[\"en\", \"de\", \"ja\"]"));
+  CHECK(demo.choices == std::vector<std::string>{"left", "right"});
+}

@@ -1,0 +1,42 @@
+#include <string>
+
+#include "station/observer/observer.hpp"
+#include "station/session/session.hpp"
+#include "station/simulation/rehearsal.hpp"
+#include "station/store/read.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace turnpoint;
+
+TEST_CASE("a rehearsed session has the trials, answers and times of one that ran", "[session][rehearsal]") {
+  const auto* protocol = GENERATE("demo", "boundary-adjustment");
+  const TemporaryFolder folder;
+  session::Setup setup;
+  setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml");
+  setup.protocol = protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol + ".toml");
+  setup.participant = "P01";
+  setup.database = folder / "a.sqlite";
+  setup.run_mode = terms::RunMode::simulated;
+  setup.language = setup.protocol.languages.front();
+  setup.observer = "sim";
+  setup.seed = 7;
+  session::Inputs inputs;
+  const auto summary = session::run(setup, nullptr, inputs);
+  const auto stored = store::read_session(setup.database, summary.session_id);
+  const auto rehearsed =
+      simulation::rehearse(setup.protocol, 0, 7, simulation::rehearser(observer::Observer({})));
+  REQUIRE(rehearsed.blocks.size() == stored.blocks.size());
+  REQUIRE(rehearsed.trials == summary.trials);
+  for (std::size_t b = 0; b < stored.blocks.size(); ++b) {
+    REQUIRE(rehearsed.blocks[b].trials.size() == stored.blocks[b].trials.size());
+    for (std::size_t t = 0; t < stored.blocks[b].trials.size(); ++t) {
+      const auto& one = rehearsed.blocks[b].trials[t];
+      const auto& other = stored.blocks[b].trials[t];
+      CHECK((one.level == other.level && one.response == other.response && one.correct == other.correct));
+      CHECK(one.outcome == other.outcome);
+      REQUIRE(one.response_time_s.has_value() == other.response_time_s.has_value());
+      if (one.response_time_s) CHECK(*one.response_time_s == Approx(*other.response_time_s).margin(1e-8));
+    }
+  }
+}

@@ -1,0 +1,410 @@
+// Compares the cue guard with an observer that does whole sessions (cue_brute_force.hpp), and tests its
+// report on protocols with a known leak.
+#include "station/simulation/cue_guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include "station/protocol/resolve.hpp"
+#include "station/scene/planner.hpp"
+#include "station/simulation/cue_table.hpp"
+#include "station/simulation/parallel.hpp"
+#include "station/system/read_file.hpp"
+#include "station/text/toml.hpp"
+#include "tests/simulation/cue_brute_force.hpp"
+#include "tests/simulation/random_protocol.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+const std::string root = TURNPOINT_SOURCE_DIR;
+
+std::string replaced(std::string where, const std::string& from, const std::string& to) {
+  const auto at = where.find(from);
+  REQUIRE(at != std::string::npos);
+  return where.replace(at, from.size(), to);
+}
+
+std::string source(const std::string& name) { return system::read_file(root + "/protocols/" + name); }
+
+/// A rig with a closed-form model, so that a survey is fast.
+rig::Rig quick() {
+  auto text = system::read_file(root + "/deploy/rigs/simulated.toml");
+  text = replaced(text, "edges = \"clamped\"", "edges = \"supported\"");
+  return rig::parse(replaced(text, "thickness_mm = 2.0", "thickness_mm = 4.2"), "r.toml");
+}
+
+simulation::CueGuard guard_of(const std::string& text) {
+  const auto protocol = protocol::parse(text, "p.toml");
+  return simulation::cue_guard(protocol, quick(), protocol::survey(protocol, quick()));
+}
+
+const simulation::CueReport& report(const simulation::CueGuard& guard, const std::string& cue) {
+  for (const auto& report : guard.reports)
+    if (report.cue == cue) return report;
+  FAIL("no report of " + cue + " " + guard.not_compared + guard.nothing_to_tell);
+  throw std::logic_error("not reached");
+}
+
+double accuracy(const std::string& text, const std::string& cue) {
+  return report(guard_of(text), cue).accuracy;
+}
+
+struct Compared {
+  std::string text, faults;
+  double worst = 0, error = 0;
+};
+
+Compared compare(unsigned seed, std::map<std::string, int>& features) {
+  Compared compared{};
+  compared.text = tests::random_protocol(seed, features);
+  const auto protocol = protocol::parse(compared.text, "random.toml");
+  const auto survey = protocol::survey(protocol, quick());
+  if (!survey.problems.empty())
+    return {compared.text, "cannot run: " + format(survey.problems.front()), 0, 0};
+  const auto guard = simulation::cue_guard(protocol, quick(), survey);
+  if (guard.reports.empty())
+    return {compared.text, "no reports: " + guard.not_compared + guard.nothing_to_tell, 0, 0};
+  for (const auto& expected : tests::cue_brute_force(protocol, quick())) {
+    const auto& stated = report(guard, expected.cue);
+    const auto note = [&](const std::string& what, double said, double found, double error) {
+      compared.worst = std::max(compared.worst, std::fabs(said - found));
+      compared.error = std::max(compared.error, error);
+      if (std::fabs(said - found) > 0.02)
+        compared.faults += expected.cue + ", " + what + ": stated " + std::to_string(said) + ", found " +
+                           std::to_string(found) + " +- " + std::to_string(error) + "\n";
+    };
+    const double gain = stated.accuracy - stated.chance, every_level = expected.accuracy - expected.chance;
+    note("gain", gain, std::max(every_level, expected.own_gain.value_or(every_level)), expected.error);
+    if (stated.cue != "always the same key" &&
+        expected.own_gain.has_value() != stated.whole_sessions.has_value())
+      compared.faults += stated.cue + ": sessions of its own, on one side only\n";
+    if (const auto& own = stated.whole_sessions)
+      note("own sessions", own->accuracy - own->chance, *expected.own_gain, expected.own_error);
+    else
+      note("accuracy", stated.accuracy, expected.accuracy, expected.error);
+  }
+  return compared;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "what the guard states is what an observer of one cue reaches in whole sessions, within 2 %, for 200 "
+    "random protocols",
+    "[app][cues]") {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  constexpr int count = 8;  // the release build tests all of them; this build only watches the memory
+#else
+  constexpr int count = 200;
+#endif
+  const char* const asked = std::getenv("TURNPOINT_CUE_SEEDS");
+  const int first = asked ? std::stoi(asked) : 0;
+  std::vector<Compared> compared(count);
+  std::vector<std::map<std::string, int>> used(count);
+  simulation::in_parallel(count, simulation::processors(), {}, [&](int i) {
+    const auto at = static_cast<std::size_t>(i);
+    compared[at] = compare(static_cast<unsigned>(first + i), used[at]);
+  });
+  std::map<std::string, int> coverage;
+  int within = 0;
+  double worst = 0;
+  for (int i = 0; i < count; ++i) {
+    for (const auto& [feature, n] : used[static_cast<std::size_t>(i)]) coverage[feature] += n;
+    within += compared[static_cast<std::size_t>(i)].faults.empty() ? 1 : 0;
+    worst = std::max(worst, compared[static_cast<std::size_t>(i)].worst);
+    INFO("random protocol " << first + i << "\n" << compared[static_cast<std::size_t>(i)].text);
+    CHECK(compared[static_cast<std::size_t>(i)].faults == "");
+  }
+  if (count < 200) return;
+  if (asked) WARN(within << " of " << count << " protocols within 2 %, worst difference " << worst);
+  std::string all;
+  for (const auto& [feature, n] : coverage) {
+    all += feature + ": " + std::to_string(n) + "\n";
+    INFO(feature << " in " << n << " protocols");
+    CHECK(n >= 5);
+  }
+  INFO(all);
+  CHECK(coverage.size() >= 22);
+}
+
+namespace {
+
+/// A pair of scenes: the standard depends on one factor, the target on that factor and on the level.
+const std::string pair_text = R"(format = "friction-protocol/1"
+[protocol]
+id = "pair"
+version = "1"
+title = "Pair"
+languages = ["en"]
+[[factor]]
+name = "level_mm"
+range = [-20.0, 20.0]
+[[factor]]
+name = "mark_mm"
+levels = [150.0, 158.0]
+[scene.standard]
+boundary_mm = "mark_mm"
+edge = "p50"
+displacement_um = 1.0
+[scene.target]
+boundary_mm = "mark_mm + level_mm"
+edge = "p50"
+displacement_um = 1.0
+[task]
+kind = "2ifc"
+intervals = ["standard", "target"]
+correct = "target"
+duration_s = 1.0
+gap_s = 0.5
+device = "touch"
+question = { en = "Which?" }
+choices = [{ id = "a", label = { en = "A" } }, { id = "b", label = { en = "B" } }]
+[timing]
+response_zero = "interval_off"
+deadline_s = 6.0
+iti_s = 0.5
+[[procedure]]
+name = "p"
+kind = "constant-stimuli"
+level = "level_mm"
+values = [4.0, 8.0, 16.0]
+repeats = 8
+[[block]]
+name = "main"
+procedures = ["p"]
+)";
+
+}  // namespace
+
+TEST_CASE(
+    "a standard that depends on a factor, and a target on that and the level, are compared in each trial",
+    "[app][cues]") {
+  const auto guard = guard_of(pair_text);
+  CHECK(report(guard, "strip width").accuracy == Approx(1));
+  CHECK(report(guard, "duration").accuracy == Approx(0.5));
+  CHECK(report(guard, "always the same key").accuracy == Approx(0.5));
+}
+
+TEST_CASE("a target that differs in both directions is found by whoever knows the standard", "[app][cues]") {
+  const auto both = replaced(pair_text, "values = [4.0, 8.0, 16.0]", "values = [-8.0, 8.0]");
+  const auto fixed = replaced(both, "levels = [150.0, 158.0]", "levels = [155.0]");
+  CHECK(accuracy(fixed, "strip width") == Approx(1));
+}
+
+TEST_CASE("a target with ramps of its own is recognised by its duration", "[app][cues]") {
+  const auto text = source("friction-2ifc.toml");
+  const std::string contrast = "friction_contrast_dB = \"contrast_dB\"";
+  CHECK(accuracy(replaced(text, contrast, contrast + "\nramp_ms = 300"), "duration") == Approx(1));
+  CHECK(accuracy(text, "duration") == Approx(0.5));
+}
+
+TEST_CASE("of three intervals a leak finds the odd one always, and chance is a third", "[app][cues]") {
+  const auto guard = guard_of(source("two-spots-oddity.toml"));
+  CHECK(report(guard, "strip width").accuracy == Approx(1));
+  CHECK(report(guard, "duration").accuracy == Approx(1.0 / 3));
+  CHECK(report(guard, "duration").chance == Approx(1.0 / 3));
+}
+
+TEST_CASE("a mark that stays in one place lets the strip's width tell the side, one that moves less so",
+          "[app][cues]") {
+  const auto text = source("boundary-constant.toml");
+  const auto fixed = guard_of(replaced(text, "levels = [152.0, 158.0, 164.0]", "levels = [158.0]"));
+  const auto moving = guard_of(text);
+  CHECK(report(fixed, "strip width").accuracy == Approx(1));
+  CHECK(report(moving, "strip width").accuracy < 0.95);
+  CHECK(report(moving, "always the same key").accuracy == Approx(0.5));
+}
+
+TEST_CASE("an answer that depends on the distance from the mark is found by a band of the cue",
+          "[app][cues]") {
+  auto text =
+      replaced(source("boundary-constant.toml"), "levels = [152.0, 158.0, 164.0]", "levels = [158.0]");
+  text = replaced(text, "correct = { left = \"offset_mm < 0\", right = \"offset_mm > 0\" }",
+                  "correct = { left = \"abs(offset_mm) < 10\", right = \"abs(offset_mm) > 10\" }");
+  CHECK(accuracy(text, "strip width") == Approx(1));
+}
+
+TEST_CASE("practice is kept apart: its levels neither count nor take those of the main blocks away",
+          "[app][cues]") {
+  const auto with = guard_of(source("boundary-constant.toml"));
+  auto text = source("boundary-constant.toml");
+  text = replaced(text, "levels = [-28.0, 28.0]\ntrials", "levels = [3.0, 8.0, 16.0, 28.0]\ntrials");
+  const auto other = guard_of(text);
+  for (const auto& one : with.reports) {
+    INFO(one.cue);
+    CHECK(report(other, one.cue).accuracy == Approx(one.accuracy).epsilon(0).margin(1e-12));
+  }
+  // As in this file, practice runs the main procedure.
+  CHECK(accuracy(source("speed-accuracy.toml"), "amplitude at the wide end") > 0.9);
+}
+
+TEST_CASE("trials are weighted by how often they come, catch trials too", "[app][cues]") {
+  const auto text =
+      replaced(source("boundary-constant.toml"), "values = [-28.0, -16.0, -8.0, -3.0, 3.0, 8.0, 16.0, 28.0]",
+               "values = [-3.0, 3.0, 8.0, 16.0]");
+  CHECK(accuracy(text, "always the same key") == Approx(0.75));
+  // The left answer is right in all catch trials.
+  const std::string block = "procedures = [\"levels\"]";
+  const auto caught = replaced(text, block, block + "\ncatch = { rate = 0.5, offset_mm = -28.0 }");
+  // Half of all trials are catch trials: P(right) = 0.5 x 0.75.
+  CHECK(accuracy(caught, "always the same key") == Approx(0.625));
+  // The session ends after 12 of 40 trials, and chance decides which ones.
+  const auto cut = replaced(text, block, block + "\ntrials = 12");
+  CHECK(accuracy(cut, "always the same key") == Approx(0.75));
+}
+
+TEST_CASE("of a list that is not shuffled and cut short only the first levels count", "[app][cues]") {
+  const auto text = replaced(pair_text, "values = [4.0, 8.0, 16.0]",
+                             "order = { shuffle = \"none\" }\nvalues = [4.0, 8.0, 0.0]");
+  const auto cut = replaced(text, "procedures = [\"p\"]", "procedures = [\"p\"]\ntrials = 2");
+  CHECK(accuracy(text, "strip width") == Approx(5.0 / 6));
+  CHECK(accuracy(cut, "strip width") == Approx(1));
+}
+
+namespace {
+
+/// Roving changes loudness and amplitude more than all but the largest levels do.
+std::string roved_staircase(int trials) {
+  auto text = replaced(pair_text, "kind = \"constant-stimuli\"", "kind = \"up-down\"");
+  text = replaced(text, "values = [4.0, 8.0, 16.0]\nrepeats = 8",
+                  "start = 12.0\nmin = 0.5\nmax = 20.0\nn_down = 2\nstep = [4.0, 2.0]\nstop = { trials = " +
+                      std::to_string(trials) + " }");
+  const std::string target = "boundary_mm = \"mark_mm + level_mm\"\nedge = \"p50\"\ndisplacement_um = 1.0";
+  text = replaced(text, target,
+                  "boundary_mm = \"mark_mm\"\nedge = \"p50\"\ndisplacement_um = \"1 + 0.03 * level_mm\"\n"
+                  "rove_dB = 3.0");
+  return replaced(text, "boundary_mm = \"mark_mm\"\nedge = \"p50\"\ndisplacement_um = 1.0",
+                  "boundary_mm = \"mark_mm\"\nedge = \"p50\"\ndisplacement_um = 1.0\nrove_dB = 3.0");
+}
+
+}  // namespace
+
+TEST_CASE("a cue that helps only with the easiest levels is found in sessions that it leads itself",
+          "[app][cues]") {
+  const auto guard = guard_of(roved_staircase(60));
+  const auto& amplitude = report(guard, "amplitude at the wide end");
+  REQUIRE(amplitude.whole_sessions);
+  // The staircase converges on 71 %.
+  CHECK(amplitude.whole_sessions->accuracy == Approx(0.72).margin(0.03));
+  CHECK(amplitude.accuracy >= amplitude.whole_sessions->accuracy);
+  // Duration is uninformative at every level, so the guard need not simulate sessions.
+  CHECK(report(guard, "duration").accuracy == Approx(0.5));
+  CHECK(report(guard, "duration").whole_sessions->error == 0);
+}
+
+TEST_CASE("easy practice adds nothing to what a cue reaches in sessions that it leads itself",
+          "[app][cues]") {
+  const auto main = std::string("[[block]]\nname = \"main\"");
+  const auto practised = replaced(roved_staircase(60), main,
+                                  "[[block]]\nname = \"practice\"\nlevel = \"level_mm\"\nlevels = [20.0]\n"
+                                  "trials = 60\npractice = true\n" +
+                                      main);
+  const auto reached = [](const std::string& text) {
+    const auto guard = guard_of(text);
+    const auto& own = report(guard, "amplitude at the wide end").whole_sessions;
+    REQUIRE(own);
+    return own->accuracy;
+  };
+  // If they were counted, sixty trials in which the cue is always right would raise 0.72 to 0.86.
+  CHECK(reached(practised) == Approx(reached(roved_staircase(60))).margin(0.03));
+}
+
+TEST_CASE("what a rule reaches is counted on other draws than those that chose it", "[app][cues]") {
+  // Roving hides the amplitude, which does not depend on the level. The best of many bands only fits random
+  // draws.
+  std::map<std::string, int> features;
+  const auto guard = guard_of(tests::random_protocol(20076, features));
+  const auto& amplitude = report(guard, "amplitude at the wide end");
+  CHECK(amplitude.accuracy - amplitude.chance < 0.01);
+}
+
+TEST_CASE("two cues share their sessions only if they agree on every level that came up", "[app][cues]") {
+  // The amplitude does not tell 155 mm from 158 mm; the strip's width does. No grid of levels has an 8.
+  std::map<std::string, int> features;
+  const auto guard = guard_of(tests::random_protocol(31103, features));
+  REQUIRE(report(guard, "strip width").whole_sessions);
+  CHECK(report(guard, "amplitude at the wide end").whole_sessions->accuracy < 0.98);
+  CHECK(report(guard, "strip width").whole_sessions->accuracy > 0.995);
+}
+
+TEST_CASE("a count of sessions that had to end early says how little precise it is", "[app][cues]") {
+  const auto error_of = [](const std::string& text) {
+    const auto guard = guard_of(text);
+    const auto& own = report(guard, "amplitude at the wide end").whole_sessions;
+    REQUIRE(own);
+    return own->error;
+  };
+  CHECK(error_of(roved_staircase(60)) == Approx(0.01).epsilon(0.2));
+  CHECK(error_of(replaced(roved_staircase(8), "step = [4.0, 2.0]", "step = [12.0]")) > 0.0125);
+}
+
+TEST_CASE("a procedure that tracks an answer is judged with every level equally often", "[app][cues]") {
+  const auto guard = guard_of(source("boundary-adaptive.toml"));
+  for (const auto& one : guard.reports) CHECK_FALSE(one.whole_sessions);
+  CHECK(report(guard, "strip width").accuracy > 0.9);
+}
+
+TEST_CASE("the cues of a scene are those of the planner, whatever strength is drawn", "[app][cues]") {
+  auto text = source("boundary-constant.toml");
+  const auto by_friction = replaced(text, "edge = \"p50\"", "edge = { friction = 0.8 }");
+  for (const auto& edge : {text, by_friction}) {
+    const auto protocol = protocol::parse(edge, "p.toml");
+    simulation::CueTable table(protocol, quick(), protocol::survey(protocol, quick()));
+    scene::Planner planner(quick());
+    for (const double rove_dB : {-2.0, -0.7, 0.0, 1.3})
+      for (const double offset : {-26.0, -8.0, 1.0, 12.0}) {
+        const protocol::Factors factors{{"mark_mm", 158.0}, {"offset_mm", offset}};
+        const auto expected = planner.plan(protocol::resolve(protocol, "edge", factors, rove_dB)).cues;
+        auto found = table.find("edge", factors);
+        REQUIRE(found);
+        const auto cues = found->at(rove_dB);
+        CHECK(cues.strip_width_m == Approx(expected.strip_width_m).epsilon(1e-3));
+        CHECK(cues.wide_end_amplitude_m == Approx(expected.wide_end_amplitude_m).epsilon(0.1));
+        CHECK(cues.stripe_pitch_m == Approx(expected.stripe_pitch_m).epsilon(0.1));
+        CHECK(cues.edge_width_m == Approx(expected.edge_width_m).epsilon(2e-2));
+      }
+  }
+}
+
+TEST_CASE("between the plans of a zone cues are interpolated", "[app][cues]") {
+  const auto protocol = protocol::parse(source("friction-2ifc.toml"), "p.toml");
+  const auto survey = protocol::survey(protocol, quick());
+  CHECK(survey.sights.size() < survey.combinations);
+  simulation::CueTable table(protocol, quick(), survey);
+  scene::Planner planner(quick());
+  for (const double level : {-28.0, -17.0, -11.0, -4.0}) {
+    const protocol::Factors factors{{"contrast_dB", level}};
+    const auto expected = planner.plan(protocol::resolve(protocol, "comparison", factors, 0)).cues;
+    const auto found = table.find("comparison", factors);
+    REQUIRE(found);
+    CHECK(found->at(0).wide_end_amplitude_m == Approx(expected.wide_end_amplitude_m).epsilon(0.07));
+  }
+  CHECK_FALSE(table.find("comparison", {{"contrast_dB", -40.0}}));
+}
+
+TEST_CASE("where trials cannot be compared the guard says which, and states no accuracy", "[app][cues]") {
+  const auto protocol = protocol::parse(source("friction-2ifc.toml"), "p.toml");
+  auto survey = protocol::survey(protocol, quick());
+  CHECK(simulation::cue_guard(protocol, quick(), survey).not_compared.empty());
+  const auto missing = [](const protocol::Sight& sight) {
+    return sight.scene == "comparison" && std::get<double>(sight.factors.at("contrast_dB")) < -20;
+  };
+  survey.sights.erase(std::remove_if(survey.sights.begin(), survey.sights.end(), missing),
+                      survey.sights.end());
+  const auto guard = simulation::cue_guard(protocol, quick(), survey);
+  CHECK(guard.reports.empty());
+  CHECK(guard.not_compared.find("scene \"comparison\" at contrast_dB = ") == 0);
+}
+
+TEST_CASE("a task without right answers has nothing that a cue could tell, and the guard says so",
+          "[app][cues]") {
+  const auto guard = guard_of(source("boundary-adjustment.toml"));
+  CHECK(guard.reports.empty());
+  CHECK(guard.not_compared.empty());
+  CHECK_FALSE(guard.nothing_to_tell.empty());
+}

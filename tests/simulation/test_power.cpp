@@ -1,0 +1,159 @@
+#include "station/simulation/power.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+#include "station/simulation/parallel.hpp"
+#include "station/simulation/rehearsal.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+protocol::Protocol shipped(const std::string& name) {
+  return protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
+}
+
+const simulation::Recovery& find(const simulation::Power& power, std::string_view source,
+                                 std::string_view parameter) {
+  for (const auto& recovery : power.recoveries)
+    if (recovery.source == source && recovery.parameter == parameter) return recovery;
+  throw std::out_of_range("no " + std::string(parameter) + " of " + std::string(source));
+}
+
+simulation::PowerOptions options(const std::string& observer, int observers, int intervals = 0) {
+  simulation::PowerOptions options;
+  options.observers = observers;
+  options.interval_sessions = intervals;
+  options.replicates = 40;
+  options.observer = observer::parse(observer);
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("an observer's own bias is the point of subjective equality that sessions find", "[power]") {
+  const auto protocol = shipped("boundary-constant");
+  for (const double bias : {0.0, 5.0}) {
+    const auto power =
+        simulation::power(protocol, options("sim:threshold=8,bias=" + std::to_string(bias), 40));
+    const auto& pse = find(power, "fit", "PSE");
+    REQUIRE(pse.truth.has_value());
+    CHECK(*pse.truth == Approx(bias).margin(0.8));
+    CHECK(std::fabs(*pse.bias) < 4 * pse.sd / std::sqrt(40.0));
+    CHECK(pse.estimates.size() == 40);
+  }
+}
+
+TEST_CASE("a staircase's truth is where its rule balances, a posterior's where its function stands",
+          "[power]") {
+  const auto stairs =
+      simulation::power(shipped("friction-staircase"), options("sim:threshold=-16,lapse=0", 2));
+  // Three-down-one-up converges on 79.37 %; the observer reaches 75 % at -16 dB.
+  const auto truth = *find(stairs, "procedure a", "threshold").truth;
+  observer::Question question;
+  question.level = truth, question.decibel = true, question.correct = 0, question.deadline_s = 3;
+  const observer::Observer observer(observer::parse("sim:threshold=-16,lapse=0"));
+  CHECK(observer.share(question, 0) == Approx(0.793701).margin(1e-6));
+  const auto quest = simulation::power(shipped("friction-2ifc"), options("sim:threshold=-16,lapse=0", 2));
+  question.level = *find(quest, "procedure threshold", "threshold").truth;
+  CHECK(observer.share(question, 0) == Approx(1 - 0.5 * std::exp(-1.0)).margin(1e-6));
+}
+
+TEST_CASE("truths are the values that the observer was made with, never estimates", "[power]") {
+  const auto power = simulation::power(shipped("speed-accuracy"), options("sim:threshold=0.15", 6, 6));
+  const auto& right = find(power, "accuracy - speed", "proportion correct");
+  CHECK(right.mean > 0);  // being fast costs accuracy
+  CHECK(find(power, "accuracy - speed", "median response time").mean > 0);
+  REQUIRE((right.truth && right.coverage && right.interval_width));
+  CHECK(right.coverage->trials == static_cast<int>(right.estimates.size()));
+  CHECK(std::fabs(*right.bias) < 2 * *right.interval_width);
+  // With a deadline of 0.8 s the bound is the root of 0.35 times the 0.3 s that residual and travel leave;
+  // EZ's a is 0.2 times that.
+  const double hurried = std::sqrt(0.35 * 0.3), careful = std::sqrt(0.35 * 1.5);
+  CHECK(*find(power, "accuracy - speed", "boundary").truth == Approx(0.2 * (careful - hurried)));
+  CHECK(*find(power, "accuracy - speed", "time outside the decision").truth == 0);
+  CHECK_FALSE(find(power, "accuracy - speed", "LISAS").truth);
+  auto again = options("sim:threshold=0.15", 6, 6);
+  again.seed = 1000;
+  const auto other = simulation::power(shipped("speed-accuracy"), again);
+  CHECK(other.recoveries.size() == power.recoveries.size());
+  for (const auto& recovery : other.recoveries)
+    if (recovery.parameter !=
+        "proportion correct")  // this one is of all presented trials, the others leave timeouts out
+      CHECK(recovery.truth == find(power, recovery.source, recovery.parameter).truth);
+}
+
+TEST_CASE("a fit should find the observer's own threshold and slope", "[power]") {
+  const auto power =
+      simulation::power(shipped("friction-2ifc"), options("sim:threshold=-18,slope=1.3,lapse=0", 3));
+  CHECK(*find(power, "fit", "slope").truth == 1.3);
+  CHECK(*find(power, "fit", "75 % point").truth == Approx(-18));
+  CHECK(*find(power, "fit", "threshold").truth == Approx(-18 + 20 / 1.3 * std::log10(1 / std::log(2.0))));
+  const auto sides =
+      simulation::power(shipped("boundary-constant"), options("sim:threshold=6,lapse=0.02", 3));
+  CHECK(*find(sides, "fit", "PSE").truth == 0);
+  CHECK(*find(sides, "fit", "spread").truth == Approx(6 / 0.6744897501960817));
+}
+
+TEST_CASE("slopes and spreads have median and quartiles, and their bias is the median's", "[power]") {
+  const auto power = simulation::power(shipped("boundary-constant"), options("sim:threshold=8", 9));
+  const auto& spread = find(power, "fit", "spread");
+  CHECK(spread.heavy_tailed);
+  auto sorted = spread.estimates;
+  std::sort(sorted.begin(), sorted.end());
+  REQUIRE(sorted.size() == 9);
+  CHECK(spread.median == sorted[4]);
+  CHECK(spread.lower_quartile == sorted[2]);
+  CHECK(spread.upper_quartile == sorted[6]);
+  CHECK(*spread.bias == spread.median - *spread.truth);
+  const auto& pse = find(power, "fit", "PSE");
+  CHECK_FALSE(pse.heavy_tailed);
+  CHECK(*pse.bias == pse.mean - *pse.truth);
+  for (const auto& recovery : power.recoveries) CHECK(!recovery.unit.empty());
+}
+
+TEST_CASE("the number of threads changes nothing", "[power]") {
+  auto one = options("sim", 8), three = one;
+  one.threads = 1, three.threads = 3;
+  const auto a = simulation::power(shipped("boundary-constant"), one);
+  const auto b = simulation::power(shipped("boundary-constant"), three);
+  REQUIRE(a.recoveries.size() == b.recoveries.size());
+  for (std::size_t i = 0; i < a.recoveries.size(); ++i)
+    CHECK(a.recoveries[i].estimates == b.recoveries[i].estimates);
+}
+
+TEST_CASE("settings find the observer's bias, with intervals that hold it", "[power]") {
+  const auto power =
+      simulation::power(shipped("boundary-adjustment"), options("sim:threshold=4,bias=3,lapse=0", 300, 300));
+  REQUIRE(power.recoveries.size() == 1);
+  const auto& pse = power.recoveries.front();
+  CHECK(pse.parameter == "PSE");
+  REQUIRE(pse.truth);
+  CHECK(*pse.truth == 3);
+  CHECK(std::abs(*pse.bias) < 0.3);
+  REQUIRE(pse.coverage);
+  CHECK(pse.coverage->value > 0.9);
+}
+
+TEST_CASE("options out of range are refused", "[power]") {
+  CHECK_THROWS_AS(simulation::power(shipped("demo"), options("sim", 0)), std::invalid_argument);
+}
+
+TEST_CASE("work in parallel is done once each, and a failure arrives", "[power]") {
+  std::atomic<int> sum = 0;
+  int last = 0;
+  simulation::in_parallel(
+      100, 3, [&](int done, int) { last = done; }, [&](int i) { sum += i; });
+  CHECK(sum == 4950);
+  CHECK(last == 100);
+  CHECK_THROWS_AS(simulation::in_parallel(5, 2, {},
+                                          [](int i) {
+                                            if (i == 3) throw std::runtime_error("three");
+                                          }),
+                  std::runtime_error);
+}

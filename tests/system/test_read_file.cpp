@@ -1,0 +1,23 @@
+#include "station/system/read_file.hpp"
+
+#include <fstream>
+#include <system_error>
+
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using turnpoint::system::read_file;
+
+TEST_CASE("what cannot be read to its end is an error and never an empty file", "[system]") {
+  CHECK_THROWS_AS(read_file("/proc/self/mem"), std::system_error);  // EIO at its first byte
+  CHECK_THROWS_AS(read_file("/proc/self"), std::system_error);
+  CHECK_THROWS_AS(read_file("/dev/zero"), std::system_error);
+  CHECK_THROWS_AS(read_file("/nowhere/at/all"), std::system_error);
+}
+
+TEST_CASE("a file longer than its reader allows is an error", "[system]") {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "a") << "0123456789";
+  CHECK(read_file(folder / "a", 10) == "0123456789");
+  CHECK_THROWS_AS(read_file(folder / "a", 9), std::system_error);
+}

@@ -1,0 +1,78 @@
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+
+#include "station/system/write_file.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace turnpoint;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string content(const std::string& path) {
+  std::ifstream in(path);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+}  // namespace
+
+TEST_CASE("a file is written whole in the place of what was there", "[write]") {
+  const TemporaryFolder folder;
+  const auto path = folder / "a.csv";
+  system::write_file(path, "one\n");
+  system::write_file(path, "two\n", 0600);
+  CHECK(content(path) == "two\n");
+  CHECK((fs::status(path).permissions() & fs::perms::all) == fs::perms(0600));
+  CHECK_FALSE(fs::exists(path + ".new"));
+  CHECK_THROWS_AS(system::write_file(folder / "no/a.csv", "x"), std::system_error);
+}
+
+TEST_CASE("a file written in pieces appears whole, or not at all", "[write]") {
+  const TemporaryFolder folder;
+  const auto path = folder / "a.csv";
+  system::write_file(path, "old\n");
+  for (const bool committed : {false, true}) {
+    system::FileWriter file(path);
+    file.write("one\n");
+    file.write("two\n");
+    CHECK(content(path) == "old\n");
+    if (committed) file.commit();
+  }
+  CHECK(content(path) == "one\ntwo\n");
+  CHECK_FALSE(fs::exists(path + ".new"));
+}
+
+TEST_CASE("a link that lies where a draft goes is not followed", "[write]") {
+  const TemporaryFolder folder;
+  const auto path = folder / "a.csv", victim = folder / "victim";
+  std::ofstream(victim) << "precious";
+  fs::create_symlink(victim, path + ".new");
+  system::write_file(path, "table\n");
+  CHECK(content(victim) == "precious");
+  CHECK(content(path) == "table\n");
+  CHECK(fs::is_regular_file(fs::symlink_status(path)));
+}
+
+TEST_CASE("the user's own link is followed, and one that another user has made is refused", "[write]") {
+  const TemporaryFolder folder;
+  const auto path = folder / "a.csv", target = folder / "target";
+  std::ofstream(target) << "old";
+  fs::create_symlink(target, path);
+  system::write_file(path, "new");
+  CHECK(content(target) == "new");
+  CHECK(fs::is_symlink(path));
+  if (::geteuid() != 0) return;  // only root can act as another user
+  REQUIRE(::lchown(path.c_str(), 12345, 12345) == 0);
+  CHECK_THROWS_AS(system::write_file(path, "worse"), std::system_error);
+  CHECK(content(target) == "new");
+}
+
+TEST_CASE("a pipe and a device take the bytes as they are", "[write]") {
+  CHECK_NOTHROW(system::write_file("/dev/null", "bytes"));
+  CHECK(fs::is_character_file("/dev/null"));
+}

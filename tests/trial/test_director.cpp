@@ -1,0 +1,125 @@
+#include <filesystem>
+#include <map>
+
+#include "station/trial/director.hpp"
+#include "station/trial/question.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+using namespace turnpoint::trial;
+
+namespace {
+
+protocol::Protocol shipped(const std::string& name) {
+  return protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
+}
+
+TrialEnd answered(const TrialSpec& spec, bool right) {
+  TrialEnd end;
+  const int answer = spec.correct.value_or(0);
+  end.response = right ? answer : 1 - answer;
+  if (spec.correct) end.correct = right;
+  return end;
+}
+
+struct Count {
+  int trials = 0, catches = 0, practice = 0;
+};
+
+Count run_through(Director& director, bool right = true) {
+  Count count;
+  while (director.block() != nullptr) {
+    while (const auto spec = director.next()) {
+      ++count.trials;
+      count.catches += spec->type == terms::TrialType::catch_trial ? 1 : 0;
+      count.practice += spec->type == terms::TrialType::practice ? 1 : 0;
+      director.record(answered(*spec, right));
+    }
+    director.finish_block();
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("a void trial is presented again as it was and shifts nothing after it", "[session]") {
+  const auto protocol = shipped("boundary-constant");
+  Director smooth(protocol, 0, 11), disturbed(protocol, 0, 11);
+  int trial = 0;
+  while (smooth.block() != nullptr) {
+    while (const auto expected = smooth.next()) {
+      auto spec = disturbed.next();
+      REQUIRE(spec.has_value());
+      if (trial % 5 == 2) {
+        disturbed.record({terms::Outcome::fault, {}, {}, {}});
+        spec = disturbed.next();
+      }
+      CHECK(spec->level == expected->level);
+      CHECK(spec->factors == expected->factors);
+      CHECK(spec->rove_dB == expected->rove_dB);
+      CHECK(spec->iti_s == expected->iti_s);
+      smooth.record(answered(*expected, true));
+      disturbed.record(answered(*spec, true));
+      CHECK(smooth.state_hash() == disturbed.state_hash());
+      ++trial;
+    }
+    smooth.finish_block();
+    disturbed.finish_block();
+  }
+  CHECK(disturbed.block() == nullptr);
+}
+
+TEST_CASE("practice that is not passed is repeated and then ends the session with the reason", "[session]") {
+  const auto protocol = shipped("boundary-constant");
+  Director director(protocol, 0, 3);
+  REQUIRE(director.block()->pass.has_value());
+  const auto count = run_through(director, false);
+  CHECK(count.trials == count.practice);
+  CHECK(director.ended_because().find("practice") != std::string::npos);
+}
+
+TEST_CASE("catch trials come at about their rate and teach the procedure nothing", "[session]") {
+  const auto protocol = shipped("friction-2ifc");
+  int catches = 0, trials = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Director director(protocol, 0, seed);
+    const auto count = run_through(director);
+    catches += count.catches;
+    trials += count.trials - count.practice;
+  }
+  CHECK(catches / static_cast<double>(trials) == Approx(0.06).margin(0.03));
+}
+
+TEST_CASE("the same seed gives the same session and another one another", "[session]") {
+  const auto protocol = shipped("boundary-constant");
+  const auto levels = [&protocol](std::uint64_t seed) {
+    std::vector<double> all;
+    Director director(protocol, 0, seed);
+    while (director.block() != nullptr) {
+      while (const auto spec = director.next()) {
+        all.push_back(*spec->level);
+        director.record(answered(*spec, true));
+      }
+      director.finish_block();
+    }
+    return all;
+  };
+  CHECK(levels(5) == levels(5));
+  CHECK(levels(5) != levels(6));
+}
+
+TEST_CASE("an observer without a threshold of its own gets the protocol's middle, staircases included",
+          "[session]") {
+  const auto protocol =
+      protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-staircase.toml");
+  trial::Director director(protocol, 0, 1);
+  const auto practice = director.next();
+  REQUIRE(practice);
+  trial::TrialSpec stair = *practice;
+  stair.procedure = protocol.procedures.back().name;
+  for (const auto& spec : {*practice, stair}) {
+    const auto question = trial::question_of(spec, protocol, 1);
+    CHECK(question.default_threshold == Approx(-18.5));  // limits -34 and -3 dB
+    CHECK(question.decibel);
+  }
+}

@@ -1,0 +1,395 @@
+#include <random>
+
+#include "station/trial/machine.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::trial;
+
+namespace {
+
+constexpr std::int64_t ms = 1'000'000;
+
+Timing exploration() {
+  Timing plan;
+  plan.cue_ns = 500 * ms;
+  plan.intervals = {{4000 * ms, {}}};
+  plan.answer_ends_stimulus = true;
+  plan.deadline_ns = 6000 * ms;
+  plan.anticipation_ns = 150 * ms;
+  plan.late_ns = 800 * ms;
+  plan.iti_ns = 1000 * ms;
+  plan.correct = 1;
+  return plan;
+}
+
+Timing two_intervals() {
+  Timing plan;
+  plan.intervals = {{1500 * ms, {}}, {1500 * ms, {}}};
+  plan.gap_ns = 1000 * ms;
+  plan.response_zero = ResponseZero::interval_off;
+  plan.deadline_ns = 3000 * ms;
+  plan.iti_ns = 800 * ms;
+  plan.correct = 0;
+  return plan;
+}
+
+bool has(const std::vector<Action>& actions, ActionKind kind, int value) {
+  for (const auto& action : actions)
+    if (action.kind == kind && action.value == value) return true;
+  return false;
+}
+bool enters(const std::vector<Action>& actions, Phase phase) {
+  return has(actions, ActionKind::enter, static_cast<int>(phase));
+}
+
+/// Starts at 0 and advances the machine to the first frame of the exploration at 500 ms.
+Machine exploring(const Plan& plan = exploration()) {
+  Machine machine(plan);
+  machine.start(0);
+  machine.handle({500 * ms, EventKind::onset, 0});
+  machine.handle({500 * ms, EventKind::tick, 0});
+  return machine;
+}
+
+/// Two intervals from 10 ms on. The first choice is given 300 ms after the end of the second interval.
+Machine answered_after_two() {
+  Machine machine(two_intervals());
+  machine.start(0);
+  machine.handle({10 * ms, EventKind::onset, 0});
+  machine.handle({2510 * ms, EventKind::onset, 1});
+  machine.handle({1520 * ms, EventKind::heard, 0});
+  machine.handle({4310 * ms, EventKind::answer, 0});
+  return machine;
+}
+
+}  // namespace
+
+TEST_CASE("an exploration runs cue, stimulus, answer, interval, and counts from the go cue", "[trial]") {
+  Machine machine(exploration());
+  const auto asked = machine.start(0);
+  CHECK(enters(asked, Phase::cue));
+  CHECK(has(asked, ActionKind::present, 0));
+  CHECK_FALSE(machine.wake_ns());  // unknown before the onset
+  machine.handle({10 * ms, EventKind::tick, 0});
+  CHECK_FALSE(enters(machine.handle({500 * ms, EventKind::onset, 0}), Phase::stimulus));
+  CHECK(machine.wake_ns() == 500 * ms);
+  CHECK(enters(machine.handle({500 * ms, EventKind::tick, 0}), Phase::stimulus));
+  CHECK(machine.answers_open());
+  const auto answered = machine.handle({1700 * ms, EventKind::answer, 1});
+  CHECK(has(answered, ActionKind::silence, 0));
+  CHECK(enters(answered, Phase::interval));
+  CHECK_FALSE(machine.decided());
+  machine.handle({1760 * ms, EventKind::heard, 0});
+  CHECK(machine.decided());
+  machine.handle({2700 * ms, EventKind::tick, 0});
+  REQUIRE(machine.done());
+  CHECK(machine.result().outcome == Outcome::answered);
+  CHECK(machine.result().correct == true);
+  CHECK(machine.result().response_time_ns == 1200 * ms);
+  CHECK(machine.result().ended_ns == 2700 * ms);
+}
+
+TEST_CASE("an onset in the future starts the interval at its own time, not when the message came",
+          "[trial]") {
+  Machine machine(exploration());
+  machine.start(0);
+  machine.handle({510 * ms, EventKind::tick, 0});
+  machine.handle({530 * ms, EventKind::onset, 0});
+  CHECK(machine.phase() == Phase::cue);
+  CHECK(machine.wake_ns() == 530 * ms);
+  machine.handle({600 * ms, EventKind::tick, 0});
+  REQUIRE(machine.phase() == Phase::stimulus);
+  CHECK(machine.result().zero_ns == 530 * ms);
+}
+
+TEST_CASE("a deadline is decided by time stamps, and an answer on its last millisecond still counts",
+          "[trial]") {
+  auto machine = exploring();
+  machine.handle({6510 * ms, EventKind::tick, 0});
+  CHECK_FALSE(machine.done());
+  SECTION("stamped at the deadline, delivered after it") {
+    machine.handle({6500 * ms, EventKind::answer, 0});
+    CHECK(machine.result().outcome == Outcome::answered);
+    CHECK(machine.result().response_time_ns == 6000 * ms);
+  }
+  SECTION("stamped one nanosecond later") {
+    machine.handle({6500 * ms + 1, EventKind::answer, 0});
+    const auto actions = machine.handle({6520 * ms, EventKind::tick, 0});
+    CHECK(enters(actions, Phase::late));
+    CHECK(machine.result().outcome == Outcome::timeout);
+    CHECK_FALSE(machine.result().response.has_value());
+    CHECK_FALSE(machine.result().response_time_ns.has_value());
+    CHECK(machine.result().extra_touches == 1);
+  }
+}
+
+TEST_CASE("after the exploration the surface is silent and the answer still counts until the deadline",
+          "[trial]") {
+  auto machine = exploring();
+  CHECK(enters(machine.handle({4500 * ms, EventKind::tick, 0}), Phase::response));
+  machine.handle({5000 * ms, EventKind::answer, 0});
+  CHECK(machine.result().correct == false);
+  CHECK(machine.result().response_time_ns == 4500 * ms);
+}
+
+TEST_CASE("an answer before the stimulus or after another is logged and never scored", "[trial]") {
+  Machine machine(exploration());
+  machine.start(0);
+  machine.handle({500 * ms, EventKind::onset, 0});
+  machine.handle({100 * ms, EventKind::answer, 0});
+  CHECK(machine.phase() == Phase::cue);
+  machine.handle({1000 * ms, EventKind::answer, 1});
+  machine.handle({1001 * ms, EventKind::answer, 0});
+  CHECK(machine.result().response == 1);
+  CHECK(machine.result().extra_touches == 2);
+}
+
+TEST_CASE("an answer sooner than a person can feel is an anticipation without a response", "[trial]") {
+  auto machine = exploring();
+  CHECK(enters(machine.handle({649 * ms, EventKind::answer, 1}), Phase::late));
+  CHECK(machine.result().outcome == Outcome::anticipation);
+  CHECK_FALSE(machine.result().response.has_value());
+}
+
+TEST_CASE("two intervals are presented in turn and answers open at the end of the second", "[trial]") {
+  Machine machine(two_intervals());
+  CHECK(has(machine.start(0), ActionKind::present, 0));
+  machine.handle({10 * ms, EventKind::onset, 0});
+  machine.handle({2520 * ms, EventKind::onset, 1});  // known exactly from the beginning
+  machine.handle({500 * ms, EventKind::answer, 0});
+  CHECK(enters(machine.handle({1510 * ms, EventKind::tick, 0}), Phase::gap));
+  CHECK(machine.wake_ns() == 2520 * ms);
+  CHECK(enters(machine.handle({2520 * ms, EventKind::tick, 0}), Phase::stimulus));
+  machine.handle({3000 * ms, EventKind::answer, 0});
+  CHECK_FALSE(machine.result().response.has_value());
+  CHECK(enters(machine.handle({4020 * ms, EventKind::tick, 0}), Phase::response));
+  machine.handle({4300 * ms, EventKind::answer, 0});
+  CHECK(machine.result().response_time_ns == 280 * ms);
+  CHECK(machine.result().extra_touches == 2);
+  CHECK(machine.result().correct == true);
+}
+
+TEST_CASE("a change under the finger counts from the change, and an answer before it anticipates",
+          "[trial]") {
+  auto plan = exploration();
+  plan.intervals = {{5000 * ms, {1500 * ms}}};
+  plan.response_zero = ResponseZero::change;
+  plan.deadline_ns = 800 * ms;
+  SECTION("after the change") {
+    auto machine = exploring(plan);
+    machine.handle({2600 * ms, EventKind::answer, 0});
+    CHECK(machine.result().response_time_ns == 600 * ms);
+  }
+  SECTION("before the change") {
+    auto machine = exploring(plan);
+    machine.handle({1900 * ms, EventKind::answer, 0});
+    CHECK(machine.result().outcome == Outcome::anticipation);
+  }
+  SECTION("not in time: the stimulus ends with the deadline") {
+    auto machine = exploring(plan);
+    const auto actions = machine.handle({2820 * ms, EventKind::tick, 0});
+    CHECK(has(actions, ActionKind::silence, 0));
+    CHECK(machine.result().outcome == Outcome::timeout);
+  }
+}
+
+TEST_CASE("deciding and reaching are told apart where the finger's contact is known", "[trial]") {
+  auto machine = exploring();
+  machine.handle({600 * ms, EventKind::contact, 1});
+  machine.handle({1500 * ms, EventKind::contact, 0});
+  machine.handle({1900 * ms, EventKind::answer, 1});
+  CHECK(machine.result().decision_time_ns == 1000 * ms);
+  CHECK(machine.result().movement_time_ns == 400 * ms);
+}
+
+TEST_CASE("with first contact as zero nothing counts before the finger arrives", "[trial]") {
+  auto plan = exploration();
+  plan.response_zero = ResponseZero::first_contact;
+  auto machine = exploring(plan);
+  machine.handle({900 * ms, EventKind::contact, 1});
+  machine.handle({1900 * ms, EventKind::answer, 1});
+  CHECK(machine.result().response_time_ns == 1000 * ms);
+  auto untouched = exploring(plan);
+  untouched.handle({10520 * ms, EventKind::tick, 0});
+  CHECK(untouched.result().outcome == Outcome::timeout);
+}
+
+TEST_CASE("lost frames of a stimulus or a fault void the trial at once, and silence is ordered", "[trial]") {
+  auto machine = exploring();
+  const auto kind = GENERATE(EventKind::xrun, EventKind::fault);
+  const auto actions = machine.handle({900 * ms, kind, 1});
+  CHECK(has(actions, ActionKind::silence, 0));
+  CHECK(machine.done());
+  CHECK(machine.result().outcome == Outcome::fault);
+  CHECK_FALSE(machine.result().response.has_value());
+}
+
+TEST_CASE("lost frames of silence are counted and void nothing", "[trial]") {
+  auto machine = exploring();
+  CHECK(machine.handle({900 * ms, EventKind::xrun, 0}).empty());
+  CHECK(machine.result().xruns == 1);
+  CHECK(machine.phase() == Phase::stimulus);
+}
+
+TEST_CASE("lost frames that are told after the stimulus, or after the answer, void the trial all the same",
+          "[trial]") {
+  SECTION("in the pause that follows") {
+    Machine machine(two_intervals());
+    machine.start(0);
+    machine.handle({10 * ms, EventKind::onset, 0});
+    machine.handle({2510 * ms, EventKind::onset, 1});
+    const auto actions = machine.handle({1511 * ms, EventKind::xrun, 1});
+    CHECK(has(actions, ActionKind::silence, 0));  // the second interval is cancelled
+    CHECK(machine.done());
+    CHECK(machine.result().onsets_ns.size() == 1);
+    CHECK(machine.result().outcome == Outcome::fault);
+  }
+  SECTION("after the answer, whatever was shown") {
+    auto machine = answered_after_two();
+    CHECK_FALSE(machine.decided());
+    CHECK(machine.result().response == 0);
+    machine.handle({4311 * ms, EventKind::xrun, 1});
+    CHECK(machine.done());
+    CHECK(machine.result().outcome == Outcome::fault);
+    CHECK_FALSE(machine.result().response.has_value());
+    CHECK_FALSE(machine.result().correct.has_value());
+    CHECK_FALSE(machine.result().response_time_ns.has_value());
+  }
+  SECTION("not once all of it has been heard") {
+    auto machine = answered_after_two();
+    machine.handle({4312 * ms, EventKind::heard, 1});
+    CHECK(machine.decided());
+    machine.handle({4313 * ms, EventKind::xrun, 0});
+    CHECK(machine.result().outcome == Outcome::answered);
+  }
+}
+
+TEST_CASE("a trial ends no sooner than its last frame has been heard", "[trial]") {
+  auto machine = answered_after_two();
+  machine.handle({9000 * ms, EventKind::tick, 0});
+  CHECK_FALSE(machine.done());
+  CHECK_FALSE(machine.wake_ns());  // only an event of the drive can make progress
+  machine.handle({9010 * ms, EventKind::heard, 1});
+  CHECK(machine.done());
+  CHECK(machine.result().outcome == Outcome::answered);
+  CHECK(machine.result().ended_ns == (4310 + 800) * ms);
+}
+
+TEST_CASE("a fault before the last frame was heard leaves the answer without proof: the trial is void",
+          "[trial]") {
+  auto machine = answered_after_two();
+  machine.handle({4311 * ms, EventKind::fault, 0});
+  CHECK(machine.done());
+  CHECK(machine.result().outcome == Outcome::fault);
+}
+
+TEST_CASE("a stop before the intervals, or between them, cancels what has not begun", "[trial]") {
+  Machine machine(two_intervals());
+  machine.start(0);
+  machine.handle({100 * ms, EventKind::onset, 0});
+  machine.handle({2600 * ms, EventKind::onset, 1});
+  const auto at = GENERATE(50, 2000);
+  CHECK(has(machine.handle({at * ms, EventKind::abort, 0}), ActionKind::silence, 0));
+  CHECK(machine.done());
+}
+
+TEST_CASE("stopping after the answer keeps the answer", "[trial]") {
+  auto machine = exploring();
+  machine.handle({1500 * ms, EventKind::answer, 1});
+  machine.handle({1600 * ms, EventKind::abort, 0});
+  CHECK_FALSE(machine.done());  // waits until the stimulus is reported as played without loss
+  machine.handle({1610 * ms, EventKind::heard, 0});
+  CHECK(machine.done());
+  CHECK(machine.result().outcome == Outcome::answered);
+}
+
+TEST_CASE("a plan that cannot run is refused with what is wrong", "[trial]") {
+  auto plan = exploration();
+  SECTION("no interval") { plan.intervals.clear(); }
+  SECTION("no answers") { plan.answers = 0; }
+  SECTION("right answer is none of them") { plan.correct = 2; }
+  SECTION("negative time") { plan.iti_ns = -1; }
+  SECTION("no change to count from") { plan.response_zero = ResponseZero::change; }
+  CHECK_THROWS_AS(Machine(plan), std::invalid_argument);
+}
+
+namespace {
+
+/// A drive that replies to `present` with onsets, and sometimes reports what was heard.
+struct Drive {
+  Machine& machine;
+  const Timing& plan;
+  std::vector<Action> follow(const std::vector<Action>& actions, std::int64_t now, std::int64_t later) {
+    std::vector<Action> more;
+    for (const auto& action : actions) {
+      silenced |= action.kind == ActionKind::silence;
+      if (action.kind != ActionKind::present) continue;
+      ++presented;
+      auto at = std::max(now, action.time_ns) + later;
+      for (std::size_t i = 0; i < plan.intervals.size(); ++i) {
+        const auto next = machine.handle({at, EventKind::onset, static_cast<int>(i)});
+        more.insert(more.end(), next.begin(), next.end());
+        at += plan.intervals[i].duration_ns + plan.gap_ns;
+      }
+    }
+    return more;
+  }
+  int presented = 0;
+  bool silenced = false;
+};
+
+/// The rules that every finished trial obeys, whatever happened in it. Returns the one that is broken.
+std::string broken_invariant(const Machine& machine, const Plan& plan, const Drive& drive, bool hurt) {
+  const auto& result = machine.result();
+  if (!machine.done()) return "a trial that does not end";
+  const bool answered = result.outcome == Outcome::answered;
+  if (answered != result.response.has_value()) return "response without answered";
+  if (answered != result.response_time_ns.has_value()) return "time without answer";
+  if (result.correct && !answered) return "a score without an answer";
+  if (answered &&
+      (*result.response_time_ns < plan.anticipation_ns || *result.response_time_ns > plan.deadline_ns))
+    return "response time outside anticipation and deadline";
+  if (drive.presented > 1) return "presented twice";
+  if (hurt && result.outcome != Outcome::fault && result.outcome != Outcome::aborted)
+    return "lost frames without a void trial";
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("whatever comes in whatever order, the invariants of a trial hold", "[trial]") {
+  std::mt19937_64 random(20261121);
+  const auto below = [&](std::uint64_t n) { return static_cast<std::int64_t>(random() % n); };
+  constexpr EventKind common[] = {EventKind::tick, EventKind::answer, EventKind::touch, EventKind::contact};
+  constexpr EventKind rare[] = {EventKind::xrun, EventKind::fault, EventKind::abort};
+  for (int sequence = 0; sequence < 100'000; ++sequence) {
+    auto plan = below(2) ? exploration() : two_intervals();
+    if (plan.answer_ends_stimulus && below(3) == 0) {
+      plan.intervals[0].scene_starts_ns = {1000 * ms};
+      plan.response_zero = ResponseZero::change;
+    } else if (below(4) == 0) {
+      plan.response_zero = below(2) ? ResponseZero::first_contact : ResponseZero::lift_off;
+    }
+    Machine machine(plan);
+    Drive drive{machine, plan};
+    std::int64_t now = 0;
+    bool hurt = false;
+    drive.follow(machine.start(now), now, below(40) * ms);
+    for (int event = 0; event < 60 && !machine.done(); ++event) {
+      now += below(5) == 0 ? below(4000) * ms : below(50) * ms;
+      const auto kind = below(60) == 0 ? rare[below(3)] : common[below(4)];
+      const int value = static_cast<int>(below(4)) - 1;
+      hurt |= kind == EventKind::xrun && value != 0 && !machine.decided();
+      drive.follow(machine.handle({now, kind, value}), now, 0);
+    }
+    for (int i = 0; i < static_cast<int>(plan.intervals.size()) && !machine.done(); ++i)
+      drive.follow(machine.handle({now, EventKind::heard, i}), now, 0);
+    for (int tick = 0; tick < 30 && !machine.done() && machine.wake_ns(); ++tick) {
+      now = std::max(now, *machine.wake_ns());
+      drive.follow(machine.handle({now, EventKind::tick, 0}), now, 0);
+    }
+    if (const auto broken = broken_invariant(machine, plan, drive, hurt); !broken.empty())
+      FAIL(broken << ", sequence " << sequence << " " << name(machine.result().outcome));
+  }
+  SUCCEED();
+}
