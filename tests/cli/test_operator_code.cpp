@@ -120,7 +120,7 @@ TEST_CASE("a locked station begins with a stored code alone, and no command line
     CHECK(child.outcome() == 2);
     return child.said();
   };
-  CHECK(station({"--locked"}).find("store one of your own: sudo turnpoint operator-code") !=
+  CHECK(station({"--locked"}).find("store your own: sudo turnpoint operator-code") !=
         std::string::npos);
   CHECK(station({"--operator-code", "7391"}).find("--operator-code") != std::string::npos);
 }
