@@ -21,7 +21,7 @@ namespace {
 
 using text::number;
 
-/// Above chance by this much a cue is named: what 20 trials could just show.
+/// Report a cue if its accuracy exceeds chance by this margin (about what 20 trials can detect).
 constexpr double kNoticeable = 0.1;
 
 std::string range(const simulation::Spread& spread, double unit) {
@@ -57,7 +57,7 @@ void add_tones(const simulation::Check& check, CheckWords& words) {
 std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder))
-    // Hidden files are those of editors, such as the lock that Emacs makes.
+    // Skip hidden files, which editors make, such as the lock file of Emacs.
     if (entry.path().extension() == ".toml" && entry.path().filename().string().front() != '.')
       files.push_back(entry.path());
   std::sort(files.begin(), files.end());
@@ -74,7 +74,7 @@ std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
       if (bad.problems().size() > 1)
         entry.problem += fmt::format(" (and {} more)", bad.problems().size() - 1);
     } catch (const std::exception& error) {
-      // A file that cannot be read must not hide the others.
+      // An unreadable file must not hide the others.
       entry.problem = error.what();
     }
     list.push_back(std::move(entry));

@@ -12,26 +12,27 @@ namespace turnpoint::desk {
 struct ProtocolEntry {
   std::string path, id, version, title;
   std::vector<std::string> languages;
-  std::string problem;  ///< why it cannot be used; then only `path` is set beside it
+  std::string problem;  ///< why it cannot be used; then all other fields but `path` are empty
 };
 
-/// The protocol files of a folder by name, the unusable ones among them. Throws std::system_error where the
-/// folder cannot be read.
+/// The protocol files of a folder by name, including unusable ones. Throws std::system_error if the folder
+/// cannot be read.
 std::vector<ProtocolEntry> list_protocols(const std::string& folder);
 
-/// Participant codes that the database has seen, in alphabetical order; none where there is no database yet.
+/// Participant codes in the database, in alphabetical order; empty if there is no database yet.
 std::vector<std::string> known_participants(const std::string& database);
 
-/// How long ago the last good backup of the database was made, as its record says.
+/// The age of the last good backup of the database, according to its record.
 struct BackupNote {
-  enum class State { none, recent, old, ahead } state = State::none;  ///< ahead: the clock was set back since
+  /// ahead: in the future, because the clock was set back since
+  enum class State { none, recent, old, ahead } state = State::none;
   int hours = 0;
   bool operator==(const BackupNote&) const = default;
 };
-/// Old after 7 days.
+/// A backup is old after 7 days.
 BackupNote backup_note(const std::string& database);
 
-/// A session that could go on.
+/// A session that could be continued.
 struct InterruptedNote {
   std::string session_id, participant, protocol_id;
   int trials = 0;
@@ -39,11 +40,12 @@ struct InterruptedNote {
 };
 std::optional<InterruptedNote> interrupted_note(const std::string& database);
 
-/// A check in words for a page: what the session will be, and what else than the task might be used.
+/// The result of a check in words for a page: a description of the session, and unwanted cues.
 struct CheckWords {
   std::vector<std::string> problems, warnings;
   std::vector<std::pair<std::string, std::string>> facts;  ///< (label, value)
-  /// A cue, how often an observer with it alone would be right, and whether that is notably above chance.
+  /// A cue, how often an observer who uses only this cue would be right, and whether that is notably above
+  /// chance.
   struct Cue {
     std::string name, says;
     bool leaks = false;

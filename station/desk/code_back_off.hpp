@@ -5,9 +5,9 @@
 
 namespace turnpoint::desk {
 
-/// How long a keypad takes no code after wrong ones: nothing after the first two, then 5 s, doubled with each
-/// further one, at most 5 min; the right code ends it. Ten thousand codes of four digits take over a month.
-/// Pure: the clock (s, monotonic) is the caller's.
+/// How long a keypad refuses codes after wrong ones: not at all after the first two, then 5 s, doubled with
+/// each further one, at most 5 min. The right code resets it. Trying ten thousand codes of four digits takes
+/// over a month. Pure: the caller passes the time (s, monotonic).
 class CodeBackOff {
  public:
   static constexpr int free_tries = 2;
@@ -20,7 +20,7 @@ class CodeBackOff {
     until_s_ = now_s + std::min(wait_s, longest_s);
   }
   void right() { *this = {}; }
-  /// Seconds until the next try is taken, 0 for now.
+  /// Seconds until the next code is accepted; 0 if now.
   double wait_s(double now_s) const { return std::max(0.0, until_s_ - now_s); }
   int wrong_tries() const { return wrong_; }
 

@@ -16,10 +16,10 @@ namespace {
 using text::number;
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
-/// Of limits: how much of the last 60 s had a stimulus.
+/// For limits: the share of the last 60 s with a stimulus.
 constexpr double kWindow_s = 60;
 
-/// How long a setting stands before the next one is shown: long enough to be read.
+/// How long a setting is displayed before the next one, so that it can be read.
 constexpr std::chrono::milliseconds kSettingEvery{200};
 
 std::string percent(double share) { return number(std::round(1000 * share) / 10, 4) + " %"; }
@@ -54,7 +54,7 @@ plot::Figure alone(const char* title, const plot::Panel& panel) {
   return figure;
 }
 
-/// What was scheduled; an exploration ends with its answer.
+/// The scheduled duration; an exploration ends with its answer.
 double stimulus_s(const records::TrialRow& row, int rate_Hz) {
   double scheduled_s = 0;
   int intervals = 1;
@@ -209,7 +209,7 @@ void LiveView::push(News news) {
   {
     const std::lock_guard lock(mutex_);
     if (news.setting && !queue_.empty() && queue_.back().setting)
-      queue_.pop_back();  // only the newest counts
+      queue_.pop_back();  // only the newest one counts
     queue_.push_back(std::move(news));
   }
   arrived_.notify_one();

@@ -18,15 +18,16 @@
 
 namespace turnpoint::desk {
 
-/// A running session as the operator sees it: words and pictures, ready to be shown.
+/// A running session as the operator sees it: texts and figures, ready to be shown.
 struct LiveState {
-  std::string heading;                                                     ///< which trial, at which level
+  std::string heading;                                                     ///< trial number and level
   std::vector<std::pair<std::string, std::string>> scene, course, limits;  ///< (label, value)
-  std::vector<Drawing> surfaces;  ///< one for each scene, in the order presented
-  Drawing profile, trace, times;  ///< of all scenes; levels; response times. Empty where none
+  std::vector<Drawing> surfaces;  ///< one for each scene, in the order of presentation
+  /// profile of all scenes; levels; response times. Empty if there is nothing to show
+  Drawing profile, trace, times;
 };
 
-/// What is kept of a trial that has ended.
+/// The data kept about a finished trial.
 struct LiveTrial {
   std::string procedure;
   std::optional<double> level;
@@ -34,27 +35,26 @@ struct LiveTrial {
   std::optional<double> response_time_s, threshold_est, threshold_sd;
   terms::Outcome outcome = terms::Outcome::answered;
   terms::TrialType type = terms::TrialType::experimental;
-  double onset_s = 0, ended_s = 0;  ///< of the session
-  double stimulus_s = 0;            ///< on the surface
+  double onset_s = 0, ended_s = 0;  ///< relative to the start of the session
+  double stimulus_s = 0;            ///< time that the stimulus was presented
   int xruns = 0, extra_touches = 0;
 };
 
-/// Course of the session in words: accuracy, response times, what was lost. Pure.
+/// The course of the session in words: accuracy, response times, losses. Pure.
 std::vector<std::pair<std::string, std::string>> course_of(const std::vector<LiveTrial>& trials);
 
-/// How much of the rig's limits is used, by what was presented in the last 60 s and the largest displacement
-/// of the trial at hand (m).
+/// How much of the rig's limits is used by the stimuli of the last 60 s and the largest displacement of the
+/// current trial (m).
 std::vector<std::pair<std::string, std::string>> limits_used(const std::vector<LiveTrial>& trials,
                                                              std::optional<double> peak_displacement_m,
                                                              const rig::Rig& rig);
 
-/// Levels in order, one series a procedure; open markers are wrong answers, a line the running estimate.
+/// Levels in order, one series per procedure; open markers are wrong answers, a line is the running estimate.
 std::optional<plot::Figure> live_trace(const std::vector<LiveTrial>& trials, const std::string& label);
 std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials);
 
-/// Follows a session on a thread of its own, which describes and draws the session's own plans, and hands on
-/// a state whenever there is something new. While a slider moves it shows the newest setting, five times a
-/// second.
+/// Follows a session on its own thread, describes and draws the session's plans, and reports a new state
+/// whenever something changes. While a slider moves, it shows the newest setting five times a second.
 class LiveView : public session::Monitor {
  public:
   /// `on_state` is called on the view's own thread.
@@ -89,13 +89,13 @@ class LiveView : public session::Monitor {
   void tell();
 
   OnState on_state_;
-  std::string level_;     ///< what the protocol calls it
-  std::string adjusted_;  ///< the factor that a slider sets; "" where none does
+  std::string level_;     ///< the level's name in the protocol
+  std::string adjusted_;  ///< the factor that a slider sets; "" if there is none
   rig::Rig rig_;
-  // Worker thread only.
+  // Worker thread only:
   scene::Planner planner_;
-  Begun trial_;                    ///< with what is on the surface now
-  std::optional<double> setting_;  ///< of the slider, once it has moved
+  Begun trial_;                    ///< with the scenes currently presented
+  std::optional<double> setting_;  ///< setting of the slider, once it has moved
   std::chrono::steady_clock::time_point next_setting_;
   std::vector<LiveTrial> trials_;
   std::optional<double> peak_displacement_m_;
@@ -103,7 +103,8 @@ class LiveView : public session::Monitor {
   std::mutex mutex_;
   std::condition_variable_any arrived_;
   std::deque<News> queue_;
-  std::jthread thread_;  // last: joined before anything that it uses goes
+  // The last member, so that the thread is joined before anything that it uses is destroyed.
+  std::jthread thread_;
 };
 
 }  // namespace turnpoint::desk

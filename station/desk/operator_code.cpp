@@ -30,7 +30,7 @@ constexpr const char* kStationGroup = "turnpoint";
   throw std::system_error(errno, std::generic_category(), what);
 }
 
-/// As long whatever the first difference is.
+/// Compares in constant time, wherever the first difference is.
 bool equal(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned different = 0;
@@ -46,7 +46,7 @@ std::string crypted(const std::string& text, const std::string& setting) {
   return hash;
 }
 
-/// A whole hash, and not only a setting to make one with.
+/// True for a complete hash; false for a mere setting from which to make one.
 bool is_hash(const std::string& text) {
   const auto data = std::make_unique<crypt_data>();
   const char* again = ::crypt_r("", text.c_str(), data.get());

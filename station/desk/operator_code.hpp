@@ -4,41 +4,42 @@
 
 namespace turnpoint::desk {
 
-/// The digits that open the operator's pages on the participant's screen. Only a salted hash of a stored code
-/// is kept (yescrypt, by libxcrypt).
+/// The digits that unlock the operator's pages on the participant's screen. Only a salted hash of a stored
+/// code is kept (yescrypt, by libxcrypt).
 class OperatorCode {
  public:
-  /// Of a station where nobody has stored another. Anybody can read it in the manual.
+  /// The code of a station on which nobody has stored another one. It is public, because it is in the manual.
   static constexpr const char* built_in = "2468";
   static constexpr std::size_t shortest = 4, longest = 12;
 
   /// The built-in code.
   OperatorCode() = default;
-  /// Hashes a new code; takes some tens of milliseconds. Throws terms::UsageError for one that is not of
-  /// 4 to 12 digits, or the built-in one.
+  /// Hashes a new code; takes some tens of milliseconds. Throws terms::UsageError for the built-in code, and
+  /// for one that does not have 4 to 12 digits.
   static OperatorCode of_digits(const std::string& digits);
-  /// A code that was stored. Throws terms::UsageError for a text that no hash can be.
+  /// A stored code. Throws terms::UsageError for a text that cannot be a hash.
   static OperatorCode of_hash(const std::string& hash);
 
   bool is_built_in() const { return hash_.empty(); }
-  const std::string& hash() const { return hash_; }  ///< "" of the built-in code
-  /// True for the code itself; takes as long for every text. Thread-safe.
+  const std::string& hash() const { return hash_; }  ///< "" for the built-in code
+  /// True for the right code. Takes equally long for every text. Thread-safe.
   bool opens(const std::string& typed) const;
 
  private:
   std::string hash_;
 };
 
-/// Where a code is stored, the first to be looked at first: in the user's configuration folder
-/// ($XDG_CONFIG_HOME, else ~/.config, none for root) and in /etc/turnpoint. A new one goes to the first.
+/// The files that may contain a code, in order of precedence: in the user's configuration folder
+/// ($XDG_CONFIG_HOME, else ~/.config, none for root) and in /etc/turnpoint. A new code is stored in the first
+/// one.
 std::vector<std::string> operator_code_files();
 
-/// The code in force: of the first of these files that is there, the built-in one where none is. Throws
-/// text::BadInput for a file that holds no code or that everybody may read, std::system_error for one that
-/// cannot be read.
+/// The current code: that of the first of these files that exists, or the built-in one. Throws text::BadInput
+/// for a file that contains no code or that everybody may read, and std::system_error for one that cannot be
+/// read.
 OperatorCode operator_code(const std::vector<std::string>& files = operator_code_files());
 
-/// Stores a code, readable by its owner alone, in /etc/turnpoint also by the group of the station's user.
+/// Stores a code so that only its owner can read it; in /etc/turnpoint also the group of the station's user.
 /// Throws std::system_error.
 void store_operator_code(const OperatorCode& code, const std::string& file);
 

@@ -51,7 +51,7 @@ std::optional<Knob> knob_of(const protocol::Factor& factor) {
   return knob;
 }
 
-/// The look in words.
+/// Describes the scene in words.
 void describe(SceneLook& look) {
   const auto& plan = look.plan;
   look.facts = {{"Boundary", in_mm(plan.boundary_m) + " (" + physics::format(plan.scene.edge) + ")"},

@@ -11,7 +11,7 @@ namespace turnpoint::desk {
 
 namespace {
 
-/// How late the participant's screen was, as the log has it.
+/// Summarises from the log how late the participant's screen was.
 std::string late_frames(const std::vector<records::EventRow>& events) {
   int frames = 0, trials = 0;
   for (const auto& event : events)
@@ -29,7 +29,7 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
       xruns += row.xruns;
       extra += row.extra_touches;
       if (row.response_time_s) ++quality[row.response_time_quality];
-      offset_s = std::max(offset_s, row.response_offset_s);  // answers by button have none
+      offset_s = std::max(offset_s, row.response_offset_s);  // answers by button have no offset
     }
   std::string qualities;
   for (const auto& [name, count] : quality)

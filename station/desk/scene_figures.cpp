@@ -22,9 +22,10 @@ plot::Paint stroke(const std::string& colour, double width, const std::string& d
 plot::Paint fill(const std::string& colour, double opacity = 1) { return {"", colour, 1, "", opacity}; }
 
 const std::string kMark = "mark";
-constexpr double kName_px = 14, kNameAbove_px = 20;  // the boundary's position, in words
+// size and distance of the text that gives the boundary's position
+constexpr double kName_px = 14, kNameAbove_px = 20;
 
-/// From this height on a drawing of the surface says what it shows.
+/// A drawing of the surface has a caption only from this height on.
 constexpr double kCaptionFrom_px = 165;
 
 void require_plan(const SceneLook& look) {
@@ -39,7 +40,8 @@ std::optional<double> mark_of(const SceneLook& look) {
   return value ? std::optional(1e-3 * *value) : std::nullopt;
 }
 
-/// The strip on the page: x from the wide end whichever way it lies; slim strips are widened to be seen.
+/// The strip's place on the page, with x from the wide end in either orientation. Slim strips are widened to
+/// be visible.
 struct Place {
   double left, right, middle_y, across, length_m;
   bool wide_left;
@@ -71,7 +73,7 @@ Place place_on(const rig::Rig& rig, double width_px, double height_px) {
   for (int i = 0; i <= 20; ++i)
     widest = std::max(widest, physics::half_width_m(at.surface, at.length_m * i / 20));
   const double to_scale = (at.right - at.left) / at.length_m;
-  // Above and below there has to be room for labels, whatever is left.
+  // There must be room for labels above and below, even if little is left for the strip.
   const double most_px = std::min(0.24 * height_px, 0.5 * height_px - (low ? 33 : 46));
   at.across = std::clamp(to_scale, 0.75 * most_px / widest, most_px / widest);
   return at;
@@ -84,7 +86,7 @@ void draw_heat(plot::Svg& svg, const SceneLook& look, const Place& at) {
     const double a = profile.x_m[i], b = profile.x_m[i + 1];
     const double value = 0.5 * (profile.displacement_m[i] + profile.displacement_m[i + 1]);
     const auto colour = plot::shade(top > 0 ? value / top : 0);
-    // Each slice reaches under the next, so that no paper shows between two.
+    // Each slice extends below the next one, so that no background is visible between them.
     const double under = std::min(at.length_m, b + (b - a));
     svg.polygon({at.above(a), at.above(under), at.below(under), at.below(a)}, fill(colour));
   }
@@ -108,7 +110,7 @@ void draw_transducer(plot::Svg& svg, const Place& at) {
                 fill("#4d565e"));
 }
 
-/// The mark where the participant sees it, its name on the side that is away from the boundary.
+/// Draws the mark where the participant sees it, with its name on the side away from the boundary.
 void draw_mark(plot::Svg& svg, const SceneLook& look, const Place& at) {
   const auto mark = mark_of(look);
   if (!mark || *mark <= 0 || *mark >= at.length_m) return;
@@ -119,7 +121,7 @@ void draw_mark(plot::Svg& svg, const SceneLook& look, const Place& at) {
            kInk);
 }
 
-/// Where the boundary's name has its lower end: above the mark and its name, where both would meet.
+/// The lower end of the boundary's name. If it would collide with the mark and its name, it goes above them.
 double boundary_name_y(const SceneLook& look, const Place& at, const std::string& name) {
   const double boundary = *look.plan.boundary_m, own = at.above(boundary).second;
   const auto mark = mark_of(look);
@@ -154,7 +156,8 @@ Drawing drawing_of(plot::Figure figure) {
     try {
       return plot::render(plot::laid_out(figure, width_px, height_px));
     } catch (const std::invalid_argument&) {
-      return plot::render(figure);  // a legend too long for that size: as it was made, then shown smaller
+      // if the legend is too long for that size, keep the original layout and scale it down
+      return plot::render(figure);
     }
   };
 }
@@ -162,7 +165,7 @@ Drawing drawing_of(plot::Figure figure) {
 Drawing drawing_of_surface(const SceneLook& look, const rig::Rig& rig) {
   require_plan(look);
   return [look, rig](double width_px, double height_px) {
-    // Below that its scale and its labels have no room.
+    // Below this size there is no room for its scale and labels.
     const double larger = std::max({1.0, 240 / width_px, 84 / height_px});
     return surface_svg(look, rig, larger * width_px, larger * height_px);
   };
@@ -204,7 +207,8 @@ plot::Figure profile_figure(const std::vector<SceneLook>& looks) {
     friction.layers.push_back(line);
     for (std::size_t k = 0; k < line.y.size(); ++k) line.y[k] = 1e6 * look.profile.displacement_m[k];
     most_um = std::max(most_um, *std::max_element(line.y.begin(), line.y.end()));
-    // A single picture has one series a panel; its friction curve looks different from its displacement.
+    // A single scene has one series in each panel, so give its friction curve a different look from its
+    // displacement.
     if (!several) std::get<plot::Line>(friction.layers.back()).series = 1;
     displacement.layers.push_back(line);
   }

@@ -10,7 +10,7 @@
 
 namespace turnpoint::limits {
 
-/// The rig's limits as the drive keeps them; a simulated finger's session may last any time.
+/// The rig's limits in the drive's form. A simulated session may last any time.
 ExposureLimits limits_of(const rig::Rig& rig, terms::RunMode mode);
 
 /// What a participant's earlier segments put on the finger, from the database: stimuli in order of time and
@@ -22,19 +22,20 @@ struct FingerHistory {
 };
 inline constexpr double kNewPeriod_s = 1800;
 
-/// Of sessions that end within the last half hour before `now_s`. A trial that was presented and never ended
-/// (a crash) counts as `longest_s` of stimulus. Times after now_s (a clock that was set back) count as now.
+/// Uses sessions that end within the last half hour before `now_s`. A trial that was presented but never
+/// ended (a crash) counts as a stimulus of `longest_s`. Times after now_s (the clock was set back) count as
+/// now.
 FingerHistory finger_history(const std::vector<store::StoredSession>& sessions, double now_s,
                              double longest_s);
 
-/// The same, read from a database that may not exist yet. Simulated sessions have no finger.
+/// The same, read from a database that may not exist yet. Simulated sessions have no history.
 FingerHistory read_finger_history(const std::string& database, const std::string& participant, double now_s,
                                   double longest_s);
 
 /// Keeps a period of exposure within the rig's limits, on the stage's clock.
 class FingerAccount {
  public:
-  /// `origin_ns` of the stage's clock is `origin_s` on the wall clock.
+  /// `origin_ns` on the stage's clock corresponds to `origin_s` on the wall clock.
   FingerAccount(const ExposureLimits& limits, const FingerHistory& history, std::int64_t origin_ns,
                 double origin_s);
 
@@ -42,7 +43,7 @@ class FingerAccount {
   std::int64_t earliest_ns(std::int64_t wanted_ns, const std::vector<Exposed>& trial) const;
   /// Throws LimitExceeded for a displacement that the rig does not allow.
   void check(double displacement_m, double length_s) const { exposure_.check(displacement_m, length_s); }
-  /// What was on the surface in the end.
+  /// Records what was actually presented.
   void add(std::int64_t on_ns, std::int64_t off_ns);
 
  private:
@@ -52,7 +53,7 @@ class FingerAccount {
   std::int64_t origin_ns_;
 };
 
-/// The stimuli of a trial by the times from its start, as long as they may last.
+/// The stimuli of a trial, with times from its start and the longest possible durations.
 std::vector<Exposed> stimuli_of(const protocol::Protocol& protocol, const trial::TrialSpec& trial);
 
 }  // namespace turnpoint::limits

@@ -22,7 +22,7 @@ bool is_on(const std::string& value, const Uri& uri) {
   return value == "on";
 }
 
-/// What a rig's text asks for; no requests where it is simulated.
+/// The settings in a rig's URI; no line requests if it is simulated.
 struct Asked {
   GuardLines roles;
   std::vector<LineRequest> requests;
@@ -68,7 +68,7 @@ void force_amplifier_off(const std::string& text) {
   Asked asked = read(text);
   if (asked.requests.empty()) return;
   std::erase_if(asked.requests, [](const LineRequest& wanted) { return wanted.use == LineUse::input; });
-  const auto lines = open_gpio_lines(asked.requests);  // outputs are low from the request on
+  const auto lines = open_gpio_lines(asked.requests);  // outputs are low from the moment of the request
   const auto level = asked.roles.read_back ? lines->read_back(asked.roles.enable) : std::nullopt;
   if (level.value_or(false))
     throw std::runtime_error("gpio line " + asked.requests.front().name + ": driven low, reads high");

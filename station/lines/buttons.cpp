@@ -23,7 +23,7 @@ constexpr std::int64_t settle_check_ns = 5'000'000;
 constexpr std::int64_t glitch_pause_ns = 1'000'000'000;
 constexpr std::int64_t evdev_wait_ns = 100'000'000;
 
-// Buttons first, then perhaps the contact line, as they are read.
+// Reads the lines: first the buttons, then the contact line, if any.
 class LineReader {
  public:
   LineReader(std::unique_ptr<Lines> lines, const WatchedLines& plan, const ButtonsHandlers& handlers)
@@ -38,7 +38,7 @@ class LineReader {
     std::int64_t due = now + settle_check_ns;
     for (const Watched& line : watched_) due = std::min(due, line.filter.due_ns());
     if (const auto edge = lines_->wait(std::max<std::int64_t>(due - now, 0))) return take(*edge);
-    // What is on its way when the time is read is there when the lines are asked once more.
+    // Read the time first: edges on their way at this time have arrived when the lines are polled again.
     const std::int64_t quiet_until = system::monotonic_ns();
     if (const auto edge = lines_->wait(0)) return take(*edge);
     settle(quiet_until);
@@ -91,7 +91,7 @@ class LineReader {
     }
   }
 
-  // Interference can come thousands of times a second; the log is for people.
+  // Interference can come thousands of times per second, but people read the log.
   void tell_glitch(int line, const LineChange& change) {
     Watched& watched = watched_[static_cast<std::size_t>(line)];
     if (watched.glitch_told_ns && change.time_ns < *watched.glitch_told_ns + glitch_pause_ns) {

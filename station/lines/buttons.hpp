@@ -10,26 +10,26 @@
 
 namespace turnpoint::lines {
 
-/// A press of a response button that lasted, at the first edge of its bouncing.
+/// A press of a response button that lasted long enough, stamped at the first edge of its bouncing.
 struct Press {
   std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC, kernel's stamp of the first edge
   int button = 0;            ///< index in the order of the URI
 };
 
-/// Interference on a line: it left its level and came back before that could count as a press or a touch.
+/// Interference on a line: its level changed and returned before that could count as a press or a touch.
 struct Glitch {
   std::int64_t time_ns = 0;    ///< CLOCK_MONOTONIC, kernel's stamp of the first edge
   std::string line;            ///< "left", "right", "contact"
-  int edges = 0;               ///< that the kernel reported
-  std::int64_t length_ns = 0;  ///< from the first to the last of them
-  int untold = 0;              ///< glitches of this line before, which were only counted
+  int edges = 0;               ///< number of edges that the kernel reported
+  std::int64_t length_ns = 0;  ///< time from the first to the last of them
+  int untold = 0;              ///< number of earlier glitches of this line that were counted but not reported
 };
 
 /// Something that went wrong with the buttons or the contact.
 struct ButtonsFault {
   enum class Kind {
-    edges_lost,  ///< more than the kernel keeps
-    gone,        ///< a chip or a sensor; it is looked for until it is back
+    edges_lost,  ///< more edges than the kernel can store
+    gone,        ///< a chip or a sensor was lost; the panel looks for it until it is back
   };
   std::int64_t time_ns = 0;
   Kind kind = Kind::gone;
@@ -40,14 +40,15 @@ struct ButtonsFault {
 struct ButtonsHandlers {
   std::function<void(const Press&)> press;
   std::function<void(const touch::Contact&)> contact;
-  std::function<void(const Glitch&)> glitch;  ///< at most one a second for each line
+  std::function<void(const Glitch&)> glitch;  ///< at most one per second for each line
   std::function<void(const ButtonsFault&)> fault;
-  std::function<void(std::int64_t time_ns)> back;  ///< what had gone; a button held at that time is no press
+  /// the lost device is back; a button held at that time does not count as a press
+  std::function<void(std::int64_t time_ns)> back;
 };
 
 /// `sim:` or `gpio:left=BTN_L,right=BTN_R`, with `active=low` for buttons to ground. `hold_ms` (default 1.5)
-/// is how long a level must last to count, `refractory_ms` (default 50) how long after a press or release
-/// nothing else is told; see EdgeFilter.
+/// is how long a level must last to count. `refractory_ms` (default 50) is the dead time after a press or
+/// release; see EdgeFilter.
 struct ButtonsConfig {
   std::string uri = "sim:";
 };
@@ -58,13 +59,13 @@ struct ContactConfig {
   std::string uri = "sim:";
 };
 
-/// Response buttons and finger contact, watched by one thread of their own while this lives.
+/// Response buttons and finger contact, watched by a separate thread during the lifetime of this object.
 class Buttons {
  public:
   virtual ~Buttons() = default;
   /// Names in the order of the URI ("left", "right"); empty without buttons.
   virtual const std::vector<std::string>& names() const = 0;
-  /// What has gone and is not back yet, and why; "" when all is there.
+  /// What has been lost and is not back yet, and why; "" if nothing.
   virtual std::string missing() const = 0;
 
   /// Simulated buttons only: as if it had happened then. Throws std::logic_error on a real one.
@@ -72,8 +73,8 @@ class Buttons {
   virtual void simulate(const touch::Contact& touch) = 0;
 };
 
-/// What the rig has; either may be absent. Throws terms::UsageError for a URI, LineError or
-/// std::system_error for a device that is not there.
+/// Opens the rig's buttons and contact; either may be absent. Throws terms::UsageError for a URI, and
+/// LineError or std::system_error for a device that does not exist.
 std::unique_ptr<Buttons> open_buttons(const std::optional<ButtonsConfig>& buttons,
                                       const std::optional<ContactConfig>& contact, ButtonsHandlers handlers);
 

@@ -12,16 +12,16 @@ namespace turnpoint::lines {
 /// it is back.
 class DeviceWatch {
  public:
-  /// Looks once at the device that it owns, waiting a little for news; throws when that has gone.
+  /// Checks the open device once, waiting a short time for news; throws if the device is lost.
   using Look = std::function<void()>;
-  /// Opens the device; throws while it is not there.
+  /// Opens the device; throws if it does not exist.
   using Open = std::function<Look()>;
 
-  /// Opens, and watches from then on at that SCHED_FIFO priority where it is granted. `handlers` must outlive
-  /// this. Throws what `open` throws.
+  /// Opens the device and watches it at this SCHED_FIFO priority, if granted. `handlers` must outlive this
+  /// object. Throws what `open` throws.
   DeviceWatch(Open open, int priority, const ButtonsHandlers& handlers);
 
-  /// Why the device cannot be watched now; "" while it is.
+  /// Why the device cannot be watched at present; "" while it can.
   std::string missing() const;
 
  private:
@@ -32,7 +32,7 @@ class DeviceWatch {
   Open open_;
   int priority_;
   const ButtonsHandlers& handlers_;
-  Look look_;  ///< none while the device is gone; of the thread
+  Look look_;  ///< empty while the device is lost; used only by the thread
   mutable std::mutex mutex_;
   std::string missing_;
   std::jthread thread_;

@@ -9,7 +9,7 @@ namespace turnpoint::lines {
 std::vector<std::string> chip_paths() {
   std::vector<std::string> paths;
   std::error_code ignored;
-  // Not links: Raspberry Pi OS has a second name for a chip, and each of its lines would be there twice.
+  // Skip links: Raspberry Pi OS has a second name for a chip, so each of its lines would be found twice.
   for (const auto& entry : std::filesystem::directory_iterator("/dev", ignored))
     if (entry.path().filename().string().starts_with("gpiochip") && !entry.is_symlink(ignored))
       paths.push_back(entry.path().string());
@@ -22,7 +22,7 @@ std::vector<std::string> chip_paths() {
 std::optional<std::size_t> wait_readable(std::vector<pollfd>& descriptors, std::int64_t timeout_ns,
                                          int wake) {
   const timespec timeout{timeout_ns / 1'000'000'000, timeout_ns % 1'000'000'000};
-  descriptors.push_back({wake, POLLIN, 0});  // poll passes over a negative one
+  descriptors.push_back({wake, POLLIN, 0});  // poll ignores a negative descriptor
   const int ready = ::ppoll(descriptors.data(), descriptors.size(), &timeout, nullptr);
   const int error = errno;
   descriptors.pop_back();

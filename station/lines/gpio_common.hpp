@@ -11,8 +11,8 @@ namespace turnpoint::lines {
 /// Paths of the machine's GPIO chips in the order of their numbers.
 std::vector<std::string> chip_paths();
 
-/// Waits for one of the descriptors; its index, or none after `timeout_ns`. A descriptor that hangs up or
-/// fails means that its chip is gone, which the holder of a line is told in no other way: throws ENODEV.
+/// Waits for one of the descriptors. Returns its index, or nothing after `timeout_ns`. If a descriptor hangs
+/// up or fails, its chip is gone; the holder of a line gets no other notice. Then throws ENODEV.
 std::optional<std::size_t> wait_readable(std::vector<pollfd>& descriptors, std::int64_t timeout_ns, int wake);
 
 [[noreturn]] void throw_line_error(int error, const std::string& name, const std::string& what);

@@ -8,7 +8,8 @@
 namespace turnpoint::lines {
 namespace {
 
-constexpr int kernel_buffer_edges = 16;  // of a line, by Linux's character device, version 1
+// buffer for one line in version 1 of Linux's character device interface
+constexpr int kernel_buffer_edges = 16;
 
 struct ChipCloser {
   void operator()(gpiod_chip* chip) const noexcept { gpiod_chip_close(chip); }
@@ -17,11 +18,10 @@ using Chip = std::unique_ptr<gpiod_chip, ChipCloser>;
 
 struct Found {
   Chip chip;
-  gpiod_line* line = nullptr;  ///< belongs to the chip
+  gpiod_line* line = nullptr;  ///< owned by the chip
 };
 
-// Each found line keeps a chip handle of its own. A null chip must never reach the library: it does not
-// check.
+// Each found line has its own chip handle. Never pass a null chip to the library, because it does not check.
 Found find(const std::string& name) {
   Found found;
   int denied = 0;
@@ -80,9 +80,9 @@ class GpioLines final : public Lines {
     const int line = inputs_[*ready];
     Last& last = last_[static_cast<std::size_t>(line)];
     const bool rising = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
-    // This interface does not number its events. A buffer that was found full has lost what came after it,
-    // but for a coincidence. Two edges in one direction prove nothing: the direction is the level when the
-    // interrupt was served, so a short spike looks like that.
+    // This interface does not number its events. If the buffer was full, later events were lost (except by
+    // coincidence). Two edges in the same direction prove nothing: the direction is the level at the time
+    // when the interrupt was handled, so a short spike looks like that.
     const bool lost = last.was_full;
     last.was_full = ++last.waiting >= kernel_buffer_edges;
     if (last.was_full) last.waiting = 0;
@@ -112,7 +112,7 @@ class GpioLines final : public Lines {
  private:
   struct Last {
     std::uint32_t sequence = 0;
-    int waiting = 0;  ///< edges read since the buffers were last seen empty
+    int waiting = 0;  ///< edges read since the buffers were last empty
     bool was_full = false;
   };
   std::vector<Found> lines_;

@@ -28,7 +28,7 @@ struct Found {
   unsigned offset = 0;
 };
 
-// A null chip must never reach the library: it does not check.
+// Never pass a null chip to the library, because it does not check.
 Found find(const std::string& name) {
   Found found;
   int denied = 0;

@@ -5,7 +5,7 @@ namespace turnpoint::lines {
 using drive::AmplifierState;
 using terms::FaultKind;
 
-/// Who has not given a sign of life for too long.
+/// Returns the thread that has not reported for too long, if any.
 std::optional<FaultKind> Guard::silent(std::int64_t now_ns) const noexcept {
   if (audio_seen_ns_ < 0 || now_ns - audio_seen_ns_ > config_.audio_timeout_ns)
     return FaultKind::audio_silent;
@@ -15,7 +15,7 @@ std::optional<FaultKind> Guard::silent(std::int64_t now_ns) const noexcept {
   return std::nullopt;
 }
 
-/// A cause that is still there and would latch a cleared fault again.
+/// A cause that is still present and would trip the amplifier again.
 std::optional<FaultKind> Guard::present() const noexcept {
   if (fault_active_) return FaultKind::amplifier;
   if (stop_active_) return FaultKind::stop_pressed;

@@ -7,30 +7,30 @@
 
 namespace turnpoint::lines {
 
-/// What the guard wants of the lines after a step.
+/// The levels that the guard wants on the lines after a step.
 struct GuardOutputs {
   int enable = 0;
   int heartbeat = 0;
 };
 
-/// The amplifier's safety rules as a pure machine: latched faults, arming by an operator, and a heartbeat
-/// that toggles only while audio, session and page all prove that they are alive. Time is CLOCK_MONOTONIC in
-/// ns; no thread, no lines, no memory from the heap.
+/// The amplifier's safety rules as a pure state machine: latched faults, arming by an operator, and a
+/// heartbeat that toggles only while audio, session and page all report that they are alive. Time is
+/// CLOCK_MONOTONIC in ns; it uses no thread, no lines and no heap memory.
 class Guard {
  public:
   struct Config {
     std::int64_t toggle_ns = 10'000'000;              ///< half a heartbeat
-    std::int64_t audio_timeout_ns = 100'000'000;      ///< without a sign of the audio thread
-    std::int64_t session_timeout_ns = 2'000'000'000;  ///< without a sign of the session
-    std::int64_t page_timeout_ns = 2'000'000'000;     ///< without a sign of the participant's page
+    std::int64_t audio_timeout_ns = 100'000'000;      ///< limit without a report from the audio thread
+    std::int64_t session_timeout_ns = 2'000'000'000;  ///< limit without a report from the session
+    std::int64_t page_timeout_ns = 2'000'000'000;     ///< limit without a report from the participant's page
   };
 
-  /// Why something is not done: what is wrong now, or the latched fault that has to be cleared first.
+  /// Why a command is refused: what is wrong now, or the latched fault that has to be cleared first.
   struct Refusal {
     terms::FaultKind kind = terms::FaultKind::other;
     bool latched = false;
   };
-  /// What latched the fault; the detail is a constant.
+  /// The latched fault; the detail is a constant string.
   struct Fault {
     terms::FaultKind kind = terms::FaultKind::other;
     const char* detail = "";
@@ -40,22 +40,23 @@ class Guard {
   Guard() noexcept : Guard(Config{}) {}
   explicit Guard(const Config& config) noexcept : config_(config) {}
 
-  /// Operator and session. The reason why not, or none.
+  /// Commands of operator and session. Each returns the reason for a refusal, or nothing.
   [[nodiscard]] std::optional<Refusal> arm(std::int64_t now_ns) noexcept;
   [[nodiscard]] std::optional<Refusal> enable(std::int64_t now_ns) noexcept;
   [[nodiscard]] std::optional<Refusal> clear() noexcept;
   void disarm() noexcept;
   void disable() noexcept;
 
-  /// Lines and faults. `active` is the level after an edge, or as it was read.
+  /// Events of lines. `active` is the level after an edge, or a level that was read.
   void fault_line(std::int64_t time_ns, bool active) noexcept;
   void stop_line(std::int64_t time_ns, bool active) noexcept;
-  /// The level that the enable line really has. One that is high although it is driven low also ends the
-  /// heartbeat, so that what monitors it outside switches the amplifier off.
+  /// The actual level of the enable line. If it is high although it was set low, the heartbeat ends as well,
+  /// so that the external monitor switches the amplifier off.
   void enable_line(std::int64_t time_ns, bool level) noexcept;
   void trip(std::int64_t time_ns, terms::FaultKind kind, const char* detail = "") noexcept;
 
-  /// Signs of life, and the passing of time. The page is expected to live from its first sign on.
+  /// Reports that a thread is alive, and the passing of time. The page is expected to keep reporting after
+  /// its first report.
   void audio_alive(std::int64_t now_ns) noexcept { audio_seen_ns_ = now_ns; }
   void session_alive(std::int64_t now_ns) noexcept { session_seen_ns_ = now_ns; }
   void page_alive(std::int64_t now_ns) noexcept { page_seen_ns_ = now_ns; }

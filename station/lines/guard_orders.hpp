@@ -10,15 +10,15 @@
 
 namespace turnpoint::lines {
 
-/// Orders from ordinary threads to the guard's thread, and its answers. An ordinary thread waits until its
-/// order has been carried out; the guard waits for nobody. An order that only ever switches off takes effect
+/// Commands from ordinary threads to the guard's thread, and its answers. An ordinary thread waits until its
+/// command has been carried out; the guard waits for nobody. A command that only switches off takes effect
 /// once it is posted, even if its caller never runs again.
 class GuardOrders {
  public:
-  /// What an operator or the session asks for, and may be refused.
+  /// Commands of an operator or the session that may be refused.
   enum class Ask : std::uint32_t { nothing, arm, enable, clear };
 
-  /// What the guard finds when it looks. Orders that switch off win over what is asked for in the same look.
+  /// The commands that the guard finds when it looks. Those that switch off take precedence over the others.
   struct Taken {
     std::uint32_t ticket = 0;
     Ask ask = Ask::nothing;
@@ -26,12 +26,12 @@ class GuardOrders {
     std::uint32_t trips = 0;  ///< bit k: terms::FaultKind k
   };
 
-  /// `scheduler_point` (may be empty) is called on the caller's thread between the steps of an order: a test
-  /// stalls it there.
+  /// `scheduler_point` (may be empty) is called on the caller's thread between the steps of a command, so
+  /// that a test can stall it there.
   explicit GuardOrders(std::function<void()> scheduler_point)
       : scheduler_point_(std::move(scheduler_point)) {}
 
-  // Ordinary threads. ask() is for one at a time; others wait for their turn.
+  // For ordinary threads. Only one at a time may use ask(); others wait for their turn.
   std::optional<Guard::Refusal> ask(Ask what);
   void disable() noexcept { post(off_, disable_bit); }
   void disarm() noexcept { post(off_, disarm_bit); }
@@ -41,7 +41,7 @@ class GuardOrders {
   std::optional<Taken> take() noexcept;
   void done(const Taken& taken, std::optional<Guard::Refusal> refusal) noexcept;
 
-  /// Ends the guard's wait without an order.
+  /// Wakes the guard without a command.
   void wake() noexcept { wake_.ring(); }
   int descriptor() const noexcept { return wake_.descriptor(); }
 
@@ -57,7 +57,8 @@ class GuardOrders {
   std::atomic<Ask> ask_{Ask::nothing};
   std::atomic<std::uint32_t> off_{0}, trips_{0};
   std::atomic<std::uint32_t> posted_{0}, handled_{0};
-  std::optional<Guard::Refusal> refusal_;  ///< of the last ask; written before handled_ reaches its ticket
+  /// answer to the last ask; written before handled_ reaches its ticket
+  std::optional<Guard::Refusal> refusal_;
   system::WakeUp wake_;
 };
 

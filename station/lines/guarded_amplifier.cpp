@@ -23,19 +23,21 @@ using Ask = GuardOrders::Ask;
 
 constexpr int guard_priority = 75;
 constexpr std::int64_t open_again_ns = 100'000'000;
-constexpr std::int64_t look_ns = 500'000;  // how often fault and stop are read while the line is high
+// how often the levels of fault and stop are read while the line is high
+constexpr std::int64_t look_ns = 500'000;
 static_assert(terms::fault_kinds.size() <= 32, "a trip is a bit of a word");
 
-/// What ordinary threads may know of the guard.
+/// The guard's state for ordinary threads.
 struct Report {
   drive::AmplifierState state = drive::AmplifierState::disarmed;
   Guard::Fault fault;
   std::int64_t reaction_ns = -1;
 };
-/// Why the lines are gone, cut to what fits.
+/// Why the lines were lost, truncated to fit.
 using Reason = std::array<char, 160>;
 
-/// Owns lines and rules; all of it belongs to the guard's thread, which publishes what others may know.
+/// Owns lines and rules. All members belong to the guard's thread, which publishes what other threads may
+/// read.
 class GuardThread {
  public:
   GuardThread(OpenLines open, const GuardLines& roles, const GuardOptions& options)
@@ -81,7 +83,7 @@ class GuardThread {
     if (const auto at = page_ns.load(); at >= 0) guard_.page_alive(at);
   }
 
-  /// Lines whose outputs are low, and what was pressed or faulty before.
+  /// Takes over freshly opened lines: outputs are low, and existing stops and faults are read.
   void take_up() {
     lines_ = open_();
     driven_high_ = false;
@@ -90,7 +92,8 @@ class GuardThread {
     publish();
   }
 
-  /// Without its lines the guard cannot guard: the heartbeat ends, and what monitors it outside acts.
+  /// Without its lines the guard cannot guard: the heartbeat ends, and the external monitor switches the
+  /// amplifier off.
   void let_go(const char* why) noexcept {
     guard_.trip(system::monotonic_ns(), FaultKind::lines_gone);
     lines_.reset();
@@ -101,13 +104,13 @@ class GuardThread {
     publish();
   }
 
-  /// The line goes low first; only then is anything else done.
+  /// First set the line low; do everything else afterwards.
   void edge(const Edge& edge) {
     const bool fault = edge.line == roles_.fault;
     const bool active = fault ? fault_at(edge.rising) : stop_at(edge.rising);
     if (active) {
       lines_->drive(roles_.enable, 0);
-      // The levels may have told it before the edge did.
+      // A level may have been read before its edge arrived.
       reaction_ns_ = (driven_high_ ? system::monotonic_ns() : lowered_ns_) - edge.time_ns;
     }
     fault ? guard_.fault_line(edge.time_ns, active) : guard_.stop_line(edge.time_ns, active);
@@ -115,7 +118,8 @@ class GuardThread {
     publish();
   }
 
-  /// The kernel hands edges on by a thread of its own, which a busy real-time thread can hold up.
+  /// The kernel delivers edges by its own thread, which a busy real-time thread can delay. So read the levels
+  /// as well.
   void look() {
     read_levels();
     drive_enable();
@@ -127,7 +131,7 @@ class GuardThread {
     take_signs();
     guard_.tick(system::monotonic_ns());
     look();
-    // Compared with what has just been driven, not with what was wanted before.
+    // Compare with the level set just now, not with the one that was wanted before.
     if (const auto level = roles_.read_back ? lines_->read_back(roles_.enable) : std::nullopt)
       guard_.enable_line(system::monotonic_ns(), *level);
     drive_enable();
@@ -155,7 +159,7 @@ class GuardThread {
     return refusal;
   }
 
-  /// Every order is answered, whatever goes wrong with the lines: somebody waits for it.
+  /// Every command gets an answer, whatever happens to the lines, because a thread is waiting for it.
   void look_at_orders() noexcept {
     const auto taken = orders.take();
     if (!taken) return;
@@ -170,7 +174,7 @@ class GuardThread {
     orders.done(*taken, refusal);
   }
 
-  /// Edges and orders until it is time to look or to beat.
+  /// Waits for edges and commands until it is time to read the levels or to toggle the heartbeat.
   void watch() {
     const auto until_ns =
         wants_high() ? std::min(guard_.next_tick_ns(), next_look_ns_) : guard_.next_tick_ns();
@@ -181,7 +185,7 @@ class GuardThread {
     if (wants_high() && now >= next_look_ns_) look();
   }
 
-  /// Orders are answered meanwhile, however many come.
+  /// Answers commands meanwhile, however many come.
   void look_for_lines() {
     const std::int64_t left_ns = std::max<std::int64_t>(0, next_open_ns_ - system::monotonic_ns());
     pollfd order{orders.descriptor(), POLLIN, 0};
@@ -208,11 +212,11 @@ class GuardThread {
   OpenLines open_;
   GuardLines roles_;
   Guard guard_;
-  std::unique_ptr<Lines> lines_;   ///< none while they are gone
-  std::int64_t next_open_ns_ = 0;  ///< of lines that are gone
+  std::unique_ptr<Lines> lines_;   ///< null while they are lost
+  std::int64_t next_open_ns_ = 0;  ///< when to try again to open lost lines
   std::int64_t next_look_ns_ = 0;
   bool driven_high_ = false;
-  std::int64_t lowered_ns_ = 0;  ///< when it was last driven low from high
+  std::int64_t lowered_ns_ = 0;  ///< time at which it was last set from high to low
   std::int64_t reaction_ns_ = -1;
   std::jthread thread_;
 };
@@ -228,7 +232,7 @@ class GuardedAmplifier final : public drive::Amplifier {
   void disarm() noexcept override { guard_.orders.disarm(); }
   void disable() noexcept override { guard_.orders.disable(); }
   void trip(FaultKind kind, std::string_view detail) noexcept override {
-    guard_.orders.trip(kind);  // first: the detail is of no use to the guard
+    guard_.orders.trip(kind);  // post this first; the guard does not need the detail
     const std::lock_guard lock(details_mutex_);
     details_[static_cast<std::size_t>(kind)] = detail;
   }
@@ -259,8 +263,8 @@ class GuardedAmplifier final : public drive::Amplifier {
     return details_[static_cast<std::size_t>(kind)];
   }
 
-  mutable std::mutex details_mutex_;                            ///< among ordinary threads only
-  std::array<std::string, terms::fault_kinds.size()> details_;  ///< of what the station tripped itself
+  mutable std::mutex details_mutex_;                            ///< used only by ordinary threads
+  std::array<std::string, terms::fault_kinds.size()> details_;  ///< details of trips by the station itself
   GuardThread guard_;
 };
 

@@ -8,7 +8,7 @@
 
 namespace turnpoint::lines {
 
-/// Which of the lines is what; -1 where there is none.
+/// The index of each line; -1 if there is none.
 struct GuardLines {
   int enable = -1;
   int heartbeat = -1;
@@ -16,22 +16,23 @@ struct GuardLines {
   int stop = -1;
   bool fault_active_low = false;
   bool stop_active_low = false;
-  bool read_back = true;  ///< compare the enable line's level with what was driven, where the chip can tell
+  /// compare the actual level of the enable line with the level that was set, if the chip can read it
+  bool read_back = true;
 };
 
 struct GuardOptions {
   Guard::Config config;
-  /// Called on the caller's thread between the steps of each call, never on the guard's: a test stalls the
-  /// caller there.
+  /// Called on the caller's thread between the steps of each call, never on the guard's thread, so that a
+  /// test can stall the caller there.
   std::function<void()> scheduler_point;
 };
 
-/// An amplifier on lines (kernel or simulated) with its guard thread, SCHED_FIFO 75 where that is granted.
-/// Once the lines are open only that thread uses them. It takes the edges of fault and stop, and also reads
-/// their levels: every 0.5 ms while the enable line is high, in every beat, and before each arming and
-/// enabling. So an edge that is lost, or that the kernel hands on late, does not matter. The enable line is
-/// low on return and after destruction. Lines whose chip has gone are a latched fault, and are looked for
-/// until they are back; then an operator can clear and arm. Throws what `open` throws at the start.
+/// An amplifier on lines (kernel or simulated) with its guard thread, at SCHED_FIFO 75 if granted. Once the
+/// lines are open, only that thread uses them. It handles the edges of fault and stop, and also reads their
+/// levels: every 0.5 ms while the enable line is high, in every beat, and before each arming and enabling. So
+/// a lost or delayed edge does not matter. The enable line is low on return and after destruction. If the
+/// chip of the lines is lost, that is a latched fault; the guard looks for the lines until they are back, and
+/// then an operator can clear and arm. Throws what `open` throws at the start.
 std::unique_ptr<drive::Amplifier> guard_amplifier(OpenLines open, const GuardLines& roles,
                                                   GuardOptions options = {});
 

@@ -8,8 +8,8 @@
 
 namespace turnpoint::lines {
 
-/// A value that one thread publishes and any thread reads whole. The writer never waits; a reader that meets
-/// a write reads again (a sequence lock whose words are atomics).
+/// A value that one thread publishes and any thread can read consistently. The writer never waits; a reader
+/// that overlaps with a write reads again (a sequence lock whose words are atomics).
 template <typename T>
 class Published {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -20,7 +20,7 @@ class Published {
     std::memcpy(raw.data(), &value, sizeof value);
     const auto version = version_.load(std::memory_order_relaxed);
     version_.store(version + 1, std::memory_order_relaxed);
-    // A reader that sees one of these words sees the odd version as well.
+    // A reader that sees one of these words also sees the odd version.
     for (std::size_t k = 0; k < words; ++k) words_[k].store(raw[k], std::memory_order_release);
     version_.store(version + 2, std::memory_order_release);
   }

@@ -8,7 +8,7 @@
 
 namespace turnpoint::lines {
 
-/// Lines without hardware, for development and tests: inputs are set by hand, outputs can be read back.
+/// Lines without hardware, for development and tests: inputs are set by hand, and outputs can be read back.
 /// All functions may be called from any thread.
 class SimulatedLines : public Lines {
  public:
@@ -20,20 +20,20 @@ class SimulatedLines : public Lines {
   void drive(int index, int level) override;
   std::optional<bool> read_back(int index) override { return level(index); }
 
-  /// An input changes, at that time.
+  /// Changes an input at that time.
   void set(int index, bool level, std::int64_t time_ns);
-  /// An input leaves its level and comes back: both edges are there at once.
+  /// An input changes its level and returns; both edges are available at once.
   void pulse(int index, std::int64_t time_ns, std::int64_t length_ns);
-  /// Edges that the kernel's buffer had no room for.
+  /// Simulates edges for which the kernel's buffer had no room.
   void lose_edges(int index, std::uint32_t count);
-  /// What was driven, change by change: which output, its new level, when.
+  /// The log of outputs, change by change: which output, its new level, and when.
   struct Driven {
     std::int64_t time_ns = 0;
     int line = 0;
     int level = 0;
   };
   std::vector<Driven> driven() const;
-  /// The chip is unplugged: every further call throws ENODEV until it is plugged in again, outputs low.
+  /// Unplugs the chip: every further call throws ENODEV until it is plugged in again, with outputs low.
   void remove();
   void put_back();
 

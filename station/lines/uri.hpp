@@ -5,15 +5,14 @@
 
 namespace turnpoint::lines {
 
-/// `scheme:key=value,key=value` as rig files write devices; the order of the keys is kept.
+/// A device as written in rig files, `scheme:key=value,key=value`; keeps the order of the keys.
 struct Uri {
   std::string scheme;
   std::string
-      name;  ///< what stands before the first comma without a `=`, e.g. the device of `evdev:NAME,axis=x`
+      name;  ///< the part before the first comma if it has no `=`, e.g. the device of `evdev:NAME,axis=x`
   std::vector<std::pair<std::string, std::string>> values;
 
-  /// The value of a key, or `otherwise`; takes it out, so that what is left over at the end was not
-  /// understood.
+  /// Removes a key and returns its value, or `otherwise`. Keys that are left at the end were not understood.
   std::string take(const std::string& key, const std::string& otherwise);
   /// Throws terms::UsageError naming the first key that nobody took.
   void check_empty(const std::string& allowed) const;

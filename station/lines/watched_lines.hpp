@@ -11,10 +11,10 @@
 
 namespace turnpoint::lines {
 
-/// Which lines are watched: buttons first, in order, then perhaps the contact.
+/// The lines to watch: first the buttons in order, then the contact, if any.
 struct WatchedLines {
   std::vector<LineRequest> requests;
-  std::vector<std::string> names;  ///< of each line: "left", "right", "contact"
+  std::vector<std::string> names;  ///< for each line: "left", "right", "contact"
   int lines = 0;
   int contact = -1;                               ///< index of the contact line
   bool buttons_low = false, contact_low = false;  ///< active level

@@ -27,7 +27,8 @@ namespace {
 
 using Status = lines::Finding::Status;
 
-// Two and a half seconds of silence, to see the device's own clock; longer where its time stamps are coarse.
+// Plays two and a half seconds of silence to measure the device's own clock, or longer if its time stamps are
+// coarse.
 lines::Finding measured_clock(drive::Stream& stream) {
   for (int k = 0; k < 220; ++k) {
     system::sleep_until_ns(system::monotonic_ns() + 100'000'000);
@@ -47,7 +48,7 @@ lines::Finding measured_clock(drive::Stream& stream) {
           "another device or kernel driver"};
 }
 
-// What amixer calls the card of alsa:hw:CARD=NAME,DEV=0, or of alsa:hw:NAME,0.
+// The name that amixer uses for the card of alsa:hw:CARD=NAME,DEV=0, or of alsa:hw:NAME,0.
 std::string card_of(std::string_view uri) {
   uri.remove_prefix(std::string_view("alsa:hw:").size());
   if (uri.starts_with("CARD=")) uri.remove_prefix(5);
@@ -55,7 +56,7 @@ std::string card_of(std::string_view uri) {
 }
 
 // A PCM512x mutes its analogue side after 1024 frames of zeros, 5 ms (TI, PCM512x data sheet, zero data
-// detection), and unmutes it at each onset. The stream of a session is zeros between stimuli.
+// detection), and unmutes it at each onset. Between stimuli the stream of a session consists of zeros.
 void converter_mute(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
   const auto on = drive::card_switch(rig.output.uri, "Auto Mute Switch");
   if (!on) return;
@@ -92,7 +93,7 @@ void converter(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
   }
 }
 
-// A rig file begins with a simulated panel: easily forgotten beside a real converter.
+// A new rig file has a simulated panel, which is easily forgotten when a real converter is added.
 lines::Finding touch(const rig::Rig& rig) {
   auto check = lines::check_touch("touch", *rig.touch_uri);
   if (check.status == Status::ok && *rig.touch_uri == "sim:" && rig.output.uri.starts_with("alsa:"))
@@ -130,7 +131,7 @@ void display(std::vector<lines::Finding>& checks) {
        session || direct ? "" : "sessions need a screen, --buttons-only or a simulated observer"});
 }
 
-// On a desktop its server hands touches on; a bare screen takes them from the devices.
+// On a desktop, its display server passes touches on; on a bare screen the program must read the devices.
 void input(std::vector<lines::Finding>& checks) {
   if (std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY")) return;
   const auto devices = lines::try_input_devices();
@@ -191,7 +192,7 @@ lines::Finding check_swap(const std::string& swaps) {
   std::ifstream file(swaps);
   if (!file) return {"swap", Status::warning, swaps + " cannot be read", "look with: swapon --show"};
   std::string line, active;
-  std::getline(file, line);  // the heading
+  std::getline(file, line);  // skip the heading
   while (std::getline(file, line))
     if (const auto name = line.substr(0, line.find_first_of(" \t")); !name.empty())
       active += (active.empty() ? "" : ", ") + name;

@@ -17,14 +17,14 @@ class TouchReader;
 
 namespace turnpoint::maintenance {
 
-/// What `turnpoint calibrate --panel` was asked for.
+/// The options of `turnpoint calibrate --panel`.
 struct LatencyRequest {
   std::string rig;
   calibration::LatencyReference reference = calibration::LatencyReference::button;
 };
 
-/// The devices that a panel's latency is measured with: the touch panel's kernel times, where the rig names
-/// the panel, and the rig's button lines, one of which is the reference.
+/// The devices for measuring a panel's latency: the touch panel's kernel times, if the rig names the panel,
+/// and the rig's button lines, one of which is the reference.
 class LatencyDevices {
  public:
   using OnEdge = std::function<void(std::int64_t time_ns)>;
@@ -35,7 +35,7 @@ class LatencyDevices {
 
   ~LatencyDevices();
 
-  /// True where touches get the kernel's time.
+  /// True if touches get the kernel's time.
   bool has_kernel_times() const { return touch_ != nullptr; }
   /// See touch::TouchReader::claim(); none without kernel times.
   std::optional<std::int64_t> claim(double x, double y, std::int64_t seen_ns);
@@ -45,11 +45,12 @@ class LatencyDevices {
   std::unique_ptr<lines::Buttons> buttons_;
 };
 
-/// The calibration that a panel's latency goes into: the newest beside the rig where that is still in force,
-/// else a new one that holds nothing else; what was measured against the other reference stays. Made today.
+/// The calibration to which a panel's latency is added: the newest one beside the rig if it is still valid,
+/// else a new one that contains nothing else. A latency measured with the other reference is kept. Has
+/// today's date.
 calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured);
 
-/// The panel's latency in the newest calibration in force beside the rig.
+/// The panel's latency from the newest valid calibration beside the rig.
 std::optional<calibration::PanelLatency> known_panel(const rig::Rig& rig);
 
 }  // namespace turnpoint::maintenance

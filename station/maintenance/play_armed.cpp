@@ -19,11 +19,11 @@ namespace turnpoint::maintenance {
 namespace {
 
 constexpr double kLead_s = 0.5, kMargin_s = 0.5;
-constexpr std::int64_t kHeard_ns = 2'000'000'000;  // by which it is known that all was played
+constexpr std::int64_t kHeard_ns = 2'000'000'000;  // time limit for the report that everything was played
 constexpr std::int64_t kPoll_ns = 5'000'000;
-constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // by which the audio thread proves its life
+constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // time limit for the first report of the audio thread
 
-/// Why what was played cannot be used; "" for what belongs to playing.
+/// The reason why the sound was not played correctly; "" for normal events.
 std::string trouble_of(const drive::Event& event, const drive::OutputConfig& output) {
   switch (event.kind) {
     case drive::EventKind::underrun:
@@ -44,11 +44,11 @@ std::string trouble_of(const drive::Event& event, const drive::OutputConfig& out
   return "";
 }
 
-/// Attends to the stream until `done`, and shows the guard that somebody lives. Throws what went wrong, also
-/// a signal to end.
+/// Polls the stream until `done`, and reports to the guard that the program is alive. Throws if something
+/// went wrong, or after a termination signal.
 void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::function<bool()>& done) {
   for (;;) {
-    const bool last = done();  // asked before the events: what happened until then is among them
+    const bool last = done();  // checked before polling, so that all events until then are processed
     amplifier.session_alive();
     while (const auto event = stream.poll())
       if (const auto trouble = trouble_of(*event, stream.config().output); !trouble.empty())
@@ -65,20 +65,21 @@ void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::funct
   }
 }
 
-/// Returns the frame of the first onset.
+/// Plays the bursts. Returns the frame of the first onset.
 std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier,
                   const std::vector<drive::Burst>& bursts) {
   const int rate_Hz = stream.config().output.rate_Hz;
   const auto margin = std::llround(kMargin_s * rate_Hz);
   auto first = bursts.at(0);
   first.start_frame = stream.earliest_frame() + std::llround(kLead_s * rate_Hz);
-  // However long the first one took to check, the others follow at their distance.
+  // However long the check of the first burst takes, the others keep their distance to it.
   const auto onset = stream.schedule_soon(first).start_frame;
   auto end = onset + first.length_frames;
   for (std::size_t k = 1; k < bursts.size(); ++k) {
     auto burst = bursts[k];
     burst.start_frame += onset - bursts[0].start_frame;
-    // By what is rendered, which a device with a long buffer is far ahead of what is heard.
+    // Compare with the render position, not the playback position: with a long device buffer, rendering runs
+    // far ahead.
     attend(stream, amplifier, [&] { return stream.earliest_frame() + margin >= burst.start_frame; });
     stream.schedule(burst);
     end = burst.start_frame + burst.length_frames;
@@ -107,12 +108,12 @@ drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
                              const std::vector<drive::Burst>& bursts) {
   auto config = session::stream_of(rig);
   config.output.uri = uri;
-  const auto peak = largest_peak(bursts, config);                   // refused before anything is opened
-  const auto amplifier = lines::open_amplifier(rig.amplifier_uri);  // outlives the stream
+  const auto peak = largest_peak(bursts, config);                   // throws before anything is opened
+  const auto amplifier = lines::open_amplifier(rig.amplifier_uri);  // must outlive the stream
   config.amplifier = amplifier.get();
   system::StopSignals signals;
   signals.take_over();
-  const auto stream = drive::open_realtime(config);  // on its way out it ramps down what sounds
+  const auto stream = drive::open_realtime(config);  // its destructor ramps down what is sounding
   attend(*stream, *amplifier, [until_ns = system::monotonic_ns() + kFirstBlocks_ns] {
     return system::monotonic_ns() >= until_ns;
   });

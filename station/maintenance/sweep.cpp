@@ -22,7 +22,7 @@ drive::Burst burst_of(const SweepStep& step, int rate_Hz) {
   return burst;
 }
 
-/// Every tone at its own absolute frame, so that a vibrometer may count time.
+/// Renders every tone at its own absolute frame, so that a vibrometer can find tones by time.
 void render(drive::SynchronousStream& stream, const std::vector<drive::Burst>& bursts) {
   for (const auto& burst : bursts) {
     stream.schedule(burst);

@@ -5,9 +5,9 @@
 
 namespace turnpoint::procedure {
 
-/// The method of adjustment: starting levels come as constant stimuli do, and the settings are what is
-/// learnt. Their mean estimates the point of subjective equality ("pse"; mode: the median), their standard
-/// deviation its sd. A trial without a setting comes again.
+/// The method of adjustment. Starting levels are presented like constant stimuli, and the participant's
+/// settings are recorded. Their mean (or mode: the median) estimates the point of subjective equality
+/// ("pse"), and their standard deviation is its sd. A trial without a setting is repeated later.
 class Adjustment : public ConstantStimuli {
  public:
   using ConstantStimuli::ConstantStimuli;

@@ -13,19 +13,20 @@ namespace {
 
 using Levels = std::vector<std::vector<std::size_t>>;
 
-/// No design repeats a value so often: products of more levels need not be known.
+/// No design repeats a value more often, so larger products of levels need not be computed.
 constexpr std::size_t kMost = 1'000'000;
 
-/// How many combinations the levels of these factors have, up to kMost.
+/// The number of combinations of these factors' levels, up to kMost.
 std::size_t crossed(const Levels& factors) {
   std::size_t cells = 1;
   for (const auto& levels : factors) cells = std::min(cells * levels.size(), kMost);
   return cells;
 }
 
-/// The levels of the balanced factors in one repeat of a value. After any number of repeats the counts of the
-/// combinations differ by one at most, and so do those of each factor's levels: the factors step together,
-/// and each slips by one level whenever it has met the same combination of the factors before it.
+/// The levels of the balanced factors in one repeat of a value. After any number of repeats, the counts of
+/// combinations differ by at most one, and so do the counts of each factor's levels. To achieve this, all
+/// factors step together, and a factor skips one level whenever it has met the same combination of the
+/// earlier factors before.
 std::vector<std::size_t> combination(const Levels& factors, std::size_t repeat) {
   std::vector<std::size_t> result;
   std::size_t before = 1;
@@ -91,7 +92,7 @@ void ConstantStimuli::break_runs(std::vector<Item>& items, random::Draws& draws)
   const auto n = spec_.shuffle == Shuffle::within_repeat ? spec_.values.size() : items.size();
   for (std::size_t at = 0; at < items.size(); ++at) {
     if (!runs_too_long(items, at)) continue;
-    // A later item of the same repeat with another right answer takes this place.
+    // Swap with a later item of the same repeat that has another right answer.
     const auto end = std::min(items.size(), (at / n + 1) * n);
     std::vector<std::size_t> others;
     for (std::size_t i = at + 1; i < end; ++i) {
@@ -103,7 +104,7 @@ void ConstantStimuli::break_runs(std::vector<Item>& items, random::Draws& draws)
       std::swap(items[at], items[others[draws.below(others.size())]]);
       continue;
     }
-    // None is left: an item of the other kind moves back from earlier in this repeat.
+    // None is left, so move an item of the other kind back from earlier in this repeat.
     for (std::size_t i = at; i-- > at / n * n;) {
       std::swap(items[at], items[i]);
       bool good = true;
@@ -129,7 +130,8 @@ void ConstantStimuli::record(Answer answer) {
     ++recorded_;
     return;
   }
-  // Somewhere among what is left, at least one trial away where possible; at the end when it was the last.
+  // Insert it at a random place among the remaining trials, at least one trial away if possible; after the
+  // last trial, append it.
   random::Draws draws({key_.seed, random::Stream::level_order, key_.block, key_.attempt, 1 + requeued_++});
   const auto left = queue_.size() - position_;
   const auto offset = left == 0 ? 0 : 1 + draws.below(left);

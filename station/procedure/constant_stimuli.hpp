@@ -6,9 +6,9 @@
 
 namespace turnpoint::procedure {
 
-/// Every value `repeats` times, with the combinations of the balanced factors spread as evenly as the count
-/// allows, shuffled so that at most max_run right answers in a row are equal. What was not answered comes
-/// again later.
+/// Presents every value `repeats` times. Combinations of the balanced factors are spread as evenly as the
+/// count allows, and the order is shuffled so that at most max_run equal right answers follow each other.
+/// Unanswered trials are repeated later.
 class ConstantStimuli : public Procedure {
  public:
   ConstantStimuli(const Spec& spec, const Context& context, const random::Key& key);

@@ -8,31 +8,31 @@
 
 namespace turnpoint::procedure {
 
-/// Where a procedure's levels come from.
+/// How a procedure chooses its levels.
 enum class Choice {
   listed,     ///< fixed before the session
-  track,      ///< from the answers, one step at a time; the report prints its estimate
-  posterior,  ///< from the answers and an assumed psychometric function, which the report fits again
+  track,      ///< by the answers, one step at a time; the report prints its estimate
+  posterior,  ///< by the answers and an assumed psychometric function, which the report fits again
 };
 
-/// All that the rest of the station knows of a kind of procedure. The file of each kind defines its own, and
-/// the table in procedure.cpp lists them.
+/// Everything that the rest of the station needs to know about a kind of procedure. Each kind defines its own
+/// description, and the table in procedure.cpp lists them.
 struct Description {
   Kind kind;
-  const char* name;  ///< in a protocol: kind = "up-down"
+  const char* name;  ///< name in a protocol: kind = "up-down"
   Choice choice;
-  /// Reads the keys of its own; name, kind, level and copy are read already.
+  /// Reads the kind's own keys; name, kind, level and copy have been read already.
   void (*read)(text::TableReader& reader, Spec& spec);
-  /// Adds what is wrong with a spec, whatever file it came from.
+  /// Adds the problems of a spec, whatever file it came from.
   void (*validate)(const Spec& spec, std::vector<Fault>& faults);
   std::unique_ptr<Procedure> (*make)(const Spec& spec, const Context& context, const random::Key& key);
-  /// The share of ones where its levels settle, between the least and the most share that there is; none
-  /// where they do not, or where it is not known.
+  /// The share of ones on which the levels converge, given the smallest and largest possible share; empty if
+  /// they do not converge or it is unknown.
   std::optional<double> (*settles_at)(const Spec& spec, double least, double most);
 };
 
 const Description& description(Kind kind);
-/// Whether the answers choose the levels.
+/// True if the answers determine the levels.
 inline bool follows_answers(const Spec& spec) { return description(spec.kind).choice != Choice::listed; }
 
 }  // namespace turnpoint::procedure

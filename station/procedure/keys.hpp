@@ -3,7 +3,7 @@
 #include "station/text/reader.hpp"
 
 // Keys of a [[procedure]] table that several kinds share. Each function reads its keys into the spec and
-// reports what is wrong.
+// reports problems.
 namespace turnpoint::procedure {
 
 inline constexpr text::Range any_level{-1e6, 1e6};
@@ -16,10 +16,10 @@ void read_list(text::TableReader& reader, Spec& spec);
 /// "start", "min" and "max".
 void read_span(text::TableReader& reader, Spec& spec);
 
-/// What is wrong with a start, its limits and its scale.
+/// Adds the problems of a start, its limits and its scale.
 void validate_span(const Spec& spec, std::vector<Fault>& faults);
 
-/// All above 0 and finite; true for none.
+/// True if all values are above 0 and finite; also true for an empty list.
 bool positive(const std::vector<double>& values);
 
 }  // namespace turnpoint::procedure

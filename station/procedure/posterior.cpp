@@ -12,17 +12,19 @@ namespace turnpoint::procedure {
 
 namespace {
 
-/// No answer is ever impossible: a slip must not annihilate the posterior. Lower than anything that shows.
+/// No answer may be impossible, because a single slip would then make the posterior zero everywhere. The
+/// value is too small to be noticeable otherwise.
 constexpr double kFloor = 1e-14;
 
-/// What stands for a distance that no finite level makes.
+/// Used for a distance that no finite level can have.
 constexpr double kBeyond = 1e300;
-/// Distances closer than this share of the largest are equal: rounding of the grids' values, no more.
+/// Distances that differ by less than this share of the largest one count as equal: the difference is only
+/// rounding.
 constexpr double kSameDistance = 1e-13;
 
 double likely(double p) { return std::clamp(p, kFloor, 1 - kFloor); }
 
-/// How far a stimulus is above a threshold, on the axis where the function is a fixed shape.
+/// Distance of a stimulus above a threshold, on the axis on which the function has a fixed shape.
 double distance(Scale scale, double level, double threshold) {
   if (scale == Scale::linear) return level - threshold;
   if (level <= 0) return -kBeyond;
@@ -35,10 +37,10 @@ double binary_entropy(double p) {
   return -p * random::log(p) - (1 - p) * random::log(1 - p);
 }
 
-/// Sums of products run in so many lanes.
+/// Number of parallel partial sums in a sum of products.
 constexpr std::size_t kLanes = 8;
 
-// Function multiversioning where the compiler and C library offer it; the bits are the same everywhere.
+// Function multiversioning, if the compiler and C library support it. The bits are the same everywhere.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define TURNPOINT_CLONES __attribute__((target_clones("avx2", "default")))
@@ -46,7 +48,7 @@ constexpr std::size_t kLanes = 8;
 #define TURNPOINT_CLONES
 #endif
 
-/// A sum of products in eight fixed lanes, so that it is the same whatever the compiler makes of it.
+/// A sum of products in eight fixed partial sums, so that the result does not depend on the compiler.
 struct Products {
   std::array<double, kLanes> lane{};
   double rest = 0;
@@ -56,8 +58,8 @@ struct Products {
   }
 };
 
-/// Two sums with one factor in common: they do not wait for each other. Lanes stay in registers, since what
-/// is read cannot overlap them.
+/// Two sums that share one factor, computed together so that they need not wait for each other. The partial
+/// sums stay in registers, because the inputs cannot overlap them.
 TURNPOINT_CLONES
 void add(Products& first, Products& second, const double* x, const double* y, const double* z,
          std::size_t n) {
@@ -198,7 +200,8 @@ std::size_t Posterior::index_of(std::size_t point, Parameter parameter) const {
   return point / stride_[parameter] % values_[parameter].size();
 }
 
-/// For each stimulus the sum over thresholds of factors times its row of a table, both `length` long.
+/// For each stimulus: the sum over thresholds of factors times its row of a table; both have `length`
+/// entries.
 std::vector<double> Posterior::sums(const std::vector<double>& factors, const std::vector<double>& table,
                                     std::size_t length) const {
   const std::size_t n = stimuli_.size();
@@ -216,7 +219,7 @@ std::vector<double> Posterior::sums(const std::vector<double>& factors, const st
 }
 
 std::vector<double> Posterior::predictives() const {
-  // The answer's probability is affine in guess and 1 - guess - lapse: those are summed over first.
+  // The answer's probability is affine in guess and in 1 - guess - lapse, so sum over these first.
   std::vector<double> range(values_[threshold].size() * padded_slopes_);
   double floor = 0;
   for (std::size_t t = 0; t < values_[threshold].size(); ++t)
@@ -233,8 +236,8 @@ std::vector<double> Posterior::predictives() const {
   return all;
 }
 
-/// The mean over groups of the entropy of the answer, each group's probability being its nuisance average. A
-/// group's weight and its part below the function do not depend on the stimulus.
+/// The mean over groups of the entropy of the answer, where each group's probability is averaged over the
+/// nuisance parameters. A group's weight, and its part below the function, do not depend on the stimulus.
 std::vector<double> Posterior::kept_entropies() const {
   std::vector<double> weight(groups_), guess_part(groups_), ones(groups_), entropies;
   for (std::size_t i = 0; i < size(); ++i) {

@@ -9,36 +9,37 @@
 
 namespace turnpoint::procedure {
 
-/// The posterior over a grid of threshold, slope, guess and lapse. The functions depend on stimulus and
-/// threshold by their distance only, and on guess and lapse affinely, so what is tabulated is small: the
-/// function between its asymptotes and the entropy of the answer, for each distance that occurs (on grids of
-/// commensurate steps their number is about that of stimuli plus thresholds, else their product).
-/// Memory: 8 bytes a grid point, and 8 for each distance and value of slope, guess and lapse.
+/// The posterior on a grid of threshold, slope, guess and lapse. The functions depend only on the distance
+/// between stimulus and threshold, and are affine in guess and lapse, so the tables are small: the function
+/// between its asymptotes and the entropy of the answer, for each distance that occurs. On grids with
+/// commensurate steps the number of distances is about that of stimuli plus thresholds, otherwise their
+/// product. Memory: 8 bytes per grid point, and 8 for each combination of a distance and a value of slope,
+/// guess and lapse.
 class Posterior {
  public:
   enum Parameter { threshold, slope, guess, lapse };
 
   explicit Posterior(const Spec& spec);
 
-  /// Index of the stimulus that tells most about the kept parameters: the largest mutual information, which
-  /// has the same maximum as the least expected entropy. The first wins a tie.
+  /// Index of the stimulus that is expected to tell most about the kept parameters. It maximises mutual
+  /// information, which is the same as minimising the expected entropy. Ties go to the first.
   std::size_t best_stimulus() const;
   /// Mutual information (nats) of each stimulus.
   std::vector<double> information() const;
-  /// Probability of a 1 at a stimulus, as far as is known.
+  /// Posterior predictive probability of response 1 at this stimulus.
   double predictive(std::size_t stimulus) const;
-  /// Learns from an answer at a stimulus.
+  /// Updates the posterior with an answer at a stimulus.
   void update(std::size_t stimulus, bool one);
 
-  /// Mean and sd of the parameter's marginal; mode: its value at the largest weight of the whole grid, as in
-  /// Watson (2017), which need not be where the marginal is largest.
+  /// Mean and sd of the parameter's marginal. The mode is its value at the point of largest weight in the
+  /// whole grid, as in Watson (2017), which need not be the maximum of the marginal.
   Estimate estimate(Parameter parameter) const;
-  /// Has more than one value on the grid and is not tied.
+  /// True if it has more than one value on the grid and is not tied.
   bool varies(Parameter parameter) const { return values_[parameter].size() > 1; }
   double entropy_nats() const;
   const std::vector<double>& stimuli() const { return stimuli_; }
   std::size_t size() const { return weights_.size(); }
-  /// Of the tables and the weights.
+  /// Memory of the tables and the weights.
   std::size_t memory_bytes() const;
 
  private:
@@ -61,13 +62,15 @@ class Posterior {
   Axes values_;
   std::array<std::size_t, 4> stride_{};
   std::size_t slopes_ = 1, padded_slopes_ = 1,
-              ends_ = 1;                  ///< values of the slope; of guess and lapse together
-  std::vector<double> guesses_, ranges_;  ///< [guess and lapse]: guess, 1 - guess - lapse
-  std::vector<double> weights_;           ///< [threshold][slope][guess][lapse]
-  std::vector<std::uint32_t> rows_;       ///< [stimulus][threshold]: which distance
+              /// number of values of the slope; number of combinations of guess and lapse
+      ends_ = 1;
+  std::vector<double> guesses_, ranges_;  ///< indexed by [guess and lapse]: guess, and 1 - guess - lapse
+  std::vector<double> weights_;           ///< indexed by [threshold][slope][guess][lapse]
+  std::vector<std::uint32_t> rows_;       ///< [stimulus][threshold]: index of the distance
   std::vector<double> core_;              ///< [distance][slope, padded]: the function from 0 to 1
   std::vector<double> entropy_;           ///< [distance][slope][guess][lapse], without nuisance parameters
-  std::vector<std::uint32_t> kept_;       ///< point -> group of kept parameters; empty without nuisance
+  /// group of kept parameters for each grid point; empty without nuisance parameters
+  std::vector<std::uint32_t> kept_;
   std::size_t groups_ = 0;
 };
 

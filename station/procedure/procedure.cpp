@@ -7,7 +7,8 @@
 
 namespace turnpoint::procedure {
 
-// A table, because a linker drops objects of a static library that only register themselves.
+// This is an explicit table, because a linker drops objects of a static library that only register
+// themselves.
 extern const Description constant_stimuli;
 extern const Description up_down;
 extern const Description weighted_up_down;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLn10 = 2.302585092994045684;
 
-/// exp that saturates instead of overflowing: what it feeds is flat there.
+/// exp that saturates instead of overflowing; the functions that use it are flat there.
 double saturating_exp(double x) { return random::exp(std::min(x, 700.0)); }
 
 double core(Function function, Scale scale, double threshold, double slope, double level) {
@@ -39,7 +39,7 @@ double normal_cdf(double z) {
   const double density = random::exp(-0.5 * a * a) * 0.39894228040143267794;
   double tail = 0;
   if (a < 4) {
-    // Phi - 1/2 = density (a + a^3/3 + a^5/15 + ...): all terms positive, no cancellation.
+    // Phi - 1/2 = density (a + a^3/3 + a^5/15 + ...): all terms are positive, so there is no cancellation.
     double term = a, sum = a;
     for (int n = 3; term > 1e-18 * sum; n += 2) term *= a * a / n, sum += term;
     tail = 0.5 - density * sum;

@@ -25,17 +25,17 @@ enum class Shuffle { within_repeat, within_block, none };
 enum class StopRule { any, all };  ///< "or", "and"
 enum class Select { min_expected_entropy };
 
-/// Values of one axis of a grid, made explicit when the file is read: from-to-step, log_from-log_to-count, or
-/// a list. `tied` = "lapse": this parameter always equals that one.
+/// The values of one axis of a grid, computed when the file is read: from-to-step, log_from-log_to-count, or
+/// a list. With `tied` = "lapse" this parameter always equals the lapse.
 struct Grid {
   std::vector<double> values;
   std::string tied;
 };
 
-/// Prior over a grid's values; none: uniform.
+/// Prior over a grid's values; empty: uniform.
 struct Prior {
   std::optional<std::pair<double, double>> normal;  ///< mean, sd
-  std::vector<double> weights;                      ///< one a value
+  std::vector<double> weights;                      ///< one per value
 };
 
 struct Stop {
@@ -44,12 +44,12 @@ struct Stop {
   StopRule rule = StopRule::any;
 };
 
-/// What a [[procedure]] table says, after `copy`. Keys that the kind does not use are empty.
+/// The content of a [[procedure]] table, after `copy`. Keys that the kind does not use are empty.
 struct Spec {
   std::string name;
   Kind kind = Kind::constant_stimuli;
-  std::string level;   ///< the factor that it sets
-  std::string tracks;  ///< "": correctness; else the answer that counts as 1
+  std::string level;   ///< the factor that the procedure sets
+  std::string tracks;  ///< "": the procedure follows correctness; otherwise the answer that counts as 1
   Scale scale = Scale::linear;
 
   // constant stimuli
@@ -61,17 +61,20 @@ struct Spec {
 
   // staircases
   std::optional<double> start, min, max;
-  std::vector<double> step, step_down, step_up;  ///< on each reversal the next; the last one stays
-  std::optional<double> target;                  ///< weighted: the probability it converges on
+  /// each reversal moves on to the next step; the last one stays
+  std::vector<double> step, step_down, step_up;
+  std::optional<double> target;  ///< weighted: the probability on which it converges
   int n_down = 1, n_up = 1;
-  std::optional<int> initial_down;  ///< so many right answers step down until the first reversal
-  int discard_reversals = 0;        ///< so many of the first ones are left out of the estimate
+  /// until the first reversal, this number of right answers causes a step down
+  std::optional<int> initial_down;
+  int discard_reversals = 0;  ///< number of first reversals that the estimate ignores
 
-  // adaptive by a posterior
+  // for procedures with a posterior
   Function function = Function::weibull;
   Grid stimuli, threshold, slope, guess, lapse;
   Prior prior_threshold, prior_slope, prior_guess, prior_lapse;
-  std::vector<std::string> nuisance;  ///< parameters summed over before entropy is taken (psi-marginal)
+  /// parameters that are summed over before the entropy is computed (psi-marginal)
+  std::vector<std::string> nuisance;
   Select select = Select::min_expected_entropy;
 
   Stop stop;
@@ -81,14 +84,14 @@ const char* name(Kind kind);  ///< "constant-stimuli", "up-down", ...
 std::optional<Kind> parse_kind(const std::string& text);
 std::vector<std::string> kind_names();
 
-/// One thing wrong with a spec: the key it concerns, what is wrong, what is allowed.
+/// One problem of a spec: its key, what is wrong, what is allowed.
 struct Fault {
   std::string key, what, allowed;
 };
 
-/// Everything wrong with a spec, whatever file it came from; empty when it can run.
+/// All problems of a spec, whatever file it came from; empty if it can run.
 std::vector<Fault> validate(const Spec& spec);
-/// Things that run but are probably not meant: a one-point grid of stimuli, steps that miss the target, a
+/// Things that work but are probably mistakes: a one-point grid of stimuli, steps that miss the target, a
 /// grid whose only lapse is 0.
 std::vector<Fault> advise(const Spec& spec);
 

@@ -6,8 +6,8 @@
 namespace turnpoint::procedure {
 
 /// n-down-m-up (Levitt 1971) and weighted up-down (Kaernbach 1991; step_up = step_down p / (1 - p))
-/// staircases. Step sizes move on with each reversal. The estimate is the mean of the reversals (of their
-/// logarithms where steps multiply) without the first `discard_reversals`, and without one more where an odd
+/// staircases. Each reversal moves on to the next step size. The estimate is the mean of the reversals (or of
+/// their logarithms if steps multiply), without the first `discard_reversals`, and without one more if an odd
 /// number is left.
 class Staircase : public Track {
  public:

@@ -3,7 +3,7 @@
 
 namespace turnpoint::procedure {
 
-/// FNV-1a over 64-bit words: tells states apart, no more.
+/// FNV-1a over 64-bit words. It only serves to distinguish states.
 class StateHash {
  public:
   void add(std::uint64_t word) {

@@ -8,10 +8,10 @@
 
 namespace turnpoint::procedure {
 
-/// What a procedure does for given answers.
+/// The behaviour of a procedure for given answers.
 struct Trace {
-  std::vector<double> levels;  ///< one an answer
-  std::optional<double> next;  ///< none: it has stopped
+  std::vector<double> levels;  ///< one per answer
+  std::optional<double> next;  ///< empty if it has stopped
   std::map<std::string, Estimate> estimates;
   std::optional<double> entropy_nats;
   std::vector<double> reversals;

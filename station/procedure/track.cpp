@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kRepeats = 3, kSpentAtMost = 20;
 constexpr double kLargest = 1e300, kSmallest = 1e-300;
-/// e to this is the most that one step multiplies by; the limits above hold the product.
+/// Upper limit for the exponent of one step's factor; the level's limits bound the product.
 constexpr double kLargestExponent = 690;
 
 double factor(double exponent) {
@@ -38,7 +38,7 @@ std::optional<Proposal> Track::next() const {
 
 void Track::record(Answer answer) {
   if (answer == Answer::none) {
-    // The same level again, but nobody is asked for ever: after three repeats a trial of the budget is spent.
+    // Repeat the same level, but not for ever: after three repeats one trial of the budget is used up.
     if (++unanswered_ > kRepeats) unanswered_ = 0, ++spent_;
     return;
   }
@@ -65,7 +65,7 @@ void Track::move(double size) {
       level_ *= factor(size * 0.11512925464970228420);
       break;
   }
-  // Without limits of its own a track still stays a number, far beyond any unit.
+  // Without limits in the protocol, use limits that keep the level finite, far beyond any unit.
   const bool multiplies = spec_.scale != Scale::linear;
   level_ = std::clamp(level_, multiplies ? kSmallest : -kLargest, kLargest);
   if (spec_.min) level_ = std::max(level_, *spec_.min);

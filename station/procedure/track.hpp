@@ -6,10 +6,10 @@
 
 namespace turnpoint::procedure {
 
-/// What all procedures share that move one level up and down by the answers: its limits and scale, reversals,
-/// the rules that stop it. A step follows the answer at once; a reversal is the level at which the direction
-/// changed. On a log10 or dB scale steps multiply. An unanswered trial brings the same level again, at most
-/// three times in a row, then the track is left as it is and goes on asking.
+/// The common part of all procedures that move one level up and down by the answers: its limits and scale,
+/// reversals, and the rules that stop it. A step follows the answer at once; a reversal is the level at which
+/// the direction changed. On a log10 or dB scale steps multiply. An unanswered trial repeats the same level,
+/// at most three times in a row; then one trial of the budget is used up and the track continues.
 class Track : public Procedure {
  public:
   explicit Track(const Spec& spec);
@@ -22,13 +22,13 @@ class Track : public Procedure {
   std::uint64_t state_hash() const override;
 
  protected:
-  /// Moves the level after an answer that was given.
+  /// Moves the level after an answer.
   virtual void learn(Answer answer) = 0;
 
   enum class Direction { none, down, up };
-  /// Notes a reversal where the direction differs from that of the last step.
+  /// Records a reversal if the direction differs from that of the last step.
   void turn(Direction direction);
-  /// By so much, signed, on the scale and within the limits.
+  /// Moves by this signed amount, on the scale and within the limits.
   void move(double size);
 
   Spec spec_;

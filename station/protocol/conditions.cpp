@@ -16,7 +16,7 @@ std::string word_of(const std::string& factor, const protocol::FactorValue& valu
          (words.unit.empty() ? "" : " " + words.unit);
 }
 
-/// Each level of the factors named, combined with each of those behind it.
+/// Combines each level of a factor with the levels of all later factors in the list.
 void combine(const protocol::Protocol& protocol, std::size_t next, protocol::Factors& factors,
              std::vector<std::string>& names) {
   const auto& by = protocol.analysis.by;

@@ -6,17 +6,17 @@
 
 namespace turnpoint::protocol {
 
-/// The condition of a trial as `[analysis] by` groups trials: "dry", "mark 150 mm", "speed, mark 150 mm".
-/// Without `by` it is the block's instruction; "" where there is none either.
+/// The condition by which `[analysis] by` groups a trial: "dry", "mark 150 mm", "speed, mark 150 mm". Without
+/// `by` it is the block's instruction; "" if there is none either.
 std::string condition_of(const protocol::Protocol& protocol, const protocol::Factors& factors,
                          const std::string& instruction);
 
-/// All conditions in the order of the levels in the protocol file, which is the same for each participant;
-/// instructions in the order in which the file's blocks have them.
+/// All conditions in the order of the levels in the protocol file, which is the same for every participant.
+/// Instructions are in the order in which the file's blocks use them.
 std::vector<std::string> conditions(const protocol::Protocol& protocol);
 
-/// Without its unit, in words, and the unit: `mark_mm` is "mark" and "mm", `_um` has the unit \u00b5m; "" for
-/// a factor whose name has no unit.
+/// A factor's name in words and its unit: `mark_mm` gives "mark" and "mm", `_um` gives the unit \u00b5m. The
+/// unit is "" if the name has none.
 struct FactorWords {
   std::string name, unit;
 };

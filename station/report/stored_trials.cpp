@@ -23,7 +23,7 @@ std::optional<int> index_of(const std::optional<std::string>& id, const protocol
   return std::nullopt;
 }
 
-/// An adjustment's row has the setting where others have a choice.
+/// The row of an adjustment contains the setting in the column for the response.
 std::optional<double> setting_of(const std::string& response) {
   double value = 0;
   const auto* end = response.data() + response.size();
@@ -61,7 +61,7 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
   return record;
 }
 
-/// The blocks whose trials count: of each block the last attempt.
+/// The last attempt at each block: only its trials count.
 std::vector<const records::BlockRecord*> last_attempts(const std::vector<records::BlockRecord>& blocks) {
   std::map<int, const records::BlockRecord*> last;
   for (const auto& block : blocks) {
@@ -87,7 +87,7 @@ report::Design design_of(const protocol::Protocol& protocol, const protocol::Ans
   return single && below && above ? report::Design::two_sided : report::Design::forced_choice;
 }
 
-/// The function that the protocol's own procedure assumes, else what suits the levels of the signals.
+/// Chooses the function that the protocol's own procedure assumes, or else one that suits the levels.
 void choose_function(const protocol::Protocol& protocol, report::SessionData& data) {
   const bool decibel = data.level_unit == "dB";
   const bool detection = report::has_noise(data.design);
@@ -100,7 +100,7 @@ void choose_function(const protocol::Protocol& protocol, report::SessionData& da
   data.scale = rises && positive && !decibel ? analysis::Scale::log10 : analysis::Scale::linear;
   for (const auto& spec : protocol.procedures) {
     if (procedure::description(spec.kind).choice != procedure::Choice::posterior) continue;
-    // A Weibull function needs levels above 0, or in dB.
+    // A Weibull function requires levels above 0, or in dB.
     if (spec.function != terms::Function::weibull || decibel || positive) data.function = spec.function;
     return;
   }
@@ -108,7 +108,7 @@ void choose_function(const protocol::Protocol& protocol, report::SessionData& da
 
 using analysis::Range;
 
-/// The levels that an adaptive procedure can present, with the thresholds that its grid thinks possible.
+/// The levels that an adaptive procedure can present, and the thresholds of its grid.
 Range levels_of(const procedure::Spec& spec, const protocol::Protocol& protocol) {
   Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   const auto include = [&range](double level) {
@@ -126,16 +126,17 @@ Range levels_of(const procedure::Spec& spec, const protocol::Protocol& protocol)
   return range;
 }
 
-/// On a logarithmic axis a range that begins at 0 begins this far below its end: 60 dB.
+/// On a logarithmic axis, a range that starts at 0 starts this far below its end instead: 60 dB.
 constexpr double kLowestRatio = 1e-3;
 
-/// Whether the slopes of a procedure's grid mean what those of the fit mean.
+/// True if the slopes of a procedure's grid have the same meaning as those of the fit.
 bool same_function(const procedure::Spec& spec, const report::SessionData& data) {
   const bool linear = spec.scale == procedure::Scale::linear;
   return linear == (data.scale == analysis::Scale::linear) && spec.function == data.function;
 }
 
-/// From what the protocol can present, never from what was answered; none where no procedure is adaptive.
+/// The prior follows from what the protocol can present, never from the answers; empty if no procedure is
+/// adaptive.
 std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, const report::SessionData& data) {
   std::optional<Range> levels, slopes;
   const auto widen = [](std::optional<Range>& range, const Range& by) {
@@ -148,7 +149,7 @@ std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, cons
       for (const double slope : spec.slope.values) widen(slopes, {slope, slope});
   }
   if (!levels) return std::nullopt;
-  // Yes/no counts the size of the level alone.
+  // For yes/no only the magnitude of the level counts.
   if (data.design == report::Design::yes_no)
     levels = Range{0, std::max(std::fabs(levels->first), std::fabs(levels->second))};
   if (data.scale == analysis::Scale::log10)
@@ -156,7 +157,7 @@ std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, cons
   return analysis::prior_around(data.function, data.scale, *levels, slopes);
 }
 
-/// `contrast_dB` -> `Contrast` and `dB`; the size of a yes/no task's signals counts without their sign.
+/// `contrast_dB` gives `Contrast` and `dB`. The levels of a yes/no task are used without their sign.
 void set_level_words(const std::string& level, report::SessionData& data) {
   const auto words = protocol::words_of(level);
   auto name = level.empty() ? std::string("level") : words.name;
@@ -172,7 +173,7 @@ void set_level_words(const std::string& level, report::SessionData& data) {
   data.level_label = name + " (" + (words.unit.empty() ? "no unit" : words.unit) + ")";
 }
 
-/// What staircases estimate in the end, from their answers again.
+/// Computes the final estimates of staircases again from their answers.
 void add_staircases(const std::vector<const records::BlockRecord*>& blocks,
                     const protocol::Protocol& protocol, report::SessionData& data) {
   for (const auto& spec : protocol.procedures) {

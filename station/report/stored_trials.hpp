@@ -8,9 +8,9 @@
 
 namespace turnpoint::report {
 
-/// Fills in a session's trials, of each block the last attempt, and what decides how they are analysed:
-/// design, conditions, function, scale, ids of the answers, what is shown, exclusion of response times.
-/// Stored and rehearsed sessions go the same way.
+/// Fills in a session's trials (from the last attempt at each block) and the settings that determine their
+/// analysis: design, conditions, function, scale, ids of the answers, what is shown, exclusion of response
+/// times. Used for both stored and simulated sessions.
 void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,
                 report::SessionData& data);
 

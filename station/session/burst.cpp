@@ -15,7 +15,7 @@ drive::ToneSet tones_of(const scene::DrivePlan& plan) {
     auto& driven = set.tones[static_cast<std::size_t>(set.count++)];
     driven.frequency_Hz = tone.frequency_Hz;
     driven.amplitude = tone.full_scale;
-    // The drive counts from the sine, the surface from the cosine.
+    // The drive's phase refers to the sine, the surface's to the cosine.
     driven.phase_rad = tone.output_phase_rad + std::numbers::pi / 2;
     driven.channel = tone.channel;
   }

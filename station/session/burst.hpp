@@ -7,19 +7,20 @@
 
 namespace turnpoint::session {
 
-/// The tones of a plan as the drive plays them. Throws std::length_error where they are too many.
+/// The tones of a plan in the drive's form. Throws std::length_error if there are too many.
 drive::ToneSet tones_of(const scene::DrivePlan& plan);
 
-/// One interval as the drive plays it: its scenes' plans in turn, the second and later beginning at
-/// `starts_s` from the onset with a transition of `transition_s`, `length_s` in all including both ramps.
-/// Tone i of a scene glides to tone i of the next. Throws std::length_error where the drive has no room.
+/// One interval in the drive's form. Plays the plans of its scenes in turn; the second and later ones begin
+/// at `starts_s` from the onset, with a transition of `transition_s`. The total length is `length_s`,
+/// including both ramps. Tone i of a scene glides to tone i of the next. Throws std::length_error if the
+/// drive has no room.
 drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::vector<double>& starts_s,
                       double transition_s, double length_s, int rate_Hz);
 
-/// Adds the rig's marker at the onset and at each change; no longer than the burst.
+/// Adds the rig's marker at the onset and at each change, never longer than the burst.
 void mark(drive::Burst& burst, const rig::Marker& marker, int rate_Hz);
 
-/// Adds the rig's masking noise; `seed` makes it another noise for each interval.
+/// Adds the rig's masking noise. `seed` gives each interval a different noise.
 void mask(drive::Burst& burst, const rig::MaskingNoise& noise, std::uint64_t seed);
 
 }  // namespace turnpoint::session

@@ -13,28 +13,29 @@
 namespace turnpoint::session {
 
 enum class InputKind {
-  answer,       ///< value = index of the answer chosen
-  next,         ///< Continue or Done on a page
-  slider,       ///< number = the slider's value
-  touch_down,   ///< any touch on the panel, answer or not: for the log
-  button,       ///< value = index of the response button, in the order of the rig's URI
-  contact,      ///< value 1: finger on the surface, 0: lifted; number: where along it, 0 to 1, or below 0
-  stop,         ///< participant or operator wants to stop, or whoever text says; what was done is kept
-  pause,        ///< operator
-  xrun,         ///< the drive lost frames; value 1: of what was presented last, 0: of silence
-  heard,        ///< value = index of the interval of which every frame has been played; never logged
-  fault,        ///< `fault` says what, text the detail; from drive, amplifier or panel: the trial is void
-  failure,      ///< text says what: the session cannot go on
-  glitch,       ///< interference on a button or contact line; text says which; for the log only
-  notice,       ///< text says what; for the log only
-  arm,          ///< operator: clear a latched fault of the amplifier and arm it
-  disarm,       ///< operator: amplifier off, and not on again before it is armed
-  repeat,       ///< operator: void the trial under way and present it again
-  note,         ///< operator: text is kept as the session's annotation
-  frames_lost,  ///< value = frames that the screen was late by in the trial before
+  answer,      ///< value = index of the chosen answer
+  next,        ///< Continue or Done on a page
+  slider,      ///< number = the slider's value
+  touch_down,  ///< any touch on the panel, answer or not: for the log
+  button,      ///< value = index of the response button, in the order of the rig's URI
+  contact,     ///< value 1: finger on the surface, 0: lifted; number: where along it, 0 to 1, or below 0
+  /// the participant, the operator, or the program named in text wants to stop; completed trials are kept
+  stop,
+  pause,        ///< by the operator
+  xrun,         ///< the drive lost frames; value 1: of the last stimulus, 0: of silence
+  heard,        ///< value = index of the interval that has been played completely; never logged
+  fault,        ///< `fault` is its kind, text the detail; from drive, amplifier or panel: the trial is void
+  failure,      ///< text says what happened: the session cannot continue
+  glitch,       ///< interference on a button or contact line, named in text; only logged
+  notice,       ///< text says what happened; only logged
+  arm,          ///< by the operator: clear a latched fault of the amplifier and arm it
+  disarm,       ///< by the operator: amplifier off, until it is armed again
+  repeat,       ///< by the operator: void the current trial and present it again
+  note,         ///< by the operator: text is stored as an annotation of the session
+  frames_lost,  ///< value = number of frames that the screen was late by in the previous trial
 };
 
-/// How good the time stamp is: the kernel's own, a toolkit's, or made by a simulated observer.
+/// Source of the time stamp: the kernel, a toolkit, or a simulated observer.
 enum class TimeQuality { kernel, toolkit, simulated };
 const char* name(TimeQuality quality);
 
@@ -48,20 +49,20 @@ struct Input {
   TimeQuality quality = TimeQuality::toolkit;
 };
 
-/// The input as an event of the trial machine; none where the machine is not concerned.
+/// Converts the input to an event of the trial machine; empty if the machine does not need it.
 std::optional<trial::Event> event_of(const Input& input);
 
-/// The one queue into the session: any thread pushes, the session thread takes. Unbounded but tiny.
+/// The only queue into the session: any thread pushes, the session thread takes. Unbounded, but always short.
 class Inputs {
  public:
   void push(Input input);
-  /// The oldest input by time stamp, or none once `deadline_ns` (CLOCK_MONOTONIC) has passed.
+  /// The oldest input by time stamp; empty once `deadline_ns` (CLOCK_MONOTONIC) has passed.
   std::optional<Input> wait_until(std::int64_t deadline_ns);
-  /// Throws away what has gathered, and returns it for the log.
+  /// Removes all waiting inputs and returns them for the log.
   std::deque<Input> drain();
 
-  /// The participant's page lives, at that time (CLOCK_MONOTONIC); -1 before its first sign. A display that
-  /// begins to say so has to go on: the amplifier's guard counts on it from then.
+  /// Reports that the participant's page was alive at this time (CLOCK_MONOTONIC); -1 before its first
+  /// report. A display that has begun to report must continue, because the amplifier's guard then expects it.
   void page_alive(std::int64_t time_ns) noexcept { page_alive_ns_.store(time_ns); }
   std::int64_t page_alive_ns() const noexcept { return page_alive_ns_.load(); }
 

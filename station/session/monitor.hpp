@@ -9,19 +9,19 @@
 
 namespace turnpoint::session {
 
-/// Looks over the session's shoulder, for the operator. Called on the session thread; copies what it needs
-/// and returns at once. Nothing that a monitor does reaches the participant.
+/// Observes a session for the operator. Called on the session thread; it must copy what it needs and return
+/// at once. A monitor cannot affect what the participant sees or feels.
 class Monitor {
  public:
   virtual ~Monitor() = default;
 
-  /// A trial is about to begin: everything that it will present is decided. `plans` are what will be played,
-  /// for each interval those of its scenes; they are valid during the call only.
+  /// A trial is about to begin, and everything that it will present is decided. `plans` are what will be
+  /// played: for each interval the plans of its scenes. They are valid only during the call.
   virtual void trial_begins(const trial::TrialSpec& spec, const protocol::Block& block,
                             const PlanAhead::Plans& plans) = 0;
 
-  /// The surface follows the slider of an adjustment: `plan` is what it glides to from now on, and `spec` has
-  /// the setting among its factors. At most once every kGlideEvery_s.
+  /// The surface follows the slider of an adjustment. It now glides to `plan`; `spec` has the setting among
+  /// its factors. Called at most once every kGlideEvery_s.
   virtual void surface_follows(const trial::TrialSpec& /*spec*/, const scene::DrivePlan& /*plan*/) {}
 
   /// A trial has ended and is stored.

@@ -11,10 +11,11 @@ namespace turnpoint::session {
 
 namespace {
 
-// A button that was pressed before anybody can have read a page does not turn it.
+// A button press before anybody can have read a page does not turn the page.
 constexpr std::int64_t kReading_ns = 500'000'000;
 
-/// The answer that a button chooses: the one of its name, else left is the first, right the second.
+/// The answer that a button chooses: the one with the button's name, else left is the first and right the
+/// second.
 std::optional<int> answer_of(const std::string& button, const protocol::Task& task) {
   const auto& choices = task.choices;
   for (std::size_t i = 0; i < choices.size(); ++i)
@@ -82,7 +83,7 @@ void OperatorGate::keep(const std::function<void()>& write) {
     try {
       return write();
     } catch (const store::StoreError& error) {
-      // Nobody stands before a simulated session who could make space.
+      // In a simulated session there is nobody who could free some space.
       if (error.fault() != store::Fault::disk_full || !setup_.observer.empty()) throw;
       detail = error.what();
     }
@@ -90,7 +91,7 @@ void OperatorGate::keep(const std::function<void()>& write) {
   }
 }
 
-/// Until somebody says that there is space again (true), or gives up (false).
+/// Waits until somebody says that there is space again (true), or gives up (false).
 bool OperatorGate::space_again(const std::string& detail) {
   stage_.close_amplifier();
   show(pages_.fault(FaultKind::disk_full, detail, director_));
@@ -121,7 +122,7 @@ Flow OperatorGate::until_armed(const Fault& why) {
     if (input.kind == InputKind::fault) page = pages_.fault(input.fault, input.text, director_);
     if (input.kind == InputKind::arm && !armed()) page.detail = input.text;
   }
-  fault_.reset();  // whatever came meanwhile was on the page
+  fault_.reset();  // faults that came meanwhile were already shown on the page
   return Flow::go_on;
 }
 

@@ -23,10 +23,10 @@ class OperatorGate {
   OperatorGate(const Setup& setup, const Pages& pages, const trial::Director& director, Stage& stage,
                store::SessionLog& log, Display* display);
 
-  /// Does what the operator asks and logs what came of it; a button comes back as the answer that it chooses,
-  /// or as a mere touch.
+  /// Carries out the operator's commands and logs the result. A button press is returned as the answer that
+  /// it chooses, or as a mere touch.
   Input received(Input input);
-  /// Remembers what has to be acted on once the trial or page is over.
+  /// Remembers what has to be handled once the trial or page is over.
   void note(const Input& input);
 
   void show(const Page& page);
@@ -35,18 +35,18 @@ class OperatorGate {
   /// What concerns every page: somebody stops, or something fails and the operator has to repair it.
   Flow handle_on_page(const Input& input);
 
-  /// Makes rows durable before the session goes on. On a full disk the screen says so, nothing sounds, and
-  /// the same rows are written once there is space; what the operator does meanwhile is kept in memory.
+  /// Makes rows durable before the session continues. If the disk is full, the screen says so, nothing
+  /// sounds, and the same rows are written once there is space. Operator inputs are kept in memory meanwhile.
   void keep(const std::function<void()>& write);
 
-  /// Holds until the operator has armed the amplifier; nothing sounds before.
+  /// Waits until the operator has armed the amplifier; nothing sounds before.
   Flow until_armed(const Fault& why);
   /// Holds until nothing is left to repair and the amplifier is armed: before a trial.
   Flow until_clear();
   /// After a fault: the screen says what happened; the operator repairs it, clears and arms; then the session
   /// goes on. Somebody who continues too early sees what is still missing.
   Flow recover();
-  /// A limit of the rig ends the session. The page says which one before the summary is shown.
+  /// A limit of the rig ends the session. The page names the limit before the summary is shown.
   Flow end_at_limit(const std::string& what);
 
   /// The session ends when what runs now is over.

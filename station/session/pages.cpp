@@ -10,7 +10,7 @@ namespace {
 
 using trial::Phase;
 
-/// The mark that the participant is asked about: the factor that names one, by its name.
+/// The mark that the question refers to: the value of the factor whose name says that it is a mark.
 std::optional<double> mark_of(const trial::TrialSpec& spec) {
   const auto found = spec.factors.find("mark_mm");
   if (found == spec.factors.end()) return std::nullopt;
@@ -153,7 +153,8 @@ Page Pages::end(const Summary& summary, const trial::Director& director) const {
   auto page = blank(PageKind::end, nullptr, &director);
   const bool whole = summary.status == records::SessionStatus::completed;
   page.title = word(whole ? Word::thanks : Word::thanks_early, setup_.language);
-  if (whole) page.trials_total = page.trials_done;  // an adaptive procedure's end was an estimate
+  // until now the total was only an estimate if a procedure is adaptive
+  if (whole) page.trials_total = page.trials_done;
   page.summary = {{"Trials", std::to_string(summary.trials)},
                   {"Too late", std::to_string(summary.timeouts)},
                   {"Too early", std::to_string(summary.anticipations)},

@@ -14,18 +14,18 @@ class Pages {
  public:
   Pages(const Setup& setup);
 
-  /// A block's instructions: its instruction's text where it has one, else the task's question.
+  /// A block's instructions: the text of its instruction if it has one, else the task's question.
   Page instructions(const protocol::Block& block, const trial::Director& director) const;
-  /// Points at the mark that the block's first trial will ask about.
+  /// Shows the mark that the block's first trial will ask about.
   void add_mark(Page& page, const trial::TrialSpec& first) const;
-  /// The page of a phase of a trial.
+  /// The page for a phase of a trial.
   Page of_phase(trial::Phase phase, int interval, const trial::TrialSpec& spec, const protocol::Block& block,
                 const trial::Result& result, const trial::Director& director) const;
-  /// Makes a phase's page of an adjustment one with a slider.
+  /// Adds a slider to a phase's page, for an adjustment.
   void add_slider(Page& page, const trial::SliderSpan& span, double setting) const;
   Page rest(const protocol::Block& block, double min_s, const trial::Director& director) const;
   Page practice_again(const protocol::Block& block, const trial::Director& director) const;
-  /// A fault that stops the session until somebody has mended it; `detail` is what the station found.
+  /// A fault that stops the session until somebody has fixed it; `detail` is what the station found.
   Page fault(FaultKind kind, const std::string& detail, const trial::Director& director) const;
   Page paused(const trial::Director& director) const;
   Page end(const Summary& summary, const trial::Director& director) const;

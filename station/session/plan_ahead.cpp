@@ -16,7 +16,7 @@ namespace turnpoint::session {
 
 namespace {
 
-/// Equal for trials that present the same.
+/// A key that is equal for trials with equal stimuli.
 std::string key_of(const trial::TrialSpec& trial) {
   std::string key = fmt::format("{}/{}/{}", trial.block_index, trial.attempt, trial.trial_in_block);
   for (const auto& [name, value] : trial.factors) {

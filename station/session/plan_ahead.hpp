@@ -16,29 +16,29 @@
 
 namespace turnpoint::session {
 
-/// Plans trials, down to the peaks of their bursts, before they are wanted, on a thread of its own: the
-/// session begins the next one as soon as the last is decided, and takes it at its start. The planner's
-/// results do not depend on when it is asked, so neither do the stimuli.
+/// Plans trials in advance on its own thread, including the peaks of their bursts. The session starts
+/// planning the next trial as soon as the last one is decided, and takes the result at its start. The
+/// planner's results do not depend on when it is called, so neither do the stimuli.
 class PlanAhead {
  public:
-  /// For each interval of a trial the plans of its scenes, and what the drive plays: checked, with its peaks,
-  /// and with start frames that count from the first interval's onset.
+  /// For each interval of a trial: the plans of its scenes, and the checked burst with its peaks. Start
+  /// frames count from the first interval's onset.
   using Plans = std::vector<std::vector<scene::DrivePlan>>;
   struct Planned {
     Plans plans;
     std::vector<drive::PreparedBurst> bursts;
   };
 
-  /// The rig and the protocol must outlive it. `seed` is the session's. Throws as scene::Planner.
+  /// The rig and the protocol must outlive it. `seed` is the session's. Throws the errors of scene::Planner.
   PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol, std::uint64_t seed);
   ~PlanAhead();
 
-  /// Begins a trial; one that waits and was not begun yet is dropped for it. Beginning the same again does
-  /// nothing.
+  /// Starts planning a trial. An earlier trial that is still waiting is dropped. Starting the same trial
+  /// again has no effect.
   void begin(const trial::TrialSpec& trial);
-  /// True where take() would not wait.
+  /// True if take() would not have to wait.
   bool ready(const trial::TrialSpec& trial);
-  /// The plans of a trial, waiting for them if need be. Throws what planning them threw.
+  /// The plans of a trial; waits for them if necessary. Throws what planning them threw.
   const Planned& take(const trial::TrialSpec& trial);
 
  private:
@@ -53,11 +53,12 @@ class PlanAhead {
   scene::Planner planner_;  // worker thread only
   std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::optional<trial::TrialSpec> wanted_;  ///< newest trial asked for and not yet begun
+  std::optional<trial::TrialSpec> wanted_;  ///< the newest requested trial whose planning has not begun
   std::string wanted_key_, done_key_;
   Planned done_;
   std::exception_ptr failed_;
-  std::jthread thread_;  // last: joined before what it uses goes
+  // The last member, so that the thread is joined before the objects that it uses are destroyed.
+  std::jthread thread_;
 };
 
 }  // namespace turnpoint::session

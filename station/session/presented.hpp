@@ -9,23 +9,23 @@
 
 namespace turnpoint::session {
 
-// What both stages do alike with a stream.
+// Functions on streams that both stages share.
 
-/// What was scheduled last, one burst an interval, for what is asked of it later.
+/// The bursts scheduled last, one per interval, for later requests.
 struct Presented {
   std::uint32_t burst = 0;
   std::int64_t start_frame = 0, end_frame = 0;
   drive::Ramp ramp;
 };
 
-/// The interval that a burst is; none where it belongs to an earlier trial.
+/// The interval of a burst; empty if the burst belongs to an earlier trial.
 inline std::optional<int> interval_of(const std::vector<Presented>& presented, std::uint32_t burst) {
   for (std::size_t i = 0; i < presented.size(); ++i)
     if (presented[i].burst == burst) return static_cast<int>(i);
   return std::nullopt;
 }
 
-/// None where the stream does not know its time.
+/// Returns nothing if the stream's time is not known.
 inline std::vector<Onset> schedule(drive::Stream& stream, std::span<const drive::PreparedBurst> intervals,
                                    std::int64_t earliest_ns, std::vector<Presented>& presented) {
   const auto earliest = stream.frame_at(earliest_ns);
@@ -42,7 +42,7 @@ inline std::vector<Onset> schedule(drive::Stream& stream, std::span<const drive:
     if (const auto time_ns = stream.time_of(start)) onsets.push_back({start, *time_ns});
   }
   if (onsets.size() == bursts.size()) return onsets;
-  stream.stop(0, drive::Ramp{});  // it has lost its time meanwhile
+  stream.stop(0, drive::Ramp{});  // the time has become unknown meanwhile
   return {};
 }
 
@@ -52,7 +52,7 @@ inline std::optional<std::int64_t> glide_to(drive::Stream& stream, const std::ve
   const auto& sounding = presented.back();
   const auto frames = static_cast<std::int64_t>(seconds * stream.config().output.rate_Hz);
   const auto at = std::max(stream.earliest_frame(), sounding.start_frame);
-  // Towards its end a burst ramps down: nothing new begins there, and after it nothing sounds.
+  // A burst that is about to end ramps down: no change can begin then, and after it nothing sounds.
   if (at + frames + sounding.ramp.frames >= sounding.end_frame) return std::nullopt;
   stream.change(sounding.burst, {at - sounding.start_frame, frames, to});
   return at;
@@ -63,7 +63,7 @@ inline std::optional<ClockFit> fit_of(drive::Stream& stream) {
   return fit.pairs > 0 ? std::optional(ClockFit{fit.ns_per_frame, fit.residual_ns}) : std::nullopt;
 }
 
-/// Ramps everything down; when the last ramp is over, at the latest.
+/// Ramps everything down. Returns the latest time at which the last ramp ends.
 inline std::int64_t ramp_down(drive::Stream& stream, const std::vector<Presented>& presented,
                               std::int64_t now_ns) {
   const auto ramp = presented.empty() ? drive::Ramp{} : presented.back().ramp;
@@ -74,7 +74,7 @@ inline std::int64_t ramp_down(drive::Stream& stream, const std::vector<Presented
   return now_ns + frames * 1'000'000'000 / output.rate_Hz;
 }
 
-/// What the operating system granted, for the record.
+/// Describes for the record which rights the operating system granted.
 std::string describe(const system::Rights& rights);
 
 }  // namespace turnpoint::session

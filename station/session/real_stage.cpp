@@ -14,13 +14,14 @@ namespace turnpoint::session {
 
 namespace {
 
-constexpr std::int64_t kPoll_ns = 5'000'000;        // how often drive and guard are asked for news
+constexpr std::int64_t kPoll_ns = 5'000'000;        // how often drive and guard are polled
 constexpr std::int64_t kClocks_ns = 1'000'000'000;  // how often the clocks are compared
-constexpr std::int64_t kSettle_ns = 50'000'000;     // an amplifier comes up in silence
+constexpr std::int64_t kSettle_ns = 50'000'000;     // time in silence for an amplifier to come up
 constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
-constexpr std::int64_t kFirstPosition_ns = 500'000'000;  // of a device that was started anew
-constexpr std::int64_t kHeard_ns = 1'000'000'000;        // by when it is known what was played
-constexpr std::int64_t kTail_ns = 20'000'000;            // and goes down after it
+// time limit for the first position of a restarted device
+constexpr std::int64_t kFirstPosition_ns = 500'000'000;
+constexpr std::int64_t kHeard_ns = 1'000'000'000;  // time limit for the report of what was played
+constexpr std::int64_t kTail_ns = 20'000'000;      // time in silence before the amplifier goes off
 
 class RealStage : public Stage {
  public:
@@ -44,7 +45,7 @@ class RealStage : public Stage {
 
   std::vector<Input> drain() override {
     attend();
-    // Reports of stimuli still under way belong to the trial that is over; the next trial must not see them.
+    // Late reports about stimuli of the previous trial must not reach the next trial.
     presented_.clear();
     unheard_ = 0;
     lost_ns_.reset();
@@ -61,7 +62,7 @@ class RealStage : public Stage {
 
   std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
                              std::int64_t earliest_ns) override {
-    // A trial that was aborted may still be ramping down, and takes up room until it is silent.
+    // An aborted trial may still be ramping down, and occupies voices until it is silent.
     wait_for([&] { return now_ns() >= quiet_ns_; });
     const auto until_ns = now_ns() + kFirstPosition_ns;
     wait_for([&] { return stream_->clock().pairs > 0 || now_ns() > until_ns; });
@@ -80,7 +81,7 @@ class RealStage : public Stage {
   }
 
   std::int64_t silence() override {
-    // What has not begun is cancelled, and nobody waits for it.
+    // Bursts that have not begun are cancelled, and nobody waits for their reports.
     const auto from = stream_->earliest_frame();
     if (!presented_.empty() && presented_.back().start_frame >= from) unheard_ = 0;
     const auto silent_ns = ramp_down(*stream_, presented_, now_ns());
@@ -88,7 +89,8 @@ class RealStage : public Stage {
   }
 
   Refusal arm() override {
-    // The audio thread proves its life by its first blocks, which at a session's start are yet to come.
+    // The audio thread reports that it is alive with its first blocks. At a session's start they have not
+    // been written yet.
     const auto until_ns = now_ns() + kFirstBlocks_ns;
     const auto begun = 2 * stream_->config().output.period_frames;
     wait_for([&] { return stream_->counters().frames > begun || now_ns() > until_ns; });
@@ -131,13 +133,13 @@ class RealStage : public Stage {
  private:
   drive::Amplifier& amplifier_() { return *devices_.amplifier; }
 
-  /// The session lives, since it gets here; whether the page does, it says itself.
+  /// Reports that the session is alive, which it is if it gets here. The page reports for itself.
   void show_life() {
     amplifier_().session_alive();
     if (const auto page_ns = inputs_.page_alive_ns(); page_ns >= 0) amplifier_().page_alive(page_ns);
   }
 
-  /// Hears what drive, guard and clocks have to say, and tells the guard that the session lives.
+  /// Processes news from drive, guard and clocks, and reports to the guard that the session is alive.
   void attend() {
     const auto now = now_ns();
     show_life();
@@ -173,7 +175,7 @@ class RealStage : public Stage {
     saturated_ = saturated;
   }
 
-  /// So many frames after an onset.
+  /// The time of a frame this number of frames after an onset.
   std::int64_t later(const Onset& onset, std::int64_t frames) const {
     return onset.time_ns + frames * 1'000'000'000 / stream_->config().output.rate_Hz;
   }
@@ -195,7 +197,7 @@ class RealStage : public Stage {
         if (!presented_.empty()) lost_ns_ = later(first_onset_, event.frame - first_onset_.frame);
         amplifier_().trip(FaultKind::converter_gone,
                           event.error == 0 ? "" : std::strerror(std::abs(event.error)));
-        return;  // attend() tells what is latched
+        return;  // attend() reports what is latched
       case drive::EventKind::device_back:
         wrong_rate_.reset();  // this may be another device
         return push(InputKind::notice, now, "the sound device is back");
@@ -245,22 +247,24 @@ class RealStage : public Stage {
   }
 
   const std::vector<std::string> no_buttons_;
-  Devices devices_;  // before the stream: it goes silent first, then the amplifier's line goes low
+  // Declared before the stream, so that on destruction the stream goes silent first and the amplifier's line
+  // goes low afterwards.
+  Devices devices_;
   Inputs& inputs_;
   std::unique_ptr<drive::Stream> stream_;
   std::vector<Presented> presented_;
-  Onset first_onset_;        ///< of them
-  std::size_t unheard_ = 0;  ///< intervals that are still to be heard
+  Onset first_onset_;        ///< the first of them
+  std::size_t unheard_ = 0;  ///< number of intervals not yet reported as heard
   std::optional<std::int64_t>
-      lost_ns_;  ///< when the converter was lost amid them: the surface is silent since
+      lost_ns_;  ///< time at which the converter was lost during them: the surface has been silent since
   drive::UnderrunLimit underruns_;
   system::ClockWatch clocks_;
   std::int64_t clocks_due_ns_ = 0;
-  std::int64_t quiet_ns_ = 0;   ///< when the surface will be silent
-  std::int64_t opened_ns_ = 0;  ///< when the amplifier was enabled
+  std::int64_t quiet_ns_ = 0;   ///< time at which the surface will be silent
+  std::int64_t opened_ns_ = 0;  ///< time at which the amplifier was enabled
   bool closing_ = false, fault_told_ = false;
-  std::int64_t saturated_ = 0;  ///< samples clipped so far
-  Refusal wrong_rate_;          ///< until the device has been opened anew
+  std::int64_t saturated_ = 0;  ///< number of samples clipped so far
+  Refusal wrong_rate_;          ///< set until the device has been reopened
 };
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace turnpoint::session {
 
 namespace {
 
-/// Takes the director to a block that the log holds: by finishing what is done, or by the restart that made
-/// it.
+/// Advances the director to a logged block, by finishing the current one or replaying the restart that
+/// created it.
 void enter_stored(trial::Director& director, const records::BlockStart& block) {
   const auto here = [&] {
     return director.block_index() == block.block_index && director.attempt() == block.attempt;
@@ -28,8 +28,9 @@ void enter_stored(trial::Director& director, const records::BlockStart& block) {
                              " is not the one that the protocol runs next; they do not belong together");
 }
 
-/// Runs a stored trial through the director again. Throws std::runtime_error where the director would have
-/// presented another level, or its state differs afterwards: the log and the program do not belong together.
+/// Passes a stored trial through the director again. Throws std::runtime_error if the director would have
+/// presented another level, or if its state differs afterwards: the log and the program do not belong
+/// together.
 void replay(trial::Director& director, const records::TrialRow& trial, const protocol::Protocol& protocol) {
   const auto mismatch = [&trial](const std::string& what) {
     throw std::runtime_error(
@@ -59,8 +60,8 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
   if (director.state_hash() != trial.state_hash) mismatch("its state hash differs");
 }
 
-/// Half of a session by one simulated observer and half by another would be neither's. Sliders are left out:
-/// their row has no answer of the observer.
+/// A session answered half by one simulated observer and half by a different one would be useless. Sliders
+/// are not checked, because their row does not contain an answer of the observer.
 void check_observer(const Setup& setup, const store::StoredSession& stored, const trial::TrialSpec& spec,
                     const records::TrialRow& trial) {
   constexpr double tolerance_s = 1e-3;

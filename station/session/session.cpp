@@ -51,7 +51,7 @@ std::string kernel() {
   return fmt::format("{} {} {}", names.sysname, names.release, names.machine);
 }
 
-/// The seed of a session that states none, within what JSON and spreadsheets keep exactly.
+/// A seed for a session that states none, in the range that JSON and spreadsheets represent exactly.
 std::uint64_t fresh_seed() {
   std::uint64_t bits = 0;
   if (::getrandom(&bits, sizeof bits, 0) != static_cast<ssize_t>(sizeof bits))
@@ -97,7 +97,7 @@ records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std
   return start;
 }
 
-/// `now_ns` is the stage's own time: a simulated session has its virtual clock's origin.
+/// `now_ns` is the stage's time: for a simulated session, that of its virtual clock.
 records::SegmentStart segment(const std::string& reason, std::int64_t now_ns) {
   const auto clocks = system::read_clocks();
   return {boot_id(), reason, now_ns, clocks.boottime_ns, clocks.realtime_ns};
@@ -121,19 +121,20 @@ drive::StreamConfig stream_of(const rig::Rig& rig) {
 
 namespace {
 
-/// Without a finger no hardware: what a real converter would get is thrown away. Files are written, and so is
-/// what a rig's allowed plug-in takes.
+/// A simulated session uses no hardware: samples for a real converter are discarded. Files are written, and
+/// so is output to plug-ins that the rig allows.
 drive::StreamConfig simulated_stream(const rig::Rig& rig) {
   auto config = stream_of(rig);
   config.virtual_lead_frames = std::int64_t{config.output.periods} * config.output.period_frames;
   const bool hardware = config.output.uri.starts_with("alsa:") && config.output.allow_plugin.empty();
   if (hardware) config.output.uri = "null:";
-  // A session of half an hour is 300 million frames that nobody hears.
+  // A session of half an hour has 300 million frames that nobody hears, so do not compute them.
   if (config.output.uri == "null:") config.samples = drive::Samples::passed;
   return config;
 }
 
-/// The finger's account begins before the log is opened for writing: it reads the same database.
+/// Read the participant's exposure history before the log is opened for writing, because both use the same
+/// database.
 limits::FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
   const double now_s = 1e-9 * static_cast<double>(system::realtime_ns());
   const auto limits = limits::limits_of(setup.rig, setup.run_mode);
@@ -143,7 +144,7 @@ limits::FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
   return limits::FingerAccount(limits, history, origin_ns, now_s);
 }
 
-/// A session's log, and the director that stands where the log does.
+/// A session's log, and a director in the same state as the log.
 struct Begun {
   store::SessionLog log;
   trial::Director director;
@@ -157,8 +158,8 @@ Begun begin(const Setup& setup, Stage& stage) {
   return {std::move(log), std::move(director)};
 }
 
-/// The stored trials are replayed before anything is written: a session that cannot be resumed stays as it
-/// is.
+/// Replays the stored trials before anything is written, so that a session that cannot be resumed is not
+/// changed.
 Begun resume(const Setup& setup, Stage& stage) {
   const auto stored = store::read_session(setup.database, setup.resume_session);
   auto director = replayed(setup, stored);

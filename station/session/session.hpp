@@ -16,7 +16,7 @@
 
 namespace turnpoint::session {
 
-/// Where an interrupted session goes on. What was done stays in the log, whatever is chosen.
+/// Where an interrupted session continues. Completed trials stay in the log in any case.
 enum class ResumeAt { next_trial, block_start, session_start };
 
 /// Everything that running a session needs, already loaded and checked.
@@ -27,18 +27,20 @@ struct Setup {
   std::string database;
   terms::RunMode run_mode = terms::RunMode::pilot;
   std::string language;
-  std::string observer;  ///< "" for a person; else the text after `sim` ("sim", "sim:threshold=...")
+  std::string observer;  ///< "" for a person; otherwise "sim" or "sim:threshold=..."
   std::optional<std::uint64_t> seed;
-  std::string resume_session;  ///< session to go on with; "" begins a new one
+  std::string resume_session;  ///< the session to continue; "" begins a new one
   ResumeAt resume_at = ResumeAt::next_trial;
-  /// The calibration in force, already applied to `rig`: SHA-256 of its file and the file; "" without one.
+  /// The current calibration, already applied to `rig`: the SHA-256 of its file, and the file's text; "" if
+  /// there is none.
   std::string calibration_id, calibration_text;
-  std::vector<limits::SoundLevel> sound;  ///< measured levels at full scale, rising in frequency
-  std::string consent_version;  ///< of the consent form that the participant signed; "" where none was asked
+  std::vector<limits::SoundLevel> sound;  ///< measured levels at full scale, in order of frequency
+  /// version of the consent form that the participant signed; "" if none was required
+  std::string consent_version;
   /// The touch panel's own latency, stored with each answer by touch, never subtracted.
   double response_offset_s = 0;
-  /// Of the time stamps that it was found for (kernel | toolkit): answers with others do not get it; "" all
-  /// do.
+  /// Source of the time stamps for which it was measured (kernel | toolkit). Answers with another source do
+  /// not get it; "" means that all do.
   std::string response_offset_quality;
 };
 
@@ -49,10 +51,11 @@ struct Summary {
   std::string reason;
   std::uint64_t seed = 0;
   int blocks = 0, trials = 0, answered = 0, timeouts = 0, anticipations = 0, voided = 0;
-  std::optional<double> accuracy;  ///< of scored, answered, experimental trials
-  double duration_s = 0;           ///< on the session's own clock
+  std::optional<double> accuracy;  ///< proportion correct of scored, answered, experimental trials
+  double duration_s = 0;           ///< on the session's clock
   int xruns = 0;
-  double stretched_s = 0;       ///< by how much intervals between trials were lengthened to keep the duty
+  /// how much pauses between trials were extended to keep the limit on the duty cycle
+  double stretched_s = 0;
   std::string realtime_rights;  ///< what the operating system granted to the audio thread
   std::string checksum;         ///< last link of the chain over the session's rows (`turnpoint verify`)
   std::vector<trial::ProcedureEstimate> estimates;
@@ -66,7 +69,7 @@ struct Summary {
 /// std::system_error for devices.
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor = nullptr);
 
-/// The same with devices already open (a real session only).
+/// The same with devices that are already open (for a real session only).
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices,
             Monitor* monitor = nullptr);
 

@@ -19,26 +19,26 @@ namespace turnpoint::session {
 /// trial.
 class SessionRun {
  public:
-  /// `director` stands where the log does.
+  /// `director` must be in the same state as the log.
   SessionRun(const Setup& setup, trial::Director director, store::SessionLog log,
              std::unique_ptr<Stage> stage, limits::FingerAccount account, Display* display, Monitor* monitor);
 
-  /// To the end of the last block, or until somebody stops it.
+  /// Runs to the end of the last block, or until somebody stops it.
   Summary run();
 
  private:
-  /// A trial while it runs.
+  /// A running trial.
   struct Running {
     trial::TrialSpec spec;
     trial::Machine machine;
     records::TrialRow row;
-    std::optional<trial::Slider> slider;  ///< in an adjustment
-    std::vector<Onset> onsets;            ///< of all intervals, once they are scheduled
-    std::size_t begun = 0;                ///< of them, so far
+    std::optional<trial::Slider> slider;  ///< for an adjustment
+    std::vector<Onset> onsets;            ///< onsets of all intervals, once they are scheduled
+    std::size_t begun = 0;                ///< number of intervals that have begun
     bool decided = false;
-    bool by_button = false;  ///< answered so: the touch panel's latency is not in it
+    bool by_button = false;  ///< answered by button, so the touch panel's latency does not apply
   };
-  /// An interval of the trial, as it is scheduled, on the surface, or was.
+  /// An interval of the trial: scheduled, being presented, or finished.
   struct OnSurface {
     std::int64_t on_ns = 0, off_ns = 0;
   };

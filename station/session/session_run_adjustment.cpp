@@ -5,7 +5,7 @@
 
 namespace turnpoint::session {
 
-// What an adjustment has beside an answer: a slider that the surface follows.
+// The part of a sitting that is specific to adjustments: a slider that the surface follows.
 
 void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
   auto page = pages_.of_phase(phase, trial.machine.interval(), trial.spec, *director_.block(),
@@ -17,15 +17,15 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
 
 std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Running& trial) {
   if (!trial.slider) return event_of(input);
-  // Only while the surface moves: what is set in silence was not felt.
+  // Only while the surface vibrates: a setting made in silence cannot be felt.
   if (input.kind == InputKind::slider && trial.machine.phase() == trial::Phase::stimulus)
     trial.slider->move(input.number);
   if (input.kind == InputKind::next) return trial::Event{input.time_ns, trial::EventKind::answer, 0};
   return event_of(input);
 }
 
-/// The surface follows the slider. The row keeps where it began, and the last setting with its onset; every
-/// move between is in the log of events.
+/// Makes the surface follow the slider. The row keeps the start and the last setting with its onset; every
+/// move in between is in the log of events.
 void SessionRun::glide(Running& trial) {
   const double wanted = trial.slider->glide(stage_->now_ns());
   if (trial.machine.phase() != trial::Phase::stimulus) return;

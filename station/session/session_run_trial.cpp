@@ -40,7 +40,8 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
                 {}};
   if (spec.slider) trial.slider.emplace(*spec.slider, spec.level.value_or(spec.slider->low));
   if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block(), plans_.take(spec).plans);
-  // Durable before the amplifier is on: a disk may take seconds, and nothing else happens meanwhile.
+  // Commit this before the amplifier is on, because a disk may take seconds during which nothing else
+  // happens.
   gate_.keep([&] { log_.presented(trial_index(), stage_->now_ns()); });
   drive_trial(trial, open_amplifier());
   stage_->close_amplifier();
@@ -53,8 +54,8 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   return after_trial(trial.row);
 }
 
-/// Everything that may take time or go wrong before a trial: what has gathered since the last one, its plans,
-/// the rig's limits, an amplifier that is not armed.
+/// Does everything before a trial that may take time or fail: processes inputs since the last trial, gets the
+/// plans, checks the rig's limits, and waits until the amplifier is armed.
 Flow SessionRun::prepare_trial(const trial::TrialSpec& spec) {
   plans_.begin(spec);
   try {
@@ -72,14 +73,15 @@ Flow SessionRun::prepare_trial(const trial::TrialSpec& spec) {
   return gate_.until_clear();
 }
 
-/// Whatever keeps the amplifier off now makes the trial void.
+/// From here on, anything that keeps the amplifier off makes the trial void.
 std::optional<trial::EventKind> SessionRun::open_amplifier() {
   if (gate_.stop_asked()) return trial::EventKind::abort;
   if (!gate_.fault()) gate_.set_fault(stage_->open_amplifier());
   return gate_.fault() ? std::optional(trial::EventKind::fault) : std::nullopt;
 }
 
-/// The interval between trials stretches as far as the rig's limits on duty and continuous time need.
+/// Extends the pause between trials as far as the rig's limits on duty cycle and continuous vibration
+/// require.
 Flow SessionRun::keep_limits(const trial::TrialSpec& spec) {
   const auto now = stage_->now_ns();
   const auto begin = account_.earliest_ns(now, limits::stimuli_of(setup_.protocol, spec));
@@ -177,11 +179,11 @@ void SessionRun::perform(const std::vector<trial::Action>& actions, Running& tri
   if (trial.machine.decided() && !trial.machine.done() && !trial.decided) decide(trial);
 }
 
-/// All intervals at once: what comes between two of them is then a number of frames.
+/// Presents all intervals at once, so that their distances are exact numbers of frames.
 void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
   const auto& bursts = plans_.take(trial.spec).bursts;
   trial.onsets = stage_->present(bursts, earliest_ns);
-  if (trial.onsets.empty()) return;  // a fault that says why is on its way
+  if (trial.onsets.empty()) return;  // a fault with the reason is on its way
   const auto times = trial::interval_times(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     const auto on_ns = trial.onsets[i].time_ns;
@@ -191,7 +193,7 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
   ask_observer(trial, trial.onsets.back().time_ns);
 }
 
-/// What reaches the surface is in the row, and what is cancelled before is not.
+/// The row contains what reaches the surface, but not what is cancelled before.
 void SessionRun::interval_begins(Running& trial) {
   const auto i = trial.begun++;
   const auto& planned = plans_.take(trial.spec);
@@ -211,7 +213,7 @@ void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
     stage_->question(trial::question_of(trial.spec, setup_.protocol, summary_.seed), zero_ns);
 }
 
-/// The outcome stands: what follows from it is known, and planned while the interval between trials lasts.
+/// The outcome is final: record its consequences, and plan the next trial during the pause.
 void SessionRun::decide(Running& trial) {
   trial.decided = true;
   auto& row = trial.row;
@@ -227,7 +229,7 @@ void SessionRun::decide(Running& trial) {
   if (const auto next = director_.next()) plans_.begin(*next);
 }
 
-/// Books what was on the surface, for the finger's account and for the log.
+/// Records what was presented, for the exposure account and for the log.
 void SessionRun::leave_surface() {
   for (const auto& left : std::exchange(surface_, {})) {
     if (left.off_ns <= left.on_ns) continue;

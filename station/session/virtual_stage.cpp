@@ -13,7 +13,7 @@ class VirtualStage : public Stage {
  public:
   VirtualStage(const drive::StreamConfig& config, observer::Observer observer, Inputs& inputs)
       : stream_(drive::open_synchronous(config)), observer_(std::move(observer)), inputs_(inputs) {
-    static_cast<void>(arm());  // nothing can be wrong with it
+    static_cast<void>(arm());  // this cannot fail here
   }
 
   std::int64_t now_ns() override { return now_ns_; }
@@ -40,9 +40,9 @@ class VirtualStage : public Stage {
     return input;
   }
 
-  /// A stop that came meanwhile from the real world. It has no moment on the virtual clock, and amid a trial
-  /// nobody feels it would only make void what is over in milliseconds: it counts from the next trial on, so
-  /// that a simulated session that was stopped and goes on equals an unbroken one.
+  /// Checks for a stop from the real world. It has no time on the virtual clock. In the middle of a trial it
+  /// would only make void what is over in milliseconds, so it takes effect before the next trial. A simulated
+  /// session that is stopped and resumed therefore equals an uninterrupted one.
   std::vector<Input> drain() override {
     script_.clear();
     unheard_.clear();
@@ -55,7 +55,8 @@ class VirtualStage : public Stage {
     return stops;
   }
 
-  void wait_for(const std::function<bool()>&) override {}  // who needs it next waits without time passing
+  void wait_for(const std::function<bool()>&) override {
+  }  // the next call that needs the result waits for it, and no virtual time passes
 
   std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
                              std::int64_t earliest_ns) override {
@@ -119,7 +120,7 @@ class VirtualStage : public Stage {
   }
 
  private:
-  /// The interval that is heard to its end next, if that is no later than `until_ns`.
+  /// The next interval that is heard to its end, if that is no later than `until_ns`.
   std::optional<Input> next_heard(std::int64_t until_ns) {
     if (unheard_.empty()) return std::nullopt;
     const auto end_ns = stream_->time_of(unheard_.front().end_frame).value();
@@ -134,7 +135,7 @@ class VirtualStage : public Stage {
     return input;
   }
 
-  static constexpr std::int64_t kContinue_ns = 1'000'000'000;  // a page is read for so long
+  static constexpr std::int64_t kContinue_ns = 1'000'000'000;  // how long a page is read
 
   void advance_to(std::int64_t time_ns) {
     now_ns_ = std::max(now_ns_, time_ns);
@@ -144,7 +145,7 @@ class VirtualStage : public Stage {
     }
   }
 
-  /// The guard's rules without lines. On this clock nobody can hang.
+  /// The guard's rules without lines. On this clock no thread can hang.
   lines::Guard& alive() {
     guard_.audio_alive(now_ns_);
     guard_.session_alive(now_ns_);
@@ -160,7 +161,7 @@ class VirtualStage : public Stage {
   observer::Observer observer_;
   Inputs& inputs_;
   std::int64_t now_ns_ = 0;
-  std::deque<Input> script_;  ///< what the observer will do, in time
+  std::deque<Input> script_;  ///< what the observer will do, in order of time
   std::vector<Presented> presented_, unheard_;
 };
 

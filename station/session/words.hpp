@@ -3,7 +3,7 @@
 
 namespace turnpoint::session {
 
-/// What the station itself says to a participant, beside the protocol's own texts.
+/// The station's own words for participants, in addition to the protocol's texts.
 enum class Word {
   practice,
   practice_again,
@@ -20,7 +20,7 @@ enum class Word {
   thanks_early
 };
 
-/// In the language asked for (two-letter code), or in English where the station does not speak it.
+/// The word in this language (two-letter code), or in English if the station does not have the language.
 std::string word(Word word, const std::string& language);
 
 }  // namespace turnpoint::session

@@ -34,7 +34,8 @@ std::string rig_or_default(const std::string& named, std::ostream& messages) {
 }
 
 std::string screen_card(const std::string& drm) {
-  std::vector<std::tuple<bool, std::size_t, std::string>> cards;  // without a screen, then by number
+  // cards with a screen come first, then by number
+  std::vector<std::tuple<bool, std::size_t, std::string>> cards;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(drm, ignored)) {
     const auto connector = entry.path().filename().string();  // card1-HDMI-A-1

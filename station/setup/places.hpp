@@ -4,9 +4,8 @@
 
 namespace turnpoint::setup {
 
-/// The rig file to use: the one named, else /etc/turnpoint/rig.toml, else the simulated rig that comes with
-/// the program. What was chosen for the user is said on `messages`. Throws text::BadInput where there is
-/// none.
+/// The rig file to use: the named one, else /etc/turnpoint/rig.toml, else the simulated rig that comes with
+/// the program. Prints its own choice on `messages`. Throws text::BadInput if there is none.
 std::string rig_or_default(const std::string& named, std::ostream& messages);
 
 /// A folder that comes with the program ("protocols", "deploy/rigs"), in the source tree or as installed.
@@ -15,9 +14,9 @@ std::string shipped(const std::string& folder);
 /// The station's own database: in the user's data folder ($XDG_DATA_HOME, else ~/.local/share).
 std::string default_database();
 
-/// The kernel's graphics card that a screen is connected to, "/dev/dri/card1"; without a screen the first
-/// that has a connector, "" where none has: a board's first card may be one that only draws. `drm` is where
-/// the kernel lists them.
+/// The graphics card to which a screen is connected, "/dev/dri/card1". Without a screen, the first card with
+/// a connector; "" if there is none. A board's first card may have no connector. `drm` is where the kernel
+/// lists cards.
 std::string screen_card(const std::string& drm = "/sys/class/drm");
 
 }  // namespace turnpoint::setup

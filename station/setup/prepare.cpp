@@ -35,13 +35,15 @@ std::string choose_language(const std::string& wanted, const protocol::Protocol&
   return wanted;
 }
 
-/// What the panel's latency is, without any transducer's response, lets no live session drive one.
+/// A calibration that contains only panel latency is not enough for a live session; it needs a transducer
+/// response.
 bool has_response(const session::Setup& setup) {
   return !setup.calibration_text.empty() &&
          !calibration::parse(setup.calibration_text, "calibration").transducers.empty();
 }
 
-/// A live session needs what a pilot may do without: what the finger gets must have been measured.
+/// A live session has stricter requirements than a pilot: everything that reaches the finger must have been
+/// measured.
 void check_live(const session::Setup& setup, const protocol::Survey& survey, std::vector<Problem>& problems) {
   const auto& rig = setup.rig;
   const auto add = [&](const std::string& what, const std::string& allowed) {
@@ -55,7 +57,8 @@ void check_live(const session::Setup& setup, const protocol::Survey& survey, std
   if (!has_response(setup) && rig.amplifier_uri != "sim:")
     add("the rig has no calibration in force", "turnpoint calibrate --rig " + rig.path + " makes one");
   for (const auto& sight : survey.sights) {
-    // However soft: whether the level is allowed is known only with each tone's amplitude, at its trial.
+    // Check only that a level was measured. Whether it is allowed depends on each tone's amplitude and is
+    // checked in the trial.
     const auto problem = limits::sound_problem(sight.lowest_Hz, 1e-9, setup.sound);
     if (problem.empty()) continue;
     add("scene \"" + sight.scene + "\": " + problem, "measured levels around it in the calibration");
@@ -89,7 +92,7 @@ void take_calibration(const std::string& source, const std::string& path, sessio
 
 namespace {
 
-/// The calibration that was named, or the newest beside the rig.
+/// Finds the named calibration, or the newest one beside the rig.
 void find_calibration(const RunRequest& request, session::Setup& setup, std::vector<Problem>& problems) {
   const auto path =
       request.calibration.empty() ? calibration::newest_for(setup.rig.path) : request.calibration;

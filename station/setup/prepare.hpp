@@ -8,16 +8,16 @@
 
 namespace turnpoint::setup {
 
-/// What `turnpoint run` was asked for, as typed.
+/// The options of `turnpoint run`, as typed.
 struct RunRequest {
   std::string protocol, rig, participant, database;
   std::string mode = "pilot";  ///< live | pilot
-  std::string language;        ///< "" takes the protocol's first
+  std::string language;        ///< "" uses the protocol's first language
   std::string observer;        ///< "" for a person
   std::optional<std::uint64_t> seed;
-  std::string consent_version;  ///< of the consent form, "" where none is asked for
+  std::string consent_version;  ///< version of the consent form; "" if none is required
   bool headless = false, buttons_only = false;
-  std::string calibration;  ///< file; "" takes the newest one beside the rig file, if there is one
+  std::string calibration;  ///< file; "" uses the newest one beside the rig file, if any
 };
 
 /// Loads and checks everything that a session needs. Throws text::BadInput with all problems of both files,
@@ -26,8 +26,8 @@ struct RunRequest {
 /// left out otherwise. Throws protocol::Abandoned soon after `stop` asks it to.
 session::Setup prepare(const RunRequest& request, const std::stop_token& stop = {});
 
-/// Puts a calibration file's text in force: rig, sound levels, and what the session's row keeps of it.
-/// Throws text::BadInput, terms::UsageError.
+/// Applies the text of a calibration file: to the rig, the sound levels, and the values stored with the
+/// session. Throws text::BadInput, terms::UsageError.
 void take_calibration(const std::string& source, const std::string& path, session::Setup& setup);
 
 }  // namespace turnpoint::setup

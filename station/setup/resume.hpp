@@ -7,13 +7,14 @@
 
 namespace turnpoint::setup {
 
-/// What `turnpoint resume` was asked for.
+/// The options of `turnpoint resume`.
 struct ResumeRequest {
   std::string database, session_id;  ///< session_id "": the newest interrupted one
   std::string
       policy;  ///< "" (the protocol's; being called is the answer to "ask") | resume | restart | block
   bool headless = false;
-  bool any_age = false;  ///< also a session older than its protocol allows: the clock was wrong
+  /// continue even a session older than its protocol allows, for example because the clock was wrong
+  bool any_age = false;
 };
 
 /// The set-up that continues an interrupted session: rig, protocol text, observer and language from its

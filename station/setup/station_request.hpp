@@ -3,11 +3,11 @@
 
 namespace turnpoint::setup {
 
-/// What `turnpoint station` was asked for; everything is filled in before a screen gets it.
+/// The options of `turnpoint station`. All of them are filled in before a screen gets them.
 struct StationRequest {
   std::string protocols;  ///< folder
   std::string rig, database;
-  bool locked = false;  ///< the start page stands behind the code from the beginning on
+  bool locked = false;  ///< ask for the code before the start page too
 };
 
 }  // namespace turnpoint::setup

@@ -58,13 +58,13 @@ double breaks_s(const protocol::Block& block, std::size_t trials) {
 }
 
 Estimate simulate(const Protocol& protocol, std::uint64_t seed) {
-  // Sequence index 0 throughout: the blocks of all rows are the same, in another order.
+  // Always use sequence index 0: other indices have the same blocks in another order.
   const auto order = protocol::block_order(protocol, 0);
   const auto rehearsal = rehearse(protocol, 0, seed, person(protocol));
   Estimate estimate;
   estimate.duration_s = rehearsal.duration_s + rehearsal.trials * exploring_s(protocol);
   for (const auto& [start, trials] : rehearsal.blocks) {
-    // Practice that is repeated is one block of as many trials as were needed.
+    // Practice that is repeated counts as one block with as many trials as were needed.
     if (start.attempt == 0) {
       estimate.blocks.push_back({start.name, start.instruction, start.practice, {}});
       estimate.trials.push_back(0);
@@ -137,7 +137,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   } catch (const protocol::Abandoned&) {
     throw;
   } catch (const std::exception& error) {
-    // What the procedures cannot do must stop a session before anybody sits down.
+    // A procedure that cannot work must stop the session before it begins.
     check.problems.push_back({{protocol_path, 0, 0}, error.what(), ""});
   }
   if (!check.cues.not_compared.empty())

@@ -10,7 +10,7 @@
 
 namespace turnpoint::simulation {
 
-/// A number over simulated sessions: its median, and what nine of ten sessions lie between.
+/// A number over simulated sessions: its median, and the range that contains nine of ten sessions.
 struct Spread {
   double low = 0, median = 0, high = 0;
 };
@@ -22,11 +22,12 @@ struct CheckedBlock {
   Spread trials;
 };
 
-/// What `turnpoint check` says of a protocol on a rig.
+/// The result of `turnpoint check` for a protocol on a rig.
 struct Check {
-  std::vector<text::Problem> problems;  ///< of both files and of one on the other; then all else is empty
+  /// problems of both files and of their combination; if there are any, everything else is empty
+  std::vector<text::Problem> problems;
   std::vector<text::Problem> warnings;
-  std::vector<text::Problem> notes;  ///< matters of taste
+  std::vector<text::Problem> notes;  ///< minor points
   std::string id, title, rig_name;
   std::vector<CheckedBlock> blocks;
   Spread trials, duration_s;
@@ -36,13 +37,13 @@ struct Check {
   std::vector<std::string> protocol_defaults, rig_defaults;
 };
 
-/// How many sessions to simulate for the number of trials and the duration; 0: none.
+/// The number of sessions to simulate for the number of trials and the duration; 0: none.
 struct CheckOptions {
   int sessions = 21;
 };
 
-/// Reads and checks both files as `run` would. Throws std::system_error where one cannot be read, and
-/// protocol::Abandoned soon after `stop` asks it to.
+/// Reads and checks both files as `run` would. Throws std::system_error if one cannot be read, and
+/// protocol::Abandoned soon after `stop` is requested.
 Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options = {},
             const std::stop_token& stop = {});
 

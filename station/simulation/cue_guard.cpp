@@ -32,7 +32,7 @@ struct CueKind {
   double scale;
   Source source;
   double scene::Cues::*cue;
-  bool follows_strength;  ///< roving always moves it
+  bool follows_strength;  ///< true if roving always changes it
 };
 
 constexpr CueKind cue_kinds[] = {
@@ -48,17 +48,17 @@ constexpr CueKind cue_kinds[] = {
 
 constexpr double smallest_difference = 1e-3, smallest_difference_dB = 0.01;
 
-// Three standard errors of what an observer of one cue reaches in its own sessions, and how many sessions
-// there are to find out how many that takes, and at most.
+// Precision of the accuracy in an observer's own sessions (three standard errors), the number of sessions
+// from which the required number is estimated, and the largest number of sessions.
 constexpr double precision = 0.01;
 constexpr int first_sessions = 30, most_sessions = 1000;
 
-/// Trials for which a cue cannot be known.
+/// There are trials whose cues cannot be known.
 struct NotPlanned : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What one interval of a trial offers, before its strength is drawn.
+/// The cues of one interval, before its strength is drawn.
 struct Interval {
   RovedCues first, last;
   double duration_s = 0;
@@ -67,14 +67,14 @@ struct Interval {
 struct Presentation {
   std::vector<Interval> intervals;
   int correct = 0;
-  double share = 0;   ///< of the trials of its cell
-  double turn = 0.5;  ///< where its draws of the strength begin
+  double share = 0;   ///< share of the trials in its cell
+  double turn = 0.5;  ///< starting point for its draws of the strength
 };
 
-/// A cell of the census: its presentations, and how many trials it has.
+/// All cells of the census, each with its presentations and its number of trials.
 using Cells = std::vector<std::pair<const std::vector<Presentation>*, double>>;
 
-/// How many trials there are, in how many the answer is right, and in how many it would be with each key.
+/// Number of trials, of right answers, and of answers that each key alone would get right.
 struct Score {
   double trials = 0, right = 0;
   std::array<double, 3> keys{};
@@ -90,11 +90,11 @@ struct Score {
   double one_key() const { return trials > 0 ? keys[best_key()] / trials : 0; }
 };
 
-/// Which number of an interval of two scenes is attended to.
+/// Which value the observer uses in an interval of two scenes.
 enum class Feature { last, change, first };
 
-/// Two sets of draws of the strength, equally many. A rule that was chosen on one set looks better there than
-/// it is.
+/// There are two equally large sets of draws of the strength, because a rule that was chosen on one set looks
+/// better on that set than it is.
 enum class Draws { to_choose, to_judge };
 
 struct Strategy {
@@ -102,13 +102,14 @@ struct Strategy {
   Rule rule;
 };
 
-/// Sessions in which the observer's answers lead to the next level. A cue that gives the same answers to all
-/// trials that came up leads to the same sessions.
+/// Simulated sessions in which the observer's answers determine the next level. A cue that gives the same
+/// answers in all trials that occurred leads to the same sessions.
 struct OwnSessions {
   std::vector<Score> done;
-  std::map<const std::vector<Presentation>*, Score> scores;  ///< of one trial of each cell that came up
+  /// score of one trial, for each cell that occurred
+  std::map<const std::vector<Presentation>*, Score> scores;
   Cells visited;
-  std::vector<std::array<double, 3>> answers;  ///< to the visited cells
+  std::vector<std::array<double, 3>> answers;  ///< answers in the visited cells
   Reached reached;
 };
 
@@ -134,7 +135,7 @@ Score sum_of(const std::vector<Score>& sessions) {
   return sum;
 }
 
-// Of what is right, and of what is more than one key gets right: the larger one.
+// The larger of two standard errors: of the proportion correct, and of its gain over a single key.
 double standard_error(const std::vector<Score>& sessions) {
   const auto all = sum_of(sessions);
   if (all.trials == 0) return 0;
@@ -214,7 +215,7 @@ const std::vector<Presentation>& Guard::presentations(const protocol::Factors& c
   for (const auto& factors : combinations)
     for (const auto& order : orders) {
       const auto correct = order.correct ? order.correct : trial::correct_choice(protocol_.task, factors);
-      if (!correct) continue;  // no answer is right: it counts neither way
+      if (!correct) continue;  // no answer is right, so it does not count
       turn_ += 0.7548776662466927;
       Presentation presentation;
       presentation.correct = *correct, presentation.turn = turn_;
@@ -232,7 +233,7 @@ Cells Guard::cells_of(const TrialCensus& census) {
   return cells;
 }
 
-// Roving is uniform: points of a low-discrepancy sequence (Roberts 2018) stand for the draws of the
+// Roving is uniform. Points of a low-discrepancy sequence (Roberts 2018) replace random draws for the
 // intervals.
 std::vector<Look> Guard::looks(const CueKind& kind, Feature feature, const Cells& cells, Draws draws) const {
   constexpr double g = 1.2207440846057596;
@@ -293,7 +294,7 @@ std::vector<std::array<double, 3>> Guard::answers_to(const Cells& cells, const C
   return answers;
 }
 
-// Adds sessions until there are `count`.
+// Simulates further sessions until there are `count`.
 void Guard::run_sessions(const CueKind& kind, const Strategy& strategy, int count, OwnSessions& own) {
   while (static_cast<int>(own.done.size()) < count) {
     if (stop_.stop_requested()) throw protocol::Abandoned();
@@ -310,7 +311,8 @@ void Guard::run_sessions(const CueKind& kind, const Strategy& strategy, int coun
   }
 }
 
-// What a rule reaches that is as good at one level as at any other, whichever levels its answers lead to.
+// The accuracy of a rule that is equally good at every level, so that it does not matter which levels its
+// answers lead to.
 std::optional<Reached> Guard::same_everywhere(const CueKind& kind, const Strategy& strategy,
                                               const Cells& all) const {
   if (protocol_.task.kind == TaskKind::single_interval) return std::nullopt;
@@ -324,7 +326,7 @@ std::optional<Reached> Guard::same_everywhere(const CueKind& kind, const Strateg
   return Reached{std::max(0.5 * (low + high), by_guessing), by_guessing, 0.5 * (high - low)};
 }
 
-// The number of sessions follows from the first ones only, not from what is reached in the others.
+// The number of sessions is determined only by the first ones, not by the results of the others.
 Reached Guard::by_itself(const CueKind& kind, const Strategy& strategy, const Cells& all) {
   if (const auto same = same_everywhere(kind, strategy, all)) return *same;
   for (const auto& known : own_sessions_)

@@ -10,50 +10,50 @@
 namespace turnpoint::simulation {
 
 struct Reached {
-  double accuracy = 0;  ///< proportion right
-  double chance = 0;    ///< of the same trials without the cue: by guessing, or always with the same key
-  double error = 0;     ///< three standard errors of either, or half the spread between levels; 0: exact
+  double accuracy = 0;  ///< proportion correct
+  /// proportion correct in the same trials without the cue: by guessing, or always with the same key
+  double chance = 0;
+  double error = 0;  ///< three standard errors of either, or half the spread between levels; 0: exact
 };
 
-/// What an observer reaches who attends to one cue only. A cue far above chance is either what the task asks
-/// for or a leak.
+/// The accuracy of an observer who uses only one cue. A cue far above chance is either what the task asks
+/// about, or a leak.
 struct CueReport {
   std::string cue;           ///< "pitch", "loudness", "amplitude at the wide end", ...
-  double low = 0, high = 0;  ///< over everything that the main trials present, in `unit`
+  double low = 0, high = 0;  ///< range over everything that the main trials present, in `unit`
   std::string unit;
-  double accuracy = 0, chance = 0.5, error = 0;  ///< as in Reached
-  /// Only where levels follow right answers. Then `accuracy`, `chance` and `error` are these or those with
-  /// every level equally often, wherever accuracy and chance lie further apart.
+  double accuracy = 0, chance = 0.5, error = 0;  ///< see Reached
+  /// Set only if levels depend on right answers. Then `accuracy`, `chance` and `error` are either these or
+  /// those with every level equally often, whichever has the larger gain over chance.
   std::optional<Reached> whole_sessions = {};
 };
 
 struct CueGuard {
-  std::vector<CueReport> reports;  ///< one a cue; empty where one of the following says why
-  std::string nothing_to_tell;     ///< the task has no right answers that a cue could betray
-  std::string not_compared;        ///< trials that could not be compared: nothing is known of any cue
+  std::vector<CueReport> reports;  ///< one report per cue; if empty, one of the following says why
+  std::string nothing_to_tell;     ///< the task has no right answers that a cue could reveal
+  /// trials that could not be compared, so that nothing is known about any cue
+  std::string not_compared;
 };
 
-/// Compares all that the main trials present: standard and target as they stand together in a trial, each
-/// kind of trial weighted by how often it occurs (trial_census.hpp), catch trials included and practice left
-/// out. Order of intervals and drawn factors are taken with their exact probabilities; of roving there are
-/// two sets of at most 256 draws a trial, one that chooses the rule and one that says what it reaches.
-///
-/// The observer knows the task and the best rule for these trials: of one interval, a criterion or a band of
-/// the cue (of what the interval ends with, begins with, or of its change where it has two scenes); of two
-/// intervals the larger, the smaller, the one that differs more from the usual, or less; of three, the odd
-/// one; same or different by a criterion or a band on the difference. Cues that differ by less than a
-/// thousandth (0.01 dB of loudness) are equal. Who has no cue presses the one key that is
-/// right most often: that is the last report.
-///
-/// A procedure that chooses levels by the answers counts with each level that it can present equally often.
-/// Where it follows right answers, the observer also goes through simulated sessions by itself with the same
-/// rule, so that its own answers set the levels: as many sessions as it takes that three standard errors are
-/// 1 %, at most 1000. A rule that does equally well at each level, within 2 %, needs no sessions: it reaches
-/// the same in any. The larger gain over chance is reported. Where it follows one of two answers (`tracks`)
-/// such sessions say nothing: the share of that answer settles at the target whatever it depends on.
-///
-/// Duration is that at half the amplitude: of two equally long intervals, the one with the longer ramps is
-/// shorter.
+/// Compares everything that the main trials present, standard and target as they occur together in a trial.
+/// Each kind of trial is weighted by its frequency (trial_census.hpp). Catch trials are included, practice is
+/// left out. Orders of intervals and drawn factors have their exact probabilities. Roving is sampled by two
+/// sets of at most 256 draws per trial: one to choose the rule, one to measure its accuracy.
+/// The observer knows the task and the best rule for these trials. With one interval, the rule is a criterion
+/// or a band of the cue (at the end of the interval, at its start, or of the change if it has two scenes).
+/// With two intervals, it chooses the larger or the smaller cue, or the one that differs more, or less, from
+/// the usual one. With three, it chooses the odd one. For same or different, it uses a criterion or a band of
+/// the difference. Cues that differ by less than a thousandth (0.01 dB of loudness) count as equal. The last
+/// report is for an observer without a cue, who always presses the key that is right most often.
+/// If a procedure chooses levels by the answers, each level that it can present counts equally often. If it
+/// follows right answers, the observer also does simulated sessions with the same rule, so that its own
+/// answers set the levels: as many sessions as needed to bring three standard errors to 1 %, at most 1000. A
+/// rule that is equally good at every level, within 2 %, needs no sessions, because its accuracy does not
+/// depend on the levels. The larger gain over chance is reported. If the procedure follows one of two answers
+/// (`tracks`), such sessions say nothing, because the share of that answer converges on the target in any
+/// case.
+/// Duration is measured at half the amplitude: of two equally long intervals, the one with the longer ramps
+/// is shorter.
 CueGuard cue_guard(const protocol::Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey,
                    const std::stop_token& stop = {});
 

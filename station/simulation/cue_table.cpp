@@ -21,7 +21,7 @@ bool same(double a, double b) {
   return std::fabs(a - b) <= 1e-9 * std::max({1.0, std::fabs(a), std::fabs(b)});
 }
 
-// Silence has neither pitch nor loudness: between it and a tone the nearer one holds.
+// Silence has neither pitch nor loudness, so between silence and a tone use the nearer one.
 Cues mixed(const Cues& a, const Cues& b, double share_of_b) {
   Cues cues;
   for (const auto cue : all_cues) cues.*cue = (1 - share_of_b) * a.*cue + share_of_b * b.*cue;
@@ -70,8 +70,8 @@ CueTable::CueTable(const protocol::Protocol& protocol, const rig::Rig& rig, cons
   }
 }
 
-// The nearest entries on either side of `at`, mixed. What an entry (or all that share its coordinate) stands
-// for says `cues_at`, with the coordinate.
+// Interpolates between the nearest entries on either side of `at`. `cues_at` gives the cues of an entry (or
+// of all entries with the same coordinate), together with the coordinate.
 template <typename Entries, typename Coordinate, typename CuesAt>
 static std::optional<RovedCues> mixed_along(const Entries& entries, double at, Coordinate&& coordinate,
                                             CuesAt&& cues_at) {

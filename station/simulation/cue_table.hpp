@@ -10,36 +10,38 @@
 
 namespace turnpoint::simulation {
 
-/// The cues of a scene for one set of factors, whatever strength is drawn for the trial.
+/// The cues of a scene for one set of factors, for any strength that may be drawn.
 struct RovedCues {
-  scene::Cues high;                ///< with the strength roved upwards by rove_dB
-  std::optional<scene::Cues> low;  ///< roved downwards, where that moves more than the strength
+  scene::Cues high;  ///< with the strength roved upwards by rove_dB
+  /// with the strength roved downwards, if that changes more than the strength
+  std::optional<scene::Cues> low;
   double rove_dB = 0;
 
-  /// With this much drawn: roving scales the amplitude and shifts the loudness, and moves the frequency where
-  /// the edge depends on strength.
+  /// The cues with this draw. Roving scales the amplitude and shifts the loudness; it changes the frequency
+  /// if the edge depends on the strength.
   scene::Cues at(double drawn_dB) const;
 };
 
-/// What the task's scenes offer to an observer of cues, for any factors that a trial can have: as the survey
-/// planned it, else planned here (at most 200 more, and no zones, which take long), else by linear
-/// interpolation between plans, along the one sum of factors on which the scene depends or along each factor.
+/// The cues that the task's scenes offer an observer, for any factors that a trial can have. They come from
+/// the survey's plans, from plans made here (at most 200 more, and not for zones, which take long), or from
+/// linear interpolation between plans: along the single sum of factors on which the scene depends, or along
+/// each factor.
 class CueTable {
  public:
   CueTable(const protocol::Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey);
 
-  /// None: the scene cannot be planned, nor lies between plans.
+  /// Empty: the scene can neither be planned nor interpolated.
   std::optional<RovedCues> find(const std::string& scene, const protocol::Factors& factors);
 
  private:
   struct Entry {
-    std::vector<double> values;  ///< of the scene's factors, in the order of their names
-    double sum = 0;              ///< of the scene's only expression with factors
+    std::vector<double> values;  ///< values of the scene's factors, in the order of their names
+    double sum = 0;              ///< value of the scene's only expression with factors
     RovedCues cues;
   };
   struct SceneEntries {
     std::vector<std::string> factors;
-    const protocol::Linear* only = nullptr;  ///< where one expression alone depends on factors
+    const protocol::Linear* only = nullptr;  ///< set if a single expression depends on factors
     std::vector<Entry> entries;
   };
   static std::optional<RovedCues> between(const std::vector<const Entry*>& entries,

@@ -20,7 +20,7 @@ double banded(const Rule& rule, const std::array<double, 3>& x) {
   return rule.statistic == Statistic::value ? x[0] : std::fabs(x[1] - x[0]);
 }
 
-// How much speaks for each interval.
+// The evidence for each interval.
 std::array<double, 3> scores(const Rule& rule, std::size_t intervals, const std::array<double, 3>& x) {
   const auto difference = [&](double a, double b) {
     const auto& grain = rule.grain;
@@ -49,13 +49,13 @@ struct Weighed {
   double weight = 0;
 };
 
-// Values that nobody tells apart, and how much more often the one answer is right there than the other.
+// Values that cannot be told apart, and how much more often the one answer is right there than the other.
 struct Group {
   double first = 0, last = 0, excess = 0;
 };
 
-// The band of neighbouring groups inside which `inside` is right most often and outside which it is wrong
-// most often: the largest sum over neighbours (Kadane 1984).
+// The best band of neighbouring groups for answering `inside` within the band and the other answer outside:
+// the neighbouring groups with the largest sum (Kadane 1984).
 Rule best_band(std::vector<Weighed> values, Statistic statistic, const Grain& grain) {
   std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
   std::vector<Group> groups;
@@ -87,7 +87,7 @@ Rule best_band(std::vector<Weighed> values, Statistic statistic, const Grain& gr
   return best;
 }
 
-// The mean cue of the intervals that are not to be chosen.
+// The mean cue of the intervals that should not be chosen.
 double usual_of(const std::vector<Look>& looks) {
   double sum = 0, weight = 0;
   for (const auto& look : looks) {

@@ -20,7 +20,7 @@ namespace turnpoint::simulation {
 
 namespace {
 
-/// One number that one session found.
+/// One number found in one session.
 struct Finding {
   std::string source, parameter, unit;
   double value = 0;
@@ -30,7 +30,7 @@ struct Finding {
 struct Outcome {
   std::vector<Finding> findings;
   GeneratingValues generating;
-  std::vector<std::pair<std::string, analysis::FitOptions>> fits;  ///< condition, options
+  std::vector<std::pair<std::string, analysis::FitOptions>> fits;  ///< pairs of condition and options
   report::Design design = report::Design::forced_choice;
   int presented = 0, scored = 0, right = 0;
   double duration_s = 0;
@@ -44,14 +44,14 @@ std::optional<analysis::Interval> interval_of(const std::optional<analysis::Para
   return found ? std::optional(found->interval) : std::nullopt;
 }
 
-/// What the procedures themselves estimate; a report prints no interval of it.
+/// Adds the procedures' own estimates, for which a report prints no interval.
 void add_estimates(const Rehearsal& rehearsal, const std::string& unit, std::vector<Finding>& findings) {
   for (const auto& estimate : rehearsal.estimates)
     if (estimate.parameter == "threshold")
       findings.push_back({"procedure " + estimate.procedure, estimate.parameter, unit, estimate.mean, {}});
 }
 
-/// What has a long tail: a function that comes out as a step has a slope without limit.
+/// True for estimates with a long tail: if the fitted function is a step, its slope has no upper limit.
 bool heavy_tailed(const std::string& parameter) { return parameter == "slope" || parameter == "spread"; }
 
 const char* spread_name(const analysis::FitOptions& options) {
@@ -142,7 +142,7 @@ Recovery& entry_for(const Finding& finding, std::vector<Recovery>& recoveries) {
   return entry;
 }
 
-/// What each number should have come out as, by source and parameter.
+/// The true value of each number, by source and parameter.
 class Truths {
  public:
   Truths(const protocol::Protocol& protocol, const PowerOptions& options,
@@ -200,7 +200,7 @@ class Truths {
         };
         add_gap("proportion correct", generating.share_correct(names[a]), generating.share_correct(names[b]));
         add_gap("boundary", generating.boundary(names[a], observer), generating.boundary(names[b], observer));
-        add(source, "time outside the decision", 0);  // an observer has one for all conditions
+        add(source, "time outside the decision", 0);  // an observer has the same one in all conditions
       }
   }
 

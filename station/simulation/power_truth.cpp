@@ -15,7 +15,7 @@ namespace turnpoint::simulation {
 
 namespace {
 
-/// Probability of a 1 by level; empty where the level alone does not decide it.
+/// Probability of a 1 by level; empty if it depends on more than the level.
 std::function<double(double)> share_of_ones(const protocol::Protocol& protocol, const procedure::Spec& spec,
                                             const observer::Observer& observer) {
   trial::TrialSpec trial;
@@ -40,7 +40,7 @@ std::function<double(double)> share_of_ones(const protocol::Protocol& protocol, 
   };
 }
 
-/// Where a monotone function crosses a value between two levels; none where it does not.
+/// The point at which a monotone function crosses a value between two levels; empty if it does not.
 std::optional<double> crossing(const std::function<double(double)>& share, double low, double high,
                                double value) {
   const bool rises = share(high) > share(low);
@@ -49,7 +49,7 @@ std::optional<double> crossing(const std::function<double(double)>& share, doubl
   return physics::bisect({high, low}, [&](double level) { return !below(level); }).middle();
 }
 
-/// All levels between both asymptotes, whatever the unit.
+/// A range that contains all levels between both asymptotes, whatever the unit.
 struct Reach {
   double low = 0, high = 0;
 };
@@ -58,7 +58,7 @@ Reach reach_of(const observer::Question& question) {
   return {question.decides == observer::Decides::side ? -1e6 : 0, 1e6};
 }
 
-/// A bisection's last digits are rounding: what is a millionth of a millionth of the threshold is 0.
+/// The last digits of a bisection are rounding errors: treat less than 1e-12 of the threshold as 0.
 std::optional<double> without_rounding(const std::optional<double>& level, double threshold) {
   return level && std::fabs(*level) < 1e-9 * std::fabs(threshold) ? 0 : level;
 }

@@ -12,26 +12,27 @@
 
 namespace turnpoint::simulation {
 
-/// The level at which a procedure would settle with this observer and unlimited trials; none where it has no
-/// such level (constant stimuli, several answers up, a tracked answer that no level decides).
+/// The level on which a procedure would converge with this observer and unlimited trials; empty if there is
+/// none (constant stimuli, several wrong answers needed for a step up, a tracked answer that does not depend
+/// on the level).
 std::optional<double> settled_level(const protocol::Protocol& protocol, const procedure::Spec& spec,
                                     const observer::Observer& observer);
 
-/// What a fit should find; none where the observer has no such value.
+/// The true values for a fit; empty if the observer has no such value.
 struct FitTruth {
   std::optional<double> threshold, slope, level_75;
 };
 
-/// The values that made the answers, by condition: the observer's own functions and, for the proportion
-/// correct, its probabilities on the trials that were presented.
+/// The values that produced the answers, by condition: the observer's own functions and, for the proportion
+/// correct, its probabilities in the presented trials.
 class GeneratingValues {
  public:
   void add(const protocol::Protocol& protocol, const trial::TrialSpec& trial,
            const observer::Question& question, const observer::Observer& observer);
   void add(const GeneratingValues& other);
 
-  /// Of a fit with these options to the answers of a condition ("" for all trials). The slope only where the
-  /// observer's function is of the same family, which a deadline takes it out of.
+  /// True values for a fit with these options to the answers of a condition ("" for all trials). The slope is
+  /// set only if the observer's function is of the same family; with a deadline it is not.
   FitTruth fit(const std::string& condition, const analysis::FitOptions& options,
                const observer::Observer& observer) const;
   std::optional<double> share_correct(const std::string& condition) const;
@@ -40,7 +41,7 @@ class GeneratingValues {
 
  private:
   struct Condition {
-    observer::Question question;  ///< of the first trial
+    observer::Question question;  ///< question of the first trial
     bool one_deadline = true;
     int trials = 0;
     double correct = 0;

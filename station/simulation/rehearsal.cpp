@@ -17,14 +17,15 @@ namespace {
 
 using trial::TrialSpec;
 
-// A page is read for so long, as on the virtual clock of a session.
+// How long a page is read, as on the virtual clock of a session.
 constexpr std::int64_t page_ns = 1'000'000'000;
-// A procedure without a rule that ends it would be refused; this only guards against one that never does.
+// A procedure without a rule that ends it would be refused; this is only a safeguard against one that never
+// ends.
 constexpr int most_trials = 100'000;
 
 std::int64_t ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
 
-/// When the last interval's response times begin to count, from its onset.
+/// The time from the last interval's onset to its response_zero.
 std::int64_t zero_after_onset_ns(const protocol::Protocol& protocol, const TrialSpec& spec) {
   const auto last = trial::interval_times(protocol, spec).back();
   switch (protocol.timing.response_zero) {
@@ -37,8 +38,8 @@ std::int64_t zero_after_onset_ns(const protocol::Protocol& protocol, const Trial
   }
 }
 
-/// One trial on a clock that only its machine moves: the intervals sound when they are asked for, the answer
-/// comes when the observer gives it.
+/// One trial on a clock that only its trial machine advances. Intervals sound when the machine asks for them,
+/// and the answer comes when the observer gives it.
 class Bench {
  public:
   Bench(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec,
@@ -83,7 +84,7 @@ class Bench {
     }
   }
 
-  /// Returns the onset of the last interval. Nothing is lost on the way to the surface.
+  /// Returns the onset of the last interval. Nothing is ever lost.
   std::int64_t present(std::int64_t onset_ns, const observer::Reply& reply) {
     const auto times = trial::interval_times(protocol_, spec_);
     for (int i = 0; i < static_cast<int>(times.size()); ++i) {
@@ -102,7 +103,7 @@ class Bench {
   std::optional<trial::Event> answer_;
 };
 
-/// What the participant does in a trial: an answer, or a setting and when it is done.
+/// The participant's action in a trial: an answer, or a setting and the time at which it is done.
 struct Doing {
   observer::Reply reply;
   std::optional<double> setting;
@@ -113,7 +114,7 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
   if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}};
   const auto set = rehearser.adjust(spec, trial::adjustment_of(spec, seed));
   trial::Slider slider(*spec.slider, spec.level.value_or(spec.slider->low));
-  // What is set in silence is not felt.
+  // A setting made in silence cannot be felt.
   const double sounds_s = trial::interval_times(protocol, spec).back().length_s;
   for (const auto& move : set.moves)
     if (move.time_s < sounds_s) slider.move(move.value);

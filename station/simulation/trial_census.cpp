@@ -28,7 +28,8 @@ double trials_of(const Protocol& protocol, const Block& block) {
   return trials;
 }
 
-// Of a shuffled list any part has the same trials on average; of these the first ones differ from the rest.
+// If a list is shuffled, any part of it has the same trials on average. Returns true if the first trials of
+// this procedure differ from the rest.
 bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
   if (block.practice || !block.trials || *block.trials >= trials_of(protocol, block)) return false;
   bool unlike = block.procedures.size() > 1;
@@ -51,7 +52,8 @@ void run_session(const Protocol& protocol, std::uint64_t seed, const Answers& an
       trial::TrialEnd end;
       end.response = answers(*trial);
       if (trial->correct) end.correct = end.response == trial->correct;
-      if (block->practice) end.correct = true;  // who does not pass practice never sees the other blocks
+      // a participant who does not pass practice never sees the other blocks
+      if (block->practice) end.correct = true;
       director.record(end);
       if (++trials > most_trials_of_a_block) return;
     }
@@ -82,7 +84,7 @@ void TrialCensus::add(const Block& block, const procedure::Spec* spec, const std
     }
   };
   count(spec ? spec->level : block.level, levels, trials);
-  // Before each trial of a procedure there are as many catch trials as draws for them succeed in turn.
+  // Before each trial of a procedure, catch trials are presented as long as their random draws succeed.
   if (const auto& caught = block.catch_trials; caught && spec)
     count(caught->factor, caught->levels, trials * caught->rate / (1 - caught->rate));
 }

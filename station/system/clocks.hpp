@@ -12,11 +12,11 @@ std::int64_t raw_minus_monotonic_ns() noexcept;
 /// Wall-clock time in ns since 1970: for records only, never for durations.
 std::int64_t realtime_ns() noexcept;
 
-/// The three clocks of the machine, read together; ns.
+/// Three clocks of the machine, read at the same time; ns.
 struct Clocks {
-  std::int64_t monotonic_ns = 0;  ///< stands still in suspend
-  std::int64_t boottime_ns = 0;   ///< the same, with suspend
-  std::int64_t realtime_ns = 0;   ///< wall time: may be set
+  std::int64_t monotonic_ns = 0;  ///< stops during suspend
+  std::int64_t boottime_ns = 0;   ///< continues during suspend
+  std::int64_t realtime_ns = 0;   ///< wall time, which may be set
 };
 Clocks read_clocks() noexcept;
 

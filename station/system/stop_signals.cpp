@@ -16,14 +16,14 @@ namespace {
 
 constexpr int kSignals[] = {SIGTERM, SIGINT, SIGHUP};
 
-/// A signal's handler is given nothing else to find them by.
+/// A signal handler has no argument to pass these, so they are global.
 std::atomic<int> wake_descriptor = -1;
 std::atomic<int> first_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
 
 void wake(int descriptor) {
   const std::uint64_t one = 1;
-  // It can fail only where the counter is full: whoever waits is then woken already.
+  // The write can fail only if the counter is full, and then the waiting thread has been woken already.
   [[maybe_unused]] const auto written = ::write(descriptor, &one, sizeof one);
 }
 
@@ -61,7 +61,7 @@ void StopSignals::take_over() {
     if (before.action.sa_handler == SIG_IGN) continue;
     struct sigaction ours {};
     ours.sa_handler = tell;
-    // A second one finds the kernel's way again. Calls that a signal interrupts go on.
+    // A second signal has its default action again. System calls interrupted by a signal are restarted.
     ours.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
     ::sigemptyset(&ours.sa_mask);
     ::sigaction(signal, &ours, nullptr);

@@ -8,34 +8,33 @@
 
 namespace turnpoint::system {
 
-/// The signals that ask the program to end: SIGTERM (the service manager's, also when the machine goes down),
-/// SIGINT and SIGHUP. At first each ends the process at once, as the kernel does it. After take_over() the
-/// first of them is only told, for what runs to be ended in order, by a thread that wait()s, an event loop
-/// that watches descriptor(), or a loop that asks what was told(); a second of the same kind ends the process
-/// at once.
-///
-/// One of it at a time: the handler writes to an eventfd that it finds by a global, and does nothing else.
+/// The signals that ask the program to end: SIGTERM (from the service manager, also at shutdown), SIGINT and
+/// SIGHUP. At first each of them kills the process at once, as by default. After take_over() the first signal
+/// is only recorded, so that the program can shut down cleanly: wait() for it, watch descriptor(), or poll
+/// told(). A second signal of the same kind kills the process.
+/// Only one object may exist at a time, because the handler writes to an eventfd that it finds in a global
+/// variable. The handler does nothing else.
 class StopSignals {
  public:
-  /// Throws std::system_error without a descriptor to tell it by.
+  /// Throws std::system_error if no descriptor can be created.
   StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
-  ~StopSignals();  ///< what was to happen at a signal before take_over() happens again
+  ~StopSignals();  ///< restores the signal handling from before take_over()
 
-  /// From now on a signal is told: to be called before anything begins that has to be ended in order. Again:
-  /// nothing. A signal that is ignored (nohup) stays ignored.
+  /// From now on the first signal is only recorded. Call this before beginning anything that must be ended
+  /// cleanly; further calls have no effect. A signal that is ignored (nohup) stays ignored.
   void take_over();
 
-  /// Becomes, and stays, readable at the first signal. Not to be read from.
+  /// Becomes, and stays, readable at the first signal. Do not read from it.
   int descriptor() const { return wake_.get(); }
 
-  /// Comes back at the first signal, with its name ("SIGTERM"); at release(), where none has come, with "".
-  /// On any thread.
+  /// Waits for the first signal and returns its name ("SIGTERM"). After release() without a signal, returns
+  /// "". May be called on any thread.
   std::string wait() const;
   void release();
 
-  /// The first signal's name, for whoever looks in now and then; "" where none has come.
+  /// The first signal's name, for polling; "" if there was none.
   static std::string told();
 
  private:
@@ -43,7 +42,7 @@ class StopSignals {
     int signal = 0;
     struct sigaction action {};
   };
-  FileDescriptor wake_;  ///< eventfd
+  FileDescriptor wake_;  ///< an eventfd
   std::vector<Before> before_;
 };
 

@@ -9,7 +9,7 @@ struct Contact {
   std::int64_t time_ns = 0;
   bool on = false;
   std::optional<double>
-      position;  ///< along the surface, 0 at one end of the sensor and 1 at the other, where it can tell
+      position;  ///< along the surface, from 0 at one end of the sensor to 1 at the other, if it can tell
 };
 
 }  // namespace turnpoint::touch

@@ -8,14 +8,14 @@
 
 namespace turnpoint::touch {
 
-/// Turns the states of a touch sensor into contacts. Pure.
+/// Converts the states of a touch sensor to contacts. Pure.
 class ContactReader {
  public:
   /// Positions are scaled from `range` to [0, 1].
   explicit ContactReader(AxisRange range) noexcept : range_(range) {}
 
-  /// The state at the end of a report. Returns the contact if the finger came, moved by a hundredth or more,
-  /// or went.
+  /// Takes the state at the end of a report. Returns a contact if the finger came, left, or moved by a
+  /// hundredth or more.
   std::optional<Contact> take(std::int64_t time_ns, bool on, int position) noexcept;
 
  private:
@@ -27,12 +27,12 @@ class ContactReader {
 /// A touch sensor, found by the name of its input device.
 class EvdevContact {
  public:
-  /// `axis` is ABS_X or ABS_Y. Throws std::system_error: ENOENT where no input device has the name, ENOTSUP
-  /// where it has no such axis.
+  /// `axis` is ABS_X or ABS_Y. Throws std::system_error: ENOENT if no input device has this name, ENOTSUP if
+  /// it does not have this axis.
   EvdevContact(const std::string& name, int axis);
 
-  /// The next contact within `timeout_ns`, with the kernel's stamp. One that was found after lost events has
-  /// the time when the loss began. Throws std::system_error with ENODEV when the device is unplugged.
+  /// The next contact within `timeout_ns`, with the kernel's stamp. If events were lost, it has the time at
+  /// which the loss began. Throws std::system_error with ENODEV when the device is unplugged.
   std::optional<Contact> wait(std::int64_t timeout_ns);
 
  private:

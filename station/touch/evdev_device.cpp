@@ -48,7 +48,8 @@ std::optional<EvdevDevice> EvdevDevice::find(const std::string& path_or_name) {
     try {
       EvdevDevice device(descriptor, path_or_name);
       if (libevdev_get_name(device.device_.get()) == path_or_name) return device;
-    } catch (const std::system_error& going) {  // unplugged at this moment, perhaps: another one is wanted
+      // the device may just have been unplugged, so try the next one
+    } catch (const std::system_error& going) {
       error = going.code().value();
     }
   }

@@ -10,45 +10,47 @@ struct libevdev;
 
 namespace turnpoint::touch {
 
-/// What values an axis reports.
+/// The range of values that an axis reports.
 struct AxisRange {
   int lowest = 0, highest = 0;
 };
 
-/// An input device of the kernel, read by libevdev report by report: between two calls of next() the state
-/// is that at the end of a report. Stamps are from CLOCK_MONOTONIC. Other programs read the same device
-/// undisturbed. One thread at a time.
+/// A kernel input device, read by libevdev report by report. Between two calls of next(), the state is that
+/// at the end of a report. Stamps are from CLOCK_MONOTONIC. Other programs can read the same device. Use it
+/// from one thread at a time.
 class EvdevDevice {
  public:
-  /// Opens the device of this path or, without a slash in front, of this name, for reading only. None where
-  /// there is no such device now, or it cannot be opened; errno says why. Throws std::system_error for
-  /// something that is no input device.
+  /// Opens the device with this path or (without a leading slash) this name, for reading only. Empty if there
+  /// is no such device or it cannot be opened; errno says why. Throws std::system_error for something that is
+  /// not an input device.
   static std::optional<EvdevDevice> find(const std::string& path_or_name);
 
-  /// Takes over an open descriptor that does not block. Throws std::system_error.
+  /// Takes ownership of an open, non-blocking descriptor. Throws std::system_error.
   EvdevDevice(int descriptor, std::string name);
 
   const std::string& name() const noexcept { return name_; }
   int descriptor() const noexcept { return file_.get(); }
   bool has_axis(int axis) const noexcept;
-  /// Throws std::system_error with ENOTSUP where the device has no such axis or it has no extent.
+  /// Throws std::system_error with ENOTSUP if the device has no such axis, or if its range is empty.
   AxisRange range(int axis) const;
 
   enum class News {
-    none,            ///< nothing waits
-    report,          ///< a report is complete
-    resynchronised,  ///< the kernel dropped events; the state is that of now, what led to it is unknown
+    none,    ///< no event is waiting
+    report,  ///< a report is complete
+    /// the kernel dropped events; the state is the current one, and what led to it is unknown
+    resynchronised,
   };
-  /// Reads on to the end of the next report, without waiting. Throws std::system_error with ENODEV when the
-  /// device has gone.
+  /// Reads to the end of the next report, without waiting. Throws std::system_error with ENODEV if the device
+  /// is gone.
   News next();
 
-  /// When the last report was made; after resynchronised, when the kernel began to drop events.
+  /// Time of the last report; after `resynchronised`, the time at which the kernel began to drop events.
   std::int64_t time_ns() const noexcept { return time_ns_; }
-  /// The state: whether a key is down, where an axis is, and the same of each finger of a multitouch panel.
+  /// The state: whether a key is pressed, the value of an axis, and the same for each finger of a multitouch
+  /// panel.
   bool key(int code) const noexcept;
   int axis(int axis) const noexcept;
-  int slot_count() const noexcept;  ///< 0 where the device does not tell fingers apart
+  int slot_count() const noexcept;  ///< 0 if the device cannot tell fingers apart
   int slot(int slot, int code) const noexcept;
 
  private:

@@ -21,11 +21,11 @@ namespace {
 constexpr int kPriority = 60;
 constexpr int kLookAgain_ms = 1000;
 
-/// A panel that is there, read finger by finger (Documentation/input/multi-touch-protocol.rst of the kernel,
-/// type B), or as one finger where it does not tell them apart.
+/// An open panel, read finger by finger (Documentation/input/multi-touch-protocol.rst of the kernel, type B),
+/// or as a single finger if it cannot tell fingers apart.
 class OpenPanel {
  public:
-  /// Throws std::system_error where the device is no touch panel.
+  /// Throws std::system_error if the device is not a touch panel.
   explicit OpenPanel(EvdevDevice device)
       : device_(std::move(device)),
         decoder_(device_.range(slots() ? ABS_MT_POSITION_X : ABS_X),
@@ -35,7 +35,7 @@ class OpenPanel {
 
   int descriptor() const { return device_.descriptor(); }
 
-  /// Takes in what waits. Throws std::system_error when the panel has gone.
+  /// Reads all waiting events. Throws std::system_error if the panel is gone.
   void read(TouchTimes& times) {
     for (;;) switch (device_.next()) {
         case EvdevDevice::News::none:
@@ -93,7 +93,8 @@ class TouchReader::Thread {
  private:
   void run(const std::stop_token& stop) {
     const sched_param priority{kPriority};
-    ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority);  // without the right to: as it is
+    // if this is not permitted, continue without it
+    ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority);
     while (!stop.stop_requested()) {
       pollfd files[] = {{wake_.descriptor(), POLLIN, 0}, {panel_ ? panel_->descriptor() : -1, POLLIN, 0}};
       ::poll(files, 2, panel_ ? -1 : kLookAgain_ms);
@@ -118,7 +119,7 @@ class TouchReader::Thread {
     try {
       panel_.emplace(open_now(device_));
     } catch (const std::exception&) {
-      return;  // not there, or half attached: the next look will tell
+      return;  // not there, or not completely attached: try again later
     }
     on_state_(TouchPanelState::back);
   }

@@ -7,18 +7,19 @@
 
 namespace turnpoint::touch {
 
-/// What becomes of the panel while it is read; called on the reader's thread.
+/// State changes of the panel while it is read; reported on the reader's thread.
 enum class TouchPanelState { lost, back };
 
-/// Reads a touch panel beside the toolkit, read-only and without grabbing it, on a thread of its own
-/// (SCHED_FIFO 60 where allowed), stamped by the kernel with CLOCK_MONOTONIC. A panel that is unplugged is
+/// Reads a touch panel in parallel to the toolkit, read-only and without grabbing it, on its own thread
+/// (SCHED_FIFO 60 if allowed). Stamps are the kernel's, from CLOCK_MONOTONIC. If a panel is unplugged, it is
 /// looked for by its name every second until it is back.
 class TouchReader {
  public:
   using OnState = std::function<void(TouchPanelState)>;
 
-  /// `device`: a path below /dev/input, or the device's name as the kernel tells it. Throws std::system_error
-  /// where it cannot be opened or is no touch panel, terms::UsageError for a name that no device has.
+  /// `device` is a path below /dev/input, or the device's name as the kernel reports it. Throws
+  /// std::system_error if it cannot be opened or is not a touch panel, and terms::UsageError for a name that
+  /// no device has.
   TouchReader(const std::string& device, OnState on_state);
   ~TouchReader();
   TouchReader(const TouchReader&) = delete;

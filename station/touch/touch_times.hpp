@@ -8,15 +8,15 @@
 
 namespace turnpoint::touch {
 
-/// Finds the kernel's time for a touch that a toolkit reports: evdev tells when, the toolkit tells what was
-/// touched. A pair is made only where it is beyond doubt: exactly one kernel touch lies within `nearness` (of
-/// the panel's width and height) and at most `latest_ns` before the toolkit saw it. Never a guess. Any
-/// thread.
+/// Finds the kernel's time for a touch that a toolkit reports: evdev knows when, the toolkit knows what was
+/// touched. A match is made only if it is beyond doubt: exactly one kernel touch lies within `nearness` (in
+/// units of the panel's width and height) and at most `latest_ns` before the toolkit saw it. It never
+/// guesses. May be used from any thread.
 class TouchTimes {
  public:
   struct Rules {
     double nearness = 0.04;
-    std::int64_t latest_ns = 400'000'000;  ///< a GUI thread that is later than this has other troubles
+    std::int64_t latest_ns = 400'000'000;  ///< if the GUI thread is later than this, there are other problems
   };
 
   TouchTimes() = default;
@@ -24,8 +24,9 @@ class TouchTimes {
 
   void add(const PanelTouch& touch);
 
-  /// The kernel's time of the touch at (x, y), each 0 ... 1, that the toolkit saw at `seen_ns`; none where no
-  /// touch or more than one fits. What is claimed is used up, and so is all that left it in doubt.
+  /// The kernel's time of the touch at (x, y), each from 0 to 1, that the toolkit saw at `seen_ns`; empty if
+  /// no touch fits or more than one does. A matched touch cannot be matched again, nor can touches that made
+  /// a match ambiguous.
   std::optional<std::int64_t> claim(double x, double y, std::int64_t seen_ns);
 
  private:

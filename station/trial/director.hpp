@@ -11,79 +11,80 @@
 
 namespace turnpoint::trial {
 
-/// One trial as it shall be presented, complete before anything sounds.
+/// A trial to present, completely decided before anything sounds.
 struct TrialSpec {
   int block_index = 0, attempt = 0;
-  int trial_in_block = 0;  ///< the key of its draws; a repeated (void) trial has the same
+  int trial_in_block = 0;  ///< key of its random draws; repeating a void trial uses the same key
   terms::TrialType type = terms::TrialType::experimental;
   std::string procedure;  ///< "" outside procedures
   std::optional<double> level;
   protocol::Factors factors;
-  std::vector<std::vector<std::string>> intervals;  ///< scene names in the order presented
-  std::vector<double> rove_dB;                      ///< one an interval
-  std::optional<int> correct;                       ///< index of the right choice; none: nothing is right
-  std::optional<SliderSpan> slider;                 ///< adjustment only
+  std::vector<std::vector<std::string>> intervals;  ///< scene names in the order of presentation
+  std::vector<double> rove_dB;                      ///< one value per interval
+  /// index of the right choice; empty if no answer is right
+  std::optional<int> correct;
+  std::optional<SliderSpan> slider;  ///< for an adjustment only
   double iti_s = 0, foreperiod_s = 0;
   double deadline_s = 0;
   bool timeouts_are_data = false;  ///< the deadline belongs to the design (instructions)
 };
 
-/// What came of it, as far as the next trial depends on it.
+/// The result of a trial, as far as the next trials depend on it.
 struct TrialEnd {
   terms::Outcome outcome = terms::Outcome::answered;
   std::optional<int> response;
   std::optional<bool> correct;
-  std::optional<double> setting = {};  ///< of an adjustment that was answered
+  std::optional<double> setting = {};  ///< for an adjustment that was answered
 };
 
 struct ProcedureEstimate {
   std::string procedure, parameter;
   double mean = 0;
-  std::optional<double> sd;  ///< as in procedure::Estimate
+  std::optional<double> sd;  ///< see procedure::Estimate
   std::string basis;
 };
-/// `-12.3 (SD 1.25, reversals 5 to 12 of 12)`: what there is of it.
+/// Formats an estimate with everything that is known of it: `-12.3 (SD 1.25, reversals 5 to 12 of 12)`.
 std::string in_words(const ProcedureEstimate& estimate);
 
 /// Decides what comes next: blocks in the participant's order, practice with its pass criterion, procedures
-/// and their interleaving, catch trials, orders of intervals, roving and intervals in time. Pure: the same
-/// protocol, sequence index, seed and ends give the same trials, whatever was void in between; resume replays
-/// it.
+/// and their interleaving, catch trials, orders of intervals, roving, and times. Pure: the same protocol,
+/// sequence index, seed and results give the same trials, regardless of void trials in between. Resuming a
+/// session replays it.
 class Director {
  public:
   Director(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed);
   ~Director();
   Director(Director&&) noexcept;
 
-  /// The block that runs now; none when the session is over or was ended (see ended_because()).
+  /// The current block; null when the session is over or was ended (see ended_because()).
   const protocol::Block* block() const;
   int block_index() const;
   int attempt() const;
   int blocks() const;
 
-  /// The next trial of this block, the same again after a void one; none when the block is done.
+  /// The next trial of this block; the same one again after a void trial. Empty when the block is done.
   std::optional<TrialSpec> next();
-  /// What came of the trial last given.
+  /// Records the result of the trial that next() returned last.
   void record(const TrialEnd& end);
-  /// Closes a block that is done: on to the next, or again if practice was not passed.
+  /// Closes a finished block: advances to the next one, or repeats practice that was not passed.
   void finish_block();
-  /// Leaves the block and starts it afresh as another attempt.
+  /// Restarts the current block as another attempt.
   void restart_block();
-  /// Starts from the first block again, as another attempt at every block.
+  /// Restarts the session from the first block, as another attempt at every block.
   void restart_session();
-  /// So many warm-up trials before the next one, with rows and draws of their own.
+  /// Inserts this number of warm-up trials before the next trial. They have their own rows and draws.
   void warm_up(int trials);
 
-  /// "" or why the session ends before its last block.
+  /// why the session ends before its last block; otherwise ""
   const std::string& ended_because() const;
-  /// Trials that count done so far and expected in all (an estimate where procedures stop by themselves).
+  /// Number of counted trials done so far, and in all (an estimate if procedures stop by themselves).
   int trials_done() const;
   int trials_expected() const;
-  /// Of the block's procedures that estimate something.
+  /// Estimates of those of the block's procedures that estimate something.
   std::vector<ProcedureEstimate> estimates() const;
-  /// Threshold (or PSE) estimate and its SD of the procedure that gave the last trial, where there is one.
+  /// The threshold (or PSE) and its SD, estimated by the procedure of the last trial, if there is one.
   std::optional<std::pair<double, std::optional<double>>> threshold() const;
-  /// A hash of all discrete state: equal after a replay, or something differs.
+  /// A hash of all discrete state. If it differs after a replay, the session was not reproduced.
   std::uint64_t state_hash() const;
 
  private:

@@ -1,4 +1,4 @@
-// What director.cpp and director_trials.cpp share; nobody else includes it.
+// Shared by director.cpp and director_trials.cpp; not for other files.
 #pragma once
 #include <memory>
 #include <string>
@@ -16,8 +16,9 @@ struct Director::State {
   std::uint64_t seed;
   std::vector<protocol::Block> blocks;
   std::size_t block = 0;
-  int attempt = 0, first_attempt = 0;  ///< of this block; of a block that is entered
-  int trial = 0;                       ///< trials of the block that counted: the key of the next one's draws
+  int attempt = 0, first_attempt = 0;  ///< attempt at this block; attempt at a block when it is entered
+  /// number of counted trials of the block: the key of the next one's draws
+  int trial = 0;
   int shown = 0, right = 0;
   int warmups = 0, warmups_given = 0;
   int done = 0, expected_before = 0;

@@ -10,7 +10,8 @@ using random::Stream;
 
 namespace {
 
-/// The largest |level| that the protocol knows for warm-up: an easy trial on a side drawn at random.
+/// For warm-up: the levels of largest magnitude that the protocol contains. An easy trial uses one side,
+/// drawn at random.
 std::vector<double> easy_levels(const std::vector<double>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   if (values.empty()) return {};
@@ -33,7 +34,7 @@ double Director::State::deadline() const {
   return protocol.timing.deadline_s.value_or(0);
 }
 
-/// Factors with levels that nothing else sets are drawn; text factors of the block are as it says.
+/// Draws the factors with levels that nothing else sets. Text factors of the block keep the block's value.
 protocol::Factors Director::State::drawn_factors() const {
   auto factors = now()->fixed;
   auto draw = draws(Stream::factor_level, trial);
@@ -75,7 +76,8 @@ TrialSpec Director::State::blank(terms::TrialType type) const {
   return spec;
 }
 
-/// Everything that follows once level and factors stand: order of intervals, right answer, roving, times.
+/// Decides everything that follows once level and factors are fixed: order of intervals, right answer,
+/// roving, times.
 void Director::State::complete(TrialSpec& spec) const {
   const int key = spec.type == terms::TrialType::warmup ? -1 - warmups_given : trial;
   const auto order = order_for(protocol.task, seed, static_cast<int>(block), attempt,
@@ -94,7 +96,8 @@ void Director::State::complete(TrialSpec& spec) const {
     spec.foreperiod_s = draws(Stream::foreperiod, key).uniform(foreperiod->low, foreperiod->high);
 }
 
-/// The window shown is wider than the range by a fifth, split between its ends at random in whole steps.
+/// The displayed window is wider than the range by a fifth, which is divided between its ends at random in
+/// whole steps.
 std::optional<SliderSpan> Director::State::slider(int key) const {
   const auto& task = protocol.task;
   for (const auto& factor : protocol.factors) {
@@ -135,7 +138,7 @@ TrialSpec Director::State::catch_trial() const {
   auto spec = blank(terms::TrialType::catch_trial);
   const auto& wanted = *now()->catch_trials;
   auto draw = draws(Stream::catch_trial, trial);
-  draw.uniform();  // the one that decided that this is a catch trial
+  draw.uniform();  // skip the draw that decided that this is a catch trial
   spec.level = wanted.levels[draw.below(wanted.levels.size())];
   spec.factors[wanted.factor] = *spec.level;
   complete(spec);

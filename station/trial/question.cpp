@@ -9,7 +9,8 @@ namespace turnpoint::trial {
 
 namespace {
 
-/// The factor that the trial's level is of: its procedure's, else that of the first trials that have one.
+/// The factor to which the trial's level belongs: its procedure's, else that of the first trials that have
+/// one.
 std::string level_factor(const TrialSpec& spec, const protocol::Protocol& protocol) {
   if (const auto* procedure = protocol::find_procedure(protocol, spec.procedure)) return procedure->level;
   if (!protocol.procedures.empty()) return protocol.procedures.front().level;

@@ -7,10 +7,10 @@
 
 namespace turnpoint::trial {
 
-/// The question to a simulated observer that the trial's last interval asks.
+/// The question that the trial's last interval asks a simulated observer.
 observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& protocol, std::uint64_t seed);
 
-/// The slider that a simulated observer is to set.
+/// The slider that a simulated observer has to set.
 observer::Adjustment adjustment_of(const TrialSpec& spec, std::uint64_t seed);
 
 }  // namespace turnpoint::trial

@@ -21,7 +21,7 @@ std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, co
   std::vector<IntervalTimes> times;
   for (const auto& scenes : spec.intervals) {
     IntervalTimes interval;
-    // Explored until answered, at most explore_s; without one, until the deadline has passed.
+    // Explored until the answer, for at most explore_s; without explore_s, until the deadline has passed.
     const double whole = explored(task)
                              ? protocol.timing.explore_s.value_or(spec.foreperiod_s + spec.deadline_s)
                              : task.duration_s.value_or(0);

@@ -2,8 +2,9 @@ import QtQuick
 import QtQuick.Window
 import Turnpoint
 
-// The station's window: the operator's start page where there is one, then what the participant is asked before the
-// session, then the session. Over the participant's pages lie, when called for, the operator's view and the report.
+// The station's window: first the operator's start page, if there is one, then the questions to the
+// participant before the session, then the session. The operator's view and the report can be opened on top
+// of the participant's pages.
 Window {
     id: root
     required property SessionBridge bridge
@@ -12,14 +13,14 @@ Window {
     required property ReportModel report
     property OperatorController operating: null
     required property OperatorLock operatorLock
-    /// The operator's page stays shut until somebody has typed the code.
+    /// The operator's page is locked until somebody has typed the code.
     property bool locked: false
     required property real pixelsPerMm
     property bool leftHanded: false
     readonly property bool asking: start.stage === StartController.Language || start.stage === StartController.Consent
                                    || start.stage === StartController.Code
 
-    /// What somebody who knows the operator's code may do on the participant's screen: "view" the running session,
+    /// The action on the participant's screen that requires the operator's code: "view" the running session,
     /// "arm" the amplifier, read the "report", "leave" for the operator's page, "unlock" it.
     property string wish
     function ask(what: string) {
@@ -33,17 +34,17 @@ Window {
         if (wish === "leave") start.close()
         if (wish === "unlock") locked = false
         if (wish !== "view") return
-        // The operator's view would cover a trial: a pause ends it first, and it comes again.
+        // The operator's view would cover a trial, so pause first; the trial is repeated later.
         if (participant.inTrial) bridge.pause()
         liveView.wanted = true
     }
-    /// Without an operator's page behind it, leaving opens nothing.
+    /// Without an operator's page, leaving closes the page.
     function leave() {
         if (operating !== null) ask("leave")
         else start.close()
     }
 
-    /// The first page does not wait for the session's: they are made once it is on the screen.
+    /// The first page does not wait for the session's pages: they are created once it is on the screen.
     property bool begun: false
     readonly property ParticipantView participant: session.item as ParticipantView
     onFrameSwapped: begun = true
@@ -140,7 +141,7 @@ Window {
         }
     }
 
-    // Made when first wanted: the station's first page does not wait for them.
+    // Created when first needed, so that the station's first page does not wait for them.
     Loader {
         id: liveView
         property bool wanted: false
@@ -154,7 +155,7 @@ Window {
             closable: true
             onClosed: liveView.wanted = false
         }
-        // Going on closes it: nothing of it may be seen in a trial.
+        // Continuing closes it, because nothing of it may be visible in a trial.
         Connections {
             target: root.bridge
             function onShown() { if (root.participant?.inTrial ?? false) liveView.wanted = false }

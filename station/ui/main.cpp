@@ -1,5 +1,5 @@
-// turnpoint-ui: the commands of turnpoint, with the touchscreen for those that want one. Without any, the
-// operator's start page.
+// turnpoint-ui: the commands of turnpoint, with the touchscreen for those that need it. Without a command it
+// shows the operator's start page.
 #include <QtQml/QQmlExtensionPlugin>
 #include <iostream>
 

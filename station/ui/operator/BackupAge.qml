@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// How long ago the last good backup was made, marked where there is none or it is old.
+// The age of the last good backup, highlighted if there is none or it is old.
 Row {
     id: root
     required property Theme theme

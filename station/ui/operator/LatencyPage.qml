@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// The touch panel's latency, for the operator: tap the dark field, which answers with a flash. English, like the
-// command line.
+// Measures the touch panel's latency, for the operator: each tap on the dark field makes it flash. In
+// English, like the command line.
 Rectangle {
     id: root
     required property LatencyController controller

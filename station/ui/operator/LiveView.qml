@@ -1,9 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// A running session for the operator: what is on the surface, how the procedure goes, what the limits still allow,
-// and what can be done about it. English, like the command line. The model holds news back while a stimulus runs;
-// in an adjustment only the words follow.
+// A running session for the operator: what is being presented, the progress of the procedure, how much the
+// limits still allow, and the available actions. In English, like the command line. The model delays updates
+// while a stimulus runs; during an adjustment only the texts are updated.
 Rectangle {
     id: root
     required property LiveModel live
@@ -13,7 +13,7 @@ Rectangle {
     property bool noting: false
     property bool stopping: false
     property int shown: 0
-    /// Text in the pictures.
+    /// Size of the text in the figures.
     readonly property real small: Math.max(0.8 * look.textSmall, 2 * pixelsPerMm)
     readonly property bool waiting: bridge.page.kind === PageModel.Paused || bridge.page.kind === PageModel.Fault
     readonly property bool over: bridge.page.kind === PageModel.End || bridge.page.kind === PageModel.Failed
@@ -50,7 +50,8 @@ Rectangle {
         height: look.controlHeight
         PlainText {
             anchors { left: parent.left; right: buttons.left; verticalCenter: parent.verticalCenter; rightMargin: look.unit }
-            // Only this page says so: a live session's other pages carry nothing that a participant need not see.
+            // Only this page says "LIVE": the participant's pages of a live session show nothing that
+            // participants need not see.
             text: (root.bridge.page.runMode === "live" ? "LIVE   " : "") + (root.live.heading !== "" ? root.live.heading : "No trial yet")
             color: look.ink
             font { pixelSize: look.textBody; weight: Font.Bold }
@@ -139,7 +140,7 @@ Rectangle {
     Item {
         id: pictures
         anchors { left: surfaces.left; right: surfaces.right; top: surfaces.bottom; bottom: parent.bottom; topMargin: 0.6 * look.unit; bottomMargin: frame.edge + look.unit }
-        // Three pictures where each has room to be read, else one, and buttons to choose it.
+        // Show three figures if there is enough room for each; otherwise one, with buttons to choose it.
         readonly property real cell: 0.45 * (height - 0.6 * look.unit)  // the lower two have legends
         readonly property bool single: cell < 12.5 * root.small
         readonly property real half: (width - 0.6 * look.unit) / 2

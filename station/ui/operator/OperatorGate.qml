@@ -1,13 +1,13 @@
 import QtQuick
 import Turnpoint
 
-// The way from the participant's screen to the operator's: digits, after a long press that nobody makes by
-// accident; or, of a station that is locked, before anything else.
+// The way from the participant's screen to the operator's pages: a code, after a long press that nobody makes
+// by accident. On a locked station it comes first.
 Rectangle {
     id: root
     required property Theme theme
     required property OperatorLock lock
-    /// There is nothing behind it to go back to.
+    /// There is no page to go back to.
     property bool last: false
     property string typed
     property bool wrong: false
@@ -38,7 +38,7 @@ Rectangle {
         spacing: 1.2 * root.theme.unit
         PlainText {
             anchors.horizontalCenter: parent.horizontalCenter
-            // The dots are what has been typed, never how long the code is.
+            // The number of dots is that of the typed digits, and does not reveal the length of the code.
             text: root.lock.waitS > 0 ? "Wrong code. Wait " + root.lock.waitS + " s"
                 : root.lock.checking ? "…" : root.wrong ? "Wrong code"
                 : root.typed === "" ? "Operator's code" : "•".repeat(root.typed.length)

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// The operator's start page: which protocol (and what it will be on this rig), who, in which language, live or
-// pilot, the amplifier armed; or an interrupted session that goes on. English, like the command line.
+// The operator's start page: choose protocol (with its check on this rig), participant, language, live or
+// pilot, and arming, or continue an interrupted session. In English, like the command line.
 Rectangle {
     id: root
     required property OperatorController operating
@@ -54,7 +54,7 @@ Rectangle {
         }
     }
 
-    // A session that was cut off comes first: it is what the operator most likely came for.
+    // An interrupted session comes first, because that is what the operator most likely came for.
     Rectangle {
         id: interrupted
         visible: root.operating.interrupted !== ""
@@ -253,7 +253,8 @@ Rectangle {
         id: footer
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom; margins: look.margin }
         height: 2 * look.controlHeight + root.gap
-        // The software renderer does not clip signs that scroll out of the sheet above: they end under this.
+        // The software renderer does not clip symbols that scroll out of the sheet above, so this covers
+        // them.
         Rectangle {
             anchors { fill: parent; topMargin: 1 - root.gap }
             color: look.paper

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Any scene of a protocol before anyone is in the room: sliders for its factors; surface, profile, friction and
-// spectrum; model, error and cues. English, like the command line.
+// Shows any scene of a protocol without a session: sliders for its factors; surface, profile, friction and
+// spectrum; model, error and cues. In English, like the command line.
 Rectangle {
     id: root
     required property PreviewController controller

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// The session that has just ended, for the operator: the trade of speed against accuracy first, then fits, levels
-// and times, the numbers beside, and what must be said about them.
+// The report of the finished session, for the operator: first the speed-accuracy trade-off, then fits, levels
+// and times, with the numbers and remarks beside them.
 Rectangle {
     id: root
     required property ReportModel report

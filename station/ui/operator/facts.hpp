@@ -8,7 +8,7 @@
 
 namespace turnpoint::ui {
 
-/// (label, value) pairs as QML repeats them: a list of {label, value}.
+/// Converts (label, value) pairs to a list of {label, value} for QML.
 inline QVariantList to_list(const std::vector<std::pair<std::string, std::string>>& facts) {
   QVariantList list;
   for (const auto& [label, value] : facts)

@@ -10,15 +10,15 @@ namespace turnpoint::ui {
 namespace {
 
 constexpr double kMargin = 6;
-constexpr double kDrawnText_px = 12;  // of every drawing
+constexpr double kDrawnText_px = 12;  // text size of every drawing
 
-/// Drawings name families for browsers, one after another; Qt takes such a list for one family's name.
+/// Drawings name several families for browsers. Qt would take such a list for the name of one family.
 QString in_pages_font(QString svg) {
   static const QRegularExpression families("font-family=\"[^\"]*\"");
   return svg.replace(families, "font-family=\"" + QGuiApplication::font().families().value(0) + "\"");
 }
 
-/// Qt draws what a clip path holds instead of clipping by it.
+/// Qt draws the content of a clip path instead of clipping by it, so remove clip paths.
 QString without_clips(QString svg) {
   static const QRegularExpression clips("<clipPath.*?</clipPath>",
                                         QRegularExpression::DotMatchesEverythingOption);
@@ -44,7 +44,7 @@ void FigureView::paint(QPainter* painter) {
   const auto svg = QString::fromStdString(picture_.draw(inside.width() / scale, inside.height() / scale));
   QSvgRenderer renderer(without_clips(in_pages_font(svg)).toUtf8());
   renderer.setAspectRatioMode(Qt::KeepAspectRatio);
-  // A card in the pictures' own white, so that those of other proportions make one page.
+  // A card in the figures' white background, so that figures of other proportions fill the page.
   painter->setPen(Qt::NoPen);
   painter->setBrush(Qt::white);
   painter->drawRoundedRect(card, kMargin, kMargin);

@@ -5,7 +5,7 @@
 
 namespace turnpoint::ui {
 
-/// A drawing as QML passes it on.
+/// A drawing in a form that QML can pass on.
 struct Picture {
   Q_GADGET
 
@@ -13,11 +13,10 @@ struct Picture {
   desk::Drawing draw;
 };
 
-/// The same as a property's value.
+/// Converts a drawing to a property's value.
 QVariant to_variant(const desk::Drawing& drawing);
 
-/// Shows one picture, laid out for this item's size with text of `textPixels`. Still: it draws once a
-/// picture.
+/// Shows one figure, laid out for this item's size with text of `textPixels`. It draws each figure only once.
 class FigureView : public QQuickPaintedItem {
   Q_OBJECT
   QML_ELEMENT

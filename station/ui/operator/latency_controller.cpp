@@ -5,7 +5,7 @@
 namespace turnpoint::ui {
 
 namespace {
-/// The reader beside Qt may be later than Qt: a tap waits so long for its kernel time.
+/// How long a tap waits for its kernel time, because the touch reader may be slower than Qt.
 constexpr int kClaim_ms = 100;
 }  // namespace
 

@@ -12,8 +12,8 @@
 
 namespace turnpoint::ui {
 
-/// Measures a touch panel's latency: each tap on the page answers with a flash, and a button under the finger
-/// or a photodiode on the flash tells when. GUI thread only, but for edge().
+/// Measures a touch panel's latency. Each tap on the page makes it flash; a button under the finger, or a
+/// photodiode on the flashing square, provides the reference time. GUI thread only, except for edge().
 class LatencyController : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -22,7 +22,7 @@ class LatencyController : public QObject {
   Q_PROPERTY(int taps READ taps NOTIFY changed)
   Q_PROPERTY(int edges READ edges NOTIFY changed)
   Q_PROPERTY(int pairs READ pairs NOTIFY changed)
-  Q_PROPERTY(int wanted READ wanted CONSTANT)            ///< fewest pairs that may be kept
+  Q_PROPERTY(int wanted READ wanted CONSTANT)            ///< smallest number of pairs that may be kept
   Q_PROPERTY(QString result READ result NOTIFY changed)  ///< "" with fewer than two pairs
   Q_PROPERTY(QString quality READ quality NOTIFY changed)
 
@@ -31,10 +31,10 @@ class LatencyController : public QObject {
 
   explicit LatencyController(calibration::LatencyReference reference, QObject* parent = nullptr);
 
-  /// From now on taps get the kernel's time; a tap without one is left out.
+  /// From now on taps get the kernel's time; a tap without one is ignored.
   void set_kernel_time(KernelTime kernel_time) { kernel_time_ = std::move(kernel_time); }
 
-  /// Any thread: the reference line's edge.
+  /// May be called on any thread: an edge of the reference line.
   void edge(std::int64_t time_ns);
 
   bool by_button() const { return reference_ == calibration::LatencyReference::button; }
@@ -48,13 +48,13 @@ class LatencyController : public QObject {
   /// A finger came down at (x, y), each 0 ... 1 of the window.
   Q_INVOKABLE void tap(double x, double y);
   Q_INVOKABLE void again();
-  /// The operator takes this result; only with enough pairs.
+  /// The operator accepts this result; works only with enough pairs.
   Q_INVOKABLE void keep();
   std::optional<calibration::PanelLatency> kept() const { return kept_; }
 
  signals:
   void changed();
-  /// The page is done with.
+  /// The page is finished.
   void finished();
 
  private:

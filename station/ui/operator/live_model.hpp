@@ -9,9 +9,9 @@
 
 namespace turnpoint::ui {
 
-/// The operator's view of a running session, and what the operator may do to it. What is new is held back
-/// while a stimulus runs or answers are open, so that drawing it can never delay the participant's screen.
-/// Only in an adjustment, which lasts many seconds, the words follow the slider; pictures wait there as well.
+/// The operator's view of a running session, and the operator's actions. Updates are delayed while a stimulus
+/// runs or answers are open, so that drawing them can never delay the participant's screen. Only in an
+/// adjustment, which lasts many seconds, the texts follow the slider; figures wait there as well.
 class LiveModel : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -29,7 +29,7 @@ class LiveModel : public QObject {
  public:
   explicit LiveModel(SessionBridge& bridge, QObject* parent = nullptr);
 
-  /// Any thread; returns at once.
+  /// May be called on any thread; returns at once.
   void take(desk::LiveState state);
 
   QString heading() const { return QString::fromStdString(state_.heading); }
@@ -40,7 +40,7 @@ class LiveModel : public QObject {
   QVariant profile() const { return to_variant(state_.profile); }
   QVariant trace() const { return to_variant(state_.trace); }
   QVariant times() const { return to_variant(state_.times); }
-  /// A stimulus runs or answers are open: no new picture is shown.
+  /// A stimulus runs or answers are open: no new figure is shown.
   bool held() const { return held_; }
 
   Q_INVOKABLE void pause() { bridge_.pause(); }

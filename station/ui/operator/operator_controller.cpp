@@ -14,9 +14,10 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Stands in for a code that the keypad will ask for, so that everything else is checked before.
+/// A placeholder for the code that the keypad will ask for, so that everything else can be checked before.
 constexpr const char* kCodeToCome = "keypad";
-/// Simulated sessions behind trials and duration on the start page: quick, and good to some minutes.
+/// Number of simulated sessions for trials and duration on the start page: fast, and accurate to some
+/// minutes.
 constexpr int kSessions = 5;
 
 std::vector<std::string> lines_of(const std::exception& error) {
@@ -59,7 +60,7 @@ void OperatorController::refresh() {
   }
   emit changed();
   if (selected_ < 0 && !protocols_.empty()) return select(0);
-  if (checking_) check_selected();  // its check was abandoned for the session
+  if (checking_) check_selected();  // its check was abandoned because of the session
 }
 
 void OperatorController::look_at_backup() {
@@ -68,7 +69,8 @@ void OperatorController::look_at_backup() {
   emit changed();
 }
 
-/// The job runs on the worker; what it returns runs here, unless something newer was asked for meanwhile.
+/// The job runs on the worker thread; the function that it returns runs here, unless a newer job was started
+/// meanwhile.
 void OperatorController::work(std::function<Then(const std::stop_token&)> job,
                               void (OperatorController::*failed)(std::vector<std::string>)) {
   worker_.start([this, failed, job = std::move(job)](const std::stop_token& stop) -> Then {
@@ -88,16 +90,16 @@ void OperatorController::fail(std::vector<std::string> problems) {
   emit changed();
 }
 
-/// What is chosen cannot begin so; something else of the same protocol may.
+/// The current choice cannot begin, but another choice for the same protocol may.
 void OperatorController::refuse(std::vector<std::string> reasons) {
   refused_ = std::move(reasons);
   stay();
 }
 
-/// The page goes on without a session.
+/// Returns to the page without a session.
 void OperatorController::stay() {
   preparing_ = false;
-  if (checking_) check_selected();  // its check was abandoned for the session
+  if (checking_) check_selected();  // its check was abandoned because of the session
   emit changed();
 }
 

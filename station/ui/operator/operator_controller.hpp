@@ -20,13 +20,13 @@ namespace turnpoint::ui {
 /// A session that an operator has chosen and that has passed every check.
 struct ChosenSession {
   session::Setup setup;
-  bool ask_language = false, ask_code = false;  ///< of the participant, on the screen
-  bool arm = false;                             ///< the amplifier, as soon as it is there
+  bool ask_language = false, ask_code = false;  ///< ask the participant on the screen
+  bool arm = false;                             ///< arm the amplifier as soon as it is open
 };
 
 /// The operator's start page: protocols with their check, participant, language, run mode, arming, and the
-/// interrupted session. Files are read and checked on a thread of its own, so that the page never waits:
-/// choosing another protocol abandons the check that runs. The rest is GUI thread only.
+/// interrupted session. Files are read and checked on a separate thread, so that the page never waits;
+/// choosing another protocol abandons the running check. Everything else is GUI thread only.
 class OperatorController : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -39,13 +39,13 @@ class OperatorController : public QObject {
   Q_PROPERTY(QStringList problems READ problems NOTIFY changed)
   Q_PROPERTY(QStringList warnings READ warnings NOTIFY changed)
   Q_PROPERTY(QStringList languages READ languages NOTIFY changed)
-  Q_PROPERTY(int language READ language NOTIFY changed)  ///< -1: asked on the screen
+  Q_PROPERTY(int language READ language NOTIFY changed)  ///< -1: the participant is asked on the screen
   Q_PROPERTY(QString participant READ participant NOTIFY changed)
   Q_PROPERTY(bool participantKnown READ participant_known NOTIFY changed)
   Q_PROPERTY(QStringList participants READ participants NOTIFY changed)
   Q_PROPERTY(bool live READ live NOTIFY changed)
   Q_PROPERTY(bool armed READ armed NOTIFY changed)
-  Q_PROPERTY(QString interrupted READ interrupted NOTIFY changed)  ///< "" where nothing was
+  Q_PROPERTY(QString interrupted READ interrupted NOTIFY changed)  ///< "" if there is none
   Q_PROPERTY(QVariantMap backup READ backup NOTIFY changed)  ///< {state: none | recent | old | ahead, hours}
   Q_PROPERTY(bool mayBegin READ may_begin NOTIFY changed)
   Q_PROPERTY(bool preparing READ preparing NOTIFY changed)
@@ -82,14 +82,14 @@ class OperatorController : public QObject {
   QString rig() const { return QString::fromStdString(request_.rig); }
   QString database() const { return QString::fromStdString(request_.database); }
 
-  /// Reads protocols, participants and what was interrupted anew: at the start and after each session.
+  /// Reads protocols, participants and interrupted sessions again: at the start and after each session.
   Q_INVOKABLE void refresh();
   Q_INVOKABLE void select(int index);
   Q_INVOKABLE void chooseLanguage(int index);
   Q_INVOKABLE void enterParticipant(const QString& code);
   Q_INVOKABLE void setLive(bool live);
   Q_INVOKABLE void setArmed(bool armed);
-  /// Prepares the session chosen; ends in chosen(), or in problems.
+  /// Prepares the chosen session. Then emits chosen(), or sets problems.
   Q_INVOKABLE void begin();
   Q_INVOKABLE void resume();
 
@@ -114,13 +114,14 @@ class OperatorController : public QObject {
   QStringList participants_;
   std::optional<desk::InterruptedNote> interrupted_;
   desk::BackupNote backup_;
-  QTimer minutes_;  ///< the page may stand for days
+  QTimer minutes_;  ///< updates ages, because the page may be open for days
   desk::CheckWords words_;
-  std::vector<std::string> refused_;  ///< why the last session chosen did not begin
+  std::vector<std::string> refused_;  ///< why the last chosen session did not begin
   int selected_ = -1, language_ = -1;
   QString participant_;
   bool live_ = false, armed_ = false, checking_ = false, preparing_ = false;
-  NewestJob worker_;  // last: its thread has ended before what it uses goes
+  // The last member, so that its thread ends before the objects that it uses are destroyed.
+  NewestJob worker_;
 };
 
 }  // namespace turnpoint::ui

@@ -10,16 +10,16 @@
 
 namespace turnpoint::ui {
 
-/// What stands between the participant's screen and the operator's pages. A code is compared on a thread of
-/// its own, since hashing takes as long as several frames; after wrong ones it takes none for a while, and
-/// each is written to the log. GUI thread only.
+/// Protects the operator's pages on the participant's screen. A code is compared on a separate thread,
+/// because hashing takes as long as several frames. After wrong codes it refuses codes for a while, and logs
+/// each of them. GUI thread only.
 class OperatorLock : public QObject {
   Q_OBJECT
   QML_ELEMENT
   QML_UNCREATABLE("made by the program")
-  Q_PROPERTY(int digits READ digits CONSTANT)  ///< that a code has at most
+  Q_PROPERTY(int digits READ digits CONSTANT)  ///< largest number of digits of a code
   Q_PROPERTY(bool checking READ checking NOTIFY changed)
-  Q_PROPERTY(int waitS READ wait_s NOTIFY changed)  ///< seconds until it takes the next code
+  Q_PROPERTY(int waitS READ wait_s NOTIFY changed)  ///< seconds until it accepts the next code
 
  public:
   using Clock = std::function<double()>;  ///< seconds, monotonic
@@ -31,7 +31,7 @@ class OperatorLock : public QObject {
   bool checking() const { return checking_; }
   int wait_s() const;
 
-  /// Ends in opened() or refused(); ignored while it checks or waits.
+  /// Then emits opened() or refused(). Ignored while it checks a code or waits.
   Q_INVOKABLE void enter(const QString& typed);
 
  signals:
@@ -47,7 +47,7 @@ class OperatorLock : public QObject {
   desk::CodeBackOff back_off_;
   bool checking_ = false;
   QTimer second_;
-  NewestJob job_;  // last: its thread has ended before what it uses goes
+  NewestJob job_;  // The last member, so that its thread ends before the objects that it uses are destroyed.
 };
 
 }  // namespace turnpoint::ui

@@ -84,7 +84,7 @@ void PreviewController::work(const std::stop_token& stop) {
   }
 }
 
-/// Worker: the planner is its alone once it runs.
+/// Worker thread: only it uses the planner once it runs.
 PreviewController::Drawn PreviewController::draw(const Wanted& wanted) {
   Drawn drawn;
   try {

@@ -14,8 +14,8 @@
 
 namespace turnpoint::ui {
 
-/// Scenes of a protocol with a slider for each of their factors. Plans are made on a thread of its own,
-/// always the newest asked for; everything else is GUI thread only.
+/// Scenes of a protocol with a slider for each of their factors. Plans are made on a separate thread, always
+/// for the newest request; everything else is GUI thread only.
 class PreviewController : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -59,7 +59,7 @@ class PreviewController : public QObject {
   void changed();
 
  private:
-  /// A look with its pictures, as the worker makes it.
+  /// A look with its figures, as the worker makes it.
   struct Drawn {
     desk::SceneLook look;
     QVariant surface, profile, spectrum;
@@ -83,7 +83,8 @@ class PreviewController : public QObject {
   std::mutex mutex_;
   std::condition_variable_any arrived_;
   std::optional<Wanted> wanted_;
-  std::jthread worker_;  // last: joined before anything that it uses goes
+  // The last member, so that the thread is joined before anything that it uses is destroyed.
+  std::jthread worker_;
 };
 
 }  // namespace turnpoint::ui

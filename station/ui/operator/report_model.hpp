@@ -6,7 +6,7 @@
 
 namespace turnpoint::ui {
 
-/// The report of the session that has just ended, for the operator. GUI thread, but for take().
+/// The report of the finished session, for the operator. GUI thread only, except for take().
 class ReportModel : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -18,14 +18,14 @@ class ReportModel : public QObject {
   Q_PROPERTY(QVariantList trade READ trade NOTIFY changed)
   Q_PROPERTY(QVariantList health READ health NOTIFY changed)
   Q_PROPERTY(QStringList statements READ statements NOTIFY changed)
-  /// Names and drawings of the pictures that there are, the trade first.
+  /// Names and drawings of the existing figures, beginning with the speed-accuracy trade-off.
   Q_PROPERTY(QStringList pictureNames READ picture_names NOTIFY changed)
   Q_PROPERTY(QVariantList pictures READ pictures NOTIFY changed)
 
  public:
   using QObject::QObject;
 
-  /// Any thread.
+  /// May be called on any thread.
   void take(desk::ReportPages pages);
   void clear();
 

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Adjustment: a slider with steps, and Done. It shows no number and no boundary: only the finger may tell. Its
-// length on the screen stands in no relation to the surface drawn above it.
+// Adjustment: a slider with steps, and Done. It shows neither a number nor the boundary, because only the
+// finger should tell. Its length on the screen has no relation to the drawing of the surface above it.
 Item {
     id: root
     required property Theme theme
@@ -12,7 +12,7 @@ Item {
     property bool leftHanded: false
     readonly property PageModel page: bridge.page
     readonly property real span: page.sliderMax - page.sliderMin
-    /// The time to feel is over: what is set now would be felt by nobody.
+    /// The tones have ended: a setting made now could not be felt.
     readonly property bool silent: page.answersOpen
     readonly property real step: page.sliderStep > 0 ? page.sliderStep : span / 100
     property real value: page.slider

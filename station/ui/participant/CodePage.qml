@@ -1,16 +1,17 @@
 import QtQuick
 import Turnpoint
 
-// Who takes part: a code typed on the station's own keypad. A code that has been here before is confirmed.
+// Asks for the participant's code on the station's own keypad. A code that is already in the database must be
+// confirmed.
 Item {
     id: root
     required property Theme theme
     required property Texts texts
     property bool leftHanded: false
     property bool known: false
-    /// False where an operator types, who need not be asked twice.
+    /// False if an operator types, who need not be asked twice.
     property bool confirms: true
-    /// The participant may say which hand taps; the layout follows, scoring does not.
+    /// The participant may choose the hand that taps. This changes the layout, but not the scoring.
     property bool asksHand: false
     signal handChosen(left: bool)
     signal edited(code: string)

@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// Has the participant signed this version of the consent form? The form itself is on paper.
+// Asks whether the participant has signed this version of the consent form. The form itself is on paper.
 Item {
     id: root
     required property Theme theme

@@ -1,9 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// Thanks for the participant, and nothing else: the session's numbers are behind a button for the operator, and
-// behind the operator's code. They are the operator's alone, so they are in English as all of the operator's pages
-// are, and called as in the report and in the files.
+// Thanks the participant, and shows nothing else. The session's numbers are behind a button for the operator
+// and the operator's code. Like all of the operator's pages they are in English, with the same names as in
+// the report and in the files.
 Item {
     id: root
     required property Theme theme
@@ -12,7 +12,7 @@ Item {
     readonly property PageModel page: bridge.page
     readonly property bool hasNumbers: page.summaryLabels.length > 0
     property bool hasReport: false
-    /// The numbers are shown: only somebody who knows the operator's code wants that.
+    /// True while the numbers are shown, which requires the operator's code.
     property bool counting: false
     signal closed()
     signal reportWanted()
@@ -67,7 +67,7 @@ Item {
         }
     }
 
-    // The session's numbers while there is no report, or where none could be made.
+    // The session's numbers, while there is no report or if none could be made.
     Rectangle {
         visible: root.counting
         anchors.fill: parent

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Right, not right, the message of a late answer, or (where no answer is right) that it was noted: one sign, one
-// word, no score.
+// Says "right", "not right", the message after a late answer, or (if no answer is right) that the answer was
+// noted: one symbol and one word, but no score.
 Column {
     id: root
     required property Theme theme

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Which instruction holds in this block. Speed and accuracy differ by sign, word, shape and filling, so that no
-// colour needs to be told apart.
+// Shows the instruction of this block. Speed and accuracy differ in symbol, word, shape and filling, so that
+// they can be told apart without colour.
 Rectangle {
     id: root
     required property Theme theme

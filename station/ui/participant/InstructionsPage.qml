@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// What to do in the block that follows: the instruction, its text, and the surface with the place to slide.
+// Explains the next block: the instruction, its text, and the surface with the place to slide.
 Item {
     id: root
     required property Theme theme

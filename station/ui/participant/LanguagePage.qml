@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// The first question: in which language to go on. Each language under its own name, so nothing else needs reading.
+// Asks for the language. Each language is listed under its own name, so nothing else needs reading.
 Item {
     id: root
     required property Theme theme

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// A fault or a pause: what happened, what is safe, what to do next. Where the amplifier has to be armed first, only
-// an operator can go on. Ending asks once more.
+// A fault or a pause: what happened, what is safe, what to do next. If the amplifier has to be armed first,
+// only an operator can continue. Ending the session requires a confirmation.
 Item {
     id: root
     required property Theme theme
@@ -83,7 +83,8 @@ Item {
         }
     }
 
-    // Sign, heading and text side by side, so that three answers are found at a glance; a heading never breaks.
+    // Symbol, heading and text side by side, so that the three parts are found at a glance. A heading never
+    // breaks.
     component Line: Row {
         id: line
         property string glyph

@@ -1,22 +1,22 @@
 import QtQuick
 import Turnpoint
 
-// Everything that a participant sees during a session: the page, around it the run mode, the block's instruction,
-// a way to pause, and the progress.
+// Everything that a participant sees during a session: the page, and around it the run mode, the block's
+// instruction, a way to pause, and the progress.
 Rectangle {
     id: root
     required property SessionBridge bridge
     required property real pixelsPerMm
     property bool leftHanded: false
-    /// The report of the session that has ended can be had from the end page.
+    /// True if the end page can open the report of the finished session.
     property bool hasReport: false
-    /// On the end page: the session's numbers, for as long as there is no report.
+    /// Whether the end page shows the session's numbers, which it does while there is no report.
     property alias counting: endPage.counting
     signal closed()
     signal reportWanted()
-    /// Somebody held the progress for long: an operator.
+    /// Somebody held the progress bar for a long time, so it is an operator.
     signal operatorWanted()
-    /// An operator wants to arm the amplifier; armable says that it is one.
+    /// An operator wants to arm the amplifier; `armable` means that the code has been entered.
     signal armingWanted()
     property bool armable: false
 
@@ -40,7 +40,7 @@ Rectangle {
         id: texts
         language: root.page.language
     }
-    // A tap that was meant for the page before arrives within this time of the change.
+    // Ignore taps for this time after a page change, because they were meant for the previous page.
     Timer {
         id: arming
         interval: 350
@@ -160,7 +160,7 @@ Rectangle {
         anchors { right: parent.right; bottom: parent.bottom }
         width: 12 * theme.unit
         height: Math.max(progress.height + 2 * theme.unit, 4 * theme.unit)
-        // A trial's touches belong to the trial; whoever waits for its end loses nothing.
+        // Touches during a trial belong to the trial. The button can wait for the trial's end.
         enabled: !root.inTrial || root.kind === PageModel.Interval
         pressAndHoldInterval: 2000
         onPressAndHold: root.operatorWanted()

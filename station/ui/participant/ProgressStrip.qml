@@ -1,7 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// How far the session is: a bar and two numbers. It moves only between trials, since the session counts then.
+// The progress of the session: a bar and two numbers. It changes only between trials, because the session
+// counts then.
 Item {
     id: root
     required property Theme theme

@@ -1,8 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// All that a trial shows, in one layout: the surface on top, the question in the middle, the answers below. Phases
-// only fill or empty these places; nothing is animated, so nothing moves while a stimulus runs.
+// Everything that a trial shows, in a single layout: the surface at the top, the question in the middle, the
+// answers below. Phases only fill or empty these places; nothing is animated, so nothing moves while a
+// stimulus runs.
 Item {
     id: root
     required property Theme theme
@@ -34,7 +35,7 @@ Item {
         accent: root.theme.action
     }
 
-    // Intervals: as many places as there are intervals, the running one filled.
+    // Intervals: one place for each interval, with the current one filled.
     Row {
         visible: root.counted && !root.feedback && root.page.kind !== PageModel.Interval
         anchors { horizontalCenter: parent.horizontalCenter; verticalCenter: surface.verticalCenter }

@@ -9,29 +9,30 @@
 
 namespace turnpoint::ui {
 
-/// How late a screen was. Pure; times are CLOCK_MONOTONIC, spans may overlap: no frame is counted twice.
+/// Computes how late a screen was. Pure; times are CLOCK_MONOTONIC. Spans may overlap: no frame is counted
+/// twice.
 class LateFrames {
  public:
   /// `refresh_Hz` at or below 0 counts as 60.
   explicit LateFrames(double refresh_Hz) : refresh_Hz_(refresh_Hz > 0 ? refresh_Hz : 60) {}
 
-  /// Nothing new could be seen from `from_ns` to `to_ns`.
+  /// From `from_ns` to `to_ns` nothing new could be shown.
   void waited(std::int64_t from_ns, std::int64_t to_ns);
   int count() const { return count_; }
 
-  /// The frames lost by a wait: whole refreshes beyond the first.
+  /// The number of frames lost by a wait: whole refreshes beyond the first.
   static int lost(std::int64_t waited_ns, double refresh_Hz);
 
  private:
   double refresh_Hz_;
-  std::int64_t counted_ns_ = 0;  ///< up to here all is counted
+  std::int64_t counted_ns_ = 0;  ///< everything up to here has been counted
   int count_ = 0;
 };
 
-/// Counts the frames by which a window was late during a trial. From the page asked for, or the finger that
-/// pressed an answer, until that is on the screen, a participant should never wait longer than one refresh;
-/// and a loop of events that stands still can neither show a page nor take a touch, so it has to turn once a
-/// refresh. Frames beyond that are counted. GUI thread only.
+/// Counts the frames by which a window was late during a trial. After a page was requested or an answer was
+/// pressed, a participant should see it within one refresh. An event loop that stands still can neither show
+/// a page nor take a touch, so it has to run once per refresh. Frames beyond that are counted. GUI thread
+/// only.
 class FrameWatch : public QObject {
   Q_OBJECT
 
@@ -42,11 +43,11 @@ class FrameWatch : public QObject {
   /// Follows this window; `refresh_Hz` at or below 0 counts as 60.
   void follow(QQuickWindow* window, double refresh_Hz);
 
-  /// Something new is to be shown. The next frame shows it, and one is drawn even where it looks the same, so
-  /// that a later frame is never taken for this one. The first call begins the count.
+  /// Something new is to be shown. The next frame shows it; a frame is drawn even if it looks the same, so
+  /// that a later frame is never mistaken for this one. The first call begins the count.
   void asked();
 
-  /// Ends the count, and tells it; 0 where none had begun.
+  /// Ends the count and returns it; 0 if none had begun.
   int end();
 
  private:
@@ -60,9 +61,9 @@ class FrameWatch : public QObject {
   double refresh_Hz_ = 60;
   QTimer timer_;
   std::int64_t beat_ns_ = 0;
-  std::atomic<std::int64_t> asked_ns_{0};  ///< 0: nothing was
+  std::atomic<std::int64_t> asked_ns_{0};  ///< time of the request; 0: none
   std::mutex mutex_;
-  LateFrames late_{60};  ///< under the mutex
+  LateFrames late_{60};  ///< guarded by the mutex
 };
 
 }  // namespace turnpoint::ui

@@ -9,8 +9,8 @@
 
 namespace turnpoint::ui {
 
-/// The page that the session wants shown, as QML reads it. GUI thread only; every property changes together,
-/// with one `changed`, so a page is never drawn half old and half new. Lengths in mm, times in seconds.
+/// The page that the session wants to show, as QML reads it. GUI thread only. All properties change together,
+/// with one `changed`, so that a page is never drawn half old and half new. Lengths in mm, times in seconds.
 class PageModel : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -47,7 +47,7 @@ class PageModel : public QObject {
   Q_PROPERTY(QStringList summaryValues READ summary_values NOTIFY changed)
 
  public:
-  /// session::PageKind under the names that QML shows.
+  /// session::PageKind with the names that QML shows.
   enum class Kind {
     Instructions,
     Cue,
@@ -64,12 +64,12 @@ class PageModel : public QObject {
     Failed
   };
   Q_ENUM(Kind)
-  /// What a feedback page says; Message has only its text (a late answer).
+  /// What a feedback page says; Message has only its text (after a late answer).
   enum class Verdict { Message, Right, Wrong };
   Q_ENUM(Verdict)
 
   using QObject::QObject;
-  /// Takes a whole page at once.
+  /// Replaces the whole page at once.
   void set(session::Page page);
   const session::Page& page() const { return page_; }
 
@@ -100,7 +100,7 @@ class PageModel : public QObject {
   QString safe() const { return QString::fromStdString(page_.safe); }
   QString to_do() const { return QString::fromStdString(page_.to_do); }
   QString detail() const { return QString::fromStdString(page_.detail); }
-  /// Only an operator who arms the amplifier leads on from here.
+  /// Only an operator who arms the amplifier can continue from here.
   bool awaits_arming() const { return page_.amplifier == "disarmed" || page_.amplifier == "faulted"; }
   QStringList summary_labels() const;
   QStringList summary_values() const;

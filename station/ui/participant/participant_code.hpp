@@ -6,7 +6,7 @@
 namespace turnpoint::ui {
 
 /// A participant's code as it is typed on the station's own keypad: capital letters, digits and '-', up to
-/// `maximumLength`, beginning with a letter or digit. Never a name: the keypad has no room for one.
+/// `maximumLength`, beginning with a letter or digit. Never a name.
 class ParticipantCode : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -20,7 +20,7 @@ class ParticipantCode : public QObject {
   bool valid() const { return !text_.isEmpty(); }
   int maximum_length() const { return 8; }
 
-  /// Appends one character where it is allowed; anything else is ignored.
+  /// Appends one character if it is allowed; ignores anything else.
   Q_INVOKABLE void type(const QString& character);
   Q_INVOKABLE void erase();
   Q_INVOKABLE void clear();

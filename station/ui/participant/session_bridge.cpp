@@ -92,7 +92,7 @@ void SessionBridge::annotate(const QString& text) {
 
 void SessionBridge::frames_lost(int frames) {
   if (frames <= 0) return;
-  session::Input input;  // not by push(): nobody has pressed anything
+  session::Input input;  // not by push(), because nobody has pressed anything
   input.time_ns = clock_();
   input.kind = session::InputKind::frames_lost;
   input.value = frames;
@@ -100,7 +100,7 @@ void SessionBridge::frames_lost(int frames) {
 }
 
 void SessionBridge::push(session::InputKind kind, int value, double number) {
-  pending_.clear();  // the tap that pressed this button; it must not arrive as a stray one in the next trial
+  pending_.clear();  // the tap that pressed this button must not arrive as a stray touch in the next trial
   session::Input input;
   input.time_ns = clock_();
   input.kind = kind;
@@ -116,7 +116,7 @@ bool SessionBridge::eventFilter(QObject* watched, QEvent* event) {
       if (point.state() == QEventPoint::Pressed) note_touch(point.id(), point.scenePosition(), watched);
     }
   }
-  // A mouse event that Qt makes up from a touch has been counted as that touch.
+  // A mouse event that Qt synthesises from a touch has already been counted as that touch.
   if (event->type() == QEvent::MouseButtonPress &&
       static_cast<QMouseEvent*>(event)->pointerType() != QPointingDevice::PointerType::Finger) {
     note_touch(kMouse, static_cast<QMouseEvent*>(event)->scenePosition(), watched);

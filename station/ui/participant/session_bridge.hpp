@@ -15,9 +15,9 @@
 
 namespace turnpoint::ui {
 
-/// Between the session's thread and the GUI's: pages come in by show(), what the participant does goes out to
-/// the sink with its CLOCK_MONOTONIC time. The sink is called on the GUI thread and must be thread-safe
-/// (session::Inputs::push is). Everything but show() belongs to the GUI thread.
+/// Connects the session's thread and the GUI thread. Pages come in by show(); the participant's actions go to
+/// the sink with their CLOCK_MONOTONIC time. The sink is called on the GUI thread and must be thread-safe
+/// (session::Inputs::push is). Everything except show() belongs to the GUI thread.
 class SessionBridge : public QObject, public session::Display {
   Q_OBJECT
   QML_ELEMENT
@@ -30,48 +30,49 @@ class SessionBridge : public QObject, public session::Display {
 
   using Clock = std::function<std::int64_t()>;
   using Sink = std::function<void(session::Input)>;
-  /// The kernel's time of a touch at (x, y), each 0 ... 1 of the window, that arrived at `seen_ns`; none if
-  /// unknown.
+  /// The kernel's time of a touch at (x, y), each from 0 to 1 in the window, that arrived at `seen_ns`; empty
+  /// if unknown.
   using KernelTime = std::function<std::optional<std::int64_t>(double x, double y, std::int64_t seen_ns)>;
 
   SessionBridge(Clock clock, Sink sink, QObject* parent = nullptr);
 
-  /// From now on touches get the kernel's time where `kernel_time` knows it, and the quality that goes with
-  /// it. The window must fill the panel.
+  /// From now on touches get the kernel's time if `kernel_time` knows it, with the corresponding quality. The
+  /// window must fill the panel.
   void set_kernel_time(KernelTime kernel_time) { kernel_time_ = std::move(kernel_time); }
 
-  /// Any thread; returns at once. Pages appear in the order shown.
+  /// May be called on any thread; returns at once. Pages appear in the order of the calls.
   void show(const session::Page& page) override;
 
-  /// Stamps each touch and mouse press on the window, whatever it lands on. Those that no answer claims
+  /// Stamps each touch and mouse press on the window, whatever it hits. Those that do not become an answer
   /// within a moment are reported as `touch_down`.
   Q_INVOKABLE void watch(QObject* window);
 
   PageModel* page() { return &page_; }
   std::int64_t now_ns() const { return clock_(); }
 
-  /// When the touch with this id began, as stamped by watch(); now for one that was not seen.
+  /// The time at which the touch with this id began, as stamped by watch(); the current time if it was not
+  /// seen.
   std::int64_t began_ns(int touch_id) const;
 
   /// A touch has just pressed an answer's button, which the next frame must show.
   void pressed() { emit acknowledged(); }
 
-  /// An answer that the touch field has judged: the touch that began at `time_ns` chose the answer `index`.
+  /// An answer accepted by the touch field: the touch that began at `time_ns` chose the answer `index`.
   void answer(int index, std::int64_t time_ns);
 
   Q_INVOKABLE void next();
   Q_INVOKABLE void moveSlider(double value);
   Q_INVOKABLE void pause();
   Q_INVOKABLE void stop();
-  /// The operator's: void the trial under way and present it again; arm the amplifier; keep a note.
+  /// For the operator: void the current trial and present it again; arm the amplifier; store a note.
   Q_INVOKABLE void repeat();
   Q_INVOKABLE void arm();
   Q_INVOKABLE void annotate(const QString& text);
-  /// Frames that the screen lost during the trial that has just ended; 0 is not worth an event.
+  /// The number of frames that the screen lost during the finished trial; 0 is not logged.
   void frames_lost(int frames);
 
  signals:
-  /// A page has been taken over (also when it equals the one before).
+  /// A page has been applied (even if it equals the previous one).
   void shown();
   void acknowledged();
 
@@ -79,11 +80,11 @@ class SessionBridge : public QObject, public session::Display {
   bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
-  /// A touch that may yet become an answer.
+  /// A touch that may still become an answer.
   struct Pending {
     int id = 0;
-    std::int64_t time_ns = 0;  ///< the toolkit's
-    double x = 0, y = 0;       ///< 0 ... 1 of the window
+    std::int64_t time_ns = 0;  ///< the toolkit's time
+    double x = 0, y = 0;       ///< from 0 to 1 in the window
   };
 
   void note_touch(int id, QPointF position, const QObject* window);

@@ -11,10 +11,10 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Several signs of life within the two seconds after which the amplifier's guard switches off.
+/// Several reports within the two seconds after which the amplifier's guard switches off.
 constexpr int kLife_ms = 250;
 
-/// Pages on which a late frame could be felt, and is counted.
+/// Pages on which a late frame would matter, so that it is counted.
 bool is_trial(PageModel::Kind kind) {
   using Kind = PageModel::Kind;
   return kind == Kind::Cue || kind == Kind::Stimulus || kind == Kind::Pause || kind == Kind::Response ||
@@ -34,7 +34,7 @@ SessionRunner::SessionRunner(QObject* parent)
     const auto kind = bridge_.page()->kind();
     if (is_trial(kind)) return frames_.asked();
     const int lost = frames_.end();
-    // Each trial that counts ends in an interval; what a fault or a pause has cut off comes again.
+    // Each counted trial ends in an interval; a trial that a fault or a pause interrupted is repeated.
     if (kind == PageModel::Kind::Interval) bridge_.frames_lost(lost);
   });
   connect(&bridge_, &SessionBridge::acknowledged, this, [this] {
@@ -80,7 +80,7 @@ void SessionRunner::run() {
     if (summary_ && summary_->trials > 0)
       report_.take(desk::report_pages(summary_->database, summary_->session_id));
   } catch (const std::exception& error) {
-    // The session is whole and stored; only its report could not be made.
+    // The session is complete and stored, even if its report cannot be made.
     desk::ReportPages pages;
     pages.title = "No report";
     pages.statements = {error.what()};
@@ -89,7 +89,7 @@ void SessionRunner::run() {
   emit over();
 }
 
-/// Kernel times for touches, where the rig names its panel.
+/// Opens the source of kernel times for touches, if the rig names its panel.
 void SessionRunner::open_touch() {
   touch_ = setup::open_touch(setup_.rig, [this](touch::TouchPanelState state) {
     if (state == touch::TouchPanelState::back) return;
@@ -105,7 +105,7 @@ void SessionRunner::open_touch() {
       [this](double x, double y, std::int64_t seen_ns) { return touch_->claim(x, y, seen_ns); });
 }
 
-/// Session thread: says on the screen what ended the session, since nobody may be looking at a terminal.
+/// Session thread: shows on the screen what ended the session, because nobody may be looking at a terminal.
 void SessionRunner::show_failure() {
   session::Page page;
   page.kind = session::PageKind::failed;

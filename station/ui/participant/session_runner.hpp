@@ -20,8 +20,8 @@ class TouchReader;
 
 namespace turnpoint::ui {
 
-/// Runs sessions behind the pages, one at a time, each on a thread of its own: pages and inputs, kernel times
-/// of touches, the operator's live view, the report at the end. GUI thread only.
+/// Runs sessions behind the pages, one at a time, each on its own thread: pages and inputs, kernel times of
+/// touches, the operator's live view, and the report at the end. GUI thread only.
 class SessionRunner : public QObject {
   Q_OBJECT
 
@@ -33,7 +33,7 @@ class SessionRunner : public QObject {
   LiveModel& live() { return live_; }
   ReportModel& report() { return report_; }
 
-  /// The window that shows the pages: its touches are stamped, its late frames counted.
+  /// The window that shows the pages: its touches are stamped, and its late frames counted.
   void watch(QQuickWindow* window);
 
   /// Begins a session, after the one before has ended. Throws as touch::TouchReader where the rig's touch
@@ -42,7 +42,7 @@ class SessionRunner : public QObject {
   bool running() const { return thread_.joinable() && !over_; }
   void ask_to_stop();
 
-  /// Waits for the session's end. Throws what ended it; none where none has begun.
+  /// Waits for the session's end. Throws what ended it; empty if no session was begun.
   std::optional<session::Summary> finish();
 
  signals:
@@ -60,13 +60,14 @@ class SessionRunner : public QObject {
   LiveModel live_;
   ReportModel report_;
   FrameWatch frames_;
-  QTimer life_;  ///< tells the session that the pages' event loop turns
+  QTimer life_;  ///< reports to the session that the pages' event loop is running
   std::unique_ptr<touch::TouchReader> touch_;
   std::unique_ptr<desk::LiveView> view_;
   std::optional<session::Summary> summary_;
   std::exception_ptr failure_;
   std::atomic<bool> over_ = false;
-  std::jthread thread_;  // last: joined before anything that it uses goes
+  // The last member, so that the thread is joined before anything that it uses is destroyed.
+  std::jthread thread_;
 };
 
 }  // namespace turnpoint::ui

@@ -31,7 +31,7 @@ StartController::Stage StartController::stage() const {
 QStringList StartController::language_names() const {
   QStringList names;
   for (const auto& code : questions_.languages) {
-    // A language is offered under the name that its own speakers give it; English ones by the plain word.
+    // Offer a language under its own name; variants of English simply as "English".
     const QString own = code == "en" ? "English" : QLocale(code).nativeLanguageName();
     names += own.isEmpty() ? code : own;
   }

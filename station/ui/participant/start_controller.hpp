@@ -6,9 +6,9 @@
 
 namespace turnpoint::ui {
 
-/// What has to be asked on the screen before a session can begin: the language where the protocol has several
-/// and none was given, then consent where a version of the form was given, then the participant's code where
-/// none was given. With an operator, the operator's page comes before all of it. GUI thread only.
+/// Asks on the screen for what is missing before a session can begin: the language, if the protocol has
+/// several and none was given; consent, if a version of the form was given; the participant's code, if none
+/// was given. If there is an operator's page, it comes first. GUI thread only.
 class StartController : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -23,10 +23,10 @@ class StartController : public QObject {
  public:
   enum class Stage { Operator, Language, Consent, Code, Session };
   Q_ENUM(Stage)
-  /// True for a participant code that the database has seen.
+  /// True for a participant code that is already in the database.
   using Known = std::function<bool(const QString& code)>;
 
-  /// What is to be asked: "" asks for language and participant, and for no consent.
+  /// What to ask. "" asks for language and participant, but for no consent.
   struct Questions {
     QStringList languages;
     QString language, participant, consent_version;
@@ -37,12 +37,12 @@ class StartController : public QObject {
 
   /// Goes back to the operator's page.
   void await_operator();
-  /// Asks; ready() follows once nothing is left, at once where nothing is.
+  /// Asks the questions. Emits ready() when all are answered, which may be at once.
   void ask(Questions questions);
 
   Stage stage() const;
   QStringList language_names() const;
-  /// The language chosen; until then the protocol's first.
+  /// The chosen language; until then the protocol's first.
   QString language() const;
   QString participant() const { return questions_.participant; }
   QString consent_version() const { return questions_.consent_version; }
@@ -57,9 +57,9 @@ class StartController : public QObject {
 
  signals:
   void changed();
-  /// Everything has been asked: the session may begin.
+  /// Everything has been answered: the session may begin.
   void ready();
-  /// Nobody wants these pages any more.
+  /// These pages are no longer needed.
   void closed();
 
  private:

@@ -10,8 +10,7 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// A strip much slimmer than this would be a line on a small panel: its width is then drawn larger than to
-/// scale.
+/// A much slimmer strip would be just a line on a small panel, so it is drawn wider than to scale.
 constexpr double kSlimmest = 1.0 / 11;
 constexpr double kTick_mm = 10, kLabel_mm = 50;
 constexpr double kFinger = 5;  // width in units
@@ -30,9 +29,9 @@ QFont font_of(double pixels) {
 
 }  // namespace
 
-/// Where things are, in pixels; x grows from the wide end whichever way it lies.
+/// The layout in pixels. x grows from the wide end, in either orientation.
 struct SurfaceDrawing::Layout {
-  double left = 0, right = 0;  ///< of the strip
+  double left = 0, right = 0;  ///< ends of the strip
   double axis_y = 0;           ///< centre line
   double px_per_mm = 1;        ///< along the strip
   double wide_half = 0, narrow_half = 0;
@@ -58,7 +57,7 @@ SurfaceDrawing::Layout SurfaceDrawing::layout() const {
   at.scale_text = std::max(text_pixels_, 1.8 * at.unit);
   at.flag_text = std::max(text_pixels_, 2.3 * at.unit);
   at.flag_height = std::max(3.6 * at.unit, 1.4 * at.flag_text);
-  // Half of the scale's last number stands beyond the strip's end.
+  // The last number of the scale extends beyond the strip's end by half its width.
   const double last =
       QFontMetricsF(font_of(at.scale_text)).horizontalAdvance(QString::number(length_mm_, 'f', 0));
   const double driver = 3.2 * at.unit, margin = std::max(1.8 * at.unit, 0.5 * last + 2);
@@ -90,7 +89,7 @@ void SurfaceDrawing::paint_strip(QPainter& painter, const Layout& at) const {
   const double x0 = at.x(0), x1 = at.x(length_mm_);
   const double toward = at.wide_left ? 1 : -1;
 
-  // The transducer: a block with its bolt, so that nobody mistakes which end is which.
+  // The transducer: a block with its bolt, so that nobody confuses the two ends.
   const double block = 2.6 * at.unit, block_half = at.wide_half + 0.7 * at.unit;
   const QRectF driver =
       QRectF(x0 - toward * block, at.axis_y - block_half, toward * block, 2 * block_half).normalized();
@@ -106,7 +105,7 @@ void SurfaceDrawing::paint_strip(QPainter& painter, const Layout& at) const {
   strip.lineTo(x1, at.axis_y + at.narrow_half);
   strip.lineTo(x0, at.axis_y + at.wide_half);
   strip.closeSubpath();
-  // Even along its length on purpose: shading must not suggest where the smooth part ends.
+  // Deliberately uniform along its length: shading must not suggest where the smooth part ends.
   QLinearGradient metal(0, at.axis_y - at.wide_half, 0, at.axis_y + at.wide_half);
   metal.setColorAt(0, mixed(paper_, ink_, 0.10));
   metal.setColorAt(0.45, mixed(paper_, ink_, 0.16));
@@ -136,13 +135,13 @@ void SurfaceDrawing::paint_scale(QPainter& painter, const Layout& at) const {
   }
 }
 
-/// A number half covered would be read wrong.
+/// A half-covered number would be misread.
 bool SurfaceDrawing::behind_finger(const Layout& at, double mm, double width_px) const {
   if (!show_finger_) return false;
   return std::abs(at.x(mm) - finger_x(at)) < 0.5 * (width_px + kFinger * at.unit) + 0.4 * at.unit;
 }
 
-/// Under the mark and the same to both sides of it: where the finger lies must not favour an answer.
+/// Below the mark and symmetric to it: the position of the finger must not favour an answer.
 double SurfaceDrawing::finger_x(const Layout& at) const {
   return at.x(has_mark_ ? mark_mm_ : 0.5 * length_mm_);
 }
@@ -152,7 +151,7 @@ void SurfaceDrawing::paint_mark(QPainter& painter, const Layout& at) const {
   painter.setPen(QPen(ink_, std::max(2.0, 0.28 * u), Qt::SolidLine, Qt::FlatCap));
   painter.drawLine(QPointF(x, at.axis_y - half), QPointF(x, at.axis_y + half));
 
-  // The pointer ends on the strip's edge; the number matches the scale printed on the surface.
+  // The pointer ends at the strip's edge; the number matches the scale printed on the surface.
   const double tip_y = at.axis_y - half - 0.25 * u;
   const double flag_y = 0.2 * u, flag_height = at.flag_height;
   QPainterPath pointer;
@@ -184,7 +183,7 @@ void SurfaceDrawing::paint_finger(QPainter& painter, const Layout& at) const {
   const double x = finger_x(at);
   const double tip_y = at.axis_y - (has_mark_ ? 0.2 : 1.4) * u, width_px = kFinger * u;
 
-  // The finger fades out below: it comes from the person, not from the drawing.
+  // The finger fades out at the bottom: it belongs to the person, not to the drawing.
   const double bottom = height();
   QPainterPath finger;
   finger.moveTo(x - width_px / 2, bottom);

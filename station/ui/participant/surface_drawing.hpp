@@ -5,9 +5,8 @@
 namespace turnpoint::ui {
 
 /// The surface seen from above, to scale: the tapered strip with its transducer at the wide end, a millimetre
-/// scale, the mark pointed at, and a fingertip that shows where to slide. Still: it draws once for each
-/// change of a property. Lengths in mm; positions count from the wide end. Its numbers are never smaller than
-/// `textPixels`.
+/// scale, the mark, and a fingertip that shows where to slide. It redraws only when a property changes.
+/// Lengths in mm; positions are measured from the wide end. Its numbers are never smaller than `textPixels`.
 class SurfaceDrawing : public QQuickPaintedItem {
   Q_OBJECT
   QML_ELEMENT

@@ -7,9 +7,9 @@
 
 namespace turnpoint::ui {
 
-/// Takes every touch (and mouse press) on the area that it covers and lets a TouchJudge find the answer.
-/// `row` is the item that the answer buttons fill in `count` equal columns with `gap` pixels between; it must
-/// lie inside the field. The judge opens when `open` rises and closes when it falls.
+/// Takes every touch (and mouse press) on its area and lets a TouchJudge find the answer. `row` is the item
+/// that the answer buttons fill in `count` equal columns, `gap` pixels apart; it must be inside the field.
+/// The judge opens when `open` becomes true and closes when it becomes false.
 class TouchField : public QQuickItem {
   Q_OBJECT
   QML_ELEMENT

@@ -9,13 +9,12 @@
 
 namespace turnpoint::ui {
 
-/// Runs slow jobs for a page on one thread of its own, and only the newest counts: starting another asks the
-/// running one to stop and drops one that has not begun. The GUI thread never waits for a job, except in the
-/// destructor.
+/// Runs slow jobs for a page on its own thread. Only the newest counts: starting another asks the running one
+/// to stop, and drops one that has not begun. The GUI thread never waits for a job, except in the destructor.
 class NewestJob {
  public:
-  /// Runs on the worker. What it returns runs on the owner's thread, unless another job was started
-  /// meanwhile. Must not throw.
+  /// Runs on the worker thread. The function that it returns runs on the owner's thread, unless another job
+  /// was started meanwhile. Must not throw.
   using Job = std::function<std::function<void()>(const std::stop_token&)>;
 
   /// The owner must outlive it.
@@ -24,7 +23,7 @@ class NewestJob {
 
   /// Owner's thread; returns at once.
   void start(Job job);
-  /// Owner's thread; returns at once. Nothing that was started counts any more.
+  /// For the owner's thread; returns at once. Results of all jobs started so far are dropped.
   void abandon();
 
  private:
@@ -40,7 +39,8 @@ class NewestJob {
   std::condition_variable_any changed_;
   std::optional<Wanted> wanted_;
   std::stop_source running_;
-  std::jthread thread_;  // last: joined before what it uses goes
+  // The last member, so that the thread is joined before the objects that it uses are destroyed.
+  std::jthread thread_;
 };
 
 }  // namespace turnpoint::ui

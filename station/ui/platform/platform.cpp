@@ -18,8 +18,8 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// eglfs takes the first card, which may have no connector; the file tells it which one has. Nothing where
-/// somebody has said it already.
+/// eglfs uses the first card, which may have no connector. This writes a file that tells it which card has
+/// one. Returns nothing if the user has set it already.
 std::unique_ptr<QTemporaryFile> eglfs_config(const std::string& card) {
   if (qEnvironmentVariableIsSet("QT_QPA_EGLFS_KMS_CONFIG")) return nullptr;
   auto file = std::make_unique<QTemporaryFile>();
@@ -31,14 +31,14 @@ std::unique_ptr<QTemporaryFile> eglfs_config(const std::string& card) {
   return file;
 }
 
-/// Nobody wants a mouse pointer on a participant's page. 0 in the environment shows it, for work with a
-/// mouse.
+/// Hides the mouse pointer, which would be out of place on a participant's page. 0 in the environment shows
+/// it, for work with a mouse.
 void hide_pointer() {
   for (const char* variable : {"QT_QPA_EGLFS_HIDECURSOR", "QT_QPA_FB_HIDECURSOR"})
     if (!qEnvironmentVariableIsSet(variable)) qputenv(variable, "1");
 }
 
-/// Returns what the platform reads while it starts.
+/// Returns the file that the platform reads while it starts.
 std::unique_ptr<QTemporaryFile> choose_platform() {
   const auto wanted = qgetenv("QT_QPA_PLATFORM");
   const bool desktop = qEnvironmentVariableIsSet("DISPLAY") || qEnvironmentVariableIsSet("WAYLAND_DISPLAY");
@@ -57,7 +57,7 @@ std::unique_ptr<QTemporaryFile> choose_platform() {
   return nullptr;
 }
 
-/// Qt itself is silent about a device that it cannot open.
+/// Qt says nothing about a device that it cannot open, so this does.
 void tell_refused_input() {
   const QString platform = QGuiApplication::platformName();
   if (platform != "eglfs" && platform != "linuxfb") return;
@@ -70,7 +70,7 @@ void tell_refused_input() {
 Application::Application() {
   hide_pointer();
   const auto read_at_start = choose_platform();
-  qputenv("QT_QPA_NO_SIGNAL_HANDLER", "1");  // the stop signals are ours, see there
+  qputenv("QT_QPA_NO_SIGNAL_HANDLER", "1");  // we handle the stop signals, see there
   application_ = std::make_unique<QGuiApplication>(argc_, argv_);
   tell_refused_input();
   set_fonts();

@@ -8,22 +8,23 @@
 
 namespace turnpoint::ui {
 
-/// The window where there is a desktop around it.
+/// Size of the window on a desktop.
 constexpr QSize kWindow{1280, 800};
 
-/// The application object, on the back end that fits: as QT_QPA_PLATFORM says, a desktop's, eglfs, else the
-/// bare frame buffer. Qt ends the process where it finds no screen; this throws terms::UsageError before.
+/// The application object with a suitable back end: as QT_QPA_PLATFORM says, or a desktop's, or eglfs, or
+/// else the bare frame buffer. Qt kills the process if it finds no screen; this throws terms::UsageError
+/// before that.
 class Application {
  public:
   Application();
-  /// The screen of the participant: the first. Throws std::runtime_error where none is connected.
+  /// The participant's screen, which is the first one. Throws std::runtime_error if none is connected.
   QScreen& screen() const;
-  /// A second screen, where the operator's view may stay open; null where there is none.
+  /// A second screen for the operator's view; null if there is none.
   QScreen* second_screen() const;
-  /// A panel of the station's own, or one too small for a window beside others: windows fill it.
+  /// True for the station's own panel, or one too small for several windows: windows then fill it.
   bool is_bare_panel() const;
   QSize window_size() const;
-  /// How the process ends when it is told to.
+  /// Handles the signals that ask the process to end.
   StopSignals& stop_signals() const { return *stop_signals_; }
 
  private:
@@ -31,7 +32,7 @@ class Application {
   char name_[13] = "turnpoint-ui";
   char* argv_[2] = {name_, nullptr};
   std::unique_ptr<QGuiApplication> application_;
-  // Both live in the application's event loop.
+  // Both run in the application's event loop.
   std::unique_ptr<ServiceWatchdog> watchdog_;
   std::unique_ptr<StopSignals> stop_signals_;
 };

@@ -15,15 +15,15 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Stands in for a code that the keypad will ask for, so that everything else is checked before a window
-/// opens.
+/// A placeholder for the code that the keypad will ask for, so that everything else can be checked before a
+/// window opens.
 constexpr const char* kCodeToCome = "keypad";
 
 StationWindow::Place place_on(const Application& application) {
   return {pixels_per_mm(application.screen()), application.window_size(), application.is_bare_panel()};
 }
 
-/// A signal to stop ends the process at once until the first page stands, and the event loop from then on.
+/// Until the first page is shown, a stop signal kills the process; from then on it ends the event loop.
 void stop_in_order(const Application& application, const QQuickWindow& window) {
   auto& stop = application.stop_signals();
   QObject::connect(
@@ -41,7 +41,7 @@ void use_second_screen(const Application& application, StationWindow& window) {
   if (auto* second = application.second_screen()) window.show_live_window(*second);
 }
 
-/// A window of one page and its controller, until somebody closes it.
+/// Shows a window with one page and its controller until somebody closes it.
 void show_until_closed(const Application& application, const QString& page, const QVariant& controller) {
   QQmlApplicationEngine engine;
   auto& window = load_page(engine, page,
@@ -62,7 +62,7 @@ session::Summary run_on_screen(setup::RunRequest request, std::optional<session:
   if (chosen.ask_code) request.participant = kCodeToCome;
   chosen.setup = prepared ? std::move(*prepared) : setup::prepare(request);
   chosen.ask_language = !prepared && request.language.empty() && chosen.setup.protocol.languages.size() > 1;
-  chosen.arm = true;  // the command was the operator's
+  chosen.arm = true;  // the operator gave this command
   const Application application;
   StationWindow window(place_on(application), {nullptr, desk::operator_code()}, chosen.setup.database);
   use_second_screen(application, window);
@@ -83,7 +83,7 @@ void run_station(const setup::StationRequest& request) {
   try {
     window.run();
   } catch (const std::exception&) {
-    // What ended a session stood on the screen; leaving the station afterwards is no failure.
+    // The screen already showed what ended a session; leaving the station afterwards is not a failure.
   }
 }
 

@@ -4,7 +4,7 @@
 namespace turnpoint::ui {
 
 /// Tells systemd (sd_notify(3): a datagram to $NOTIFY_SOCKET) that the station is ready, and then, as often
-/// as its watchdog asks, that the event loop still turns. Without a service manager it does nothing.
+/// as its watchdog requires, that the event loop is still running. Without a service manager it does nothing.
 class ServiceWatchdog : public QObject {
  public:
   ServiceWatchdog();

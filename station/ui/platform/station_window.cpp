@@ -19,10 +19,10 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// `QT_LOGGING_RULES=turnpoint.startup=true` says how long the first page took.
+/// `QT_LOGGING_RULES=turnpoint.startup=true` logs how long the first page took.
 Q_LOGGING_CATEGORY(startup, "turnpoint.startup", QtWarningMsg)
 
-/// Milliseconds since the kernel started this process, to its 10 ms.
+/// Milliseconds since the kernel started this process, with a resolution of 10 ms.
 double process_age_ms() {
   std::ifstream stat("/proc/self/stat");
   const std::string line{std::istreambuf_iterator<char>(stat), {}};
@@ -82,7 +82,7 @@ void StationWindow::ask(const ChosenSession& chosen) {
   for (const auto& language : setup_.protocol.languages)
     if (chosen.ask_language) questions.languages += QString::fromStdString(language);
   if (!chosen.ask_code) questions.participant = QString::fromStdString(setup_.participant);
-  // Who goes on with a session has consented when it began.
+  // The participant of a resumed session has already given consent.
   if (setup_.resume_session.empty())
     questions.consent_version = QString::fromStdString(setup_.consent_version);
   start_.ask(std::move(questions));

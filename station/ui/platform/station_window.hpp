@@ -14,7 +14,7 @@
 
 namespace turnpoint::ui {
 
-/// The station's one window: the participant's pages, before them the operator's where there is one; and the
+/// The station's only window: the participant's pages, before them the operator's if there is one, and the
 /// sessions behind them, one after another. GUI thread only.
 class StationWindow : public QObject {
   Q_OBJECT
@@ -29,18 +29,18 @@ class StationWindow : public QObject {
   struct Operator {
     OperatorController* page = nullptr;  ///< must outlive the window; null: no operator's page
     desk::OperatorCode code;             ///< opens the operator's view from the participant's pages
-    bool locked = false;                 ///< the operator's page stands behind the code from the beginning on
+    bool locked = false;                 ///< lock the operator's page from the beginning
   };
 
   StationWindow(const Place& place, const Operator& allowed, const std::string& database);
 
-  /// Asks the participant what is open, then runs the session.
+  /// Asks the participant what is missing, then runs the session.
   void ask(const ChosenSession& chosen);
 
-  /// The operator's view on a screen of its own, for as long as this lives.
+  /// Shows the operator's view on its own screen during the lifetime of this object.
   QQuickWindow& show_live_window(QScreen& screen);
 
-  /// Until the window is closed. Throws what ended the last session; none where none has begun.
+  /// Runs until the window is closed. Throws what ended the last session; empty if no session was begun.
   std::optional<session::Summary> run();
 
   QQuickWindow& window() { return *window_; }

@@ -16,12 +16,12 @@ namespace turnpoint::ui {
 /// leave without unwinding.
 class StopSignals : public QObject {
  public:
-  /// Throws std::system_error without a descriptor to wake the event loop by.
+  /// Throws std::system_error if no descriptor for waking the event loop can be created.
   StopSignals();
-  ~StopSignals() override;  ///< what was to happen at a signal before take_over() happens again
+  ~StopSignals() override;  ///< restores the signal handling from before take_over()
 
-  /// From now on a signal ends the event loop: to be called before anything begins that has to be ended in
-  /// order. Again: nothing.
+  /// From now on a signal ends the event loop. Call this before beginning anything that must be ended
+  /// cleanly; further calls have no effect.
   void take_over();
 
  private:

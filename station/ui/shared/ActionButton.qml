@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// A button for everything but answers. It acts on a press that both began and ended on it, and only while armed,
-// so a tap meant for the page before never lands on this one.
+// A button for everything but answers. It acts only if a press both begins and ends on it while it is armed,
+// so that a tap meant for the previous page never triggers it.
 Rectangle {
     id: root
     required property Theme theme
@@ -12,7 +12,7 @@ Rectangle {
     property bool armed: true
     property bool primary: true
     property bool quiet: false
-    /// Above 0: it acts only after having been held for so long, and fills as it is.
+    /// If above 0, the button must be held for this time, and fills up meanwhile.
     property int holdMs: 0
     signal activated()
 
@@ -68,7 +68,7 @@ Rectangle {
     }
     MouseArea {
         id: area
-        /// The press has acted: what it did may have made this a button that needs no holding.
+        /// The press has acted. Its action may have changed this into a button that need not be held.
         property bool done: false
         anchors.fill: parent
         enabled: root.enabled && root.armed

@@ -1,7 +1,7 @@
 import QtQuick
 
-// The only text of these pages: what a file or a person wrote is shown as it was written. Qt's own guess would take
-// a title with tags for rich text, and open the images that it names.
+// The only text item of these pages: it shows what a file or a person wrote literally. By default Qt would
+// interpret a title with tags as rich text and open the images that it names.
 Text {
     textFormat: Text.PlainText
 }

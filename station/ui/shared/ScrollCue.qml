@@ -1,7 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Beside a place that scrolls: that there is more in it than is seen, and where. It takes no touches.
+// Beside a scrolling area: shows that there is more than is visible, and the current position. It takes no
+// touches.
 Rectangle {
     id: root
     required property Theme theme

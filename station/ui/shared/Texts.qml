@@ -1,7 +1,7 @@
 import QtQuick
 
-// What the station itself says, in each language shipped; the protocol brings its own texts. A language that is
-// not here falls back to English.
+// The station's own texts in each supported language; the protocol brings its own. An unsupported language
+// falls back to English.
 QtObject {
     required property string language
 
@@ -9,9 +9,10 @@ QtObject {
         return language.startsWith("de") ? de : language.startsWith("ja") ? phrased(ja) : en
     }
 
-    /// A text of this language as it is to be shown. Japanese may break a line between almost any two characters,
-    /// also inside a word; word joiners (U+2060) leave the breaks after punctuation, and those where hiragana,
-    /// which end a phrase, meet a character that begins one. A phrase longer than a line still breaks anywhere.
+    /// Prepares a text of this language for display. Japanese may break a line between almost any two
+    /// characters, even inside a word. Inserted word joiners (U+2060) leave only the breaks after
+    /// punctuation, and those between hiragana, which end a phrase, and a character that begins one. A phrase
+    /// longer than a line still breaks anywhere.
     function phrased(text: string) : string {
         if (!language.startsWith("ja")) return text
         const japanese = /[\u3001-\u30ff\u3400-\u9fff\uff01-\uff9f]/
@@ -26,7 +27,7 @@ QtObject {
         const hiragana = /[\u3041-\u309f]/, begins = /[\u30a1-\u30fa\u3400-\u9fff\u300c\u300e\uff08]/
         const polite = at => /[おご]/.test(text[at]) && /[\u3400-\u9fff]/.test(text[at + 1] ?? "")
         if (/[、。・!?]/.test(text[i])) return true
-        if (/[」』)]/.test(text[i])) return !hiragana.test(text[i + 1])  // else its particle follows
+        if (/[」』)]/.test(text[i])) return !hiragana.test(text[i + 1])  // otherwise its particle follows
         return hiragana.test(text[i]) && !polite(i) && (begins.test(text[i + 1]) || polite(i + 1))
     }
 

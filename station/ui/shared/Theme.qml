@@ -1,12 +1,13 @@
 import QtQuick
 
-// Sizes and colours of every page. Sizes grow with the panel and never fall below what a finger or an eye needs
-// (millimetres by the panel's own density); text and what it stands on differ by a contrast of 7:1 or more.
+// Sizes and colours of all pages. Sizes grow with the panel and never fall below what a finger or an eye
+// needs (in millimetres, by the panel's own density). Text and its background have a contrast of 7:1 or more.
 QtObject {
     required property real width
     required property real height
     required property real pixelsPerMm
-    /// The operator's pages: more on one page, read from nearer, by somebody who knows them.
+    /// For the operator's pages: more content per page, read from a shorter distance by somebody who knows
+    /// them.
     property bool dense: false
 
     readonly property real unit: Math.min(width / 80, height / 48)

@@ -8,7 +8,7 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Strokes in a square of 24 units, as an SVG path says them.
+/// Strokes in a square of 24 units, in the syntax of SVG paths.
 QString outline(const QString& name) {
   static const QHash<QString, QString> outlines{
       {"tick", "M4 13 L10 19 L20 6"},

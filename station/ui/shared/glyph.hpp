@@ -5,16 +5,17 @@
 
 namespace turnpoint::ui {
 
-/// A sign drawn in strokes, as wide as it is high: "tick", "cross", "clock", "chevrons" (speed), "rings"
+/// A symbol drawn in strokes, as wide as it is high: "tick", "cross", "clock", "chevrons" (speed), "rings"
 /// (accuracy), "bars" (pause), "alert", "backspace", "shield", "tool", "dots", "minus", "plus"; any other
-/// name draws nothing. Painted, and not a Shape of Qt Quick: on the frame buffer Qt does not keep those
-/// within the place that scrolls around them.
+/// name draws nothing. It is painted instead of using a Qt Quick Shape, because on the frame buffer Qt does
+/// not clip Shapes to a scrolling area.
 class Glyph : public QQuickPaintedItem {
   Q_OBJECT
   QML_ELEMENT
   Q_PROPERTY(QString name MEMBER name_ NOTIFY changed REQUIRED)
   Q_PROPERTY(QColor color MEMBER color_ NOTIFY changed REQUIRED)
-  Q_PROPERTY(double weight MEMBER weight_ NOTIFY changed)  ///< of the strokes, in heights of the sign
+  Q_PROPERTY(
+      double weight MEMBER weight_ NOTIFY changed)  ///< width of the strokes, relative to the symbol's height
 
  public:
   explicit Glyph(QQuickItem* parent = nullptr);
