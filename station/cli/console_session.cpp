@@ -31,7 +31,7 @@ class StopOnSignal {
     session::Input input;
     input.time_ns = system::monotonic_ns();
     input.kind = session::InputKind::stop;
-    input.text = "the program was told to end (" + signal + ")";
+    input.text = "the program was asked to end (" + signal + ")";
     inputs.push(std::move(input));
   }
 

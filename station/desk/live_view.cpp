@@ -90,7 +90,7 @@ Facts course_of(const std::vector<LiveTrial>& trials) {
                                                         count(trials, Outcome::anticipation)));
   facts.emplace_back("Void", std::to_string(count(trials, Outcome::fault) + count(trials, Outcome::aborted)));
   facts.emplace_back("Xruns", std::to_string(xruns));
-  facts.emplace_back("Touches that no answer claimed", std::to_string(extra));
+  facts.emplace_back("Touches that were not answers", std::to_string(extra));
   return facts;
 }
 

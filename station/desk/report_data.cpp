@@ -40,8 +40,8 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
   data.health = {
       {"Trials stored", std::to_string(trials)},
       {"Underruns and overruns", std::to_string(xruns)},
-      {"Touches that no answer claimed", std::to_string(extra)},
-      {"Frames that the screen was late by", late_frames(stored.events)},
+      {"Touches that were not answers", std::to_string(extra)},
+      {"Late screen frames", late_frames(stored.events)},
       {"Times the session was resumed", std::to_string(stored.session.segments - 1)},
       {"Blocks begun again", std::to_string(attempts)},
       {"Response times by", qualities.empty() ? "none" : qualities},

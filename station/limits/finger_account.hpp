@@ -13,9 +13,9 @@ namespace turnpoint::limits {
 /// The rig's limits in the drive's form. A simulated session may last any time.
 ExposureLimits limits_of(const rig::Rig& rig, terms::RunMode mode);
 
-/// What a participant's earlier segments put on the finger, from the database: stimuli in order of time and
-/// the start of the period, on the wall clock (s since 1970). A pause of half an hour begins a new period;
-/// a new process, or another session of the same participant, does not.
+/// The stimuli of a participant's earlier segments from the database, in order of time, and the start of the
+/// period of exposure, on the wall clock (s since 1970). A pause of half an hour begins a new period; a new
+/// process, or another session of the same participant, does not.
 struct FingerHistory {
   std::vector<Exposed> stimuli;
   double period_start_s = 0;
@@ -39,7 +39,7 @@ class FingerAccount {
   FingerAccount(const ExposureLimits& limits, const FingerHistory& history, std::int64_t origin_ns,
                 double origin_s);
 
-  /// When a trial may begin at the soonest, at or after `wanted_ns`. Throws LimitExceeded.
+  /// The earliest time, at or after `wanted_ns`, at which a trial may begin. Throws LimitExceeded.
   std::int64_t earliest_ns(std::int64_t wanted_ns, const std::vector<Exposed>& trial) const;
   /// Throws LimitExceeded for a displacement that the rig does not allow.
   void check(double displacement_m, double length_s) const { exposure_.check(displacement_m, length_s); }

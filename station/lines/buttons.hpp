@@ -25,7 +25,7 @@ struct Glitch {
   int untold = 0;              ///< number of earlier glitches of this line that were counted but not reported
 };
 
-/// Something that went wrong with the buttons or the contact.
+/// A fault of the buttons or the contact.
 struct ButtonsFault {
   enum class Kind {
     edges_lost,  ///< more edges than the kernel can store
@@ -36,7 +36,7 @@ struct ButtonsFault {
   std::string what;
 };
 
-/// Called on the thread that watches them; must return soon.
+/// Called on the thread that watches them; they must return quickly.
 struct ButtonsHandlers {
   std::function<void(const Press&)> press;
   std::function<void(const touch::Contact&)> contact;
@@ -68,7 +68,7 @@ class Buttons {
   /// What has been lost and is not back yet, and why; "" if nothing.
   virtual std::string missing() const = 0;
 
-  /// Simulated buttons only: as if it had happened then. Throws std::logic_error on a real one.
+  /// For simulated buttons only: simulates this event. Throws std::logic_error on real ones.
   virtual void simulate(const Press& press) = 0;
   virtual void simulate(const touch::Contact& touch) = 0;
 };

@@ -8,8 +8,8 @@
 
 namespace turnpoint::lines {
 
-/// A thread that watches a device of the buttons or the contact, tells when it goes, and looks for it until
-/// it is back.
+/// A thread that watches a device of the buttons or the contact, reports when it is lost, and looks for it
+/// until it is back.
 class DeviceWatch {
  public:
   /// Checks the open device once, waiting a short time for news; throws if the device is lost.

@@ -21,7 +21,7 @@ struct WatchedLines {
   EdgeFilter::Rules button_rules, contact_rules;
 };
 
-/// open_buttons() on lines that `request` gives for those that the rig names.
+/// Like open_buttons(), but on lines that `request` provides for those named in the rig.
 using RequestLines = std::function<std::unique_ptr<Lines>(const std::vector<LineRequest>&)>;
 std::unique_ptr<Buttons> open_buttons(const std::optional<ButtonsConfig>& buttons,
                                       const std::optional<ContactConfig>& contact, ButtonsHandlers handlers,

@@ -29,15 +29,15 @@ class LatencyDevices {
  public:
   using OnEdge = std::function<void(std::int64_t time_ns)>;
 
-  /// `on_edge` is called on the panel's thread. Throws terms::UsageError for a rig without real buttons,
-  /// and as lines::open_buttons, touch::TouchReader.
+  /// `on_edge` is called on the panel's thread. Throws terms::UsageError for a rig without real buttons, and
+  /// the errors of lines::open_buttons and touch::TouchReader.
   LatencyDevices(const rig::Rig& rig, OnEdge on_edge);
 
   ~LatencyDevices();
 
   /// True if touches get the kernel's time.
   bool has_kernel_times() const { return touch_ != nullptr; }
-  /// See touch::TouchReader::claim(); none without kernel times.
+  /// See touch::TouchReader::claim(); empty without kernel times.
   std::optional<std::int64_t> claim(double x, double y, std::int64_t seen_ns);
 
  private:

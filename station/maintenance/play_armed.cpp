@@ -29,7 +29,7 @@ std::string trouble_of(const drive::Event& event, const drive::OutputConfig& out
     case drive::EventKind::underrun:
       return fmt::format("{}: {} frames were lost; begin again", output.uri, event.frames);
     case drive::EventKind::device_lost:
-      return output.uri + ": the converter is gone";
+      return output.uri + ": the sound device was disconnected";
     case drive::EventKind::burst_missed:
       return output.uri + ": a tone came too late to be played; begin again";
     case drive::EventKind::rate_wrong:
@@ -59,7 +59,7 @@ void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::funct
     if (amplifier.state() == drive::AmplifierState::faulted)
       throw std::runtime_error("amplifier: " + terms::describe(amplifier.fault()));
     if (const auto signal = system::StopSignals::told(); !signal.empty())
-      throw std::runtime_error("the program was told to end (" + signal + "); not all was played");
+      throw std::runtime_error("the program was asked to end (" + signal + "); not all was played");
     if (last) return;
     system::sleep_until_ns(system::monotonic_ns() + kPoll_ns);
   }

@@ -113,7 +113,8 @@ std::string fit_table(const NamedFit& named, const SessionData& data) {
                   found.guess);
     if (!posterior) html += row("Deviance (no unit)", named.fit.deviance, std::nullopt);
     if (found.deviance_p)
-      html += row("Replicates that fit worse (proportion)", *found.deviance_p, std::nullopt);
+      html +=
+          row("Share of bootstrap replicates with a worse fit (proportion)", *found.deviance_p, std::nullopt);
     html += "</table>\n";
   }
   if (const auto text = describe_intervals(named, data); !text.empty())

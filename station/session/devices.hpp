@@ -11,8 +11,8 @@
 
 namespace turnpoint::session {
 
-/// What a real session works with. The buttons may be null (no buttons, no contact). Stream and clocks are
-/// the real ones unless a test puts others in their place.
+/// The devices of a real session. The buttons may be null (no buttons, no contact). Tests may replace stream
+/// and clocks.
 struct Devices {
   std::unique_ptr<drive::Amplifier> amplifier;
   std::unique_ptr<lines::Buttons> buttons;
@@ -21,12 +21,12 @@ struct Devices {
   std::function<system::Clocks()> clocks = system::read_clocks;
 };
 
-/// Opens what the rig names: lines by name, the amplifier disarmed and off. `sim:` has the same guard on
-/// lines that exist in memory only. Throws lines::LineError, std::system_error, terms::UsageError.
+/// Opens the rig's devices: lines by name, the amplifier disarmed and off. `sim:` has the same guard on lines
+/// that exist only in memory. Throws lines::LineError, std::system_error, terms::UsageError.
 Devices open_devices(const rig::Rig& rig, Inputs& inputs);
 
-/// Presses, contacts and faults of buttons as inputs of a session, with the kernel's time; `inputs` must
-/// outlive the buttons.
+/// Passes presses, contacts and faults of the buttons to a session as inputs with the kernel's time. `inputs`
+/// must outlive the buttons.
 lines::ButtonsHandlers handlers_for(Inputs& inputs);
 
 }  // namespace turnpoint::session

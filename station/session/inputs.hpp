@@ -16,7 +16,7 @@ enum class InputKind {
   answer,      ///< value = index of the chosen answer
   next,        ///< Continue or Done on a page
   slider,      ///< number = the slider's value
-  touch_down,  ///< any touch on the panel, answer or not: for the log
+  touch_down,  ///< any touch on the panel, answer or not; only logged
   button,      ///< value = index of the response button, in the order of the rig's URI
   contact,     ///< value 1: finger on the surface, 0: lifted; number: where along it, 0 to 1, or below 0
   /// the participant, the operator, or the program named in text wants to stop; completed trials are kept

@@ -188,7 +188,7 @@ Flow OperatorGate::show_and_wait(Page page, double at_least_s) {
     if (input.kind == InputKind::next) return Flow::go_on;
     if (buttons_turn && input.kind == InputKind::answer && input.time_ns >= read_ns) return Flow::go_on;
     if (input.kind != InputKind::fault && input.kind != InputKind::disarm) continue;
-    // It has been repaired, and whoever did so has pressed Continue: for the fault before it too.
+    // The fault was repaired, and somebody pressed Continue: that also settles the fault before it.
     if (page.kind == PageKind::fault || page.kind == PageKind::paused) return Flow::go_on;
     show(page);
   }

@@ -11,15 +11,15 @@
 
 namespace turnpoint::session {
 
-/// Whether the session goes on or ends here.
+/// Whether the session continues or ends here.
 enum class Flow { go_on, stop };
 
-/// What stands between a session and its next stimulus: pages that somebody has to leave, an amplifier that
-/// the operator has to arm, faults that the operator has to repair, a disk that has to have space. Every
-/// input of the session passes it, and it remembers what has to be acted on.
+/// Handles everything that can hold up a session before its next stimulus: pages that somebody has to leave,
+/// an amplifier that the operator has to arm, faults that the operator has to repair, and a full disk. Every
+/// input of the session passes through it, and it remembers what has to be handled later.
 class OperatorGate {
  public:
-  /// All must outlive it. `display` may be null.
+  /// All references must outlive it. `display` may be null.
   OperatorGate(const Setup& setup, const Pages& pages, const trial::Director& director, Stage& stage,
                store::SessionLog& log, Display* display);
 
@@ -30,9 +30,10 @@ class OperatorGate {
   void note(const Input& input);
 
   void show(const Page& page);
-  /// Shows a page until it is left, which it cannot be before `at_least_s`.
+  /// Shows a page until somebody leaves it, which is not possible before `at_least_s`.
   Flow show_and_wait(Page page, double at_least_s);
-  /// What concerns every page: somebody stops, or something fails and the operator has to repair it.
+  /// Handles inputs that matter on every page: somebody stops the session, or a fault that the operator has
+  /// to repair.
   Flow handle_on_page(const Input& input);
 
   /// Makes rows durable before the session continues. If the disk is full, the screen says so, nothing
@@ -41,21 +42,21 @@ class OperatorGate {
 
   /// Waits until the operator has armed the amplifier; nothing sounds before.
   Flow until_armed(const Fault& why);
-  /// Holds until nothing is left to repair and the amplifier is armed: before a trial.
+  /// Before a trial: waits until nothing is left to repair and the amplifier is armed.
   Flow until_clear();
-  /// After a fault: the screen says what happened; the operator repairs it, clears and arms; then the session
-  /// goes on. Somebody who continues too early sees what is still missing.
+  /// After a fault the screen says what happened. The operator repairs it, clears the fault and arms; then
+  /// the session continues. If the operator continues too early, the page says what is still missing.
   Flow recover();
   /// A limit of the rig ends the session. The page names the limit before the summary is shown.
   Flow end_at_limit(const std::string& what);
 
-  /// The session ends when what runs now is over.
+  /// Ends the session after the current trial or page.
   void stop(const std::string& reason);
   bool stop_asked() const { return stop_asked_; }
   const std::string& stop_reason() const { return stop_reason_; }
-  /// True once after the operator has asked for a pause.
+  /// True once after the operator has requested a pause.
   bool take_pause();
-  /// What happened and was not dealt with yet.
+  /// A fault that nobody has dealt with yet.
   const std::optional<Fault>& fault() const { return fault_; }
   void set_fault(const std::optional<Fault>& fault) { fault_ = fault; }
 

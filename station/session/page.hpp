@@ -15,13 +15,13 @@ enum class PageKind {
   stimulus,
   pause,     ///< the gap between intervals, in silence
   response,  ///< the surface is silent; answers are possible
-  feedback,  ///< right or wrong (`correct`), or the message of a late answer (`text`)
+  feedback,  ///< right or wrong (`correct`), or the message after a late answer (`text`)
   interval,  ///< between trials: empty except for progress
   rest,      ///< a break with `remaining_s`; Continue once it is over
   adjust,    ///< a slider with steps moves the boundary; Done
   fault,     ///< what happened, what is safe, what to do; Continue after the operator has fixed it
   paused,    ///< stopped by participant or operator; Continue or end
-  end,       ///< thanks; the summary for the operator comes after
+  end,       ///< thanks; followed by the summary for the operator
   failed,    ///< the session cannot continue; `text` says why; completed trials are kept
 };
 

@@ -9,7 +9,7 @@
 
 namespace turnpoint::session {
 
-/// Makes the pages of one session: texts in its language, the surface's drawing, progress.
+/// Makes the pages of one session: texts in its language, the drawing of the surface, progress.
 class Pages {
  public:
   Pages(const Setup& setup);

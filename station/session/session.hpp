@@ -19,7 +19,7 @@ namespace turnpoint::session {
 /// Where an interrupted session continues. Completed trials stay in the log in any case.
 enum class ResumeAt { next_trial, block_start, session_start };
 
-/// Everything that running a session needs, already loaded and checked.
+/// Everything needed to run a session, loaded and checked.
 struct Setup {
   rig::Rig rig;
   protocol::Protocol protocol;
@@ -44,7 +44,7 @@ struct Setup {
   std::string response_offset_quality;
 };
 
-/// How a run ended, for people and for --json.
+/// The result of a run, for people and for --json.
 struct Summary {
   std::string session_id, participant, protocol_id, database, run_mode;
   records::SessionStatus status = records::SessionStatus::running;
@@ -61,12 +61,12 @@ struct Summary {
   std::vector<trial::ProcedureEstimate> estimates;
 };
 
-/// Runs a session to its end on the calling thread: real clock, pages to `display`, input from `inputs`.
-/// Where the amplifier is real, or the session live, nothing is presented before an operator has pushed
-/// InputKind::arm, and again after each fault of the amplifier. With an observer in the setup it runs on the
-/// virtual clock, drives no hardware, hears of `inputs` a stop alone, and between two trials, and `display`
-/// may be null. `monitor` may be null. Throws text::BadInput for a setup that cannot run, store::StoreError,
-/// std::system_error for devices.
+/// Runs a session to its end on the calling thread, with the real clock, pages on `display` and input from
+/// `inputs`. If the amplifier is real or the session is live, nothing is presented before an operator has
+/// pushed InputKind::arm, and again after each fault of the amplifier. With an observer in the setup it runs
+/// on the virtual clock and uses no hardware; of `inputs` only a stop is honoured, and only between trials;
+/// `display` may be null. `monitor` may be null. Throws text::BadInput for a setup that cannot run,
+/// store::StoreError, and std::system_error for devices.
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor = nullptr);
 
 /// The same with devices that are already open (for a real session only).

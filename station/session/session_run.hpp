@@ -14,9 +14,9 @@
 
 namespace turnpoint::session {
 
-/// Runs the blocks and trials of a session: joins director, planner, trial machine, stage and store behind
-/// the operator's gate. Everything happens on the thread that calls run(), but for the planning of the next
-/// trial.
+/// Runs the blocks and trials of a session: connects director, planner, trial machine, stage and store behind
+/// the operator's gate. Everything happens on the thread that calls run(), except for the planning of the
+/// next trial.
 class SessionRun {
  public:
   /// `director` must be in the same state as the log.

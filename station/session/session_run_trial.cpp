@@ -95,7 +95,7 @@ Flow SessionRun::keep_limits(const trial::TrialSpec& spec) {
   return Flow::go_on;
 }
 
-/// The last look at what is about to be felt and heard. Throws limits::LimitExceeded.
+/// The last check of what is about to be felt and heard. Throws limits::LimitExceeded.
 void SessionRun::check_plans(const trial::TrialSpec& spec) {
   const auto& plans = plans_.take(spec).plans;
   const auto times = trial::interval_times(setup_.protocol, spec);

@@ -33,9 +33,9 @@ struct ClockFit {
 /// A deadline that never comes.
 constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
-/// Time, drive, amplifier and inputs of one run. Two exist: real (CLOCK_MONOTONIC, a person) and virtual
-/// (a simulated observer, as fast as the machine goes); the session above is the same code on both. All on
-/// one thread.
+/// Time, drive, amplifier and inputs of one run. There are two: real (CLOCK_MONOTONIC, a person) and virtual
+/// (a simulated observer, as fast as possible). The code of the session is the same for both. Use it from one
+/// thread.
 class Stage {
  public:
   virtual ~Stage() = default;

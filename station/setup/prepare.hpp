@@ -21,9 +21,9 @@ struct RunRequest {
 };
 
 /// Loads and checks everything that a session needs. Throws text::BadInput with all problems of both files,
-/// of the protocol on this rig, of participant code, language and mode. A calibration is applied to the rig;
-/// one that has expired or belongs to another rig is refused where it was named or the session is live, and
-/// left out otherwise. Throws protocol::Abandoned soon after `stop` asks it to.
+/// of the protocol on this rig, and of participant code, language and mode. A calibration is applied to the
+/// rig. If it has expired or belongs to another rig, it is refused if it was named or the session is live,
+/// and otherwise ignored. Throws protocol::Abandoned soon after `stop` is requested.
 session::Setup prepare(const RunRequest& request, const std::stop_token& stop = {});
 
 /// Applies the text of a calibration file: to the rig, the sound levels, and the values stored with the

@@ -17,8 +17,8 @@ struct ResumeRequest {
   bool any_age = false;
 };
 
-/// The set-up that continues an interrupted session: rig, protocol text, observer and language from its
-/// row. None where nothing was interrupted. Throws text::BadInput for a session older than its protocol
+/// The setup for continuing an interrupted session: rig, protocol text, observer and language are taken from
+/// its row. Empty if no session was interrupted. Throws text::BadInput for a session older than its protocol
 /// allows, and store::StoreError.
 std::optional<session::Setup> prepare_resume(const ResumeRequest& request, std::ostream& messages);
 

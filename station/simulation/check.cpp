@@ -16,11 +16,12 @@ namespace {
 
 using protocol::Protocol;
 
-// What people need beside what a rehearsal has: reading an instruction, exploring before they decide (a share
-// of the time that the tones last), one setting of a slider.
+// Estimates of the time that people need in addition to a rehearsal: reading an instruction, exploring before
+// a decision (as a share of the duration of the tones), one setting of a slider.
 constexpr double instruction_s = 12, explored_share = 0.5, setting_s = 15;
 
-/// A simulated session: its duration for a person, and the trials of each block, all attempts together.
+/// A simulated session: its duration for a person, and the number of trials in each block, all attempts
+/// together.
 struct Estimate {
   double duration_s = 0;
   std::vector<CheckedBlock> blocks;
@@ -31,7 +32,7 @@ double longest_s(const Protocol& protocol) {
   return protocol.task.duration_s.value_or(protocol.timing.explore_s.value_or(0));
 }
 
-/// The observer of `run --observer sim`, but a slider is set in the time that people take.
+/// The observer of `run --observer sim`, except that setting a slider takes as long as for people.
 Rehearser person(const Protocol& protocol) {
   auto person = rehearser(observer::Observer{observer::Parameters{}});
   person.adjust = [adjust = person.adjust, done_s = std::min(setting_s, longest_s(protocol))](
@@ -43,14 +44,15 @@ Rehearser person(const Protocol& protocol) {
   return person;
 }
 
-/// How long people explore in each trial before they decide, where the task leaves that to them.
+/// How long people explore in each trial before they decide, if the task lets them choose.
 double exploring_s(const Protocol& protocol) {
   const auto& task = protocol.task;
   const bool free = task.kind == protocol::TaskKind::single_interval && !task.foreperiod_s;
   return free ? explored_share * longest_s(protocol) : 0;
 }
 
-/// The breaks inside a block of that many trials; none follows the last.
+/// The total duration of the breaks inside a block of this many trials. There is no break after the last
+/// trial.
 double breaks_s(const protocol::Block& block, std::size_t trials) {
   if (!block.break_after || trials == 0) return 0;
   const auto every = static_cast<std::size_t>(block.break_after->trials);

@@ -3,10 +3,11 @@
 
 namespace turnpoint::system {
 
-/// CLOCK_MONOTONIC in nanoseconds: the station's one clock for events.
+/// CLOCK_MONOTONIC in nanoseconds, the clock of all events in the station.
 std::int64_t monotonic_ns() noexcept;
 
-/// CLOCK_MONOTONIC_RAW minus CLOCK_MONOTONIC now: what time services have added since the start; ns.
+/// CLOCK_MONOTONIC_RAW minus CLOCK_MONOTONIC, in ns: the correction that time services have made since the
+/// machine started.
 std::int64_t raw_minus_monotonic_ns() noexcept;
 
 /// Wall-clock time in ns since 1970: for records only, never for durations.

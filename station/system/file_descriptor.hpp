@@ -5,10 +5,10 @@
 
 namespace turnpoint::system {
 
-/// Owns a descriptor of the kernel and closes it. Move-only.
+/// Owns a kernel descriptor and closes it. Move-only.
 class FileDescriptor {
  public:
-  /// Takes over an open descriptor; a negative number is none.
+  /// Takes ownership of an open descriptor; a negative number means none.
   explicit FileDescriptor(int number = -1) noexcept : number_(number) {}
   FileDescriptor(FileDescriptor&& other) noexcept : number_(other.release()) {}
   FileDescriptor& operator=(FileDescriptor&& other) noexcept {

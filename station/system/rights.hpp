@@ -6,7 +6,7 @@
 
 namespace turnpoint::system {
 
-/// What the operating system granted to the audio thread, for the record and the screen.
+/// The rights that the operating system granted to the audio thread, for the record and the screen.
 struct Rights {
   bool asked = false;     ///< a synchronous stream asks for nothing
   int fifo_priority = 0;  ///< 0: not real time

@@ -21,7 +21,7 @@ void notify_service_manager(std::string_view state) {
   if (address.sun_path[0] == '@') address.sun_path[0] = '\0';  // an abstract name
   const FileDescriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (!socket.is_open()) return;
-  // A manager that does not hear this will restart the station, and its journal says why.
+  // If the manager does not receive this, it will restart the station, and its journal says why.
   [[maybe_unused]] const auto sent = ::sendto(
       socket.get(), state.data(), state.size(), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&address),
       static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + std::strlen(path)));

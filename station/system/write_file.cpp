@@ -46,7 +46,7 @@ FileWriter::FileWriter(const std::string& path, mode_t mode) : path_(destination
     return;
   }
   draft_ = path_ + ".new";
-  ::unlink(draft_.c_str());  // of a writer that was killed, or somebody's link
+  ::unlink(draft_.c_str());  // left by a killed process, or somebody's link
   file_ = FileDescriptor(::open(draft_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
   if (!file_.is_open()) fail(std::exchange(draft_, ""), errno);
 }

@@ -4,7 +4,7 @@
 
 namespace turnpoint::touch {
 
-/// A finger on the surface of the rig, or gone from it.
+/// A finger touches the surface of the rig, or leaves it.
 struct Contact {
   std::int64_t time_ns = 0;
   bool on = false;

@@ -26,7 +26,7 @@ struct TrialSpec {
   std::optional<SliderSpan> slider;  ///< for an adjustment only
   double iti_s = 0, foreperiod_s = 0;
   double deadline_s = 0;
-  bool timeouts_are_data = false;  ///< the deadline belongs to the design (instructions)
+  bool timeouts_are_data = false;  ///< the deadline is part of the design (instructions)
 };
 
 /// The result of a trial, as far as the next trials depend on it.

@@ -82,7 +82,7 @@ TEST_CASE("a touch panel that is unplugged makes the trial void and has its page
   panel->unplug();
   REQUIRE(session.shows(session::PageKind::fault));
   CHECK(session.page().fault == terms::FaultKind::touch_gone);
-  CHECK(session.page().detail == "the touch panel is gone");
+  CHECK(session.page().detail == "the touch panel was disconnected");
   panel.reset();
   panel = std::make_unique<FakeEvdev>(2, path);
   session.runner.bridge().arm();

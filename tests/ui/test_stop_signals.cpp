@@ -101,7 +101,7 @@ TEST_CASE("a session that is told to stop amid a stimulus is closed in its log, 
   REQUIRE(child.ends_within(kPatience_ms));
   CAPTURE(child.said());
   CHECK(child.outcome() == 0);
-  CHECK(child.said().find("interrupted, 2 trials: the program was told to end") != std::string::npos);
+  CHECK(child.said().find("interrupted, 2 trials: the program was asked to end") != std::string::npos);
   const auto sessions = turnpoint::store::list_sessions(folder / "db");
   REQUIRE(sessions.size() == 1);
   CHECK(sessions[0].status == turnpoint::records::SessionStatus::interrupted);

@@ -93,7 +93,7 @@ Item {
             verify(operating.facts.some(fact => fact.label === "Trials" && fact.value.startsWith("10")))
             verify(operating.cues.length > 0)
             compare(operating.mayBegin, true)
-            verify(says(page.item, "What else could be used to answer"))
+            verify(says(page.item, "Unwanted cues"))
 
             compare(operating.live, false)
             verify(says(page.item, "Begin pilot"))

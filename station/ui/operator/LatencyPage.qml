@@ -31,8 +31,8 @@ Rectangle {
         PlainText {
             width: parent.width
             text: root.controller.byButton
-                ? "Hold the button against the fingertip, so that each tap on the dark field also presses it. What is measured is the way in: from the finger to the time stamp of its answer."
-                : "Fix the photodiode on the square at the left, and tap the dark field. What is measured is the way out: from the time stamp of a touch to light."
+                ? "Hold the button against the fingertip, so that each tap on the dark field also presses it. This measures input latency: from the finger to the time stamp of its answer."
+                : "Fix the photodiode on the square at the left, and tap the dark field. This measures display latency: from the time stamp of a touch to light."
             color: look.ink
             font.pixelSize: look.textBody
             wrapMode: Text.Wrap

@@ -193,7 +193,7 @@ Rectangle {
                     width: parent.width
                     spacing: 0.35 * look.unit
                     PlainText {
-                        text: "What else could be used to answer"
+                        text: "Unwanted cues"
                         color: look.action
                         font { pixelSize: look.textBody; weight: Font.Bold }
                     }

@@ -53,7 +53,7 @@ class OperatorController : public QObject {
   Q_PROPERTY(QString database READ database CONSTANT)
 
  public:
-  /// Checks a protocol file on a rig file, on the worker; as simulation::check().
+  /// Checks a protocol file on a rig file, on the worker thread; like simulation::check().
   using Checker = std::function<simulation::Check(const std::string& protocol, const std::string& rig,
                                                   const std::stop_token& stop)>;
 

@@ -54,7 +54,7 @@ class SessionBridge : public QObject, public session::Display {
   /// seen.
   std::int64_t began_ns(int touch_id) const;
 
-  /// A touch has just pressed an answer's button, which the next frame must show.
+  /// A touch has just pressed an answer's button; the next frame must show that.
   void pressed() { emit acknowledged(); }
 
   /// An answer accepted by the touch field: the touch that began at `time_ns` chose the answer `index`.

@@ -97,7 +97,7 @@ void SessionRunner::open_touch() {
     input.time_ns = system::monotonic_ns();
     input.kind = session::InputKind::fault;
     input.fault = session::FaultKind::touch_gone;
-    input.text = "the touch panel is gone";
+    input.text = "the touch panel was disconnected";
     inputs_.push(std::move(input));
   });
   if (!touch_) return bridge_.set_kernel_time({});
@@ -124,7 +124,7 @@ void SessionRunner::ask_to_stop() {
   session::Input input;
   input.time_ns = system::monotonic_ns();
   input.kind = session::InputKind::stop;
-  input.text = "the program was told to end (by a signal, or its window was closed)";
+  input.text = "the program was asked to end (by a signal, or its window was closed)";
   inputs_.push(std::move(input));
 }
 

@@ -36,8 +36,8 @@ class SessionRunner : public QObject {
   /// The window that shows the pages: its touches are stamped, and its late frames counted.
   void watch(QQuickWindow* window);
 
-  /// Begins a session, after the one before has ended. Throws as touch::TouchReader where the rig's touch
-  /// panel is not there.
+  /// Begins a session, after the previous one has ended. Throws the errors of touch::TouchReader if the rig's
+  /// touch panel does not exist.
   void begin(session::Setup setup);
   bool running() const { return thread_.joinable() && !over_; }
   void ask_to_stop();

@@ -69,7 +69,8 @@ session::Summary run_on_screen(setup::RunRequest request, std::optional<session:
   stop_in_order(application, window);
   window.ask(chosen);
   const auto summary = window.run();
-  if (!summary) throw std::runtime_error("it was ended before the session began; nothing was recorded");
+  if (!summary)
+    throw std::runtime_error("the program was closed before a session began; nothing was recorded");
   return *summary;
 }
 
