@@ -13,7 +13,7 @@
 
 namespace turnpoint::physics {
 
-// What a friction edge needs to know beyond the surface.
+// What a friction edge requires in addition to the surface.
 struct FrictionContext {
   FrictionMap friction;
   double displacement_m = 1e-6;  // peak amplitude at the last maximum

@@ -86,7 +86,7 @@ Reference reference(const Solved& s, const Tone& tone, Normalise normalise, doub
   }
   const double weight = normalise == Normalise::none ? tone.amplitude_m : tone.amplitude_m / most;
   const auto phase = unit.mantissa / std::abs(unit.mantissa) * std::polar(1.0, -tone.phase_rad);
-  // A silent tone keeps its shape at the smallest normal size.
+  // A tone of amplitude 0 keeps its shape, at the smallest normal number.
   return {phase, unit.ln_magnitude() - (weight > 0 ? std::log(weight) : -700.0)};
 }
 

@@ -107,7 +107,7 @@ std::vector<FingerLoad> plate_loads(const Surface& surface, double f, const std:
   return all;
 }
 
-// The feature of |value| on an ascending grid: last maximum, then the level beyond it.
+// Position of the edge of |value| on an ascending grid: the last maximum, or the given level beyond it.
 std::optional<double> feature(const std::vector<double>& x, const std::vector<double>& value,
                               const Edge& edge) {
   std::size_t peak = x.size() - 1;
@@ -138,7 +138,8 @@ std::vector<FingerLoad> finger_load(const Surface& surface, double f, const std:
     end = std::max(end, x);
   }
   if (Dispersion(surface).clamped_bending()) return plate_loads(surface, f, x_m, finger);
-  // The apex itself is singular from the drive's side; a hair before it nothing moves any more.
+  // The apex itself is singular for the solution from the drive; just before it the displacement is zero
+  // anyway.
   if (const auto apex = Taper(surface).apex_m()) end = std::min(end, *apex * (1 - 1e-6));
   const Loaded loaded(surface, f, std::max(end, 1e-3 * surface.length_m), finger);
   std::vector<FingerLoad> all;

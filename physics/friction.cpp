@@ -10,7 +10,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// Below this share of the skin contacts the floor is all that is left.
+// If the skin contacts carry less than this share, only the floor remains.
 constexpr double smallest_share = 0.02;
 // Steps of the table that the solution starts from: fine enough for two Newton steps to rounding.
 constexpr int start_steps = 256;

@@ -1,5 +1,6 @@
 #pragma once
-// What may move a boundary: the model's equation, loss, the drive edge's higher modes, the parameters.
+// Effects that can move a boundary: the model's equation, loss, the drive edge's higher modes, the
+// parameters.
 #include <string>
 
 #include "physics/boundary_map.hpp"

@@ -29,7 +29,7 @@ constexpr double plate_shift = 1.2e-3;  // edge position, in cut-off half-widths
 constexpr double plate_slope_shift = 0.15;  // per W'^2
 constexpr double end_shift = 0.15;          // of a clamped end just beyond the turning point, per W'^2
 constexpr double shallow = 6;               // edge shift per share of higher modes, in cut-off half-widths
-constexpr double largest = 2;               // nothing is known beyond this
+constexpr double largest = 2;               // the bound is meaningless beyond this
 
 // Equation of the n-th symmetric transverse mode, n = 1, 2, ...; on a wedge its order is right to the second
 // power of the slope.

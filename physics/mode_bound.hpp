@@ -1,5 +1,6 @@
 #pragma once
-// How far the one-mode field can be from the two-dimensional one, before the latter is solved.
+// Bound for the difference between the one-mode field and the two-dimensional one, without solving the
+// latter.
 #include <optional>
 
 #include "physics/surface.hpp"

@@ -14,7 +14,7 @@ constexpr double finger_width_m = 14e-3;
 constexpr double high_gain = 10;
 constexpr double finger_impedance_Ns_per_m = 55;  // published magnitude; see finger.hpp
 
-// What a strip offers to a point force: two travelling waves of the first mode (membrane), or an infinite
+// Impedance of a strip for a point force: two travelling waves of the first mode (membrane), or an infinite
 // plate (Cremer & Heckl).
 double strip_impedance_Ns_per_m(const Surface& s, double half_width) {
   const double mass = s.density_kg_m3 * s.thickness_m;

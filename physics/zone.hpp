@@ -28,7 +28,7 @@ struct ZoneRequest {
   double boundary_m = 0;
   Edge edge = Edge::turning();
   double friction = 0.6;  // mean over [from_m, boundary_m] of friction averaged over the fingertip
-  int tones = 3;          // at most so many
+  int tones = 3;          // largest number of tones
   ToneBand band;
   double fingertip_m = 10e-3;
 };

@@ -44,7 +44,7 @@ void check_factor_name(TableReader& reader, const std::string& name) {
   if (name.empty()) return;
   if (!std::all_of(name.begin(), name.end(), good) || std::isdigit(static_cast<unsigned char>(name[0])) ||
       name == "abs")
-    reader.problem("name", "\"" + name + "\" cannot stand in arithmetic",
+    reader.problem("name", "\"" + name + "\" cannot be used in arithmetic",
                    "letters, digits and _, not starting with a digit; the unit "
                    "goes at its end: \"offset_mm\"");
 }

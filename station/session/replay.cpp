@@ -39,7 +39,7 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
                     trial.trial_index, what));
   };
   const auto spec = director.next();
-  if (!spec) mismatch("the session would have been over");
+  if (!spec) mismatch("the session would already have ended");
   if (spec->level != trial.level)
     mismatch(fmt::format("level {} would have come, the log holds {}", spec->level.value_or(0),
                          trial.level.value_or(0)));

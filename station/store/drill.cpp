@@ -68,7 +68,7 @@ std::string difference(Database& live, const VerifiedSession& session) {
   if (withdrawn.bind(session.session_id).step()) return "";
   if (!there.bind(session.session_id).step()) return "the database no longer holds it";
   if (session.links == 0 || holds_link(live, session.session_id, session.last_sha256)) return "";
-  return "the database holds other rows of it";
+  return "the database has different rows for it";
 }
 
 }  // namespace

@@ -168,8 +168,8 @@ const Table<BlockStart>& block_table() {
       "block",
       {"session_id", "run_order"},
       {field<&B::block_index>({"block_index", "block_index", "Block in the order run, from 0"}),
-       field<&B::attempt>(
-           {"attempt", "attempt", "How often this block was begun before; rows of earlier attempts stay"}),
+       field<&B::attempt>({"attempt", "attempt",
+                           "How often this block was begun before; rows of earlier attempts are kept"}),
        field<&B::name>({"name", "block_name", "Name of the block"}),
        field<&B::instruction>(
            {"instruction", "instruction", "Instruction in force", "", "speed | accuracy | ... | n/a"}),

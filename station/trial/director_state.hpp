@@ -16,7 +16,7 @@ struct Director::State {
   std::uint64_t seed;
   std::vector<protocol::Block> blocks;
   std::size_t block = 0;
-  int attempt = 0, first_attempt = 0;  ///< attempt at this block; attempt at a block when it is entered
+  int attempt = 0, first_attempt = 0;  ///< this attempt at the block; the first one since the (re)start
   /// number of counted trials of the block: the key of the next one's draws
   int trial = 0;
   int shown = 0, right = 0;

@@ -1,13 +1,14 @@
-// A library for LD_PRELOAD that stands between a program and the calls of the system that concern files, and
-// makes one of them fail. Linux and glibc only; the program must be linked dynamically.
+// A library for LD_PRELOAD that intercepts a program's system calls on files and makes one of them fail.
+// Linux and glibc only; the program must be linked dynamically.
 //
 //   FAULT_UNDER=FOLDER   only calls on files in this folder count (absolute, without links)
-//   FAULT_AT=N           the N-th of them fails, counted from 1; 0 or nothing: none
+//   FAULT_AT=N           the N-th of them fails, counted from 1; 0 or empty: none
 //   FAULT_KIND=KIND      kill: the process is killed before the call, or in the middle of a write
 //                        EIO: this call fails
 //                        ENOSPC: this call and all later ones that need space fail, as on a full disk
-//   FAULT_LOG=FILE       gets a line "N CALL r|w|a PATH" for each call: it reads, needs space, or changes
-//   something else CLOCK_OFFSET_S=S     the wall clock is ahead by so many seconds (negative: behind)
+//   FAULT_LOG=FILE       gets a line "N CALL r|w|a PATH" for each call: r reads, w needs space, a changes
+//                        something else
+//   CLOCK_OFFSET_S=S     the wall clock is ahead by S seconds (negative: behind)
 #include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>

@@ -1,13 +1,11 @@
 // gpio_line hold NAME VALUE       holds a line as an output until killed
-//           watch NAME COUNT      prints the kernel's stamp (ns, CLOCK_MONOTONIC) and direction of so many
-//           edges press FILE MS         pulls a simulated input (its sysfs file) up for so long, with 0 for
-//           0.1 ms; prints
-//                                 "BEFORE AFTER" (ns) for either edge: it happened between these two
+//           watch NAME COUNT      prints kernel stamp (ns, CLOCK_MONOTONIC) and direction of COUNT edges
+//           press FILE MS         pulls a simulated input (its sysfs file) up for MS (0 means 0.1 ms); prints
+//                                 "BEFORE AFTER" (ns) for each edge, which happened between these two times
 //           bounce FILE MS        the same, with a contact that bounces at either end
-//           until-low FILE VALUE  pulls a simulated input up and prints how long (ns) until the line of the
-//           other
-//                                 sysfs file was low
-// By the kernel's own interface, so that the bench does not depend on a version of libgpiod.
+//           until-low FILE VALUE  pulls a simulated input up, and prints how long (ns) it took until the line
+//                                 with the sysfs file VALUE was low
+// Uses the kernel's own interface, so that the bench does not depend on a version of libgpiod.
 #include <fcntl.h>
 #include <linux/gpio.h>
 #include <sys/ioctl.h>

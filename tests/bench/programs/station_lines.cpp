@@ -1,9 +1,8 @@
-// station_lines amplifier URI   the station's amplifier on real lines: armed and enabled, kept alive; a fault
-// is printed
-//                               as "fault STATE REACTION_NS REASON", then cleared, armed and enabled anew
-//                               when it is gone
-//               buttons URI     the station's buttons: "press NAME NS" each
-// Both until killed; "ready" once they are open.
+// station_lines amplifier URI   uses the station's amplifier on real lines: arms, enables and keeps it alive.
+//                               Prints a fault as "fault STATE REACTION_NS REASON"; once its cause is gone,
+//                               clears it, arms and enables again
+//               buttons URI     uses the station's buttons: prints "press NAME NS" for each press
+// Both run until killed, and print "ready" once the lines are open.
 #include <unistd.h>
 
 #include <cstdio>

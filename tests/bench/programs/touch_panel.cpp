@@ -1,8 +1,8 @@
-// touch_panel WIDTH HEIGHT: a multitouch panel by uinput that does what standard input says, a line each:
+// touch_panel WIDTH HEIGHT: a multitouch panel by uinput that obeys commands on standard input, one per line:
 //   tap X Y | down SLOT X Y | move SLOT X Y | up SLOT | sleep MS | mouse DX DY | gone
-// "mouse" moves the pointer of a mouse that is plugged in when it is first moved.
-// Prints "device /dev/input/eventN" once, and "tapped BEFORE AFTER" (ns, CLOCK_MONOTONIC) for taps: the touch
-// was injected between these two.
+// "mouse" moves the pointer of a mouse, which is plugged in at the first move.
+// Prints "device /dev/input/eventN" once, and "tapped BEFORE AFTER" (ns, CLOCK_MONOTONIC) for each tap: the
+// touch was injected between these two times.
 #include <fcntl.h>
 #include <linux/uinput.h>
 #include <sys/ioctl.h>
