@@ -25,7 +25,7 @@ struct MapOptions {
   std::optional<Model> model;               // none: cheapest whose bound is inside `tolerance_m`
   std::optional<double> tolerance_m;        // none: the most exact position there is (`edge` where closed)
   std::optional<FrictionContext> friction;  // required for a friction edge
-  // Frequencies that matter: a table is made for them only. None: all that the surface can present.
+  // Frequencies for which a table is made. Empty: all that the surface can present.
   struct Band {
     double low_Hz, high_Hz;
   };
@@ -57,7 +57,7 @@ class BoundaryMap {
   BoundaryMap(BoundaryMap&&) noexcept;
   BoundaryMap& operator=(BoundaryMap&&) noexcept;
 
-  // Position for a frequency, frequency for a position; none outside what the surface can present.
+  // Position for a frequency, and frequency for a position; empty outside what the surface can present.
   std::optional<double> boundary_m(double frequency_Hz) const noexcept;
   std::optional<double> frequency_Hz(double boundary_m) const noexcept;
 
@@ -72,9 +72,9 @@ class BoundaryMap {
   std::unique_ptr<const State> state_;
 };
 
-// The frequency that puts the edge at a position (to a nanometre), without a table: a handful of solutions,
-// for a map that would be used once. None where the search from the turning point's frequency does not find
-// one; a map may still.
+// The frequency that puts the edge at a position (to a nanometre), without a table. It needs only a few
+// solutions, which is cheaper than a map that would be used once. Empty if the search from the turning
+// point's frequency finds none; a map may still find one.
 std::optional<double> solve_frequency_Hz(const Surface& surface, const MapOptions& options,
                                          double boundary_m);
 

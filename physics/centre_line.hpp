@@ -23,7 +23,7 @@ class CentreLine {
                         double ln_reference, std::span<std::complex<double>> v,
                         std::span<double> ln_amplitude) const;
   virtual std::optional<double> last_peak_m() const = 0;
-  // Outermost point at `level` of the last maximum; none without one.
+  // Outermost point at `level` of the last maximum; empty if there is none.
   virtual std::optional<double> level_m(double level) const = 0;
   // How much a division by v(0) amplifies errors: the envelope of the standing wave at the drive edge over
   // |v(0)|.
@@ -38,7 +38,7 @@ enum class Losses { kept, left_out };
 std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double frequency_Hz, Model model,
                                              Losses losses = Losses::kept);
 
-// Position of the local cut-off of the first transverse mode; none when outside [0, length_m].
+// Position of the local cut-off of the first transverse mode; empty if outside [0, length_m].
 std::optional<double> turning_point_m(const Surface& surface, double frequency_Hz);
 
 // The marched equation of `seed` or `mode`.
@@ -51,7 +51,7 @@ MarchEquation best_equation(const Surface& surface, double frequency_Hz, Losses 
 // A centre line that solves a given marched equation.
 std::unique_ptr<CentreLine> make_marched_line(const Surface& surface, const MarchEquation& equation);
 
-// Zero of the lossless mode's v(0) nearest to a frequency; none when there is none above zero frequency.
+// The zero of the lossless mode's v(0) nearest to a frequency; empty if there is none above zero frequency.
 std::optional<double> nearest_resonance_Hz(const Surface& surface, double frequency_Hz);
 
 // All such zeros in [low_Hz, high_Hz], ascending.

@@ -1,5 +1,5 @@
 #pragma once
-// What is meant by "the boundary" of a smooth zone.
+// Definitions of "the boundary" of a smooth zone.
 #include <string>
 #include <string_view>
 

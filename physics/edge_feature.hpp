@@ -17,7 +17,7 @@ enum class Wave {
 std::unique_ptr<CentreLine> make_feature_line(const Surface& surface, double frequency_Hz, Model model,
                                               Wave wave, Losses losses);
 
-// The edge's position on a solved centre line; none when it does not exist on the surface.
+// The edge's position on a solved centre line; empty if it does not exist on the surface.
 std::optional<double> edge_position_m(const Surface& surface, double frequency_Hz, const CentreLine& line,
                                       const MapOptions& options);
 

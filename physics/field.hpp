@@ -27,7 +27,7 @@ Normalise parse_normalise(std::string_view text);
 // ln|v| at an exact zero of v (the clamped end): the lowest finite double, never -infinity.
 inline constexpr double ln_zero = std::numeric_limits<double>::lowest();
 
-// What one tone does on a surface, by one model. Positions are none where they do not exist on the surface.
+// The behaviour of one tone on a surface, by one model. Positions that do not exist on the surface are empty.
 struct ToneInfo {
   double frequency_Hz = 0;
   std::optional<double> turning_point_m;  // local cut-off of the first transverse mode

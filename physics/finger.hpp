@@ -1,5 +1,5 @@
 #pragma once
-// What a finger does to the surface's vibration: a point impedance on the first transverse mode.
+// The effect of a finger on the surface's vibration: a point impedance on the first transverse mode.
 #include <complex>
 #include <optional>
 #include <vector>
@@ -21,7 +21,7 @@ struct FingerLoad {
   double x_m = 0;
   std::complex<double> unloaded;        // v(x) of the free surface, v(0) = 1
   std::complex<double> loaded;          // v(x) under the finger, drive edge held: v / (1 + i omega Z G(x, x))
-  double strip_impedance_Ns_per_m = 0;  // |1 / (omega G(x, x))|: what the surface offers at x
+  double strip_impedance_Ns_per_m = 0;  // |1 / (omega G(x, x))|: the impedance of the surface at x
 };
 
 // Loaded displacement under a finger at each position, by `mode` with loss. G is the response at x to a unit
@@ -31,8 +31,9 @@ struct FingerLoad {
 std::vector<FingerLoad> finger_load(const Surface& surface, double frequency_Hz,
                                     const std::vector<double>& x_m, const Finger& finger);
 
-// How far the edge that a moving finger feels lies from the free surface's (m, positive towards the tip): the
-// same feature of |loaded| against position. None when either has no such edge. Percent and peak edges only.
+// Distance of the edge that a moving finger feels from that of the free surface (m, positive towards the
+// tip): the same feature of |loaded| as a function of position. Empty if either has no such edge. Percent and
+// peak edges only.
 std::optional<double> finger_edge_shift_m(const Surface& surface, double frequency_Hz, const Edge& edge,
                                           const Finger& finger);
 

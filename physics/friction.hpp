@@ -43,7 +43,7 @@ class FrictionMap {
 
   // Relative friction in (0, 1] for a peak displacement >= 0.
   double relative_friction(double displacement_m) const;
-  // Inverse; none below what the map reaches. friction = 1 gives 0.
+  // Inverse; empty for friction below what the map reaches. friction = 1 gives 0.
   std::optional<double> displacement_m(double relative_friction) const;
   // Standard deviation of relative_friction (0 for a model without data).
   double sd(double displacement_m) const;
@@ -58,7 +58,7 @@ class FrictionMap {
     MonotoneCubic friction;
     MonotoneCubic sd;
   };
-  // Load sharing with what its solution starts from: ln of the contacts' share at equal steps of
+  // Load sharing with the start values of its solution: ln of the contacts' share at equal steps of
   // displacement.
   struct Sharing {
     LoadSharing model;

@@ -1,5 +1,5 @@
 #pragma once
-// What a solution by elements begins with: taper, equation, basis and the elements themselves.
+// The starting point of a solution by elements: taper, equation, basis and the elements themselves.
 #include <vector>
 
 #include "physics/modal_elements.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// Model only what a scene requires: the cheapest rung whose error bound is inside the tolerance.
+// Chooses the cheapest model whose error bound meets the tolerance of a scene.
 #include <optional>
 #include <span>
 #include <string>
@@ -13,15 +13,16 @@
 
 namespace turnpoint::physics {
 
-// What a scene needs; what is absent is not asked for.
+// The accuracy that a scene requires. An empty value means no requirement.
 struct Tolerance {
   std::optional<double> boundary_m;
   std::optional<double> amplitude;  // of |v|, relative to its largest value
   std::optional<double> level_dB;   // of the last maximum
 };
 
-// What a model promises for a set of tones before it is evaluated. The bounds are against the two-dimensional
-// field for membranes and simply supported plates, against the one-mode equation for clamped plates.
+// The error bounds of a model for a set of tones, before it is evaluated. They are relative to the
+// two-dimensional field for membranes and simply supported plates, and to the one-mode equation for clamped
+// plates.
 struct RungEstimate {
   Model model = Model::mode;
   bool usable = true;           // false: it cannot answer this at all (reason says why)

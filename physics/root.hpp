@@ -40,8 +40,8 @@ Bracket bisect(Bracket bracket, IsAbove&& is_above) {
   return bisect(bracket, is_above, [](const Bracket&) { return false; });
 }
 
-// What a Newton step starts from: the function's value at x, and where its tangent there meets 0 (anywhere
-// outside the bracket, or NaN, where it has none).
+// The input of a Newton step: the function's value at x, and where its tangent there meets 0 (anywhere
+// outside the bracket, or NaN, if it does not).
 struct Tangent {
   double f, meets_0;
 };

@@ -48,8 +48,8 @@ struct TabulatedTaper {
 
 using TaperForm = std::variant<LinearTaper, ExponentialTaper, TabulatedTaper>;
 
-// Standard deviations of the surface's parameters (one sigma, zero: taken as exact); they become the
-// uncertainty of a boundary, which is kept apart from the error of a model.
+// Standard deviations of the surface's parameters (one sigma; zero: exact). They give the uncertainty of a
+// boundary, which is kept separate from the error of a model.
 struct ParameterSd {
   double density_kg_m3 = 0;
   double tension_Pa = 0;
@@ -90,7 +90,7 @@ struct Material {
   double yield_strength_Pa;  // of a strong commercial temper (handbook value, 10 % or so)
 };
 
-// Looks up a named material; none when unknown.
+// Looks up a named material; empty if unknown.
 std::optional<Material> find_material(std::string_view name);
 
 // Throws std::invalid_argument naming the first quantity outside its physical range and what is allowed.

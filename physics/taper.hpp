@@ -1,5 +1,5 @@
 #pragma once
-// The taper as a function, with what the solvers need of it.
+// The taper as a function, with the derived quantities that the solvers need.
 #include <optional>
 #include <vector>
 
@@ -15,9 +15,9 @@ class Taper {
 
   double half_width_m(double x_m) const;
   double slope(double x_m) const;  // dW/dx, negative
-  // Where the half-width is W; none when outside [0, length_m].
+  // Position at which the half-width is W; empty if outside [0, length_m].
   std::optional<double> position_m(double half_width_m) const;
-  // The same for a linear or exponential taper continued beyond the surface; none for a table's outside.
+  // The same for a linear or exponential taper continued beyond the surface; empty outside a table.
   std::optional<double> position_continued_m(double half_width_m) const;
   double length_m() const { return length_m_; }
   // Where the sides meet, for a linear taper.

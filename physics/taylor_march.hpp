@@ -49,14 +49,14 @@ class TaylorMarch {
   void evaluate(std::span<const double> x_m, std::complex<double> phase_reference, double ln_reference,
                 std::span<std::complex<double>> v, std::span<double> ln_amplitude) const;
 
-  // Outermost maximum of |v| inside the surface; none when |v| rises all the way to the drive edge, or when
-  // the maximum would lie beyond it.
+  // Outermost maximum of |v| inside the surface; empty if |v| rises all the way to the drive edge, or if the
+  // maximum would be beyond it.
   std::optional<double> last_peak_m() const;
-  // Outermost point at which |v| is `level` of its last maximum, 0 < level < 1; none without one.
+  // Outermost point at which |v| is `level` of its last maximum, 0 < level < 1; empty if there is none.
   std::optional<double> level_m(double level) const;
   // Zeros of a real solution strictly between the drive edge and the tip.
   int zeros() const;
-  // Number of Taylor steps taken: what the cost is proportional to.
+  // Number of Taylor steps, to which the cost is proportional.
   int steps() const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What a plan, a map or a field should say once to its reader.
+// Warnings that a plan, a map or a field should show once.
 #include <span>
 #include <string>
 #include <vector>
@@ -22,9 +22,9 @@ std::vector<Warning> surface_warnings(const Surface& surface);
 // Below, a tone may be heard: the lower end of the third-octave band around 25 kHz.
 inline constexpr double audible_limit_Hz = 22400;
 
-// What one tone does on this surface: below 22.4 kHz, turning point outside the surface, strip narrower than
-// a fingertip (14 mm) at the turning point, last-lobe gain above 10, a finger heavier than the strip. Codes
-// are not repeated per tone.
+// Warnings about single tones: below 22.4 kHz, turning point outside the surface, strip narrower than a
+// fingertip (14 mm) at the turning point, last-lobe gain above 10, a finger heavier than the strip. Codes are
+// not repeated per tone.
 std::vector<Warning> tone_warnings(const Surface& surface, std::span<const Tone> tones);
 
 }  // namespace turnpoint::physics

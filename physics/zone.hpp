@@ -1,5 +1,5 @@
 #pragma once
-// Inverse design: tones that give a wanted zone of friction, or a wanted profile of amplitude.
+// Inverse design: tones that give a desired zone of friction, or a desired profile of amplitude.
 #include <optional>
 #include <span>
 #include <string>
@@ -35,13 +35,13 @@ struct ZoneRequest {
 
 struct ZoneDesign {
   std::vector<Tone> tones;  // amplitudes at the drive edge, phases for a low crest factor; highest first
-  double boundary_m = 0;    // reached, by the edge asked for
+  double boundary_m = 0;    // actual boundary, by the requested edge
   double friction = 0;      // reached mean
   double residual = 0;      // rms of (friction - mean) over the zone, fingertip averaged
   double node_fill = 0;     // minimum over mean of the summed squared amplitude in the zone
   double peak_displacement_m = 0;  // largest amplitude on the surface, tones summed in phase
   double crest_factor = 0;         // of the drive waveform
-  std::string reason;              // how the tones were placed, what limits them
+  std::string reason;              // how the tones were placed, and what limits them
   std::vector<Warning> warnings;
 };
 
@@ -51,12 +51,12 @@ ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, cons
 
 struct ProfilePoint {
   double x_m = 0;
-  double amplitude_m = 0;  // wanted root of summed squares
+  double amplitude_m = 0;  // desired root of summed squares
 };
 
 struct ProfileDesign {
   std::vector<Tone> tones;
-  double residual = 0;     // rms of (reached - wanted) squared amplitude over rms of wanted
+  double residual = 0;     // rms of (actual - desired) squared amplitude over rms of the desired one
   bool reachable = false;  // residual at most 0.25
   std::string verdict;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// The working state of a zone design: tones, their shapes on a grid, and what a fingertip feels of them.
+// The working state of a zone design: tones, their shapes on a grid, and the friction that a fingertip feels.
 #include <optional>
 #include <vector>
 
@@ -7,8 +7,7 @@
 
 namespace turnpoint::physics {
 
-// Squared amplitude of one tone on a grid, its last maximum set to one, with what that takes at the drive
-// edge.
+// Squared amplitude of one tone on a grid with its last maximum set to one, and the drive that this requires.
 struct ToneShape {
   double frequency_Hz = 0;
   double drive_gain = 1;  // |v(0)| at unit last maximum
@@ -25,9 +24,10 @@ class ZoneProfile {
   double highest_Hz() const { return shapes_.front().frequency_Hz; }
   // Moves all tones by one frequency difference, lower ones not beyond the band, and recomputes their shapes.
   void shift_to(double highest_Hz);
-  // Sets the overall level so that mean friction over the zone is the wanted one; throws std::domain_error.
+  // Sets the overall level so that mean friction over the zone has the desired value; throws
+  // std::domain_error.
   void scale_to_friction();
-  // The profile's own edge; none when it has none.
+  // The profile's own edge; empty if it has none.
   std::optional<double> edge_m() const;
   double edge_slope_m_per_Hz() const;
   std::vector<Tone> tones() const;
