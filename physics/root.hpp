@@ -70,7 +70,7 @@ struct Chord {
   double meets_0() const { return left + (right - left) * f_left / (f_left - f_right); }
 };
 
-// How false position is kept from creeping towards one end.
+// How to keep false position from converging slowly from one end only.
 struct Creeping {
   int halve_every;            // each so many-th step goes to the middle
   bool halve_values = false;  // Illinois: an end that stays a second time counts half its value
