@@ -43,7 +43,7 @@ bool enters(const std::vector<Action>& actions, Phase phase) {
 }
 
 /// Starts at 0 and advances the machine to the first frame of the exploration at 500 ms.
-Machine exploring(const Plan& plan = exploration()) {
+Machine exploring(const Timing& plan = exploration()) {
   Machine machine(plan);
   machine.start(0);
   machine.handle({500 * ms, EventKind::onset, 0});
@@ -339,7 +339,7 @@ struct Drive {
 };
 
 /// The rules that every finished trial obeys, whatever happened in it. Returns the one that is broken.
-std::string broken_invariant(const Machine& machine, const Plan& plan, const Drive& drive, bool hurt) {
+std::string broken_invariant(const Machine& machine, const Timing& plan, const Drive& drive, bool hurt) {
   const auto& result = machine.result();
   if (!machine.done()) return "a trial that does not end";
   const bool answered = result.outcome == Outcome::answered;
