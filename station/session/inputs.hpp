@@ -7,10 +7,13 @@
 #include <optional>
 #include <string>
 
-#include "station/session/fault.hpp"
+#include "station/terms/fault.hpp"
 #include "station/trial/machine.hpp"
 
 namespace turnpoint::session {
+
+using terms::Fault;
+using terms::FaultKind;
 
 enum class InputKind {
   answer,      ///< value = index of the chosen answer

@@ -3,9 +3,11 @@
 #include <string>
 #include <vector>
 
-#include "station/session/fault.hpp"
+#include "station/terms/fault.hpp"
 
 namespace turnpoint::session {
+
+using terms::FaultKind;
 
 /// The content of the participant's screen. The session decides it, a display only draws it.
 enum class PageKind {

@@ -1,8 +1,8 @@
 #include "station/session/pages.hpp"
 
 #include "station/scene/planner.hpp"
-#include "station/session/words.hpp"
 #include "station/text/number.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
 
@@ -74,7 +74,7 @@ Page Pages::blank(PageKind kind, const protocol::Block* block, const trial::Dire
 
 Page Pages::instructions(const protocol::Block& block, const trial::Director& director) const {
   auto page = blank(PageKind::instructions, &block, &director);
-  page.title = word(block.practice ? Word::practice : Word::get_ready, setup_.language);
+  page.title = texts::text(block.practice ? "practice" : "get_ready", setup_.language);
   const auto found = setup_.protocol.instructions.find(page.instruction);
   if (found != setup_.protocol.instructions.end()) page.text = text(found->second.text);
   const auto question = text(setup_.protocol.task.question);
@@ -97,11 +97,11 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
     page.answers.push_back({choice.id, text(choice.label)});
   if (phase == Phase::feedback) {
     page.correct = result.correct;
-    page.text = result.correct ? word(*result.correct ? Word::right : Word::wrong, setup_.language) : "";
+    page.text = result.correct ? texts::text(*result.correct ? "right" : "wrong", setup_.language) : "";
   }
   if (phase == Phase::late) {
     const bool early = result.outcome == terms::Outcome::anticipation;
-    page.text = word(early ? Word::too_early : Word::too_late, setup_.language);
+    page.text = texts::text(early ? "too_early" : "too_late", setup_.language);
     const auto found = setup_.protocol.instructions.find(page.instruction);
     if (!early && found != setup_.protocol.instructions.end() && !found->second.late_message.empty())
       page.text = text(found->second.late_message);
@@ -119,22 +119,22 @@ void Pages::add_slider(Page& page, const trial::SliderSpan& span, double setting
 
 Page Pages::rest(const protocol::Block& block, double min_s, const trial::Director& director) const {
   auto page = blank(PageKind::rest, &block, &director);
-  page.title = word(Word::rest, setup_.language);
-  page.text = word(Word::rest_text, setup_.language);
+  page.title = texts::text("rest", setup_.language);
+  page.text = texts::text("rest_text", setup_.language);
   page.remaining_s = min_s;
   return page;
 }
 
 Page Pages::practice_again(const protocol::Block& block, const trial::Director& director) const {
   auto page = instructions(block, director);
-  page.title = word(Word::practice_again, setup_.language);
+  page.title = texts::text("practice_again", setup_.language);
   return page;
 }
 
 Page Pages::fault(FaultKind kind, const std::string& detail, const trial::Director& director) const {
   auto page = blank(PageKind::fault, nullptr, &director);
-  const auto text = fault_text(kind, setup_.language);
-  page.title = word(Word::fault, setup_.language);
+  const auto text = texts::fault_text(kind, setup_.language);
+  page.title = texts::text("please_wait", setup_.language);
   page.fault = kind;
   page.text = text.happened;
   page.safe = text.safe;
@@ -145,14 +145,14 @@ Page Pages::fault(FaultKind kind, const std::string& detail, const trial::Direct
 
 Page Pages::paused(const trial::Director& director) const {
   auto page = blank(PageKind::paused, nullptr, &director);
-  page.title = word(Word::paused, setup_.language);
+  page.title = texts::text("paused", setup_.language);
   return page;
 }
 
 Page Pages::end(const Summary& summary, const trial::Director& director) const {
   auto page = blank(PageKind::end, nullptr, &director);
   const bool whole = summary.status == records::SessionStatus::completed;
-  page.title = word(whole ? Word::thanks : Word::thanks_early, setup_.language);
+  page.title = texts::text(whole ? "thanks" : "thanks_early", setup_.language);
   // until now the total was only an estimate if a procedure is adaptive
   if (whole) page.trials_total = page.trials_done;
   page.summary = {{"Trials", std::to_string(summary.trials)},

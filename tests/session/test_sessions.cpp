@@ -254,23 +254,6 @@ TEST_CASE("a monitor is told of every trial before and after, and changes none",
   }
 }
 
-TEST_CASE("every fault says what happened, what is safe and what to do in each language", "[session]") {
-  using session::FaultKind;
-  std::set<std::string> pages;
-  for (const auto kind : terms::fault_kinds)
-    for (const auto* language : {"en", "de", "ja"}) {
-      const auto text = session::fault_text(kind, language);
-      INFO(session::name(kind) << " " << language);
-      CHECK_FALSE(text.happened.empty());
-      CHECK_FALSE(text.safe.empty());
-      CHECK_FALSE(text.to_do.empty());
-      if (std::string(language) != "en") CHECK(text.happened != session::fault_text(kind, "en").happened);
-      CHECK(pages.insert(text.happened).second);  // no two kinds share a page
-    }
-  CHECK(session::fault_text(FaultKind::amplifier, "fi").safe ==
-        session::fault_text(FaultKind::amplifier, "en").safe);
-}
-
 TEST_CASE("the response device's latency and the consent form are stored, and no time is corrected",
           "[session]") {
   const Folder folder;

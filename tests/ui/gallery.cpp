@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "station/session/fault.hpp"
-#include "station/session/words.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::ui {
 
@@ -119,8 +118,8 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
   };
   for (const auto& [kind, detail] : faults) {
     Page page = base(words, PageKind::fault);
-    const auto text = session::fault_text(kind, words.language);
-    page.title = session::word(session::Word::fault, words.language);
+    const auto text = texts::fault_text(kind, words.language);
+    page.title = texts::text("please_wait", words.language);
     page.fault = kind;
     page.text = text.happened;
     page.safe = text.safe;

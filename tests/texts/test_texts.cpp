@@ -1,0 +1,108 @@
+// The catalogues of what the station says, one file a language.
+#include <filesystem>
+#include <regex>
+#include <set>
+#include <stdexcept>
+
+#include "station/terms/fault.hpp"
+#include "station/text/toml.hpp"
+#include "station/texts/texts.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+std::set<std::string> keys_of(const std::string& language) {
+  std::set<std::string> keys;
+  for (const auto& [key, said] : texts::catalogue(language)) keys.insert(key);
+  return keys;
+}
+
+std::multiset<std::string> places_in(const std::string& said) {
+  static const std::regex place("%[0-9]");
+  return {std::sregex_token_iterator(said.begin(), said.end(), place), std::sregex_token_iterator()};
+}
+
+/// All quoted words in the station's sources, and those that are given to text().
+struct Quoted {
+  std::set<std::string> words, asked_for;
+};
+
+Quoted quoted() {
+  static const std::regex word("\"([a-z_.]+)\""), use("\\btext\\(\\s*\"([a-z_.]+)\"");
+  Quoted all;
+  const auto add = [](const std::regex& what, const std::string& source, std::set<std::string>& to) {
+    for (std::sregex_iterator found(source.begin(), source.end(), what), end; found != end; ++found)
+      to.insert((*found)[1]);
+  };
+  for (const auto& entry :
+       std::filesystem::recursive_directory_iterator(std::string(TURNPOINT_SOURCE_DIR) + "/station")) {
+    if (entry.path().extension() != ".cpp" && entry.path().extension() != ".qml") continue;
+    const auto source = text::read_file(entry.path().string());
+    add(word, source, all.words), add(use, source, all.asked_for);
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("every language has every text, with the same places for numbers and names", "[texts]") {
+  REQUIRE(texts::languages() == std::vector<std::string>{"de", "en", "ja"});
+  for (const auto& language : texts::languages()) {
+    INFO(language);
+    CHECK(keys_of(language) == keys_of("en"));
+    for (const auto& [key, said] : texts::catalogue(language)) {
+      INFO(key);
+      CHECK_FALSE(said.empty());
+      CHECK(places_in(said) == places_in(texts::text(key, "en")));
+    }
+  }
+}
+
+TEST_CASE("every text is used, and every text that is asked for exists", "[texts]") {
+  const auto source = quoted();
+  const auto keys = keys_of("en");
+  CHECK(source.asked_for.size() > 40);
+  for (const auto& key : source.asked_for) {
+    INFO(key);
+    CHECK(keys.count(key) == 1);
+  }
+  std::set<std::string> of_faults{"fault.safe"};
+  for (const auto kind : terms::fault_kinds)
+    for (const char* part : {".happened", ".safe", ".to_do"})
+      of_faults.insert(std::string("fault.") + terms::name(kind) + part);
+  for (const auto& key : keys) {
+    INFO(key);
+    CHECK((source.words.count(key) == 1 || of_faults.count(key) == 1));
+  }
+  for (const auto kind : terms::fault_kinds) {
+    INFO(terms::name(kind));
+    CHECK(keys.count(std::string("fault.") + terms::name(kind) + ".happened") == 1);
+    CHECK(keys.count(std::string("fault.") + terms::name(kind) + ".to_do") == 1);
+  }
+}
+
+TEST_CASE(
+    "a region's language is that language, an unknown one is English, an unknown key is a mistake of ours",
+    "[texts]") {
+  CHECK(texts::text("proceed", "de-CH") == "Weiter");
+  CHECK(texts::text("proceed", "fi") == "Continue");
+  CHECK_THROWS_AS(texts::text("no_such_key", "en"), std::logic_error);
+}
+
+TEST_CASE("every fault says what happened, what is safe and what to do in each language", "[texts]") {
+  std::set<std::string> pages;
+  for (const auto kind : terms::fault_kinds)
+    for (const auto* language : {"en", "de", "ja"}) {
+      const auto text = texts::fault_text(kind, language);
+      INFO(terms::name(kind) << " " << language);
+      CHECK_FALSE(text.happened.empty());
+      CHECK_FALSE(text.safe.empty());
+      CHECK_FALSE(text.to_do.empty());
+      if (std::string(language) != "en") CHECK(text.happened != texts::fault_text(kind, "en").happened);
+      CHECK(pages.insert(text.happened).second);  // no two kinds share a page
+    }
+  CHECK(texts::fault_text(terms::FaultKind::amplifier, "fi").safe ==
+        texts::fault_text(terms::FaultKind::amplifier, "en").safe);
+}
