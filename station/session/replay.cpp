@@ -8,6 +8,7 @@
 #include <string>
 
 #include "station/trial/question.hpp"
+#include "station/trial/rows.hpp"
 
 namespace turnpoint::session {
 
@@ -43,6 +44,9 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
   if (spec->level != trial.level)
     mismatch(fmt::format("level {} would have come, the log holds {}", spec->level.value_or(0),
                          trial.level.value_or(0)));
+  const auto again = trial::row_of(*spec, protocol, trial.trial_index);
+  if (again.factors != trial.factors || again.correct_response != trial.correct_response)
+    mismatch("another combination of factors or another right answer would have come");
   trial::TrialEnd end;
   end.outcome = trial.outcome;
   end.correct = trial.correct;

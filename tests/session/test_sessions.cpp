@@ -1,4 +1,5 @@
 #include <unistd.h>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -219,6 +220,26 @@ TEST_CASE("a log that belongs to another protocol text is not continued", "[sess
   REQUIRE(resumed.has_value());
   for (auto& value : resumed->protocol.procedures.front().values) value *= 0.5;
   CHECK_THROWS_AS(session::run(*resumed, nullptr, inputs), std::runtime_error);
+}
+
+TEST_CASE("a log whose factors were combined in another way is not continued", "[session]") {
+  // The levels of a balanced factor in another order: the same staircase, other marks.
+  const Folder folder;
+  Cut cut(60);
+  session::Inputs inputs;
+  CHECK_THROWS(
+      session::run(app::prepare(request_for("boundary-constant", folder / "a.sqlite")), &cut, inputs));
+  std::ostringstream messages;
+  auto resumed = app::prepare_resume({folder / "a.sqlite", "", "resume", true}, messages);
+  REQUIRE(resumed.has_value());
+  for (auto& factor : resumed->protocol.factors) std::reverse(factor.levels.begin(), factor.levels.end());
+  std::string refused;
+  try {
+    session::run(*resumed, nullptr, inputs);
+  } catch (const std::runtime_error& error) {
+    refused = error.what();
+  }
+  CHECK(refused.find("another combination of factors") != std::string::npos);
 }
 
 TEST_CASE("bad requests are refused all at once, and nothing is written", "[session]") {
