@@ -228,9 +228,9 @@ TEST_CASE("a log whose factors were combined in another way is not continued", "
   Cut cut(60);
   session::Inputs inputs;
   CHECK_THROWS(
-      session::run(app::prepare(request_for("boundary-constant", folder / "a.sqlite")), &cut, inputs));
+      session::run(setup::prepare(request_for("boundary-constant", folder / "a.sqlite")), &cut, inputs));
   std::ostringstream messages;
-  auto resumed = app::prepare_resume({folder / "a.sqlite", "", "resume", true}, messages);
+  auto resumed = setup::prepare_resume({folder / "a.sqlite", "", "resume", true}, messages);
   REQUIRE(resumed.has_value());
   for (auto& factor : resumed->protocol.factors) std::reverse(factor.levels.begin(), factor.levels.end());
   std::string refused;

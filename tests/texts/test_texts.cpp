@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "station/terms/fault.hpp"
-#include "station/text/toml.hpp"
+#include "station/system/read_file.hpp"
 #include "station/texts/texts.hpp"
 #include "tests/support/catch.hpp"
 
@@ -39,7 +39,7 @@ Quoted quoted() {
   for (const auto& entry :
        std::filesystem::recursive_directory_iterator(std::string(TURNPOINT_SOURCE_DIR) + "/station")) {
     if (entry.path().extension() != ".cpp" && entry.path().extension() != ".qml") continue;
-    const auto source = text::read_file(entry.path().string());
+    const auto source = system::read_file(entry.path().string());
     add(word, source, all.words), add(use, source, all.asked_for);
   }
   return all;
