@@ -130,7 +130,7 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
     const auto armed = {FaultKind::disarmed,  FaultKind::limits,          FaultKind::touch_gone,
                         FaultKind::disk_full, FaultKind::stimulus_missed, FaultKind::other};
     if (std::find(armed.begin(), armed.end(), kind) == armed.end()) page.amplifier = "faulted";
-    all.push_back({std::string("fault-") + session::name(kind), page});
+    all.push_back({std::string("fault-") + terms::name(kind), page});
   }
 }
 

@@ -74,7 +74,7 @@ void RealSession::find(const QString& fault) {
   input.kind = session::InputKind::fault;
   input.text = "found by a test";
   for (const auto kind : {FaultKind::converter_gone, FaultKind::touch_gone, FaultKind::stimulus_missed})
-    if (fault == session::name(kind)) input.fault = kind;
+    if (fault == terms::name(kind)) input.fault = kind;
   inputs_.push(std::move(input));
 }
 
