@@ -1,4 +1,5 @@
 import QtQuick
+import Turnpoint
 
 // The station's own texts from the catalogue of this language; the protocol brings its own. An unsupported
 // language falls back to English.
