@@ -15,7 +15,7 @@ namespace {
 
 using std::numbers::pi;
 
-// `seed` and `mode`: the marched equation.
+// The centre line of the models `seed` and `mode`: integrates their equation step by step along the strip.
 class MarchedLine final : public CentreLine {
  public:
   MarchedLine(const Taper& taper, const MarchEquation& equation) : march_(taper, equation) {}

@@ -46,7 +46,7 @@ RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model 
 struct PlanChoice {
   Model model = Model::mode;
   RungEstimate bound;  // of the chosen rung
-  bool inside = true;  // false: no rung is inside the tolerance, this is the best
+  bool inside = true;  // false: no model meets the tolerance; this one comes closest
   std::string reason;  // one sentence, with numbers
   std::vector<RungEstimate> considered;
 };

@@ -76,8 +76,9 @@ double plate_step_Hz(const Surface& surface, double f) {
   return 0.5 * f * pi / (wavenumber_per_m(surface, f) * std::max(reach, 0.05 * surface.length_m));
 }
 
-// Zero between two frequencies of responses of unlike sign. The response crosses zero about like a cosine of
-// size 1 and many periods, so the relative error of the frequency is below the size of the response.
+// Finds the zero between two frequencies whose responses have opposite signs. Near the zero the response
+// behaves roughly like a cosine of amplitude 1 with many periods, so the relative error of the frequency is
+// smaller than the magnitude of the response.
 double plate_zero(const Surface& surface, const Chord& chord) {
   return false_position(
       chord, [&](double f) { return plate_response(surface, f).value_or(chord.f_left); }, {8, true}, 1e-9,

@@ -19,7 +19,7 @@ struct Warning {
 // Tension above the material's yield strength; bending that matters while it is off.
 std::vector<Warning> surface_warnings(const Surface& surface);
 
-// Below, a tone may be heard: the lower end of the third-octave band around 25 kHz.
+// A tone below this frequency may be audible: the lower edge of the third-octave band centred on 25 kHz.
 inline constexpr double audible_limit_Hz = 22400;
 
 // Warnings about single tones: below 22.4 kHz, turning point outside the surface, strip narrower than a

@@ -35,8 +35,8 @@ class EngineCore {
   void pass(std::int64_t frame, std::int64_t frames) noexcept;
   /// Everything before `frame` has been played, except what was reported as lost before this call.
   void heard(std::int64_t frame) noexcept { atomics_.heard.store(frame); }
-  /// Reports lost frames by this event. The next frame to render is `next_frame`, at or after the end of what
-  /// was rendered.
+  /// Skips lost frames and sends the event that reports them. Rendering continues at `next_frame`, which must
+  /// not lie before the end of what has been rendered.
   void lose(const Event& event, std::int64_t next_frame) noexcept;
   /// Reports and counts an event of the output.
   void report(const Event& event) noexcept;

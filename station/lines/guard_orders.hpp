@@ -53,7 +53,7 @@ class GuardOrders {
   void scheduler_point() const noexcept;
 
   std::function<void()> scheduler_point_;
-  std::mutex asking_;  ///< among ordinary threads only
+  std::mutex asking_;  ///< one ordinary thread asks at a time; the guard never takes it
   std::atomic<Ask> ask_{Ask::nothing};
   std::atomic<std::uint32_t> off_{0}, trips_{0};
   std::atomic<std::uint32_t> posted_{0}, handled_{0};

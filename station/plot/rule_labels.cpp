@@ -102,8 +102,7 @@ std::vector<RuleLabel> places_beside(const Rule& rule, const Frame& frame) {
       places.push_back(label_at(rule, {x - kBeside, base}, Anchor::end));
     }
   }
-  // The label must be inside the frame. Only for a rule at the very top, it may extend above by what a line
-  // of text needs.
+  // The label must be inside the frame; it may reach 1 px above its top.
   std::erase_if(places, [&](const RuleLabel& place) {
     return place.box.left < frame.x || place.box.right > right || place.box.top < frame.y - 1 ||
            place.box.bottom > bottom;

@@ -189,8 +189,9 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
   }
 }
 
-// Neighbouring combinations are similar, and a planner caches its maps. So two threads take one half each,
-// after the first combination has made the maps that all need.
+// Neighbouring combinations are similar, and a planner caches its maps. So the first combination is planned
+// alone, which fills the cache; two threads then plan half of the rest each, with their own copy of the
+// planner.
 std::vector<Answer> plan_all(const Protocol& protocol, const rig::Rig& rig,
                              const std::vector<Combination>& combinations, const std::stop_token& stop) {
   std::vector<Answer> answers(combinations.size());

@@ -55,7 +55,7 @@ const Table<SessionRecord>& protocol_table();
 const Table<SessionRecord>& rig_table();
 const Table<SessionRecord>& calibration_table();
 
-/// "a, b, c": the columns in order, beginning with the place, each preceded by `prefix`.
+/// "a, b, c": the names of all columns, the key columns (`place`) first, each preceded by `prefix`.
 template <class Record>
 std::string column_list(const Table<Record>& table, const std::string& prefix = "") {
   std::string list;

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// The way from the participant's screen to the operator's pages: a code, after a long press that nobody makes
-// by accident. On a locked station it comes first.
+// Asks for the operator's code before the participant's screen gives way to the operator's pages. It opens
+// after a press that is too long to be made by accident; on a locked station it is the first page.
 Rectangle {
     id: root
     required property Theme theme

@@ -87,7 +87,7 @@ card S16_LE 2
 refused two.toml "takes neither 32-bit samples (S32_LE) nor 24-bit ones (S24_3LE)"
 no_card
 
-# For a card without the switch there is no such line.
+# `turnpoint doctor` prints the line "converter mute" only for a card that has the switch Auto Mute.
 doctor() {
   status=0
   turnpoint doctor --rig two.toml --data . >doctor.txt 2>&1 || status=$?
