@@ -25,7 +25,7 @@ TEST_CASE("halving leaves no number between the ends, whichever end is above", "
   CHECK(left.not_above == right.above);
 }
 
-TEST_CASE("halving stops where it is told to, and after so many steps near 0", "[root]") {
+TEST_CASE("bisection stops at the given width, and near 0 after a fixed number of steps", "[root]") {
   const auto is_above = [](double x) { return x > 0; };
   CHECK(bisect({1, -3}, is_above, [](const Bracket& b) { return b.width() <= 0.5; }).width() == 0.5);
   CHECK(bisect({1, 0}, is_above).above == std::ldexp(1.0, -200));
