@@ -7,7 +7,7 @@ namespace turnpoint::drive {
 /// A straight line through (frame, CLOCK_MONOTONIC) pairs; stored with each trial.
 struct ClockFit {
   std::int64_t frame = 0;    ///< reference frame
-  std::int64_t time_ns = 0;  ///< time at which that frame leaves the converter, without its group delay
+  std::int64_t time_ns = 0;  ///< when that frame leaves the converter, not counting its group delay
   double ns_per_frame = 0;
   double residual_ns = 0;  ///< rms distance of the pairs from the line
   int pairs = 0;
