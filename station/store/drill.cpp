@@ -50,7 +50,7 @@ class Restored {
     try {
       remove_database(path_);
     } catch (const StoreError&) {
-      // The next backup or drill removes it.
+      // The next backup or drill removes the copy that is left.
     }
   }
   const std::string& path() const { return path_; }

@@ -13,7 +13,7 @@ Rectangle {
     property bool noting: false
     property bool stopping: false
     property int shown: 0
-    /// Size of the text in the figures.
+    /// Text size in the figures.
     readonly property real small: Math.max(0.8 * look.textSmall, 2 * pixelsPerMm)
     readonly property bool waiting: bridge.page.kind === PageModel.Paused || bridge.page.kind === PageModel.Fault
     readonly property bool over: bridge.page.kind === PageModel.End || bridge.page.kind === PageModel.Failed
