@@ -60,6 +60,8 @@ class VirtualStage : public Stage {
 
   std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
                              std::int64_t earliest_ns) override {
+    // An aborted trial may still be ramping down, and occupies voices until it is silent.
+    advance_to(quiet_ns_);
     const auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
     unheard_ = presented_;
     return onsets;
@@ -74,7 +76,7 @@ class VirtualStage : public Stage {
     std::erase_if(unheard_, [from](const Presented& interval) { return interval.start_frame >= from; });
     for (auto& interval : unheard_)
       interval.end_frame = std::min(interval.end_frame, from + presented_.back().ramp.frames);
-    return ramp_down(*stream_, presented_, now_ns_);
+    return quiet_ns_ = ramp_down(*stream_, presented_, now_ns_);
   }
 
   Refusal arm() override { return refusal(alive().arm(now_ns_)); }
@@ -161,7 +163,8 @@ class VirtualStage : public Stage {
   observer::Observer observer_;
   Inputs& inputs_;
   std::int64_t now_ns_ = 0;
-  std::deque<Input> script_;  ///< what the observer will do, in order of time
+  std::int64_t quiet_ns_ = 0;  ///< time at which the surface will be silent
+  std::deque<Input> script_;   ///< what the observer will do, in order of time
   std::vector<Presented> presented_, unheard_;
 };
 

@@ -3,7 +3,10 @@
 #include <fstream>
 #include <map>
 
+#include "station/drive/prepared_burst.hpp"
+#include "station/rig/rig.hpp"
 #include "station/session/session.hpp"
+#include "station/session/stage.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
 #include "tests/session/many_tones.hpp"
@@ -129,4 +132,33 @@ TEST_CASE("simulated sessions have the latency of the rig's buffer", "[session][
     ++later;
   }
   CHECK(later > 3);
+}
+
+TEST_CASE("on the virtual clock, a trial that follows an aborted one waits until the surface is silent",
+          "[session][intervals]") {
+  const auto stream =
+      session::stream_of(rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml"));
+  // three intervals at almost full scale, as many as fit beside nothing else
+  drive::Burst interval;
+  interval.length_frames = 192000;
+  interval.ramp.frames = 3840;
+  interval.tones.count = 1;
+  interval.tones.tones[0] = {30000, 0.9, 0, 0};
+  std::vector<drive::PreparedBurst> intervals;
+  for (int i = 0; i < 3; ++i, interval.start_frame += 288000)
+    intervals.push_back(drive::prepare(interval, drive::format_of(stream.output), stream.limits));
+  for (const double aborted_after_s : {0.0, 0.001, 0.03, 0.5, 1.2, 1.6, 3.99, 4.2}) {
+    INFO("aborted " << aborted_after_s << " s after the first onset");
+    session::Inputs nobody;
+    const auto stage = session::virtual_stage(stream, observer::Observer(observer::parse("sim")), nobody);
+    const auto first = stage->present(intervals, 0);
+    REQUIRE(first.size() == 3);
+    while (stage->wait_until(first[0].time_ns + static_cast<std::int64_t>(aborted_after_s * 1e9))) {
+    }
+    const auto silent_ns = stage->silence();
+    const auto second = stage->present(intervals, 0);
+    REQUIRE(second.size() == 3);
+    CHECK(second[0].time_ns >= silent_ns);
+    CHECK(second[2].frame - second[0].frame == 2 * 288000);
+  }
 }
