@@ -79,7 +79,7 @@ Place place_on(const rig::Rig& rig, double width_px, double height_px) {
   return at;
 }
 
-void draw_heat(plot::Svg& svg, const SceneLook& look, const Place& at) {
+void draw_heat(plot::Canvas& canvas, const SceneLook& look, const Place& at) {
   const auto& profile = look.profile;
   const double top = *std::max_element(profile.displacement_m.begin(), profile.displacement_m.end());
   for (std::size_t i = 0; i + 1 < profile.x_m.size(); ++i) {
@@ -88,37 +88,37 @@ void draw_heat(plot::Svg& svg, const SceneLook& look, const Place& at) {
     const auto colour = plot::shade(top > 0 ? value / top : 0);
     // Each slice extends below the next one, so that no background is visible between them.
     const double under = std::min(at.length_m, b + (b - a));
-    svg.polygon({at.above(a), at.above(under), at.below(under), at.below(a)}, fill(colour));
+    canvas.polygon({at.above(a), at.above(under), at.below(under), at.below(a)}, fill(colour));
   }
   const double l = at.length_m;
-  svg.polygon({at.above(0), at.above(l), at.below(l), at.below(0)}, stroke(kInk, 1.2));
+  canvas.polygon({at.above(0), at.above(l), at.below(l), at.below(0)}, stroke(kInk, 1.2));
 }
 
-void draw_scale(plot::Svg& svg, const Place& at) {
+void draw_scale(plot::Canvas& canvas, const Place& at) {
   const double y = at.middle_y + at.half(0) + 10;
   for (int mm = 0; 1e-3 * mm <= at.length_m + 1e-9; mm += 10) {
     const bool labelled = mm % 50 == 0;
     const double x = at.x(1e-3 * mm);
-    svg.line({x, y}, {x, y + (labelled ? 7 : 4)}, stroke(kQuiet, 1));
-    if (labelled) svg.text({x, y + 20}, std::to_string(mm), 12, plot::Anchor::middle, kQuiet);
+    canvas.line({x, y}, {x, y + (labelled ? 7 : 4)}, stroke(kQuiet, 1));
+    if (labelled) canvas.text({x, y + 20}, std::to_string(mm), 12, plot::Anchor::middle, kQuiet);
   }
 }
 
-void draw_transducer(plot::Svg& svg, const Place& at) {
+void draw_transducer(plot::Canvas& canvas, const Place& at) {
   const double width = 14, half = at.half(0) + 4;
-  svg.rectangle({at.wide_left ? at.left - width : at.right, at.middle_y - half}, width, 2 * half,
-                fill("#4d565e"));
+  canvas.rectangle({at.wide_left ? at.left - width : at.right, at.middle_y - half}, width, 2 * half,
+                   fill("#4d565e"));
 }
 
 /// Draws the mark where the participant sees it, with its name on the side away from the boundary.
-void draw_mark(plot::Svg& svg, const SceneLook& look, const Place& at) {
+void draw_mark(plot::Canvas& canvas, const SceneLook& look, const Place& at) {
   const auto mark = mark_of(look);
   if (!mark || *mark <= 0 || *mark >= at.length_m) return;
   const auto [x, y] = at.above(*mark, 3);
-  svg.polygon({{x, y}, {x - 6, y - 9}, {x + 6, y - 9}}, fill(kInk));
+  canvas.polygon({{x, y}, {x - 6, y - 9}, {x + 6, y - 9}}, fill(kInk));
   const bool to_left = look.plan.boundary_m && at.x(*look.plan.boundary_m) >= x;
-  svg.text({to_left ? x - 10 : x + 10, y - 3}, kMark, 12, to_left ? plot::Anchor::end : plot::Anchor::start,
-           kInk);
+  canvas.text({to_left ? x - 10 : x + 10, y - 3}, kMark, 12,
+              to_left ? plot::Anchor::end : plot::Anchor::start, kInk);
 }
 
 /// The lower end of the boundary's name. If it would collide with the mark and its name, it goes above them.
@@ -131,59 +131,65 @@ double boundary_name_y(const SceneLook& look, const Place& at, const std::string
   return (near ? std::min(own, at.above(*mark).second) : own) - kNameAbove_px;
 }
 
-void draw_boundary(plot::Svg& svg, const SceneLook& look, const Place& at) {
+void draw_boundary(plot::Canvas& canvas, const SceneLook& look, const Place& at) {
   for (const auto& tone : look.plan.tones)
     if (tone.turning_point_m)
-      svg.line(at.below(*tone.turning_point_m, -0.4 * at.half(*tone.turning_point_m)),
-               at.below(*tone.turning_point_m, 6), stroke(kQuiet, 1.2, "2 2"));
+      canvas.line(at.below(*tone.turning_point_m, -0.4 * at.half(*tone.turning_point_m)),
+                  at.below(*tone.turning_point_m, 6), stroke(kQuiet, 1.2, "2 2"));
   if (!look.plan.boundary_m) return;
   const double b = *look.plan.boundary_m, e = look.plan.error_bound_m;
   if (2 * e * (at.right - at.left) / at.length_m > 2) {
     const double low = std::max(0.0, b - e), high = std::min(at.length_m, b + e);
-    svg.polygon({at.above(low, 6), at.above(high, 6), at.below(high, 6), at.below(low, 6)},
-                fill(kAccent, 0.25));
+    canvas.polygon({at.above(low, 6), at.above(high, 6), at.below(high, 6), at.below(low, 6)},
+                   fill(kAccent, 0.25));
   }
   const auto name = text::number(1e3 * b, 5) + " mm";
   const double name_y = boundary_name_y(look, at, name);
-  svg.line({at.x(b), name_y + 5}, at.below(b, 6), stroke(kAccent, 2.4));
-  svg.text({at.x(b), name_y}, name, kName_px, plot::Anchor::middle, kAccent, 600);
+  canvas.line({at.x(b), name_y + 5}, at.below(b, 6), stroke(kAccent, 2.4));
+  canvas.text({at.x(b), name_y}, name, kName_px, plot::Anchor::middle, kAccent, 600);
+}
+
+void draw_surface(plot::Canvas& canvas, const SceneLook& look, const rig::Rig& rig, double width_px,
+                  double height_px) {
+  canvas.begin(width_px, height_px, "Surface from above, scene " + look.scene);
+  canvas.rectangle({0, 0}, width_px, height_px, fill(kPaper));
+  const auto at = place_on(rig, width_px, height_px);
+  draw_transducer(canvas, at);
+  draw_heat(canvas, look, at);
+  draw_scale(canvas, at);
+  draw_mark(canvas, look, at);
+  draw_boundary(canvas, look, at);
+  if (height_px < kCaptionFrom_px) return;
+  canvas.text({width_px / 2, height_px - 10}, "mm from the wide end; darker moves more", 12,
+              plot::Anchor::middle, kQuiet);
 }
 
 }  // namespace
 
 Drawing drawing_of(plot::Figure figure) {
-  return [figure = std::move(figure)](double width_px, double height_px) {
+  return [figure = std::move(figure)](plot::Canvas& canvas, double width_px, double height_px) {
     try {
-      return plot::render(plot::laid_out(figure, width_px, height_px));
+      plot::draw(canvas, plot::laid_out(figure, width_px, height_px));
     } catch (const std::invalid_argument&) {
       // if the legend is too long for that size, keep the original layout and scale it down
-      return plot::render(figure);
+      plot::draw(canvas, figure);
     }
   };
 }
 
 Drawing drawing_of_surface(const SceneLook& look, const rig::Rig& rig) {
   require_plan(look);
-  return [look, rig](double width_px, double height_px) {
+  return [look, rig](plot::Canvas& canvas, double width_px, double height_px) {
     // Below this size there is no room for its scale and labels.
     const double larger = std::max({1.0, 240 / width_px, 84 / height_px});
-    return surface_svg(look, rig, larger * width_px, larger * height_px);
+    draw_surface(canvas, look, rig, larger * width_px, larger * height_px);
   };
 }
 
 std::string surface_svg(const SceneLook& look, const rig::Rig& rig, double width_px, double height_px) {
   require_plan(look);
-  plot::Svg svg(width_px, height_px, "Surface from above, scene " + look.scene);
-  svg.rectangle({0, 0}, width_px, height_px, fill(kPaper));
-  const auto at = place_on(rig, width_px, height_px);
-  draw_transducer(svg, at);
-  draw_heat(svg, look, at);
-  draw_scale(svg, at);
-  draw_mark(svg, look, at);
-  draw_boundary(svg, look, at);
-  if (height_px < kCaptionFrom_px) return svg.finish();
-  svg.text({width_px / 2, height_px - 10}, "mm from the wide end; darker moves more", 12,
-           plot::Anchor::middle, kQuiet);
+  plot::Svg svg;
+  draw_surface(svg, look, rig, width_px, height_px);
   return svg.finish();
 }
 

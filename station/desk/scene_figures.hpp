@@ -12,9 +12,8 @@ namespace turnpoint::desk {
 // Figures of a planned scene, for the screen and for files. All functions throw std::invalid_argument for a
 // look that has a problem instead of a plan.
 
-/// A figure that is laid out for the size at which it is shown: returns an SVG document of about that size,
-/// with text of 12 px.
-using Drawing = std::function<std::string(double width_px, double height_px)>;
+/// A figure that is laid out for the size at which it is shown: draws at about that size, with text of 12 px.
+using Drawing = std::function<void(plot::Canvas& canvas, double width_px, double height_px)>;
 Drawing drawing_of(plot::Figure figure);
 /// The figure of surface_svg() as a Drawing.
 Drawing drawing_of_surface(const SceneLook& look, const rig::Rig& rig);

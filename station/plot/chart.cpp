@@ -21,43 +21,43 @@ void check(bool good, const std::string& what) {
   if (!good) throw std::invalid_argument("plot: " + what);
 }
 
-void marker(Svg& svg, Svg::Point at, double r, const Style& style, bool open) {
+void marker(Canvas& canvas, Point at, double r, const Style& style, bool open) {
   const Paint paint{style.colour, open ? "#ffffff" : style.colour, 1.6, "", 1};
   const auto [x, y] = at;
   switch (style.marker) {
     case Marker::circle:
-      svg.circle(at, r, paint);
+      canvas.circle(at, r, paint);
       break;
     case Marker::square:
-      svg.rectangle({x - 0.89 * r, y - 0.89 * r}, 1.78 * r, 1.78 * r, paint);
+      canvas.rectangle({x - 0.89 * r, y - 0.89 * r}, 1.78 * r, 1.78 * r, paint);
       break;
     case Marker::triangle:
-      svg.polygon({{x, y - 1.25 * r}, {x + 1.15 * r, y + 0.8 * r}, {x - 1.15 * r, y + 0.8 * r}}, paint);
+      canvas.polygon({{x, y - 1.25 * r}, {x + 1.15 * r, y + 0.8 * r}, {x - 1.15 * r, y + 0.8 * r}}, paint);
       break;
     case Marker::diamond:
-      svg.polygon({{x, y - 1.3 * r}, {x + 1.3 * r, y}, {x, y + 1.3 * r}, {x - 1.3 * r, y}}, paint);
+      canvas.polygon({{x, y - 1.3 * r}, {x + 1.3 * r, y}, {x, y + 1.3 * r}, {x - 1.3 * r, y}}, paint);
       break;
     case Marker::down:
-      svg.polygon({{x, y + 1.25 * r}, {x + 1.15 * r, y - 0.8 * r}, {x - 1.15 * r, y - 0.8 * r}}, paint);
+      canvas.polygon({{x, y + 1.25 * r}, {x + 1.15 * r, y - 0.8 * r}, {x - 1.15 * r, y - 0.8 * r}}, paint);
       break;
     case Marker::cross:
-      svg.line({x - r, y - r}, {x + r, y + r}, {style.colour, "", 2, "", 1});
-      svg.line({x - r, y + r}, {x + r, y - r}, {style.colour, "", 2, "", 1});
+      canvas.line({x - r, y - r}, {x + r, y + r}, {style.colour, "", 2, "", 1});
+      canvas.line({x - r, y + r}, {x + r, y - r}, {style.colour, "", 2, "", 1});
       break;
   }
 }
 
 struct Draw {
-  Svg& svg;
+  Canvas& canvas;
   const Frame& frame;
 
   void operator()(const Band& band) const {
     check(band.x.size() == band.low.size() && band.x.size() == band.high.size(),
           "band lists differ in length");
-    std::vector<Svg::Point> outline;
+    std::vector<Point> outline;
     for (std::size_t i = 0; i < band.x.size(); ++i) outline.push_back(frame.at(band.x[i], band.low[i]));
     for (std::size_t i = band.x.size(); i-- > 0;) outline.push_back(frame.at(band.x[i], band.high[i]));
-    if (!outline.empty()) svg.polygon(outline, {"", style(band.series).colour, 0, "", 0.18});
+    if (!outline.empty()) canvas.polygon(outline, {"", style(band.series).colour, 0, "", 0.18});
   }
 
   void operator()(const Histogram& bars) const {
@@ -65,8 +65,8 @@ struct Draw {
     for (std::size_t i = 0; i < bars.heights.size(); ++i) {
       if (bars.heights[i] == 0) continue;
       const auto from = frame.at(bars.edges[i], bars.heights[i]), to = frame.at(bars.edges[i + 1], 0);
-      svg.rectangle(from, to.first - from.first, to.second - from.second,
-                    {"#ffffff", style(bars.series).colour, 0.8, "", 0.85});
+      canvas.rectangle(from, to.first - from.first, to.second - from.second,
+                       {"#ffffff", style(bars.series).colour, 0.8, "", 0.85});
     }
   }
 
@@ -82,7 +82,7 @@ struct Draw {
         const auto from = frame.at(map.x_edges[column], map.y_edges[row + 1]);
         const auto to = frame.at(map.x_edges[column + 1], map.y_edges[row]);
         const auto colour = shade((value - map.low) / (map.high - map.low));
-        svg.rectangle(from, to.first - from.first, to.second - from.second, {colour, colour, 0.4, "", 1});
+        canvas.rectangle(from, to.first - from.first, to.second - from.second, {colour, colour, 0.4, "", 1});
       }
   }
 
@@ -92,15 +92,15 @@ struct Draw {
     const bool flat = rule.direction == Rule::Direction::horizontal;
     const auto from = flat ? frame.at(frame.across->low, rule.at) : frame.at(rule.at, frame.up->low);
     const auto to = flat ? frame.at(frame.across->high, rule.at) : frame.at(rule.at, frame.up->high);
-    svg.line(from, to, {kSoft, "", 1, "3 3", 1});
+    canvas.line(from, to, {kSoft, "", 1, "3 3", 1});
   }
 
   void operator()(const Line& curve) const {
     check(curve.x.size() == curve.y.size(), "line \"" + curve.name + "\": lists differ in length");
     const auto look = style(curve.series);
-    std::vector<Svg::Point> run;
+    std::vector<Point> run;
     const auto flush = [&] {
-      if (run.size() > 1) svg.polyline(run, {look.colour, "", 2, look.dash, 1});
+      if (run.size() > 1) canvas.polyline(run, {look.colour, "", 2, look.dash, 1});
       run.clear();
     };
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -122,11 +122,11 @@ struct Draw {
     const auto radii = marker_radii_px(dots);
     for (std::size_t i = 0; i < dots.low.size(); ++i)
       if (drawable(*frame.up, dots.low[i]) && drawable(*frame.up, dots.high[i]))
-        svg.line(frame.at(dots.x[i], dots.low[i]), frame.at(dots.x[i], dots.high[i]),
-                 {look.colour, "", 1.3, "", 1});
+        canvas.line(frame.at(dots.x[i], dots.low[i]), frame.at(dots.x[i], dots.high[i]),
+                    {look.colour, "", 1.3, "", 1});
     for (std::size_t i = 0; i < n; ++i) {
       if (!drawable(*frame.across, dots.x[i]) || !drawable(*frame.up, dots.y[i])) continue;
-      marker(svg, frame.at(dots.x[i], dots.y[i]), radii[i], look, !dots.open.empty() && dots.open[i]);
+      marker(canvas, frame.at(dots.x[i], dots.y[i]), radii[i], look, !dots.open.empty() && dots.open[i]);
     }
   }
 };
@@ -164,19 +164,19 @@ std::vector<Entry> legend_of(const Panel& panel) {
 }
 
 /// Draws the legend between title and data, in rows that fit the width.
-double draw_legend(Svg* svg, const std::vector<Entry>& entries, double left, double top, double width) {
+double draw_legend(Canvas* canvas, const std::vector<Entry>& entries, double left, double top, double width) {
   constexpr double sample = 24, gap = 18, row = 18;
   double x = left, y = top;
   for (const auto& entry : entries) {
     const double need = sample + 6 + text_width(entry.name, kText);
     if (x > left && x + need > left + width) x = left, y += row;
-    if (svg) {
+    if (canvas) {
       const auto look = style(entry.series);
       if (entry.area)
-        svg->rectangle({x, y + 3}, sample, 10, {"", look.colour, 0, "", entry.line ? 0.18 : 0.85});
-      if (entry.line) svg->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 2, look.dash, 1});
-      if (entry.points || entry.open_points) marker(*svg, {x + sample / 2, y + 8}, 4, look, !entry.points);
-      svg->text({x + sample + 6, y + 12}, entry.name, kText, Anchor::start, kInk);
+        canvas->rectangle({x, y + 3}, sample, 10, {"", look.colour, 0, "", entry.line ? 0.18 : 0.85});
+      if (entry.line) canvas->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 2, look.dash, 1});
+      if (entry.points || entry.open_points) marker(*canvas, {x + sample / 2, y + 8}, 4, look, !entry.points);
+      canvas->text({x + sample + 6, y + 12}, entry.name, kText, Anchor::start, kInk);
     }
     x += need + gap;
   }
@@ -189,39 +189,41 @@ const HeatMap* heat_map(const Panel& panel) {
   return nullptr;
 }
 
-void draw_colour_bar(Svg& svg, const Frame& frame, double from, const HeatMap& map) {
+void draw_colour_bar(Canvas& canvas, const Frame& frame, double from, const HeatMap& map) {
   const double left = from + 12, width = 12;
   constexpr int steps = 32;
   for (int i = 0; i < steps; ++i) {
     const auto colour = shade((i + 0.5) / steps);
-    svg.rectangle({left, frame.y + frame.height * (steps - 1 - i) / steps}, width, frame.height / steps + 0.5,
-                  {"", colour, 0, "", 1});
+    canvas.rectangle({left, frame.y + frame.height * (steps - 1 - i) / steps}, width,
+                     frame.height / steps + 0.5, {"", colour, 0, "", 1});
   }
   const Axis axis{map.name, map.low, map.high, AxisScale::linear};
   for (const auto& tick : ticks(axis, 4))
-    svg.text({left + width + 5, frame.y + (1 - position(axis, tick.value)) * frame.height + 4}, tick.label,
-             kText - 1, Anchor::start, kSoft);
-  svg.text({left + width + 46, frame.y + frame.height / 2}, map.name, kText, Anchor::middle, kInk, 400, 90);
+    canvas.text({left + width + 5, frame.y + (1 - position(axis, tick.value)) * frame.height + 4}, tick.label,
+                kText - 1, Anchor::start, kSoft);
+  canvas.text({left + width + 46, frame.y + frame.height / 2}, map.name, kText, Anchor::middle, kInk, 400,
+              90);
 }
 
-void draw_axes(Svg& svg, const Frame& frame, const std::vector<Tick>& across, const std::vector<Tick>& up) {
+void draw_axes(Canvas& canvas, const Frame& frame, const std::vector<Tick>& across,
+               const std::vector<Tick>& up) {
   const double bottom = frame.y + frame.height;
   for (const auto& tick : up) {
     const double y = frame.at(frame.across->low, tick.value).second;
-    svg.line({frame.x, y}, {frame.x + frame.width, y}, {kGrid, "", 1, "", 1});
-    svg.text({frame.x - kTick - 3, y + 4}, tick.label, kText, Anchor::end, kInk);
+    canvas.line({frame.x, y}, {frame.x + frame.width, y}, {kGrid, "", 1, "", 1});
+    canvas.text({frame.x - kTick - 3, y + 4}, tick.label, kText, Anchor::end, kInk);
   }
   double free_from = -1e9;
   for (const auto& tick : across) {
     const double x = frame.at(tick.value, frame.up->low).first;
-    svg.line({x, bottom}, {x, bottom + kTick}, {kInk, "", 1, "", 1});
+    canvas.line({x, bottom}, {x, bottom + kTick}, {kInk, "", 1, "", 1});
     const double half = text_width(tick.label, kText) / 2;
     if (x - half < free_from) continue;  // skip labels that would touch the previous one
-    svg.text({x, bottom + kTick + 13}, tick.label, kText, Anchor::middle, kInk);
+    canvas.text({x, bottom + kTick + 13}, tick.label, kText, Anchor::middle, kInk);
     free_from = x + half + 6;
   }
-  svg.line({frame.x, bottom}, {frame.x + frame.width, bottom}, {kInk, "", 1, "", 1});
-  svg.text({frame.x + frame.width / 2, bottom + 37}, frame.across->label, kText, Anchor::middle, kInk);
+  canvas.line({frame.x, bottom}, {frame.x + frame.width, bottom}, {kInk, "", 1, "", 1});
+  canvas.text({frame.x + frame.width / 2, bottom + 37}, frame.across->label, kText, Anchor::middle, kInk);
 }
 
 /// As many horizontal ticks as there is room for their labels. On a log axis some have no label.
@@ -277,22 +279,27 @@ Division divided(const Panel& panel, const Place& place, VerticalLabels where) {
   }
 }
 
-void draw_panel(Svg& svg, const Panel& panel, const Place& place, VerticalLabels where) {
-  const auto d = divided(panel, place, where);
+Division divided_with_room(const Panel& panel, const Place& place, VerticalLabels where) {
+  auto d = divided(panel, place, where);
+  check(d.labelled.frame.width > 40 && d.labelled.frame.height > 40,
+        "panel \"" + panel.title + "\" leaves no room for its data");
+  return d;
+}
+
+void draw_panel(Canvas& canvas, const Panel& panel, const Place& place, const Division& d) {
   const auto& frame = d.labelled.frame;
-  check(frame.width > 40 && frame.height > 40, "panel \"" + panel.title + "\" leaves no room for its data");
-  svg.text({d.left, place.top + kPad + 14}, panel.title, kTitle, Anchor::start, kInk, 600);
-  draw_legend(&svg, d.entries, d.left, d.legend_top, d.width);
-  draw_axes(svg, frame, ticks_with_room(panel.x, frame.width), d.up);
-  svg.text({place.left + kPad + 10, frame.y + frame.height / 2}, panel.y.label, kText, Anchor::middle, kInk,
-           400, 90);
+  canvas.text({d.left, place.top + kPad + 14}, panel.title, kTitle, Anchor::start, kInk, 600);
+  draw_legend(&canvas, d.entries, d.left, d.legend_top, d.width);
+  draw_axes(canvas, frame, ticks_with_room(panel.x, frame.width), d.up);
+  canvas.text({place.left + kPad + 10, frame.y + frame.height / 2}, panel.y.label, kText, Anchor::middle,
+              kInk, 400, 90);
   const auto clip = drawn_in(frame);
-  svg.begin_clip({clip.left, clip.top}, clip.right - clip.left, clip.bottom - clip.top);
-  for (const auto& layer : panel.layers) std::visit(Draw{svg, frame}, layer);
-  svg.end_clip();
+  canvas.begin_clip({clip.left, clip.top}, clip.right - clip.left, clip.bottom - clip.top);
+  for (const auto& layer : panel.layers) std::visit(Draw{canvas, frame}, layer);
+  canvas.end_clip();
   for (const auto& label : d.labelled.labels)
-    svg.text(label.at, label.text, kLabelText_px, label.anchor, kSoft);
-  if (const auto* map = heat_map(panel)) draw_colour_bar(svg, frame, d.left + d.width, *map);
+    canvas.text(label.at, label.text, kLabelText_px, label.anchor, kSoft);
+  if (const auto* map = heat_map(panel)) draw_colour_bar(canvas, frame, d.left + d.width, *map);
 }
 
 /// Small multiples are compared with each other: if one panel has to put a label above its data, all do.
@@ -318,28 +325,37 @@ std::vector<std::string> caption_lines(const std::string& caption, double width)
 
 }  // namespace
 
-std::string render(const Figure& figure) {
+void draw(Canvas& canvas, const Figure& figure) {
   check(!figure.panels.empty(), "a figure needs a panel");
   check(figure.columns > 0, "columns: at least 1");
   const int count = static_cast<int>(figure.panels.size());
   const int columns = std::min(figure.columns, count), rows = (count + columns - 1) / columns;
   const double width = columns * figure.panel_width_px, panels = rows * figure.panel_height_px;
-  const auto caption = caption_lines(figure.caption, width - 4 * kPad);
-  const double height =
-      panels + (caption.empty() ? 0 : kPad + kCaptionLine * static_cast<double>(caption.size()));
-  Svg svg(width, height, figure.title);
-  svg.rectangle({0, 0}, width, height, {"", "#ffffff", 0, "", 1});
   std::vector<Place> places;
   for (int i = 0; i < count; ++i)
     places.push_back({i % columns * figure.panel_width_px, i / columns * figure.panel_height_px,
                       figure.panel_width_px, figure.panel_height_px});
   const auto where = labels_of(figure.panels, places);
-  for (std::size_t i = 0; i < places.size(); ++i) draw_panel(svg, figure.panels[i], places[i], where);
+  std::vector<Division> divisions;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    divisions.push_back(divided_with_room(figure.panels[i], places[i], where));
+  const auto caption = caption_lines(figure.caption, width - 4 * kPad);
+  const double height =
+      panels + (caption.empty() ? 0 : kPad + kCaptionLine * static_cast<double>(caption.size()));
+  canvas.begin(width, height, figure.title);
+  canvas.rectangle({0, 0}, width, height, {"", "#ffffff", 0, "", 1});
+  for (std::size_t i = 0; i < places.size(); ++i)
+    draw_panel(canvas, figure.panels[i], places[i], divisions[i]);
   double y = panels + kText;
   for (const auto& line : caption) {
-    svg.text({2 * kPad, y}, line, kText, Anchor::start, kSoft);
+    canvas.text({2 * kPad, y}, line, kText, Anchor::start, kSoft);
     y += kCaptionLine;
   }
+}
+
+std::string render(const Figure& figure) {
+  Svg svg;
+  draw(svg, figure);
   return svg.finish();
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "station/plot/axis.hpp"
+#include "station/plot/canvas.hpp"
 
 namespace turnpoint::plot {
 
@@ -74,8 +75,11 @@ struct Figure {
   std::string caption;  ///< text below the panels, broken into lines; "" leaves it out
 };
 
-/// The SVG document. The same figure always gives the same bytes. Throws std::invalid_argument for lists of
-/// different lengths, axes without a range, or a figure without panels.
+/// Throws std::invalid_argument for lists of different lengths, axes without a range, a figure without
+/// panels, and before anything is drawn if a panel leaves no room for its data.
+void draw(Canvas& canvas, const Figure& figure);
+
+/// The figure as an SVG document. The same figure always gives the same bytes.
 std::string render(const Figure& figure);
 
 /// The figure laid out for a document of this size, with the number of columns that gives its panels the best

@@ -11,13 +11,13 @@ namespace {
 constexpr double kAscent = 9.5, kDescent = 3, kRow = 13, kBeside = 4;
 constexpr double kOver = 6;  // how far drawing may extend beyond the frame
 
-Box box_of(const std::string& text, Svg::Point at, Anchor anchor) {
+Box box_of(const std::string& text, Point at, Anchor anchor) {
   const double width = text_width(text, kLabelText_px);
   const double left = at.first - width * (anchor == Anchor::start ? 0 : anchor == Anchor::middle ? 0.5 : 1);
   return {left, at.second - kAscent, left + width, at.second + kDescent};
 }
 
-RuleLabel label_at(const Rule& rule, Svg::Point at, Anchor anchor) {
+RuleLabel label_at(const Rule& rule, Point at, Anchor anchor) {
   return {rule.label, at, anchor, box_of(rule.label, at, anchor)};
 }
 
@@ -25,13 +25,13 @@ bool is_flat(const Rule& rule) { return rule.direction == Rule::Direction::horiz
 
 /// Covers a straight line with boxes of a few px. A single box around a slope would also cover much free
 /// space.
-void cover(std::vector<Box>& boxes, Svg::Point a, Svg::Point b, double half) {
+void cover(std::vector<Box>& boxes, Point a, Point b, double half) {
   const double length = std::max(std::abs(b.first - a.first), std::abs(b.second - a.second));
   const int pieces = std::max(1, static_cast<int>(std::ceil(length / 4)));
   for (int i = 0; i < pieces; ++i) {
     const auto along = [&](int step) {
       const double share = static_cast<double>(step) / pieces;
-      return Svg::Point{a.first + share * (b.first - a.first), a.second + share * (b.second - a.second)};
+      return Point{a.first + share * (b.first - a.first), a.second + share * (b.second - a.second)};
     };
     const auto [x0, y0] = along(i);
     const auto [x1, y1] = along(i + 1);
@@ -148,7 +148,7 @@ RuleLabel outside(const Rule& rule, const Frame& frame, int row) {
 
 }  // namespace
 
-Svg::Point Frame::at(double value_x, double value_y) const {
+Point Frame::at(double value_x, double value_y) const {
   return {x + std::clamp(position(*across, value_x), -4.0, 5.0) * width,
           y + (1 - std::clamp(position(*up, value_y), -4.0, 5.0)) * height};
 }

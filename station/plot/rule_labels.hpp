@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "station/plot/canvas.hpp"
 #include "station/plot/chart.hpp"
-#include "station/plot/svg.hpp"
 
 namespace turnpoint::plot {
 
@@ -12,7 +12,7 @@ struct Frame {
   const Axis *across, *up;
 
   /// Points far outside the axes are kept within a few widths of the panel.
-  Svg::Point at(double value_x, double value_y) const;
+  Point at(double value_x, double value_y) const;
 };
 
 /// False for a value without a position on the axis: not finite, or not positive on a log axis.
@@ -43,7 +43,7 @@ std::vector<Box> covered(const Panel& panel, const Frame& frame);
 /// A placed label of a rule: the end of its baseline, and the box around its text.
 struct RuleLabel {
   std::string text;
-  Svg::Point at;
+  Point at;
   Anchor anchor = Anchor::start;
   Box box;
 };

@@ -55,18 +55,7 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-double text_width(const std::string& utf8, double size_px) {
-  double ems = 0;
-  for (const unsigned char byte : utf8) {
-    if ((byte & 0xC0) == 0x80) continue;      // a continuation byte of the previous character
-    ems += byte >= 0xE3 && byte < 0xF0 ? 1.0  // from U+3000 on: CJK
-           : byte >= 0xF0              ? 1.0
-                                       : 0.62;
-  }
-  return ems * size_px;
-}
-
-Svg::Svg(double width, double height, const std::string& title) {
+void Svg::begin(double width, double height, const std::string& title) {
   // Clip ids must be unique among the documents that one HTML page contains.
   prefix_ = "c" + text::sha256(title + px(width) + px(height)).substr(0, 8);
   body_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + px(width) + "\" height=\"" + px(height) +

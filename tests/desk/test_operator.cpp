@@ -11,6 +11,7 @@
 #include "station/desk/choices.hpp"
 #include "station/desk/live_view.hpp"
 #include "station/desk/report_pages.hpp"
+#include "station/plot/svg.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
 #include "station/text/number.hpp"
@@ -138,7 +139,9 @@ TEST_CASE("the live view follows a session trial by trial and draws what is on t
   CHECK(value_of(state.course, "Trials") == std::to_string(summary.trials));
   CHECK(state.heading.find("Block main, trial 10") == 0);
   REQUIRE(state.surfaces.size() == 1);
-  CHECK(state.surfaces.front()(600, 120).find(" mm</text>") != std::string::npos);
+  plot::Svg drawn;
+  state.surfaces.front()(drawn, 600, 120);
+  CHECK(drawn.finish().find(" mm</text>") != std::string::npos);
   CHECK(state.trace);
   CHECK(state.times);
 }

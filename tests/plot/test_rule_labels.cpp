@@ -175,12 +175,13 @@ TEST_CASE("Numbers beside an axis stand a line and a half apart, however low the
 }
 
 TEST_CASE("The check of labels sees one that stands on a marker, on a curve, on words", "[plot][labels]") {
-  Svg svg(200, 100, "Control");
-  svg.text({50, 50}, "resonance", kLabelSize, Anchor::start, "#666666");
+  Svg svg;
+  svg.begin(200, 100, "Control");
+  svg.text({50, 50}, "resonance", kLabelSize, Anchor::start, "#666666", 400, 0);
   CHECK(crossed(svg.finish(), 200, 100).empty());
   SECTION("marker") { svg.circle({60, 46}, 3, {"#0072b2", "", 1, "", 1}); }
   SECTION("curve") { svg.polyline({{40, 40}, {120, 60}}, {"#0072b2", "", 2, "", 1}); }
-  SECTION("words") { svg.text({90, 52}, "Drive", 12, Anchor::start, "#222222"); }
-  SECTION("edge") { svg.text({180, 50}, "outside", kLabelSize, Anchor::start, "#666666"); }
+  SECTION("words") { svg.text({90, 52}, "Drive", 12, Anchor::start, "#222222", 400, 0); }
+  SECTION("edge") { svg.text({180, 50}, "outside", kLabelSize, Anchor::start, "#666666", 400, 0); }
   CHECK_FALSE(crossed(svg.finish(), 200, 100).empty());
 }

@@ -2,29 +2,60 @@
 
 #include <QHash>
 #include <QPainter>
-#include <QSvgRenderer>
+#include <QPainterPath>
+#include <algorithm>
+#include <initializer_list>
 
 namespace turnpoint::ui {
 
 namespace {
 
-/// Strokes in a square of 24 units, in the syntax of SVG paths.
-QString outline(const QString& name) {
-  static const QHash<QString, QString> outlines{
-      {"tick", "M4 13 L10 19 L20 6"},
-      {"cross", "M6 6 L18 18 M18 6 L6 18"},
-      {"clock", "M12 3 A9 9 0 1 1 11.99 3 M12 7 L12 12.5 L15.5 14.5"},
-      {"chevrons", "M4 5 L10.5 12 L4 19 M13 5 L19.5 12 L13 19"},
-      {"rings", "M12 2.5 A9.5 9.5 0 1 1 11.99 2.5 M12 7.5 A4.5 4.5 0 1 1 11.99 7.5 M12 11.9 L12 12.1"},
-      {"bars", "M8.5 5 L8.5 19 M15.5 5 L15.5 19"},
-      {"alert", "M12 3 L22 20.5 L2 20.5 Z M12 9.5 L12 14 M12 17.1 L12 17.2"},
-      {"backspace", "M9 5 L21 5 L21 19 L9 19 L3 12 Z M12 9.5 L17 14.5 M17 9.5 L12 14.5"},
-      {"shield",
-       "M12 2.5 L20 5.5 L20 11.5 C20 16 16.5 19.5 12 21.5 C7.5 19.5 4 16 4 11.5 L4 5.5 Z M8 12 L11 15 L16 9"},
-      {"tool", "M3 12 L19 12 M13 6 L19 12 L13 18"},
-      {"dots", "M6 12 L6 12.1 M12 12 L12 12.1 M18 12 L18 12.1"},
-      {"minus", "M5 12 L19 12"},
-      {"plus", "M5 12 L19 12 M12 5 L12 19"}};
+constexpr double kUnits = 24;  // side of the square in which the strokes are given
+
+using Stroke = std::initializer_list<QPointF>;
+
+QPainterPath lines(std::initializer_list<Stroke> strokes) {
+  QPainterPath path;
+  for (const auto& stroke : strokes) path.addPolygon(QPolygonF(QList<QPointF>(stroke)));
+  return path;
+}
+
+QPainterPath with_circles(QPainterPath path, std::initializer_list<double> radii) {
+  for (const double radius : radii) path.addEllipse(QPointF(12, 12), radius, radius);
+  return path;
+}
+
+QPainterPath shield() {
+  auto path = lines({{{8, 12}, {11, 15}, {16, 9}}});
+  path.moveTo(12, 2.5);
+  path.lineTo(20, 5.5);
+  path.lineTo(20, 11.5);
+  path.cubicTo(20, 16, 16.5, 19.5, 12, 21.5);
+  path.cubicTo(7.5, 19.5, 4, 16, 4, 11.5);
+  path.lineTo(4, 5.5);
+  path.closeSubpath();
+  return path;
+}
+
+/// A dot is a stroke so short that only its round ends are seen.
+QPainterPath outline(const QString& name) {
+  static const QHash<QString, QPainterPath> outlines{
+      {"tick", lines({{{4, 13}, {10, 19}, {20, 6}}})},
+      {"cross", lines({{{6, 6}, {18, 18}}, {{18, 6}, {6, 18}}})},
+      {"clock", with_circles(lines({{{12, 7}, {12, 12.5}, {15.5, 14.5}}}), {9})},
+      {"chevrons", lines({{{4, 5}, {10.5, 12}, {4, 19}}, {{13, 5}, {19.5, 12}, {13, 19}}})},
+      {"rings", with_circles(lines({{{12, 11.9}, {12, 12.1}}}), {9.5, 4.5})},
+      {"bars", lines({{{8.5, 5}, {8.5, 19}}, {{15.5, 5}, {15.5, 19}}})},
+      {"alert",
+       lines({{{12, 3}, {22, 20.5}, {2, 20.5}, {12, 3}}, {{12, 9.5}, {12, 14}}, {{12, 17.1}, {12, 17.2}}})},
+      {"backspace", lines({{{9, 5}, {21, 5}, {21, 19}, {9, 19}, {3, 12}, {9, 5}},
+                           {{12, 9.5}, {17, 14.5}},
+                           {{17, 9.5}, {12, 14.5}}})},
+      {"shield", shield()},
+      {"tool", lines({{{3, 12}, {19, 12}}, {{13, 6}, {19, 12}, {13, 18}}})},
+      {"dots", lines({{{6, 12}, {6, 12.1}}, {{12, 12}, {12, 12.1}}, {{18, 12}, {18, 12.1}}})},
+      {"minus", lines({{{5, 12}, {19, 12}}})},
+      {"plus", lines({{{5, 12}, {19, 12}}, {{12, 5}, {12, 19}}})}};
   return outlines.value(name);
 }
 
@@ -37,15 +68,12 @@ Glyph::Glyph(QQuickItem* parent) : QQuickPaintedItem(parent) {
 }
 
 void Glyph::paint(QPainter* painter) {
-  const auto strokes = outline(name_);
-  if (strokes.isEmpty()) return;
-  const QString drawing =
-      "<svg viewBox=\"0 0 24 24\"><path fill=\"none\" stroke=\"%1\" stroke-width=\"%2\" "
-      "stroke-linecap=\"round\" "
-      "stroke-linejoin=\"round\" d=\"%3\"/></svg>";
-  QSvgRenderer renderer(drawing.arg(color_.name(), QString::number(24 * weight_), strokes).toUtf8());
-  renderer.setAspectRatioMode(Qt::KeepAspectRatio);
-  renderer.render(painter, boundingRect());
+  const double scale = std::min(width(), height()) / kUnits;
+  painter->translate(boundingRect().center());
+  painter->scale(scale, scale);
+  painter->translate(-kUnits / 2, -kUnits / 2);
+  painter->setPen(QPen(color_, kUnits * weight_, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+  painter->drawPath(outline(name_));
 }
 
 }  // namespace turnpoint::ui

@@ -1,0 +1,108 @@
+#include "station/ui/operator/painter_canvas.hpp"
+
+#include <QFontMetricsF>
+#include <QGuiApplication>
+#include <QPolygonF>
+#include <algorithm>
+
+namespace turnpoint::ui {
+
+namespace {
+
+QColor colour_of(const std::string& colour) { return QColor(QString::fromStdString(colour)); }
+
+QPointF point_of(const plot::Point& point) { return {point.first, point.second}; }
+
+QPolygonF points_of(const std::vector<plot::Point>& points) {
+  QPolygonF polygon;
+  for (const auto& point : points) polygon << point_of(point);
+  return polygon;
+}
+
+/// Figures give dashes in px, a pen counts them in its own width.
+QList<qreal> dashes_of(const plot::Paint& paint) {
+  QList<qreal> dashes;
+  for (const auto& part : QString::fromStdString(paint.dash).split(' ', Qt::SkipEmptyParts))
+    dashes << part.toDouble() / paint.width;
+  return dashes;
+}
+
+}  // namespace
+
+PainterCanvas::~PainterCanvas() {
+  while (saved_-- > 0) painter_.restore();
+}
+
+void PainterCanvas::begin(double width, double height, const std::string& /*title*/) {
+  painter_.save(), ++saved_;
+  const double scale = std::min(into_.width() / width, into_.height() / height);
+  painter_.translate(into_.center());
+  painter_.scale(scale, scale);
+  painter_.translate(-width / 2, -height / 2);
+}
+
+void PainterCanvas::use(const plot::Paint& paint) {
+  QPen pen(Qt::NoPen);
+  if (!paint.stroke.empty() && paint.width > 0) {
+    pen = QPen(colour_of(paint.stroke), paint.width, Qt::SolidLine, Qt::FlatCap, Qt::RoundJoin);
+    if (const auto dashes = dashes_of(paint); !dashes.isEmpty()) pen.setDashPattern(dashes);
+  }
+  painter_.setPen(pen);
+  painter_.setBrush(paint.fill.empty() ? QBrush(Qt::NoBrush) : QBrush(colour_of(paint.fill)));
+  painter_.setOpacity(paint.opacity);
+}
+
+void PainterCanvas::line(plot::Point from, plot::Point to, const plot::Paint& paint) {
+  use(paint);
+  painter_.drawLine(point_of(from), point_of(to));
+}
+
+void PainterCanvas::polyline(const std::vector<plot::Point>& points, const plot::Paint& paint) {
+  use(paint);
+  painter_.drawPolyline(points_of(points));
+}
+
+void PainterCanvas::polygon(const std::vector<plot::Point>& points, const plot::Paint& paint) {
+  use(paint);
+  painter_.drawPolygon(points_of(points));
+}
+
+void PainterCanvas::rectangle(plot::Point corner, double width, double height, const plot::Paint& paint) {
+  use(paint);
+  painter_.drawRect(QRectF(point_of(corner), QSizeF(width, height)));
+}
+
+void PainterCanvas::circle(plot::Point centre, double radius, const plot::Paint& paint) {
+  use(paint);
+  painter_.drawEllipse(point_of(centre), radius, radius);
+}
+
+void PainterCanvas::text(plot::Point at, const std::string& text, double size, plot::Anchor anchor,
+                         const std::string& colour, int weight, double degrees) {
+  // A font has whole pixels, and figures have halves.
+  constexpr int fine = 10;
+  QFont font(QGuiApplication::font().families().value(0));
+  font.setPixelSize(static_cast<int>(size * fine));
+  font.setWeight(weight >= 600 ? QFont::DemiBold : QFont::Normal);
+  const auto words = QString::fromStdString(text);
+  const double width = QFontMetricsF(font).horizontalAdvance(words);
+  painter_.save();
+  painter_.translate(point_of(at));
+  painter_.rotate(-degrees);
+  painter_.scale(1.0 / fine, 1.0 / fine);
+  painter_.setFont(font);
+  painter_.setOpacity(1);
+  painter_.setPen(colour_of(colour));
+  const double left = anchor == plot::Anchor::start ? 0 : anchor == plot::Anchor::middle ? width / 2 : width;
+  painter_.drawText(QPointF(-left, 0), words);
+  painter_.restore();
+}
+
+void PainterCanvas::begin_clip(plot::Point corner, double width, double height) {
+  painter_.save(), ++saved_;
+  painter_.setClipRect(QRectF(point_of(corner), QSizeF(width, height)));
+}
+
+void PainterCanvas::end_clip() { painter_.restore(), --saved_; }
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,34 @@
+#pragma once
+#include <QPainter>
+
+#include "station/plot/canvas.hpp"
+
+namespace turnpoint::ui {
+
+/// Paints a figure as large as possible into the middle of a rectangle of the screen, in the pages' font.
+class PainterCanvas : public plot::Canvas {
+ public:
+  PainterCanvas(QPainter& painter, const QRectF& into) : painter_(painter), into_(into) {}
+  ~PainterCanvas() override;
+  Q_DISABLE_COPY_MOVE(PainterCanvas)
+
+  void begin(double width, double height, const std::string& title) override;
+  void line(plot::Point from, plot::Point to, const plot::Paint& paint) override;
+  void polyline(const std::vector<plot::Point>& points, const plot::Paint& paint) override;
+  void polygon(const std::vector<plot::Point>& points, const plot::Paint& paint) override;
+  void rectangle(plot::Point corner, double width, double height, const plot::Paint& paint) override;
+  void circle(plot::Point centre, double radius, const plot::Paint& paint) override;
+  void text(plot::Point at, const std::string& text, double size, plot::Anchor anchor,
+            const std::string& colour, int weight, double degrees) override;
+  void begin_clip(plot::Point corner, double width, double height) override;
+  void end_clip() override;
+
+ private:
+  void use(const plot::Paint& paint);
+
+  QPainter& painter_;
+  QRectF into_;
+  int saved_ = 0;  ///< states of the painter to restore
+};
+
+}  // namespace turnpoint::ui
