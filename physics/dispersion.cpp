@@ -46,13 +46,23 @@ Dispersion::Dispersion(const Surface& s)
       mass_kg_per_m2(s.density_kg_m3 * s.thickness_m),
       speed_m_s(wave_speed_m_s(s)),
       bending(bending_modelled(s)),
-      clamped(s.edges == Edges::clamped) {
+      clamped(s.edges == Edges::clamped),
+      theory(s.theory),
+      thickness_m_(s.thickness_m) {
   if (bending) stiffness_N_m = bending_stiffness_N_m(s).value();
+  if (theory == PlateTheory::kirchhoff) return;
+  mindlin_ = MindlinPlate(s);
+  if (theory == PlateTheory::mindlin) return;
+  elastic_ = &ElasticCutOff::of(s.poisson);
+  const double rigidity = *s.modulus_Pa / (2 * (1 + s.poisson));
+  shear_speed_m_s_ = std::sqrt(rigidity / s.density_kg_m3);
+  mindlin_.shear_N_per_m = 5 / (6 - s.poisson) * rigidity * s.thickness_m;
 }
 
 double Dispersion::wavenumber_per_m(double f) const noexcept {
   const double omega = 2 * pi * f;
   if (!bending) return omega / speed_m_s;
+  if (theory != PlateTheory::kirchhoff) return mindlin_.wavenumber_per_m(f);
   const double inertia = mass_kg_per_m2 * omega * omega;
   const double n = tension_N_per_m;
   return std::sqrt(2 * inertia / (n + std::sqrt(n * n + 4 * stiffness_N_m * inertia)));
@@ -60,16 +70,23 @@ double Dispersion::wavenumber_per_m(double f) const noexcept {
 
 double Dispersion::frequency_Hz(double k) const noexcept {
   if (!bending) return k * speed_m_s / (2 * pi);
+  if (theory != PlateTheory::kirchhoff) return mindlin_.frequency_Hz(k);
   return k * std::sqrt((stiffness_N_m * k * k + tension_N_per_m) / mass_kg_per_m2) / (2 * pi);
 }
 
 double Dispersion::cut_off_frequency_Hz(double w) const noexcept {
+  if (theory == PlateTheory::mindlin) return mindlin_.cut_off_frequency_Hz(w);
+  if (elastic_) return elastic_->value(thickness_m_ / w) * shear_speed_m_s_ / (2 * pi * w);
   if (!clamped_bending()) return frequency_Hz(pi / (2 * w));
   if (tension_N_per_m == 0) return frequency_Hz(plate_root / w);
   return frequency_Hz(clamped_root(w * w * tension_N_per_m / stiffness_N_m) / w);
 }
 
 double Dispersion::cut_off_half_width_m(double f) const noexcept {
+  if (theory == PlateTheory::mindlin) return mindlin_.cut_off_half_width_m(f);
+  if (elastic_) {
+    return thickness_m_ / elastic_->thickness_per_half_width(2 * pi * f * thickness_m_ / shear_speed_m_s_);
+  }
   const double k = wavenumber_per_m(f);
   if (!clamped_bending()) return pi / (2 * k);
   if (tension_N_per_m == 0) return plate_root / k;

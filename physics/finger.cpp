@@ -81,6 +81,10 @@ class Loaded {
 
 void check(const Surface& surface) {
   validate(surface);
+  if (surface.theory != PlateTheory::kirchhoff) {
+    throw std::domain_error("finger load: plate theory kirchhoff only, not " +
+                            std::string(name(surface.theory)));
+  }
   if (bending_modelled(surface) && surface.edges == Edges::supported) {
     throw std::domain_error(
         "finger load: membranes and clamped plates only, not a plate with simply supported sides");

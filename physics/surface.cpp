@@ -69,7 +69,37 @@ void validate_taper(const Surface& surface) {
   }
 }
 
+void validate_theory(const Surface& s) {
+  if (s.theory == PlateTheory::kirchhoff) return;
+  if (s.tension_Pa > 0 || s.edges != Edges::clamped) {
+    throw std::invalid_argument("plate theory is " + std::string(name(s.theory)) +
+                                "; allowed for a clamped plate without tension only");
+  }
+  require(s.poisson >= 0 && s.poisson <= 0.49, "poisson", s.poisson,
+          "0 to 0.49 for the plate theories mindlin and elastic");
+}
+
 }  // namespace
+
+std::string_view name(PlateTheory theory) {
+  switch (theory) {
+    case PlateTheory::kirchhoff:
+      return "kirchhoff";
+    case PlateTheory::mindlin:
+      return "mindlin";
+    case PlateTheory::elastic:
+      break;
+  }
+  return "elastic";
+}
+
+PlateTheory parse_plate_theory(std::string_view text) {
+  for (const auto theory : {PlateTheory::kirchhoff, PlateTheory::mindlin, PlateTheory::elastic}) {
+    if (text == name(theory)) return theory;
+  }
+  throw std::invalid_argument("plate theory \"" + std::string(text) +
+                              "\" is not known; allowed: kirchhoff, mindlin, elastic");
+}
 
 std::optional<Material> find_material(std::string_view wanted) {
   for (const Material& material : materials) {
@@ -97,6 +127,7 @@ void validate(const Surface& s) {
     throw std::invalid_argument(
         "modulus_Pa is missing; it is required for a plate (tension 0) or bending on");
   }
+  validate_theory(s);
 }
 
 double half_width_m(const Surface& surface, double x_m) { return Taper(surface).half_width_m(x_m); }

@@ -1,0 +1,43 @@
+#pragma once
+// The cross-section of a clamped strip by three-dimensional elasticity: its cut-off and its waves along x.
+#include <array>
+#include <complex>
+#include <vector>
+
+namespace turnpoint::physics {
+
+// First symmetric bending cut-off of a strip whose cross-section, |y| < W, |z| < h/2, is held at |y| = W over
+// the whole thickness and free at z = +-h/2 (plane strain in y, z), as omega W / c_s, c_s^2 = G / rho. It
+// depends on h/W and Poisson's ratio alone. A table of finite elements, made once for each Poisson's ratio
+// (0.15 s or so) and kept; const functions are thread-safe and allocate nothing.
+class ElasticCutOff {
+ public:
+  // The table for a Poisson's ratio of 0 to 0.49, valid until the program ends.
+  static const ElasticCutOff& of(double poisson);
+
+  explicit ElasticCutOff(double poisson);
+  // omega W / c_s at h/W. Tabulated to h/W = 2; beyond that the last value, which is 4 % above the limit,
+  // pi/2.
+  double value(double thickness_per_half_width) const noexcept;
+  // h/W at which omega h / c_s has a value; the inverse of h/W value(h/W).
+  double thickness_per_half_width(double omega_h_per_speed) const noexcept;
+
+ private:
+  static constexpr std::size_t terms = 18;
+  static constexpr double largest = 2;
+  std::array<double, terms> coefficient_{};  // Chebyshev, of value over Kirchhoff's
+  double kirchhoff_;                         // of value over h/W, for a thin plate
+};
+
+// omega W / c_s of the section itself, without the table. Against a mesh graded to the corners: within 2e-4
+// for Poisson's ratios to 0.33 and h/W to 0.4, 8e-4 to 0.45 and 0.6.
+double elastic_cut_off(double thickness_per_half_width, double poisson);
+
+// Squared wavenumbers along the strip, times W^2, of the waves at omega W / c_s that are symmetric about the
+// centre line and antisymmetric through the thickness, smallest magnitude first; complex where two evanescent
+// branches have met. Semi-analytical finite elements: u = (i k A, b, c) exp(-i k x) with A, b, c elements in
+// y and z makes a pencil that is linear in k^2 (S. Dong & R. Nelson, J. Appl. Mech. 39 (1972) 739).
+std::vector<std::complex<double>> elastic_wavenumbers2(double thickness_per_half_width, double poisson,
+                                                       double omega_W_per_speed, int count);
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+"""Clamped strips by other methods than the library's (needs python3-numpy, python3-scipy and scikit-fem).
+
+    python3 make_section.py > section.csv
+
+Half-width 1, G = rho = 1, thickness t. Rows:
+  cut,nu,t,omega             first symmetric bending cut-off in plane strain, both faces' ends held: Lagrange elements of
+                             degree 5 on a mesh graded to the corner, which changes omega by less than 5e-6 from degree 4
+  wave,nu,t,omega,Re,Im,...  k_x^2 of three-dimensional waves along the strip, semi-analytical finite elements, the
+                             two of smallest size
+  mindlin,nu,kappa,t,omega,Re,Im,...  the same in Mindlin's theory with shear factor kappa, Chebyshev collocation of
+                             the three equations across the strip
+"""
+import numpy as np
+import scipy.linalg as la
+import scipy.sparse as sp
+import scipy.sparse.linalg as sla
+import skfem as fe
+from skfem.helpers import grad
+
+
+def mesh(t, ny=6, nz=3, layers=7):
+    # graded to the corner of the clamp and the free face by factors of 0.25; t = h/W, z in [0, t/2]
+    g = 0.3
+    y = np.unique(np.r_[np.linspace(0, 1 - min(0.5, t), ny + 1), 1 - min(0.5, t) * g ** np.arange(layers), 1])
+    z = np.unique(np.r_[np.linspace(0, t / 4, nz), t / 2 - t / 4 * g ** np.arange(layers), t / 2])
+    return fe.MeshQuad.init_tensor(y, z)
+
+def matrices(t, p, **kw):
+    m = mesh(t, **kw)
+    b = fe.Basis(m, fe.ElementQuadP(p), intorder=2 * p + 2)
+    M = fe.BilinearForm(lambda u, v, w: u * v).assemble(b)
+    d = {}
+    for i in range(2):
+        for j in range(2):
+            d[i, j] = fe.BilinearForm(lambda u, v, w: grad(v)[i] * grad(u)[j]).assemble(b)
+        d[i] = fe.BilinearForm(lambda u, v, w: v * grad(u)[i]).assemble(b)
+    return m, b, M, d
+
+def free(m, b, which):
+    fixed = [b.get_dofs(lambda x: np.isclose(x[0], 1)).all()]
+    if which in ("x", "y"): fixed.append(b.get_dofs(lambda x: np.isclose(x[1], 0)).all())  # odd in z
+    if which == "y": fixed.append(b.get_dofs(lambda x: np.isclose(x[0], 0)).all())         # odd in y
+    return np.setdiff1d(np.arange(b.N), np.concatenate(fixed))
+
+def plane(t, nu, p=5, **kw):
+    """K, M of (u_y, u_z) with mu = rho = 1."""
+    m, b, M, d = matrices(t, p, **kw)
+    lam = 2 * nu / (1 - 2 * nu)
+    Fx, Fy, Fz = (free(m, b, c) for c in "xyz")
+    cut = lambda A, r, c: A.tocsr()[r][:, c]
+    K = sp.bmat([[cut((lam + 2) * d[0, 0] + d[1, 1], Fy, Fy), cut(lam * d[0, 1] + d[1, 0], Fy, Fz)],
+                 [cut(lam * d[1, 0] + d[0, 1], Fz, Fy), cut((lam + 2) * d[1, 1] + d[0, 0], Fz, Fz)]]).tocsc()
+    MM = sp.block_diag([cut(M, Fy, Fy), cut(M, Fz, Fz)]).tocsc()
+    MA = cut(M, Fx, Fx).tocsc(); KA = cut(d[0, 0] + d[1, 1], Fx, Fx).tocsc()
+    # C: lam (A, div(b, c)) - (grad A . (b, c))
+    C = sp.bmat([[cut(lam * d[0] - d[0].T, Fx, Fy), cut(lam * d[1] - d[1].T, Fx, Fz)]]).tocsc()
+    return K, MM, MA, KA, C, lam
+
+def cut_off(t, nu, p=5, **kw):
+    K, M, *_ = plane(t, nu, p, **kw)
+    return np.sqrt(sla.eigsh(K, k=1, M=M, sigma=0, return_eigenvectors=False)[0])
+
+def wavenumbers2(t, nu, omega, n=4, p=4, sigma=0.3, **kw):
+    """Smallest k_x^2 W^2 at omega W / c_s: linear pencil of SAFE with u_x = i k A."""
+    K, M, MA, KA, C, lam = plane(t, nu, p, **kw)
+    o2 = omega ** 2
+    P0 = sp.bmat([[KA - o2 * MA, C], [None, K - o2 * M]]).tocsc()
+    P1 = sp.bmat([[(lam + 2) * MA, None], [C.T, M]]).tocsc()
+    lu = sla.splu((P0 + sigma * P1).tocsc())
+    op = sla.LinearOperator(P0.shape, matvec=lambda x: lu.solve(P1 @ x), dtype=float)
+    v = sigma - 1 / sla.eigs(op, k=n, return_eigenvectors=False)
+    return v[np.argsort(abs(v))]
+
+
+def mindlin_waves2(t, nu, kappa, omega, n=36):
+    """w, beta_x = i a, beta_y on [-1, 1]; exp(-i k x). Quadratic in k, made linear by doubling."""
+    y = np.cos(np.pi * np.arange(n + 1) / n)
+    c = np.r_[2, np.ones(n - 1), 2] * (-1) ** np.arange(n + 1)
+    dy = y[:, None] - y[None, :]
+    d = np.outer(c, 1 / c) / (dy + np.eye(n + 1))
+    d -= np.diag(d.sum(axis=1))
+    d2 = d @ d
+    inner = slice(1, n)
+    i, z = np.eye(n - 1), np.zeros((n - 1, n - 1))
+    d, d2 = d[inner, inner], d2[inner, inner]
+    dd, s, j = t**3 / (6 * (1 - nu)), kappa * t, t**3 / 12
+    half = dd / 2
+    o2 = omega**2
+    # k^0, k^1, k^2 parts; rows w, beta_x, beta_y; beta_x = i a keeps them real
+    a0 = np.block([[s * d2 + t * o2 * i, z, s * d],
+                   [z, half * (1 - nu) * d2 - s * i + j * o2 * i, z],
+                   [-s * d, z, dd * d2 - s * i + j * o2 * i]])
+    a1 = np.block([[z, s * i, z], [s * i, z, -half * (1 + nu) * d], [z, half * (1 + nu) * d, z]])
+    a2 = -la.block_diag(s * i, dd * i, half * (1 - nu) * i)
+    zero, one = np.zeros_like(a0), np.eye(len(a0))
+    k = la.eig(np.block([[zero, one], [a0, a1]]), np.block([[one, zero], [zero, -a2]]), right=False)
+    k = k[np.isfinite(k)]
+    return k[np.argsort(abs(k))]
+
+
+def symmetric(values):
+    """The two squares of smallest size, of k that come in pairs +-k."""
+    squares = []
+    for k in values:
+        if not any(abs(k * k - other) < 1e-6 * abs(other) for other in squares):
+            squares.append(k * k)
+        if len(squares) == 6:
+            break
+    return squares
+
+
+def row(*cells):
+    print(",".join(c if isinstance(c, str) else f"{c:.12g}" for c in cells), flush=True)
+
+
+if __name__ == "__main__":
+    for nu in (0.0, 0.2, 0.33, 0.4, 0.45):
+        for t in (0.05, 0.1, 0.2, 0.3, 0.4, 0.6):
+            row("cut", nu, t, cut_off(t, nu, layers=8))
+    for nu, t in ((0.33, 0.1), (0.33, 0.25), (0.2, 0.4)):
+        at = cut_off(t, nu)
+        for part in (1.4, 1.1, 0.9, 0.8, 0.5):
+            waves = wavenumbers2(t, nu, part * at)[:2]
+            waves = sorted(waves, key=lambda v: (-v.real, -v.imag))
+            row("wave", nu, t, part * at, *[x for v in waves for x in (v.real, v.imag)])
+    for nu, kappa, t in ((0.33, 5 / 6, 0.1), (0.33, 0.9, 0.25), (0.2, 0.87, 0.4)):
+        at = 2.3650203724313520**2 * t / np.sqrt(6 * (1 - nu))  # a thin strip's cut-off
+        for part in (1.3, 1.0, 0.9, 0.7, 0.5):
+            waves = sorted(symmetric(mindlin_waves2(t, nu, kappa, part * at))[:2], key=lambda v: (-v.real, -v.imag))
+            row("mindlin", nu, kappa, t, part * at, *[x for v in waves for x in (v.real, v.imag)])

@@ -1,0 +1,155 @@
+#include <cmath>
+#include <complex>
+#include <numbers>
+
+#include "physics/dispersion.hpp"
+#include "physics/elastic_section.hpp"
+#include "physics/mindlin_plate.hpp"
+#include "physics/surface.hpp"
+#include "tests/physics/csv_table.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::physics;
+using turnpoint::physics_test::oracle;
+
+namespace {
+
+// A clamped plate of unit shear modulus and density, so that lengths and omega are those of the table.
+Surface unit_plate(double thickness, double poisson, PlateTheory theory) {
+  Surface s = aluminium_plate();
+  s.density_kg_m3 = 1;
+  s.poisson = poisson;
+  s.modulus_Pa = 2 * (1 + poisson);
+  s.thickness_m = thickness;
+  s.theory = theory;
+  return s;
+}
+
+double number(const std::string& cell) { return std::stod(cell); }
+
+}  // namespace
+
+TEST_CASE("the elastic section's cut-off matches plane-strain finite elements", "[physics]") {
+  int compared = 0;
+  for (const auto& row : oracle("section.csv")) {
+    if (row[0] != "cut") continue;
+    const double nu = number(row[1]), t = number(row[2]), omega = number(row[3]);
+    CAPTURE(nu, t);
+    // The corner's singularity is what is left, and grows with Poisson's ratio.
+    CHECK(elastic_cut_off(t, nu) == Approx(omega).epsilon(nu <= 0.33 && t <= 0.4 ? 2e-4 : 8e-4));
+    const auto& table = ElasticCutOff::of(nu);
+    CHECK(table.value(t) == Approx(elastic_cut_off(t, nu)).epsilon(2e-6));
+    CHECK(table.thickness_per_half_width(t * table.value(t)) == Approx(t).epsilon(1e-13));
+    ++compared;
+  }
+  CHECK(compared == 30);
+  CHECK(&ElasticCutOff::of(0.33) == &ElasticCutOff::of(0.33));  // made once
+}
+
+TEST_CASE("Mindlin's cut-off half-width is within 0.2 % of plane strain for h/W to 0.4", "[physics]") {
+  double five_sixths = 0, kirchhoff = 0;
+  for (const auto& row : oracle("section.csv")) {
+    if (row[0] != "cut" || number(row[2]) > 0.4 || number(row[1]) > 0.4) continue;
+    const double nu = number(row[1]), t = number(row[2]), f = number(row[3]) / (2 * std::numbers::pi);
+    CAPTURE(nu, t);
+    MindlinPlate plate(unit_plate(t, nu, PlateTheory::mindlin));
+    CHECK(plate.cut_off_half_width_m(f) == Approx(1).epsilon(2e-3));
+    const Dispersion elastic(unit_plate(t, nu, PlateTheory::elastic));
+    CHECK(elastic.cut_off_half_width_m(f) == Approx(1).epsilon(2e-4));
+    CHECK(elastic.cut_off_frequency_Hz(elastic.cut_off_half_width_m(f)) == Approx(f).epsilon(1e-12));
+    if (nu != 0.33) continue;
+    plate.shear_N_per_m *= 5. / 6 / shear_factor(nu);
+    five_sixths = std::max(five_sixths, std::abs(plate.cut_off_half_width_m(f) - 1));
+    const Dispersion thin(unit_plate(t, nu, PlateTheory::kirchhoff));
+    kirchhoff = std::max(kirchhoff, thin.cut_off_half_width_m(f) - 1);
+  }
+  // Negative controls: the usual 5/6, and a thin plate.
+  CHECK(five_sixths > 8e-3);
+  CHECK(kirchhoff > 0.05);
+}
+
+TEST_CASE("a 2 mm aluminium plate's cut-off half-widths are those of plane-strain elasticity", "[physics]") {
+  Surface s = aluminium_plate();
+  const double kirchhoff[][2] = {{22.4e3, 11.0849e-3}, {33e3, 9.1327e-3}, {45e3, 7.8207e-3}};
+  for (const auto& row : kirchhoff) CHECK(cut_off_half_width_m(s, row[0]) == Approx(row[1]).epsilon(1e-5));
+  const double elastic[][2] = {{22.4e3, 10.7755e-3}, {33e3, 8.7550e-3}, {45e3, 7.3803e-3}};
+  for (const auto theory : {PlateTheory::mindlin, PlateTheory::elastic}) {
+    s.theory = theory;
+    const double within = theory == PlateTheory::mindlin ? 2e-3 : 3e-4;
+    for (const auto& row : elastic) CHECK(cut_off_half_width_m(s, row[0]) == Approx(row[1]).epsilon(within));
+  }
+}
+
+TEST_CASE("thick theories become Kirchhoff's for thin plates, and invert to rounding", "[physics]") {
+  for (const auto theory : {PlateTheory::mindlin, PlateTheory::elastic}) {
+    Surface s = aluminium_plate();
+    s.theory = theory;
+    const Dispersion thick(s);
+    for (const double w : {14e-3, 7e-3, 2e-3, 1e-4, 1e-6}) {
+      CAPTURE(name(theory), w);
+      CHECK(thick.cut_off_half_width_m(thick.cut_off_frequency_Hz(w)) == Approx(w).epsilon(1e-12));
+      CHECK(thick.frequency_Hz(thick.wavenumber_per_m(1e3 / w)) == Approx(1e3 / w).epsilon(1e-12));
+    }
+    // The difference falls with the thickness.
+    double last = 1;
+    for (const double h : {1e-3, 1e-4, 1e-5}) {
+      s.thickness_m = h;
+      s.theory = PlateTheory::kirchhoff;
+      const double thin = cut_off_frequency_Hz(s, 7e-3);
+      s.theory = theory;
+      const double difference = std::abs(cut_off_frequency_Hz(s, 7e-3) / thin - 1);
+      CHECK(difference < 0.2 * last + 5e-5);  // the table's own error
+      last = difference;
+    }
+    CHECK(last < 1e-4);
+  }
+}
+
+TEST_CASE("waves along a clamped strip match other finite elements and collocation", "[physics]") {
+  int waves = 0;
+  for (const auto& row : oracle("section.csv")) {
+    if (row[0] == "wave") {
+      const auto ours = elastic_wavenumbers2(number(row[2]), number(row[1]), number(row[3]), 2);
+      REQUIRE(ours.size() == 2);
+      for (std::size_t i = 0; i < 2; ++i) {
+        const std::complex<double> theirs(number(row[4 + 2 * i]), number(row[5 + 2 * i]));
+        const double miss = std::min(std::abs(ours[0] - theirs), std::abs(ours[1] - theirs));
+        CAPTURE(row[1], row[2], row[3], theirs);
+        CHECK(miss < 2e-3 * (1 + std::abs(theirs)));
+      }
+      ++waves;
+    }
+    if (row[0] == "mindlin" && number(row[6]) == 0) {  // two real squares
+      const double kappa = number(row[2]), f = number(row[4]) / (2 * std::numbers::pi);
+      MindlinPlate plate(unit_plate(number(row[3]), number(row[1]), PlateTheory::mindlin));
+      plate.shear_N_per_m *= kappa / shear_factor(number(row[1]));
+      for (const std::size_t i : {5, 7}) {
+        const double theirs = number(row[i]), step = 1e-6 * (1 + std::abs(theirs));
+        const double at = plate.characteristic(f, 1, theirs);
+        const double slope = (plate.characteristic(f, 1, theirs + step) - at) / step;
+        CAPTURE(row[1], row[3], row[4], theirs);
+        CHECK(std::abs(at / slope) < 1e-6 * (1 + std::abs(theirs)));  // a Newton step to our root
+        CHECK(std::abs(plate.characteristic(f, 1, theirs + 0.1) / slope) > 0.05);
+      }
+      ++waves;
+    }
+  }
+  CHECK(waves == 22);
+}
+
+TEST_CASE("a thick theory is refused where it does not hold", "[physics]") {
+  Surface s = aluminium_plate();
+  s.theory = PlateTheory::mindlin;
+  CHECK_NOTHROW(validate(s));
+  s.edges = Edges::supported;
+  CHECK_THROWS_AS(validate(s), std::invalid_argument);
+  s = seed_brass();
+  s.theory = PlateTheory::elastic;
+  CHECK_THROWS_AS(validate(s), std::invalid_argument);
+  s = aluminium_plate();
+  s.theory = PlateTheory::elastic;
+  s.poisson = 0.5;
+  CHECK_THROWS_AS(validate(s), std::invalid_argument);
+  CHECK(parse_plate_theory("elastic") == PlateTheory::elastic);
+  CHECK_THROWS_AS(parse_plate_theory("thick"), std::invalid_argument);
+}
