@@ -86,7 +86,7 @@ Through through_thickness(double thickness) {
           gram(odd, even), gram(odd, even1), gram(odd1, even)};
 }
 
-MatrixXd product(const MatrixXd& across, const MatrixXd& through) {
+MatrixXd tensor(const MatrixXd& across, const MatrixXd& through) {
   MatrixXd all(across.rows() * through.rows(), across.cols() * through.cols());
   for (Eigen::Index i = 0; i < across.rows(); ++i) {
     for (Eigen::Index j = 0; j < across.cols(); ++j)
@@ -111,28 +111,28 @@ SectionElements::SectionElements(double thickness, double nu) : lame(2 * nu / (1
   const std::vector<double> ends = element_ends(thickness);
   const Line even = across_line(ends, false), odd = across_line(ends, true);
   const Through z = through_thickness(thickness);
-  along_mass = product(even.mass, z.odd_mass);
-  shear = product(even.stiff, z.odd_mass) + product(even.mass, z.odd_stiff);
-  const MatrixXd b_mass = product(odd.mass, z.odd_mass), c_mass = product(even.mass, z.even_mass);
+  along_mass = tensor(even.mass, z.odd_mass);
+  shear = tensor(even.stiff, z.odd_mass) + tensor(even.mass, z.odd_stiff);
+  const MatrixXd b_mass = tensor(odd.mass, z.odd_mass), c_mass = tensor(even.mass, z.even_mass);
   const Eigen::Index nb = b_mass.rows(), nc = c_mass.rows();
   mass = MatrixXd::Zero(nb + nc, nb + nc);
   mass.topLeftCorner(nb, nb) = b_mass;
   mass.bottomRightCorner(nc, nc) = c_mass;
   plane = MatrixXd::Zero(nb + nc, nb + nc);
-  plane.topLeftCorner(nb, nb) = (lame + 2) * product(odd.stiff, z.odd_mass) + product(odd.mass, z.odd_stiff);
+  plane.topLeftCorner(nb, nb) = (lame + 2) * tensor(odd.stiff, z.odd_mass) + tensor(odd.mass, z.odd_stiff);
   plane.bottomRightCorner(nc, nc) =
-      (lame + 2) * product(even.mass, z.even_stiff) + product(even.stiff, z.even_mass);
+      (lame + 2) * tensor(even.mass, z.even_stiff) + tensor(even.stiff, z.even_mass);
   // lame (b_y, c_z) + (b_z, c_y); rows b, without the even functions' first in y.
   const MatrixXd slope_value = even.cross.transpose().bottomRows(odd.mass.rows());
   const MatrixXd value_slope = even.cross.bottomRows(odd.mass.rows());
-  const MatrixXd bc = lame * product(slope_value, z.odd_even_slope) + product(value_slope, z.odd_slope_even);
+  const MatrixXd bc = lame * tensor(slope_value, z.odd_even_slope) + tensor(value_slope, z.odd_slope_even);
   plane.topRightCorner(nb, nc) = bc;
   plane.bottomLeftCorner(nc, nb) = bc.transpose();
   // lame (A, b_y + c_z) - (A_y, b) - (A_z, c)
   coupling.resize(along_mass.rows(), nb + nc);
   coupling.leftCols(nb) =
-      product(MatrixXd(without_first_column(lame * even.cross - even.cross.transpose())), z.odd_mass);
-  coupling.rightCols(nc) = product(even.mass, MatrixXd(lame * z.odd_even_slope - z.odd_slope_even));
+      tensor(MatrixXd(without_first_column(lame * even.cross - even.cross.transpose())), z.odd_mass);
+  coupling.rightCols(nc) = tensor(even.mass, MatrixXd(lame * z.odd_even_slope - z.odd_slope_even));
 }
 
 SectionCutOff section_cut_off(const SectionElements& section) {
