@@ -10,7 +10,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace annotate_command {
 
 struct Options {
   std::string database, session, text;
@@ -24,9 +24,10 @@ void annotate(const Options& options, Context& context) {
     fmt::print(context.out, "noted on session {}\n", options.session);
 }
 
-}  // namespace
+}  // namespace annotate_command
 
 void add_annotate(CommandLine& app, Context& context) {
+  using namespace annotate_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("annotate", "Add a note to a session; its trials do not change");
   command->add_option("--db", options->database, "Database")->required();

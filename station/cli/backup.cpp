@@ -11,7 +11,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace backup_command {
 
 struct Options {
   std::string database;
@@ -94,9 +94,10 @@ void restore(const Options& options, Context& context) {
                restored.quarantined);
 }
 
-}  // namespace
+}  // namespace backup_command
 
 void add_backup(CommandLine& app, Context& context) {
+  using namespace backup_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "backup", "Copy a database (even while it is in use), check the copy, remove the oldest copies");

@@ -15,7 +15,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace calibrate_command {
 
 using calibration::BoundaryFit;
 using text::number;
@@ -162,9 +162,10 @@ void calibrate(const Options& options, Context& context) {
   fmt::print(context.out, "wrote {} (valid for {} days) and {}\n", out, made.valid_days, plots);
 }
 
-}  // namespace
+}  // namespace calibrate_command
 
 void add_calibrate(CommandLine& app, Context& context) {
+  using namespace calibrate_command;
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("calibrate", "Fit measurements of a rig; plan or play the sweep for them");

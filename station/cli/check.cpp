@@ -14,7 +14,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace check_command {
 
 using text::number;
 
@@ -190,9 +190,10 @@ void check(const Options& options, Context& context) {
     print(context.out, result, options.protocol);
 }
 
-}  // namespace
+}  // namespace check_command
 
 void add_check(CommandLine& app, Context& context) {
+  using namespace check_command;
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("check", "List all mistakes in a protocol file, or describe the session");

@@ -11,7 +11,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace doctor_command {
 
 const char* word(lines::Finding::Status status) {
   switch (status) {
@@ -41,9 +41,10 @@ void doctor(const std::string& rig_path, const std::string& data_path, Context& 
   context.exit_code = fit ? 0 : 1;
 }
 
-}  // namespace
+}  // namespace doctor_command
 
 void add_doctor(CommandLine& app, Context& context) {
+  using namespace doctor_command;
   auto* command =
       app.add_subcommand("doctor", "Check the hardware of a rig; exit status 1 if something is wrong");
   auto rig = std::make_shared<std::string>();

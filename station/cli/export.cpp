@@ -11,7 +11,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace export_command {
 
 struct Options {
   std::string database, out, format = "csv", separator = ",", decimal = ".";
@@ -55,9 +55,10 @@ void export_data(Options options, Context& context) {
   fmt::print(context.out, "{} trials in {} files\n", trial_rows(files), files.size());
 }
 
-}  // namespace
+}  // namespace export_command
 
 void add_export(CommandLine& app, Context& context) {
+  using namespace export_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("export", "Write sessions as CSV or BIDS, one folder a protocol");
   command->add_option("--db", options->database, "Database")->required();

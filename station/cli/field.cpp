@@ -15,7 +15,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace field_command {
 
 struct Options {
   std::string rig, at, model = "auto", normalise = "drive";
@@ -122,9 +122,10 @@ void field(const Options& options, Context& context) {
     print(context.out, result, choice, x_m, friction);
 }
 
-}  // namespace
+}  // namespace field_command
 
 void add_field(CommandLine& app, Context& context) {
+  using namespace field_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("field", "Displacement and friction along the centre line");
   command->add_option("--rig", options->rig, "Rig file")->required();

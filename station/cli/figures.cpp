@@ -13,7 +13,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace figures_command {
 
 struct Options {
   std::string out;
@@ -64,9 +64,10 @@ void figures(const Options& options, Context& context) {
   if (context.json) context.out << list.dump(2) << "\n";
 }
 
-}  // namespace
+}  // namespace figures_command
 
 void add_figures(CommandLine& app, Context& context) {
+  using namespace figures_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "figures", "Figures 3, 5, 8 and 10 of the 1998 paper, with the corrected theory beside them");

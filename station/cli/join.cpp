@@ -9,7 +9,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace join_command {
 
 struct Options {
   std::string database, first, second;
@@ -27,9 +27,10 @@ void join(const Options& options, Context& context) {
     fmt::print(context.out, "{} and {} are one person, called {}\n", options.first, options.second, label);
 }
 
-}  // namespace
+}  // namespace join_command
 
 void add_join(CommandLine& app, Context& context) {
+  using namespace join_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("join", "Say that two participant codes are one person");
   command->add_option("--db", options->database, "Database")->required();

@@ -12,7 +12,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace map_command {
 
 struct Options {
   std::string rig, edge = "turning", model;
@@ -66,9 +66,10 @@ void map(const Options& options, Context& context) {
   context.out << list.dump(2) << "\n";
 }
 
-}  // namespace
+}  // namespace map_command
 
 void add_map(CommandLine& app, Context& context) {
+  using namespace map_command;
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("map", "Convert boundaries to frequencies, or frequencies to boundaries");

@@ -10,7 +10,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace merge_command {
 
 struct Options {
   std::string database;
@@ -51,9 +51,10 @@ void merge(const Options& options, Context& context) {
   if (context.json) context.out << all.dump(2) << "\n";
 }
 
-}  // namespace
+}  // namespace merge_command
 
 void add_merge(CommandLine& app, Context& context) {
+  using namespace merge_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("merge", "Merge the sessions of other stations' databases into one");
   command->add_option("--db", options->database, "Database to merge into; created if missing")->required();

@@ -15,7 +15,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace new_command {
 
 namespace fs = std::filesystem;
 
@@ -101,9 +101,10 @@ void make(const Options& options, Context& context) {
              goal->file, options.file);
 }
 
-}  // namespace
+}  // namespace new_command
 
 void add_new(CommandLine& app, Context& context) {
+  using namespace new_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("new", "Starts a protocol file by asking what is to be measured");
   command->add_option("file", options->file, "The file to write, such as my-study.toml")->required();

@@ -11,7 +11,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace operator_code_command {
 
 /// While this object exists, typing on the terminal (if there is one) is invisible. Ctrl-C is an ordinary
 /// character meanwhile, so that it cannot leave the terminal without echo.
@@ -67,9 +67,10 @@ void set_operator_code(Context& context) {
       file);
 }
 
-}  // namespace
+}  // namespace operator_code_command
 
 void add_operator_code(CommandLine& app, Context& context) {
+  using namespace operator_code_command;
   auto* command = app.add_subcommand("operator-code",
                                      "Asks for the code that opens the operator's pages on the participant's "
                                      "screen, and stores its hash; as root for the station's service");

@@ -15,7 +15,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace plan_command {
 
 struct Options {
   std::string protocol, rig, scene;
@@ -123,9 +123,10 @@ void plan(const Options& options, Context& context) {
     print(context.out, result);
 }
 
-}  // namespace
+}  // namespace plan_command
 
 void add_plan(CommandLine& app, Context& context) {
+  using namespace plan_command;
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("plan", "Show how a scene of a protocol is presented: tones, model, reason, cues");

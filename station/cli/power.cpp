@@ -18,7 +18,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace power_command {
 
 using text::number;
 
@@ -161,9 +161,10 @@ void power(const Options& options, Context& context) {
     if (!context.json) fmt::print(context.out, "wrote {}\n", file);
 }
 
-}  // namespace
+}  // namespace power_command
 
 void add_power(CommandLine& app, Context& context) {
+  using namespace power_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "power", "Predict what a study would find: bias, spread and interval coverage from simulated sessions");

@@ -17,7 +17,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace preview_command {
 
 struct Options {
   std::string protocol, rig, scene, out;
@@ -56,9 +56,10 @@ void preview_to_files(const Options& options, Context& context) {
   }
 }
 
-}  // namespace
+}  // namespace preview_command
 
 void add_preview(CommandLine& app, Context& context) {
+  using namespace preview_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("preview", "Show the scenes of a protocol without a session");
   command->add_option("protocol", options->protocol, "Protocol file")->required();

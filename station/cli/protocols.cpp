@@ -13,7 +13,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace protocols_command {
 
 namespace fs = std::filesystem;
 
@@ -47,9 +47,10 @@ void protocols(const std::string& folder, Context& context) {
   if (context.json) context.out << list.dump(2) << "\n";
 }
 
-}  // namespace
+}  // namespace protocols_command
 
 void add_protocols(CommandLine& app, Context& context) {
+  using namespace protocols_command;
   auto folder = std::make_shared<std::string>();
   auto* command = app.add_subcommand("protocols", "Lists the protocols that come with the program");
   command->add_option("--folder", *folder, "Another folder with protocol files");

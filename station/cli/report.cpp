@@ -13,7 +13,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace report_command {
 
 struct Options {
   std::string database, out;
@@ -30,9 +30,10 @@ void report_session(Options options, Context& context) {
   if (!context.json) fmt::print(context.out, "{}\n", options.out);
 }
 
-}  // namespace
+}  // namespace report_command
 
 void add_report(CommandLine& app, Context& context) {
+  using namespace report_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "report", "Write a report of a session: fits, bias, speed-accuracy trade-off, health");

@@ -26,7 +26,7 @@ void become_ui(const Context& context) {
                           "cannot start " + ui + " (without a screen use --headless --observer sim)");
 }
 
-namespace {
+namespace run_command {
 
 Json to_json(const session::Summary& summary) {
   Json estimates = Json::array();
@@ -41,7 +41,7 @@ Json to_json(const session::Summary& summary) {
           {"protocol", summary.protocol_id},
           {"database", summary.database},
           {"run_mode", summary.run_mode},
-          {"status", store::name(summary.status)},
+          {"status", records::name(summary.status)},
           {"reason", summary.reason},
           {"seed", summary.seed},
           {"blocks", summary.blocks},
@@ -62,7 +62,7 @@ Json to_json(const session::Summary& summary) {
 void print_summary(std::ostream& out, const session::Summary& s) {
   using text::number;
   fmt::print(out, "Session {} ({}, {}): {}{}\n", s.session_id, s.protocol_id, s.run_mode,
-             store::name(s.status), s.reason.empty() ? "" : ": " + s.reason);
+             records::name(s.status), s.reason.empty() ? "" : ": " + s.reason);
   fmt::print(out, "  participant {}, seed {}, {} blocks, {} trials in {} min\n", s.participant, s.seed,
              s.blocks, s.trials, number(s.duration_s / 60, 3));
   fmt::print(out, "  {} answered, {} too late, {} too early, {} void\n", s.answered, s.timeouts,
@@ -85,9 +85,10 @@ void print_how_to_resume(std::ostream& out, const session::Summary& s, const std
                options);
 }
 
-}  // namespace
+}  // namespace run_command
 
 void show_summary(Context& context, const session::Summary& summary, const std::string& resume_options) {
+  using namespace run_command;
   const bool interrupted = summary.status == records::SessionStatus::interrupted;
   if (interrupted) context.exit_code = 1;
   if (context.json) {
@@ -127,6 +128,7 @@ std::shared_ptr<setup::RunRequest> add_run_options(Command& command) {
 }
 
 void add_run(CommandLine& app, Context& context) {
+  using namespace run_command;
   auto* command = app.add_subcommand("run", "Run a session");
   auto request = add_run_options(*command);
   add_json(*command, context);

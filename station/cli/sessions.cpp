@@ -9,7 +9,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace sessions_command {
 
 struct Options {
   std::string database;
@@ -25,8 +25,8 @@ Json to_json(const store::SessionRecord& session) {
           {"protocol_version", start.protocol_version},
           {"session_index", session.session_index},
           {"sequence_index", session.sequence_index},
-          {"run_mode", store::name(start.run_mode)},
-          {"status", store::name(session.status)},
+          {"run_mode", records::name(start.run_mode)},
+          {"status", records::name(session.status)},
           {"status_reason", session.status_reason},
           {"started", start.started_local},
           {"trials", session.trials},
@@ -43,7 +43,7 @@ void print(std::ostream& out, const std::vector<store::SessionRecord>& sessions)
              "protocol", "no", "mode", "status", "trials", "started");
   for (const auto& s : sessions) {
     fmt::print(out, "{:<36}  {:<12} {:<24} {:>3} {:<9} {:<11} {:>6}  {}{}\n", s.session_id, s.person,
-               s.start.protocol_id, s.session_index, store::name(s.start.run_mode), store::name(s.status),
+               s.start.protocol_id, s.session_index, records::name(s.start.run_mode), records::name(s.status),
                s.trials, s.start.started_local,
                s.segments > 1 ? fmt::format(", resumed {} times", s.segments - 1) : "");
     for (const auto& note : s.annotations) fmt::print(out, "{:>38}note: {}\n", "", note);
@@ -59,9 +59,10 @@ void sessions(const Options& options, Context& context) {
   context.out << json.dump(2) << "\n";
 }
 
-}  // namespace
+}  // namespace sessions_command
 
 void add_sessions(CommandLine& app, Context& context) {
+  using namespace sessions_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("sessions", "List the sessions of a database");
   command->add_option("--db", options->database, "Database")->required();

@@ -17,7 +17,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace synth_command {
 
 struct Options {
   std::string rig, out;
@@ -98,9 +98,10 @@ void synth(const Options& options, Context& context) {
              report.counters.underruns);
 }
 
-}  // namespace
+}  // namespace synth_command
 
 void add_synth(CommandLine& app, Context& context) {
+  using namespace synth_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("synth", "Play or render tones");
   command->add_option("--rig", options->rig, "Rig file: rate, depth, transducers")->required();

@@ -12,7 +12,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace trace_command {
 
 struct Options {
   std::string protocol, procedure, answers;
@@ -74,9 +74,10 @@ void trace(const Options& options, Context& context) {
                e.basis.empty() ? "" : ", " + e.basis);
 }
 
-}  // namespace
+}  // namespace trace_command
 
 void add_trace(CommandLine& app, Context& context) {
+  using namespace trace_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("trace", "Show the levels that a procedure chooses for given answers");
   command->add_option("protocol", options->protocol, "Protocol file")->required();

@@ -9,7 +9,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace verify_command {
 
 struct Options {
   std::string database;
@@ -54,9 +54,10 @@ void verify(const Options& options, Context& context) {
     print(context.out, result);
 }
 
-}  // namespace
+}  // namespace verify_command
 
 void add_verify(CommandLine& app, Context& context) {
+  using namespace verify_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("verify", "Check that the stored data are as they were recorded");
   command->add_option("--db", options->database, "Database or backup; only read")->required();

@@ -11,7 +11,7 @@
 
 namespace turnpoint::cli {
 
-namespace {
+namespace withdraw_command {
 
 struct Options {
   std::string database;
@@ -93,9 +93,10 @@ void withdraw(const Options& options, Context& context) {
   if (!options.dry_run && !gone.remaining_copies.empty()) context.exit_code = 1;
 }
 
-}  // namespace
+}  // namespace withdraw_command
 
 void add_withdraw(CommandLine& app, Context& context) {
+  using namespace withdraw_command;
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("withdraw", "Delete the data of a participant who withdraws; cannot be undone");
