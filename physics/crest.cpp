@@ -12,9 +12,10 @@ namespace {
 
 using std::numbers::pi;
 constexpr double longest_period_s = 0.05;
-constexpr std::size_t most_descended = 12;  // tones; beyond this Schroeder's phases are kept
+constexpr std::size_t most_descended =
+    12;  // with more tones than this, Schroeder's phases are used as they are
 
-// Period of the envelope: one over the common divisor of the frequency differences, to the nearest hertz.
+// Period of the envelope: 1 over the greatest common divisor of the frequency differences, in whole hertz.
 double beat_period_s(std::span<const Tone> tones) {
   long divisor = 0;
   for (const Tone& tone : tones) {
@@ -24,7 +25,7 @@ double beat_period_s(std::span<const Tone> tones) {
                       : std::min(longest_period_s, 1.0 / static_cast<double>(divisor));
 }
 
-// Tones in order of frequency, by index.
+// The indices of the tones, sorted by frequency.
 std::vector<std::size_t> by_frequency(std::span<const Tone> tones) {
   std::vector<std::size_t> order(tones.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -47,8 +48,8 @@ void schroeder(std::span<Tone> tones) {
   }
 }
 
-// The envelope's peak with one tone's phase left free: |rest(t) + tone(t) e^(i phi)|, on a grid over the
-// period.
+// The peak of the envelope |rest(t) + tone(t) e^(i phi)| as a function of one tone's phase phi, sampled over
+// the period.
 class Envelope {
  public:
   explicit Envelope(std::span<const Tone> tones) {
@@ -126,7 +127,7 @@ double crest_factor(std::span<const Tone> tones) {
   for (std::size_t i = 1; i + 1 < count; ++i) {
     const double y = std::abs(wave[i]);
     if (y < 0.98 * peak) continue;
-    // Parabola through three samples.
+    // The maximum of a parabola through three samples.
     const double sign = wave[i] < 0 ? -1 : 1;
     const double a = sign * wave[i - 1], c = sign * wave[i + 1];
     const double bend = a - 2 * y + c;
@@ -145,7 +146,8 @@ std::vector<Product> audible_products(std::span<const Tone> tones, double below_
     for (std::size_t j = 0; j < tones.size(); ++j) {
       if (i < j) add(tones[i].frequency_Hz - tones[j].frequency_Hz, 2);
       for (std::size_t k = 0; k < tones.size(); ++k) {
-        // f_i + f_j - f_k with i = j giving 2 f_i - f_k; k among them would be a first-order term.
+        // The products f_i + f_j - f_k; i = j gives 2 f_i - f_k. If k is i or j, the result is one of the
+        // tones.
         if (i <= j && k != i && k != j)
           add(tones[i].frequency_Hz + tones[j].frequency_Hz - tones[k].frequency_Hz, 3);
       }

@@ -13,8 +13,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// The surface seen from `end_m` towards the drive edge: x' = end_m - x. Its widths rise, so that the marched
-// solution, which vanishes at the far end of what it is given, is the one that vanishes at the drive edge.
+// The surface mirrored, x' = end_m - x, so that the drive edge is its far end. The solver makes the field
+// vanish at the far end, and so gives the solution that vanishes at the drive edge.
 Surface reversed(const Surface& surface, double end_m) {
   Surface back = surface;
   back.length_m = end_m;
@@ -91,7 +91,7 @@ void check(const Surface& surface) {
   }
 }
 
-// A clamped plate: the one-shape mode's field and its answer to a force.
+// The field of a clamped plate's one-shape mode, and its response to a point force.
 std::vector<FingerLoad> plate_loads(const Surface& surface, double f, const std::vector<double>& x_m,
                                     const Finger& finger) {
   const auto line = make_centre_line(surface, f, Model::mode);
@@ -142,8 +142,7 @@ std::vector<FingerLoad> finger_load(const Surface& surface, double f, const std:
     end = std::max(end, x);
   }
   if (Dispersion(surface).clamped_bending()) return plate_loads(surface, f, x_m, finger);
-  // The apex itself is singular for the solution from the drive; just before it the displacement is zero
-  // anyway.
+  // At the apex the solution from the drive is singular. Just before it the displacement is zero in any case.
   if (const auto apex = Taper(surface).apex_m()) end = std::min(end, *apex * (1 - 1e-6));
   const Loaded loaded(surface, f, std::max(end, 1e-3 * surface.length_m), finger);
   std::vector<FingerLoad> all;

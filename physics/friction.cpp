@@ -12,10 +12,10 @@ namespace {
 
 // If the skin contacts carry less than this share, only the floor remains.
 constexpr double smallest_share = 0.02;
-// Steps of the table that the solution starts from: fine enough for two Newton steps to rounding.
+// Steps of the table of first guesses: from one of them, two Newton steps reach rounding accuracy.
 constexpr int start_steps = 256;
 
-// Excursion that gives an overpressure q: (1 + q)^2 = (1 + 3 e^2/2)/(1 - e^2), solved for e.
+// The excursion e that causes an overpressure q, from (1 + q)^2 = (1 + 3 e^2/2)/(1 - e^2).
 double excursion(double overpressure) {
   const double r = overpressure * (2 + overpressure);  // (1 + q)^2 - 1 without cancellation
   return std::sqrt(r / (2.5 + r));
@@ -33,16 +33,17 @@ std::optional<double> without_floor(double friction, double floor) {
   return std::min(1.0, std::pow(share4, 0.25));
 }
 
-// Displacement at which skin contacts carry `share` of the load: the gap follows from the share, the film's
-// pressure from the rest of the load, the excursion from the pressure. Closed form.
+// The displacement at which skin contacts carry `share` of the load, in closed form: the share determines the
+// gap, the rest of the load is the film's pressure, and the pressure determines the excursion.
 double displacement_for_share(const LoadSharing& m, double share) {
   if (share >= 1) return 0;
   const double gap = m.rest_gap_m - m.decay_length_m * std::log(share);
   return gap * excursion(m.pressure_Pa * (1 - share) / m.ambient_Pa);
 }
 
-// The share at a displacement: the film's overpressure must be what the contacts leave, (1 - share) of the
-// load. The difference rises with L = ln(share), so Newton steps inside a bracket find it.
+// The share at a displacement. The film's overpressure has to carry the part of the load that the contacts do
+// not carry, 1 - share. The difference of both rises with L = ln(share), so Newton steps within a bracket
+// find the root.
 double share_at(const LoadSharing& m, double displacement_m, double ln_guess) {
   const double lowest = std::log(smallest_share);
   const auto tangent = [&](double x) {
@@ -73,7 +74,7 @@ void require(bool holds, const char* quantity, double value, const char* allowed
 
 double squeeze_film_overpressure(double e) {
   require(e >= 0 && e < 1, "squeeze film excursion", e, "0 to below 1");
-  // sqrt(r) - 1 with r - 1 = 2.5 e^2/(1 - e^2), free of cancellation at small e.
+  // sqrt(r) - 1 with r - 1 = 2.5 e^2/(1 - e^2), in a form without cancellation at small e.
   const double r = 2.5 * e * e / (1 - e * e);
   return r / (1 + std::sqrt(1 + r));
 }
@@ -150,7 +151,7 @@ double FrictionMap::highest_displacement_m() const {
 
 namespace {
 
-// Integral of the piecewise linear function from x[0] to `position`, by its running integral.
+// The integral of the piecewise linear function from x[0] to `position`, from its cumulative integral.
 double integral_to(std::span<const double> x, std::span<const double> y, std::span<const double> running,
                    double position) {
   const auto after = std::upper_bound(x.begin(), x.end(), position);

@@ -5,7 +5,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// No larger than an element's basis or quadrature, so that they live on the stack.
+// Bounds for an element's basis and quadrature, so that these matrices are on the stack.
 using Small =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, largest_degree + 4, largest_degree + 4>;
 using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, largest_degree + 4, 1>;
@@ -67,7 +67,7 @@ ModalAssembler::Form ModalAssembler::single_form(double w, double r, double curv
   const double across = 1 / (w * w), stretch = 2 * r * r - curve;
   const auto& m = single_bend_;
   const double bending = equation_.bending, tension = equation_.tension;
-  const auto with_value = [&](Eigen::Index row) {  // the parts that multiply X
+  const auto with_value = [&](Eigen::Index row) {  // the terms that multiply X
     return stretch * m(row, 1) + r * r * m(row, 2) + across * m(row, 3);
   };
   Form f;
@@ -81,8 +81,8 @@ ModalAssembler::Form ModalAssembler::single_form(double w, double r, double curv
   return f;
 }
 
-// With one transverse function Y the weak form is, at each point, a symmetric form of (X'', X', X): plain
-// loops over few numbers, which is what a clamped plate's `mode` spends its time on.
+// With a single transverse function Y the weak form at a point is a symmetric form of (X'', X', X). Plain
+// loops over these few numbers are fast, and a clamped plate's `mode` spends most of its time here.
 Eigen::MatrixXcd ModalAssembler::single_matrix(const ModalElement& e) const {
   using Rows = std::array<double, largest_degree + 1>;
   const auto n = static_cast<std::size_t>(along_.count());
@@ -131,7 +131,7 @@ Eigen::MatrixXcd ModalAssembler::matrix(const ModalElement& e) const {
   const int n = along_.count();
   const std::vector<Point> list = points(e);
   const auto rows = static_cast<Eigen::Index>(list.size());
-  // Basis functions at the quadrature points, one row a point, and the mapping's weights there.
+  // Basis functions at the quadrature points, a row for each point, and the weights of the mapping there.
   Small value(rows, n), first(rows, n), second(rows, n);
   Column weight(rows), w(rows), w1(rows), curve(rows);
   for (Eigen::Index q = 0; q < rows; ++q) {
@@ -171,7 +171,7 @@ Eigen::MatrixXcd ModalAssembler::matrix(const ModalElement& e) const {
       for (std::size_t j = 0; j < 4; ++j) bend[i][j] = gram(part[i], weight.cwiseProduct(w), part[j]);
     }
   }
-  // Which unknowns exist: fewer transverse functions at the right vertex.
+  // The unknowns in use: the right vertex may have fewer transverse functions.
   std::vector<std::pair<int, int>> index;
   for (int a = 0; a < n; ++a) {
     const int functions = a >= n - along_.per_vertex ? e.right : e.left;

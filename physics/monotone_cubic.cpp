@@ -10,7 +10,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// Fritsch & Butland's weighted harmonic mean; zero at a turn, so that no cubic overshoots.
+// Fritsch & Butland's weighted harmonic mean of the slopes; zero at an extremum, so that no cubic overshoots.
 double inner_slope(double h0, double h1, double d0, double d1) {
   if (d0 * d1 <= 0) return 0;
   const double w0 = 2 * h1 + h0;

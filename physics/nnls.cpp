@@ -9,7 +9,7 @@ namespace turnpoint::physics {
 namespace {
 
 double dot(std::span<const double> a, std::span<const double> b) {
-  // Four partial sums: the order is fixed, and the loop vectorises.
+  // Four partial sums let the compiler use vector instructions and keep the order of the additions fixed.
   double s[4] = {0, 0, 0, 0};
   std::size_t i = 0;
   for (; i + 4 <= a.size(); i += 4) {
@@ -46,7 +46,7 @@ class Solver {
  private:
   std::span<const double> column(std::size_t j) const { return columns_.subspan(j * rows_, rows_); }
 
-  // The column outside the passive set that would lower the residual fastest; size() when none would.
+  // The column outside the passive set that lowers the residual fastest; size() if none does.
   std::size_t steepest(double tolerance) {
     std::size_t best = x_.size();
     double most = tolerance;
@@ -61,11 +61,12 @@ class Solver {
     return best;
   }
 
-  // Solves on the passive set, walking back to the feasible region and dropping columns as often as needed.
+  // Solves for the passive set. As long as a weight is negative, steps back to the feasible region and
+  // removes columns.
   void descend(std::size_t entered) {
     while (!passive_.empty()) {
       std::vector<double> z = solve_passive();
-      // Rounding can make a column that looked useful enter with a negative weight: leave it out for good.
+      // Because of rounding, a column that seemed useful may get a negative weight: exclude it permanently.
       if (passive_.back() == entered && !(z.back() > 0)) {
         passive_.pop_back();
         blocked_[entered] = true;
@@ -103,7 +104,8 @@ class Solver {
     std::vector<double> z(passive_.size());
     for (std::size_t i = 0; i < z.size(); ++i) z[i] = dot(column(passive_[i]), b_);
     back_substitute(z);
-    // One refinement through the true residual restores what squaring the condition number cost.
+    // The normal equations square the condition number. One step of iterative refinement restores the
+    // accuracy.
     std::vector<double> r(b_.begin(), b_.end());
     for (std::size_t i = 0; i < z.size(); ++i) {
       const auto a = column(passive_[i]);
@@ -116,12 +118,13 @@ class Solver {
     return z;
   }
 
-  // Products of columns, computed when first needed: the passive set changes by one or two a turn.
+  // Products of columns, computed when first needed: in each iteration the passive set changes by one or two
+  // columns.
   double gram(std::size_t i, std::size_t j) {
     if (i < j) std::swap(i, j);
     double& product = gram_[i * x_.size() + j];
     if (product < 0) product = dot(column(i), column(j));
-    if (product < 0) return dot(column(i), column(j));  // columns of mixed sign: not worth a second table
+    if (product < 0) return dot(column(i), column(j));  // a negative product is not kept in the table
     return product;
   }
 

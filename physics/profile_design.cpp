@@ -12,9 +12,11 @@ namespace turnpoint::physics {
 namespace {
 
 constexpr double reachable_residual = 0.25;
-constexpr double fit_tolerance = 1e-4;  // further tones would change the residual in its third digit
+constexpr double fit_tolerance =
+    1e-4;  // stop when another tone improves the residual by less than this share
 
-// Squared amplitude at the target's points, last maximum set to one; |v(0)| of that in `drive_gain`.
+// Squared amplitudes at the target's points, scaled to a last maximum of one. `drive_gain` is |v(0)| at that
+// scale.
 bool shape(const Surface& surface, double f, std::span<const double> x, std::vector<double>& columns,
            double& drive_gain) {
   const auto line = make_centre_line(surface, f, Model::mode);

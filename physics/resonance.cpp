@@ -13,8 +13,8 @@ namespace {
 
 using std::numbers::pi;
 
-// Pruefer phase of the lossless mode at the drive edge: continuous and rising in frequency, a multiple of pi
-// exactly at the resonances.
+// Pruefer phase of the lossless mode at the drive edge. It is continuous, rises with frequency, and is a
+// multiple of pi exactly at the resonances.
 class Phase {
  public:
   explicit Phase(const Surface& surface) : surface_(surface), taper_(surface) {}
@@ -23,7 +23,7 @@ class Phase {
     const TaylorMarch march(taper_, march_equation(surface_, frequency_Hz, Model::mode, Losses::left_out));
     const double v = march.value(0).mantissa.real();
     const double rising = -march.slope(0).mantissa.real() / wavenumber_per_m(surface_, frequency_Hz);
-    // The solution starts positive at the tip; each zero passed adds pi and turns the sign.
+    // The solution is positive at the tip. Each zero on the way adds pi and changes the sign.
     const int zeros = march.zeros();
     const double sign = zeros % 2 == 0 ? 1 : -1;
     return pi * zeros + std::acos(std::clamp(sign * rising / std::hypot(v, rising), -1.0, 1.0));
@@ -34,14 +34,14 @@ class Phase {
   Taper taper_;
 };
 
-// Frequency at which the phase reaches `target`, inside a bracket.
+// The frequency within the bracket at which the phase is `target`.
 double solve(const Phase& phase, double target, const Chord& chord) {
   return false_position(
       chord, [&](double f) { return phase(f) - target; }, {4}, 1e-12,
       [](const Chord& c) { return c.width() <= 1e-13 * c.right; });
 }
 
-// The resonance number n (1, 2, ...), searched outward from a frequency of known phase.
+// Resonance number n (1, 2, ...), found by moving away from a frequency whose phase is known.
 std::optional<double> resonance(const Phase& phase, int n, double from_Hz, double at_from) {
   const double target = n * pi;
   double a = from_Hz, fa = at_from - target;
@@ -60,7 +60,8 @@ std::optional<double> resonance(const Phase& phase, int n, double from_Hz, doubl
   return std::nullopt;
 }
 
-// A clamped plate's v(0) over its last maximum, with sign, by the lossless mode: zero at a resonance.
+// v(0) divided by the last maximum, by the lossless mode of a clamped plate. It has a sign, and is zero at a
+// resonance.
 std::optional<double> plate_response(const Surface& surface, double f) {
   const auto line = make_centre_line(surface, f, Model::mode, Losses::left_out);
   const auto peak = line->last_peak_m();
@@ -70,7 +71,8 @@ std::optional<double> plate_response(const Surface& surface, double f) {
          std::exp(std::min(300.0, drive.ln_scale - top.ln_scale));
 }
 
-// A fifth of about the distance of two resonances: half a wave more between drive edge and turning point.
+// About a fifth of the distance between two resonances, which differ by half a wave between drive edge and
+// turning point.
 double plate_step_Hz(const Surface& surface, double f) {
   const double reach = turning_point_m(surface, f).value_or(surface.length_m);
   return 0.5 * f * pi / (wavenumber_per_m(surface, f) * std::max(reach, 0.05 * surface.length_m));
@@ -85,7 +87,7 @@ double plate_zero(const Surface& surface, const Chord& chord) {
       [](const Chord& c) { return c.width() <= 1e-9 * c.right; });
 }
 
-// A walk in steps of frequency that stops for a moment at each zero it passes.
+// Moves in steps of frequency and reports each zero on the way.
 struct PlateWalk {
   double f;
   std::optional<double> response;
@@ -104,7 +106,8 @@ std::optional<double> nearest_plate_resonance(const Surface& surface, double f) 
   const double step = plate_step_Hz(surface, f);
   PlateWalk up{f, plate_response(surface, f)}, down = up;
   std::optional<double> above, below;
-  // By turns; the side found first may be the farther one within its step, so the other gets the same step.
+  // Both sides take turns. The zero found first may be the farther one, so the other side takes the same
+  // step.
   for (int i = 0; i < 10 && !above && !below; ++i) {
     above = up.step(surface, step);
     below = down.step(surface, -step);

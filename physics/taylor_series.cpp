@@ -8,7 +8,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// Terms beyond the last kept one stay below this, relative to the first two.
+// The terms that are left out are smaller than this, relative to the first two.
 constexpr double ln_truncation = -39.8;  // 5e-18
 
 // 1/((n + 1)(n + 2))
@@ -18,8 +18,8 @@ constexpr auto inverse_products = [] {
   return table;
 }();
 
-// Length over which the series is exact to rounding, judged by its last three terms (one or two of which may
-// vanish by symmetry).
+// The length over which the series is accurate to rounding, estimated from its last three terms, because one
+// or two of them may vanish by symmetry.
 double exact_length(const TaylorStep& step) {
   const double size =
       std::max({std::abs(step.re[0]), std::abs(step.im[0]), std::abs(step.re[1]), std::abs(step.im[1])});
@@ -53,8 +53,8 @@ std::complex<double> SeriesMaker::potential(double x) const {
   return equation_.a - (equation_.b + equation_.c * slope * slope) / (w * w);
 }
 
-// A first guess of the step: 3 radians (or e-folds) of the local wavenumber, and well inside the distance at
-// which the sides would meet.
+// First guess of the step: 3 radians (or e-folds) of the local wavenumber, and much less than the distance to
+// the point where the sides would meet.
 double SeriesMaker::trial_scale(double x) const {
   const double meet = std::abs(taper_.half_width_m(x) / taper_.slope(x));
   double scale = 0.35 * std::min(meet, 1e6 * taper_.length_m());
@@ -80,7 +80,7 @@ void SeriesMaker::linear(double x, TaylorStep& step) const {
     const double same = e * e * n * (n - 1.0) - strength + ar;
     const double next = 2 * e * (n + 1.0) * n;
     const double factor = -inverse_products[static_cast<std::size_t>(n)];
-    // A times the combination that s^2 = s0^2 (1 + 2 e tau + e^2 tau^2) makes; its n-th term is in `same`.
+    // A s^2 g, where s^2 = s0^2 (1 + 2 e tau + e^2 tau^2); its n-th term is in `same`.
     const double before_re = n >= 2 ? 2 * e * re[n - 1] + e * e * re[n - 2] : n == 1 ? 2 * e * re[0] : 0;
     double sum_re = next * re[n + 1] + same * re[n] + ar * before_re;
     if constexpr (lossy) {
@@ -92,7 +92,7 @@ void SeriesMaker::linear(double x, TaylorStep& step) const {
   }
 }
 
-// Taylor coefficients of p - A in tau (real); returns how many matter.
+// Taylor coefficients of p - A in tau, which are real. Returns how many of them are needed.
 int SeriesMaker::potential_series(double x, double knot, double scale,
                                   std::array<double, taylor_order>& q) const {
   q.fill(0);
@@ -110,7 +110,7 @@ int SeriesMaker::potential_series(double x, double knot, double scale,
     q[0] -= equation_.c / (l * l);
     return count;
   }
-  // A cubic half-width W(tau): 1/W^2 by its own recurrence, times the quartic B + C W'^2.
+  // For a cubic half-width W(tau), 1/W^2 has a recurrence; it is multiplied by the quartic B + C W'^2.
   std::array<double, 4> w{taper_.half_width_m(x), 0, 0, 0};
   if (std::holds_alternative<TabulatedTaper>(taper_.form())) {
     const Cubic& p = taper_.table().piece(0.5 * (knot + x));
@@ -171,7 +171,7 @@ void SeriesMaker::fill(const TaylorState& from, TaylorStep& step) const {
   step.x_start = from.x;
   step.scale = trial_scale(from.x);
   step.ln_scale = from.ln_scale();
-  // tau runs towards the drive edge, against x.
+  // tau points towards the drive edge, opposite to x.
   const std::complex<double> dg = -from.dg * step.scale;
   step.re[0] = from.g.real();
   step.im[0] = from.g.imag();
@@ -184,7 +184,7 @@ void SeriesMaker::fill(const TaylorState& from, TaylorStep& step) const {
     convolved(from.x, knot, step);
   }
   step.length = exact_length(step);
-  // Ending exactly on the knot: an inner end a rounding above it would leave a sliver of a step.
+  // End exactly on the knot. If rounding put the inner end just above it, another, tiny step would follow.
   if (step.length > (from.x - knot) * (1 - 1e-9)) step.length = from.x - knot;
 }
 
@@ -193,8 +193,8 @@ ApexSeries::ApexSeries(const Taper& taper, const MarchEquation& equation)
       slope_(std::get<LinearTaper>(taper.form()).slope),
       a_(equation.a) {
   mu_ = std::sqrt(equation.b / (slope_ * slope_) + equation.c + 0.25);
-  // Steps are cheaper per point than this series: leave it the tip only, unless a steep order makes steps
-  // many.
+  // Steps cost less per point than this series, so it is used near the tip only, unless a high order would
+  // need many steps.
   const double share = 1 / (1 + 9 * std::min(1.0, 20 / mu_));
   const double reach = share * std::min(2 * std::sqrt(mu_ + 1), mu_) / std::sqrt(std::abs(equation.a));
   inner_m_ = std::max(0.0, half_width_m_ / slope_ - reach);
@@ -212,7 +212,7 @@ TaylorState ApexSeries::at(double x) const {
     if (std::abs(term) * j < 1e-18 * std::abs(sum)) break;
   }
   const double power = mu_ + 0.5;
-  // Relative to the inner end, so that the logarithm stays as small as it can be.
+  // Relative to the inner end, which keeps the logarithm small.
   const double s1 = half_width_m_ / slope_ - inner_m_;
   return {x, sum, -(power * sum + derivative) / s, power * std::log(s / s1), 0};
 }

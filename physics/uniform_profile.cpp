@@ -22,7 +22,7 @@ constexpr std::array<double, 8> weights{0.0506142681451881, 0.1111905172266872, 
                                         0.1813418916891810, 0.1813418916891810, 0.1568533229389436,
                                         0.1111905172266872, 0.0506142681451881};
 
-// Phase integral (positive on both sides) and p at a point.
+// At a point: the phase integral from the turning point, positive on both sides, and p.
 struct PhaseIntegral {
   double integral;
   double p;
@@ -32,7 +32,7 @@ class UniformLine final : public CentreLine {
  public:
   UniformLine(const Surface& surface, double f);
   Scaled value(double x) const override;
-  // Central difference of the logarithm: exact enough for positions within the model's own error.
+  // A central difference of the logarithm; its error in position is far below the model's own.
   Scaled slope(double x) const override;
   std::optional<double> last_peak_m() const override {
     return turning_m_ < 0 ? std::nullopt : find_last_peak(*this, std::min(turning_m_, length_m_), 0.25 / k_);
@@ -55,7 +55,7 @@ class UniformLine final : public CentreLine {
   double k_, length_m_;
   double turning_m_ = 0;
   double steepness_ = 0;  // -dp/dx there
-  // Running integrals at equal steps of u = sqrt(distance from the turning point), towards drive and tip.
+  // Cumulative integrals towards drive and tip, at equal steps of u = sqrt(distance from the turning point).
   std::array<std::vector<double>, 2> running_;
   double panel_ = 0;
 };
@@ -65,7 +65,7 @@ UniformLine::UniformLine(const Surface& surface, double f)
       equation_(march_equation(surface, f, Model::mode, Losses::left_out)),
       k_(wavenumber_per_m(surface, f)),
       length_m_(surface.length_m) {
-  if (taper_.apex_m()) equation_.c += 0.25;  // Langer's term of the apex
+  if (taper_.apex_m()) equation_.c += 0.25;  // Langer's correction at the apex
   find_turning();
   if (!taper_.apex_m()) tabulate();
 }
@@ -96,7 +96,7 @@ void UniformLine::find_turning() {
   steepness_ = (potential(turning_m_ - step) - potential(turning_m_ + step)) / (2 * step);
 }
 
-// Integral over one panel of u: sqrt|p| dx = sqrt|p| 2 u du.
+// The integral over one step of u, with sqrt|p| dx = sqrt|p| 2 u du.
 void UniformLine::tabulate() {
   panel_ = std::sqrt(length_m_) / 64;
   for (int side = 0; side < 2; ++side) {
@@ -145,7 +145,7 @@ Scaled UniformLine::value(double x) const {
   const double k0 = std::cbrt(steepness_);
   const double distance = k0 * (x - turning_m_);
   double zeta = -distance;               // Ai(-zeta)
-  double amplitude = 1 / std::sqrt(k0);  // limit of (zeta/p)^(1/4) at the turning point
+  double amplitude = 1 / std::sqrt(k0);  // the limit of (zeta/p)^(1/4) at the turning point
   if (std::abs(distance) > 1e-4) {
     const PhaseIntegral here = phase(x);
     const double size = std::pow(1.5 * here.integral, 2.0 / 3);

@@ -16,7 +16,7 @@ namespace {
 
 [[noreturn]] void unreachable(const std::ostringstream& text) { throw std::domain_error(text.str()); }
 
-// Highest frequency for a first guess: the one that turns where the zone shall end.
+// First guess of the highest frequency: its turning point is where the zone has to end.
 double first_guess(const Surface& surface, const ZoneRequest& request) {
   return cut_off_frequency_Hz(surface, std::max(1e-6, half_width_m(surface, request.boundary_m)));
 }
@@ -46,7 +46,8 @@ void check(const Surface& surface, const FrictionMap& friction, const ZoneReques
   }
 }
 
-// Moves all tones together until the zone's own edge lies at the wanted boundary; secants on frequency.
+// Shifts the frequencies of all tones together, by the secant method, until the zone's edge is at the wanted
+// boundary.
 void place(ZoneProfile& profile, const ZoneRequest& r, double tolerance_m) {
   double f = profile.highest_Hz();
   double slope = 0;
@@ -84,7 +85,7 @@ void require_band(const ZoneProfile& profile, const ZoneRequest& r) {
 
 ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request) {
   check(surface, friction, request);
-  // One tone first: it finds about where the highest has to lie, so that the others are chosen beside it.
+  // Start with one tone. This shows roughly where the highest tone has to be, before the others are chosen.
   ZoneRequest single = request;
   single.tones = 1;
   ZoneProfile alone(surface, friction, single, first_guess(surface, request));

@@ -18,7 +18,7 @@ namespace {
 constexpr double grid_step_m = 0.5e-3;
 constexpr int candidates_per_spacing = 3;
 constexpr int most_candidates = 40;
-// A tone is kept when it lowers the zone's unevenness by at least this factor.
+// A tone is kept if it reduces the unevenness of the zone by at least this factor.
 constexpr double worthwhile = 0.97;
 
 double interpolate_crossing(double x0, double x1, double y0, double y1, double level) {
@@ -55,7 +55,7 @@ ToneShape ZoneProfile::shape(double f) const {
   return one;
 }
 
-// Weights >= 0 that bring the summed squares in the zone closest to one.
+// Weights >= 0 for which the sum of squares in the zone is closest to one.
 std::vector<double> ZoneProfile::fit(const std::vector<const ToneShape*>& shapes, double& residual) const {
   std::vector<double> columns, wanted;
   for (const ToneShape* one : shapes) {
@@ -80,7 +80,7 @@ void ZoneProfile::choose_tones(double highest_Hz) {
   for (double f = highest_Hz - request_.band.spacing_Hz; f >= request_.band.low_Hz; f -= step) {
     try {
       candidates.push_back(shape(f));
-    } catch (const std::domain_error&) {  // no last maximum: not a useful tone
+    } catch (const std::domain_error&) {  // a tone without a last maximum is of no use
       break;
     }
   }
@@ -99,7 +99,7 @@ void ZoneProfile::choose_tones(double highest_Hz) {
       trial.push_back(&candidate);
       double residual = 0;
       const auto weights = fit(trial, residual);
-      // The highest tone carries the boundary: a set that leaves it out is another zone.
+      // The highest tone determines the boundary, so a set without it would be a different zone.
       if (residual < lowest && weights.front() > 0.05 * weights.back()) {
         lowest = residual;
         chosen = &candidate;
@@ -111,7 +111,7 @@ void ZoneProfile::choose_tones(double highest_Hz) {
     for (const ToneShape& one : shapes_) all.push_back(&one);
     weights_ = fit(all, best);
   }
-  // Highest first; tones without weight add nothing.
+  // In descending order of frequency, without the tones that have no weight.
   for (std::size_t i = shapes_.size(); i-- > 1;) {
     if (weights_[i] > 0) continue;
     shapes_.erase(shapes_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -130,8 +130,7 @@ void ZoneProfile::shift_to(double highest_Hz) {
   shapes_.front() = shape(highest_Hz);
   for (std::size_t i = 1; i < shapes_.size();) {
     const double f = std::max(request_.band.low_Hz, shapes_[i].frequency_Hz + by);
-    if (shapes_[i - 1].frequency_Hz - f <
-        0.999 * request_.band.spacing_Hz) {  // pressed against the band's end
+    if (shapes_[i - 1].frequency_Hz - f < 0.999 * request_.band.spacing_Hz) {  // at the end of the band
       shapes_.erase(shapes_.begin() + static_cast<std::ptrdiff_t>(i));
       weights_.erase(weights_.begin() + static_cast<std::ptrdiff_t>(i));
       continue;
@@ -166,8 +165,9 @@ double ZoneProfile::zone_mean(const std::vector<double>& values) const {
   return sum / std::max(1, count);
 }
 
-// What each point's friction counts for in the zone's mean of fingertip averages, which is linear in it: the
-// averages are integrals of straight pieces, and each piece gives its ends their share.
+// The weight of each point's friction in the zone's mean of fingertip averages. That mean is linear in the
+// friction: each average is an integral of straight pieces, and each piece adds to the weights of its two
+// ends.
 std::vector<double> ZoneProfile::mean_weights() const {
   std::vector<double> weight(x_.size(), 0.0);
   const double step = x_[1] - x_[0];
@@ -205,8 +205,8 @@ void ZoneProfile::scale_to_friction() {
     }
     return mean - request_.friction;
   };
-  // Mean friction falls with the level. A bracket from the level before, on a logarithmic scale, growing;
-  // then false position.
+  // Mean friction falls as the level rises. Starting from the previous level, widen a bracket on a
+  // logarithmic scale; then use false position.
   double low = std::log(scale_), high = low;
   double f_low = miss(low), f_high = f_low;
   double step = scaled_before_ ? 0.01 : 0.3;
@@ -217,7 +217,7 @@ void ZoneProfile::scale_to_friction() {
     text << "mean friction " << request_.friction << " is not reachable in the zone";
     throw std::domain_error(text.str());
   }
-  // A chord that is flat, or found already, needs no search.
+  // If both ends have the same friction, or one is the solution, there is nothing to search.
   const double x = std::abs(f_low) < 1e-9 ? low
                                           : false_position({low, f_low, high, f_high}, miss, {8, true}, 1e-9,
                                                            [](const Chord& c) { return c.width() <= 1e-12; });
@@ -240,7 +240,7 @@ std::optional<double> ZoneProfile::edge_m() const {
   std::size_t peak = x_.size() - 1;
   while (peak > 0 && sum[peak - 1] >= sum[peak]) --peak;
   if (peak == 0 || peak + 1 >= x_.size()) return std::nullopt;
-  // Parabola through the three highest samples.
+  // The maximum of a parabola through the three highest samples.
   const double a = sum[peak - 1], b = sum[peak], c = sum[peak + 1];
   const double bend = a - 2 * b + c;
   const double offset = bend < 0 ? 0.5 * (a - c) / bend : 0;

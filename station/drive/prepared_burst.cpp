@@ -133,8 +133,10 @@ PreparedNoise prepare(const MaskingNoise& noise, const Format& format, const Syn
   check_frequency("masking noise", noise.low_Hz, format, limits);
   check_frequency("masking noise", noise.high_Hz, format, limits);
   if (!(noise.rms > 0 && noise.rms < 1) || noise.low_Hz >= noise.high_Hz)
-    refuse("masking noise of {} rms from {} to {} Hz; allowed 0 to 1, and rising", noise.rms, noise.low_Hz,
-           noise.high_Hz);
+    refuse(
+        "masking noise of {} rms from {} to {} Hz; allowed: an rms between 0 and 1, and a first frequency "
+        "below the second",
+        noise.rms, noise.low_Hz, noise.high_Hz);
   out.channel = noise.channel;
   out.seed = noise.seed * 0xd1342543de82ef95u;
   high_pass(noise.low_Hz, format, out.high_pass);

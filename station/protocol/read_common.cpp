@@ -33,7 +33,7 @@ Localised localised_from(const text::Value& value, const std::string& key, const
   for (const auto& language : languages)
     if (!value.find(language))
       findings.add(value.place, "\"" + key + "\" has no text in \"" + language + "\"",
-                   "one in each of [protocol] languages is needed");
+                   "a text is needed in every language of [protocol] languages");
   return texts;
 }
 

@@ -136,7 +136,7 @@ Field<SessionRecord> start(const About& about) {
 /// NULL if there is no response time, because a missing time has no quality.
 Field<TrialRow> response_time_quality() {
   auto quality = field<&TrialRow::response_time_quality>({"response_time_quality", "response_time_quality",
-                                                          "Whose time stamp the answer bears", "",
+                                                          "Which clock stamped the answer", "",
                                                           "kernel | toolkit | simulated | n/a"});
   quality.nullable = true;
   quality.bind = [](Statement& s, int i, const TrialRow& row) {
@@ -168,8 +168,8 @@ const Table<BlockStart>& block_table() {
       "block",
       {"session_id", "run_order"},
       {field<&B::block_index>({"block_index", "block_index", "Block in the order run, from 0"}),
-       field<&B::attempt>({"attempt", "attempt",
-                           "How often this block was begun before; rows of earlier attempts are kept"}),
+       field<&B::attempt>(
+           {"attempt", "attempt", "Number of earlier attempts at this block; their rows are kept"}),
        field<&B::name>({"name", "block_name", "Name of the block"}),
        field<&B::instruction>(
            {"instruction", "instruction", "Instruction in force", "", "speed | accuracy | ... | n/a"}),
@@ -183,9 +183,10 @@ const Table<TrialRow>& trial_table() {
       "trial",
       {"session_id", "block_index", "attempt", "recorded_realtime_ns"},
       {field<&T::segment_index>(
-           {"segment_index", "segment_id", "Process run within the session, from 1; rises with each resume"}),
-       field<&T::trial_index>(
-           {"trial_index", "trial_index", "Trial of the session, counting every presented one, from 0"}),
+           {"segment_index", "segment_id",
+            "Run of the program within the session, from 1; each resume begins another"}),
+       field<&T::trial_index>({"trial_index", "trial_index",
+                               "Index of the trial among all that were presented in the session, from 0"}),
        field<&T::trial_in_block>({"trial_in_block"}),
        field<&T::type>({"trial_type", "trial_type", "Only experimental trials belong to procedures and fits",
                         "", "experimental | catch | practice | warmup"}),
@@ -272,13 +273,14 @@ const Table<EventRow>& event_table() {
   static const Table<E> table{
       "event",
       {"session_id", "event_index"},
-      {field<&E::segment_index>({"segment_index", "segment_id", "Process run within the session, from 1"}),
+      {field<&E::segment_index>(
+           {"segment_index", "segment_id", "Run of the program within the session, from 1"}),
        field<&E::time_ns>({"time_ns", "time_ns", "The same on the station's monotonic clock", "ns"}),
        field<&E::kind>(
            {"kind", "kind", "What happened: presented, answer, touch, contact, xrun, fault, aborted, ..."}),
        field<&E::value>({"value", "value", "Detail"}),
-       field<&E::trial_index>(
-           {"trial_index", "trial_index", "Trial of the session, counting every presented one, from 0"})}};
+       field<&E::trial_index>({"trial_index", "trial_index",
+                               "Index of the trial among all that were presented in the session, from 0"})}};
   return table;
 }
 

@@ -95,7 +95,8 @@ EvdevDevice::News EvdevDevice::next() {
     time_ns_ = time_of(event);
     while (status == LIBEVDEV_READ_STATUS_SYNC)
       status = libevdev_next_event(device_.get(), LIBEVDEV_READ_FLAG_SYNC, &event);
-    if (status != -EAGAIN) fail(-status, name_, ": its state after lost events");
+    if (status != -EAGAIN)
+      fail(-status, name_, ": cannot read the positions of the fingers, although events were lost");
     return News::resynchronised;
   }
 }
