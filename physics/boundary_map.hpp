@@ -33,7 +33,7 @@ struct MapOptions {
 };
 
 // One answer; the optionals are none when there is no such boundary, and `reason` says why (otherwise why
-// this model). `error_bound_m`: what loss, the drive edge's higher modes and the model's equation may move;
+// this model). `error_bound_m`: what the drive edge's higher modes and the model's equation may move;
 // `uncertainty_m`: one standard deviation from the surface's `sd`.
 struct MapAnswer {
   std::optional<double> boundary_m;
@@ -47,9 +47,9 @@ struct MapAnswer {
   std::vector<Warning> warnings;
 };
 
-// The map of one surface and one edge. Building it takes microseconds where it is closed, else milliseconds
-// (a table is made and validated); the two look-ups take well under a microsecond, allocate nothing and may
-// be called from any thread.
+// The map of one surface and one edge, by its first transverse mode with loss. Building it takes microseconds
+// where it is closed, else milliseconds (a table is made and validated); the two look-ups take well under a
+// microsecond, allocate nothing and may be called from any thread.
 class BoundaryMap {
  public:
   BoundaryMap(const Surface& surface, const MapOptions& options);
@@ -72,10 +72,11 @@ class BoundaryMap {
   std::unique_ptr<const State> state_;
 };
 
-// The frequency that puts the edge at a position (to a nanometre), without a table. It needs only a few
-// solutions, which is cheaper than a map that would be used once. Empty if the search from the turning
-// point's frequency finds none; a map may still find one.
-std::optional<double> solve_frequency_Hz(const Surface& surface, const MapOptions& options,
-                                         double boundary_m);
+// The frequency that puts the edge at a position, without a table: to a nanometre by the first transverse
+// mode, or, if options.model is `modes`, to 0.1 um by the two-dimensional field. It needs only a few
+// solutions, which is cheaper than a map that would be used once; fewer from `near_Hz`, the frequency of the
+// first mode. Empty if the search finds none; a map may still find one.
+std::optional<double> solve_frequency_Hz(const Surface& surface, const MapOptions& options, double boundary_m,
+                                         std::optional<double> near_Hz = {});
 
 }  // namespace turnpoint::physics

@@ -44,7 +44,7 @@ class Builder {
   std::optional<double> position(double f) const {
     try {
       const auto wave = model_ == Model::edge || model_ == Model::modes ? Wave::exact : Wave::as_modelled;
-      const auto line = make_feature_line(surface_, f, model_, wave, Losses::left_out);
+      const auto line = make_feature_line(surface_, f, model_, wave, Losses::kept);
       return edge_position_m(surface_, f, *line, options_);
     } catch (const std::domain_error&) {  // the model has no answer here
       return std::nullopt;
@@ -144,7 +144,7 @@ class Builder {
   Dispersion dispersion_;
 };
 
-// Every lossless feature of a linear taper that runs to its apex lies at a fixed k s.
+// Every feature of a linear taper that runs to its apex lies at a fixed k s, whatever the loss.
 bool scale_free(const Surface& surface, const MapOptions& options) {
   if (options.edge.kind == Edge::Kind::turning) return true;
   if (options.edge.kind == Edge::Kind::friction) return false;

@@ -67,9 +67,9 @@ Surface fitted(Surface s) {
 double uncertainty(const Surface& surface, const MapOptions& options, double f) {
   double variance = 0;
   for (const auto& [up, down] : moved(surface)) {
-    const auto above = position(fitted(up), options, f, Model::edge, Wave::exact, Losses::left_out);
-    const auto below = position(fitted(down), options, f, Model::edge, Wave::exact, Losses::left_out);
-    const auto here = position(surface, options, f, Model::edge, Wave::exact, Losses::left_out);
+    const auto above = position(fitted(up), options, f, Model::edge, Wave::exact, Losses::kept);
+    const auto below = position(fitted(down), options, f, Model::edge, Wave::exact, Losses::kept);
+    const auto here = position(surface, options, f, Model::edge, Wave::exact, Losses::kept);
     if (above && below) {
       variance += std::pow(0.5 * (*above - *below), 2);
     } else if (here && (above || below)) {
@@ -88,9 +88,8 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
     bounds.reason = ": local cut-off of the first transverse mode";
     return bounds;
   }
-  std::ostringstream reason;
-  const auto exact = position(surface, options, f, Model::edge, Wave::exact, Losses::left_out);
-  if (exact) bounds.equation_m = std::abs(*exact - x);
+  const auto exact = position(surface, options, f, Model::edge, Wave::exact, Losses::kept);
+  bounds.equation_m = exact ? std::abs(*exact - x) : 0.25 * surface.length_m;
   if (bounds.equation_m < 1e-10) bounds.equation_m = 0;
   // The exact mode of a wedge needs no allowance for its equation; every other taper's best equation does.
   std::optional<double> drawn_peak_m;  // only strong loss draws it far enough to matter
@@ -104,18 +103,12 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
       std::holds_alternative<LinearTaper>(surface.taper) && !Dispersion(surface).clamped_bending();
   if (!wedge) bounds.equation_m += mode.equation_m;
   bounds.drive_modes_m = mode.drive_m;
+  bounds.reason = " of the first transverse mode";
   if (std::isfinite(surface.quality_factor)) {
-    const auto lossy = position(surface, options, f, Model::edge, Wave::exact, Losses::kept);
-    if (lossy && exact) {
-      bounds.loss_m = 1.1 * std::abs(*lossy - *exact);
-      reason << "; loss (Q = " << surface.quality_factor << ") moves it by " << (*lossy - *exact) * 1e3
-             << " mm";
-    } else {
-      bounds.loss_m = 0.25 * surface.length_m;
-      reason << "; loss (Q = " << surface.quality_factor << ") leaves no last maximum to measure it by";
-    }
+    std::ostringstream loss;
+    loss << " with loss (Q = " << surface.quality_factor << ")";
+    bounds.reason += loss.str();
   }
-  bounds.reason = " of the lossless first transverse mode" + reason.str();
   return bounds;
 }
 
@@ -132,6 +125,8 @@ std::string why_no_boundary(const Surface& surface, const MapOptions& options, d
          << " on the surface at this displacement";
   } else {
     text << "the last maximum would lie before the drive edge";
+    if (std::isfinite(surface.quality_factor))
+      text << ", or loss (Q = " << surface.quality_factor << ") hides it";
   }
   return text.str();
 }

@@ -1,6 +1,5 @@
 #pragma once
-// Effects that can move a boundary: the model's equation, loss, the drive edge's higher modes, the
-// parameters.
+// Effects that can move a boundary: the model's equation, the drive edge's higher modes, the parameters.
 #include <string>
 
 #include "physics/boundary_map.hpp"
@@ -9,11 +8,10 @@ namespace turnpoint::physics {
 
 struct MapBounds {
   double equation_m = 0;     // model against the exact (or best) first transverse mode
-  double loss_m = 0;         // finite Q
   double drive_modes_m = 0;  // higher transverse modes of the drive edge
   double uncertainty_m = 0;  // one standard deviation from the surface's sd
   std::string reason;
-  double error_m() const { return equation_m + loss_m + drive_modes_m; }
+  double error_m() const { return equation_m + drive_modes_m; }
 };
 
 MapBounds map_bounds(const Surface& surface, const MapOptions& options, double frequency_Hz,

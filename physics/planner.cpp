@@ -126,16 +126,14 @@ RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, c
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, Model::edge, 0);
   e.usable = request.points == 0 && !request.tolerance.level_dB && !request.tolerance.amplitude;
-  e.reason = e.usable ? "positions of the lossless first mode" : "has no profile";
+  e.reason = e.usable ? "positions of the first mode with loss" : "has no profile";
   if (request.edge.kind == Edge::Kind::turning || !e.usable) return e;
-  const auto line = make_feature_line(surface, reference.f, Model::edge, Wave::exact, Losses::left_out);
+  const auto line = make_feature_line(surface, reference.f, Model::edge, Wave::exact, Losses::kept);
   const MapOptions options{
       request.edge.kind == Edge::Kind::friction ? Edge::peak() : request.edge, {}, {}, {}};
   const auto x = edge_position_m(surface, reference.f, *line, options);
-  const auto& lossy = reference.mode.edge;
-  e.boundary_bound_m = reference.bound.position_m() + (x && lossy ? 1.05 * std::abs(*x - *lossy)
-                                                       : x        ? surface.length_m
-                                                                  : 0);
+  e.boundary_bound_m = reference.bound.position_m();
+  if (x.has_value() != reference.mode.edge.has_value()) e.boundary_bound_m += surface.length_m;
   return e;
 }
 
@@ -149,6 +147,9 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
     e.amplitude_bound = modes_accuracy * (drive ? reference.conditioning : 1);
     e.level_bound_dB = 20 * std::log10(1 + modes_accuracy * reference.conditioning);
     e.boundary_bound_m = modes_accuracy * 0.1 * cut_off_half_width_m(surface, reference.f);
+    const bool graded = request.edge.kind != Edge::Kind::turning;
+    if (graded && request.placed_by.value_or(model) != model)
+      e.boundary_bound_m += reference.bound.position_m();
     e.reason = "two-dimensional field at its default resolution";
     return e;
   }

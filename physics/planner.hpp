@@ -39,6 +39,9 @@ struct PlanRequest {
   Edge edge = Edge::turning();
   Normalise normalise = Normalise::peak;
   Tolerance tolerance;
+  // The model by which the tones' frequencies were found, if that is not the one to be chosen: the boundary
+  // then has its error, whichever model describes the field.
+  std::optional<Model> placed_by = {};
 };
 
 RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model model);

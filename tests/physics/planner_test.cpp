@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "physics/boundary_map.hpp"
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "tests/support/catch.hpp"
@@ -228,7 +229,7 @@ TEST_CASE("the planner's choice is inside the tolerance, and the next cheaper ru
   CHECK(needed > planned / 2);
 }
 
-TEST_CASE("positions alone are left to the closed form unless loss matters", "[physics]") {
+TEST_CASE("positions alone are left to the closed form, with loss too", "[physics]") {
   Surface s = seed_brass();
   PlanRequest request;
   request.tones = {Tone{20e3, 1, 0}};
@@ -237,8 +238,10 @@ TEST_CASE("positions alone are left to the closed form unless loss matters", "[p
   CHECK(choose_model(s, request).model == Model::edge);
   s.quality_factor = 8;
   const PlanChoice lossy = choose_model(s, request);
-  CHECK(lossy.model == Model::mode);
-  CHECK(lossy.inside);
+  CHECK(lossy.model == Model::edge);
+  const double f = 20e3, truth = make_centre_line(s, f, Model::modes)->level_m(0.5).value();
+  CHECK(std::abs(BoundaryMap(s, {request.edge, {}, {}, {}}).boundary_m(f).value() - truth) <
+        lossy.bound.boundary_bound_m);
   request.tolerance.boundary_m = 1e-12;
   CHECK_FALSE(choose_model(s, request).inside);
 }
