@@ -56,11 +56,21 @@ std::string key_of(const Scene& scene) {
   return key;
 }
 
-/// The displacement that a set of frequencies causes on this rig's surface, independent of the tones'
-/// strength, so roving does not change it. `fields` are per metre at the drive edge. They use the chosen
-/// model, but at least `mode`: a limit must not be checked with a coarse model.
+/// A tone that a scene asks for, before a model is chosen. The frequency is the first mode's.
+struct WantedTone {
+  double frequency_Hz = 0;
+  double displacement_m = 0;  ///< at its last maximum
+  double phase_rad = 0;
+  physics::Edge edge;
+  std::optional<double> boundary_m;  ///< where the tone's own edge shall lie; empty for tones of a zone
+};
+
+/// The displacement that a set of tones causes on this rig's surface, independent of their strength, so
+/// roving does not change it. `fields` are per metre at the drive edge. They use the chosen model, but at
+/// least `mode`: a limit must not be checked with a coarse model.
 struct Solution {
   physics::PlanChoice choice;
+  std::vector<double> frequencies_Hz;  ///< by the chosen model, on the grid
   std::vector<physics::ToneField> fields;
   std::vector<std::optional<double>> resonances_Hz;
   double uncertainty_m = 0;
@@ -83,16 +93,18 @@ struct Planner::State {
   explicit State(const rig::Rig& r) : rig(r), surface(surface_of(r)), friction(friction_of(r)) {}
 
   const physics::BoundaryMap& map_for(const physics::Edge& edge);
+  physics::MapOptions edge_options(const physics::Edge& edge, double displacement_m) const;
   double frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m);
   double target_displacement(const Scene& scene) const;
-  std::vector<Tone> single(const Scene& scene);
-  std::vector<Tone> explicit_tones(const Scene& scene);
-  std::vector<Tone> zone(const Scene& scene, DrivePlan& plan);
-  std::vector<Tone> tones_for(const Scene& scene, DrivePlan& plan);
-  physics::PlanChoice choose(const Scene& scene, const std::vector<Tone>& tones) const;
-  Solution solve(const Scene& scene, std::vector<Tone> tones);
-  const Solution& solution_for(const Scene& scene, const std::vector<Tone>& tones);
-  void equalise(std::vector<Tone>& tones, const Solution& solution) const;
+  std::vector<WantedTone> single(const Scene& scene);
+  std::vector<WantedTone> explicit_tones(const Scene& scene);
+  std::vector<WantedTone> zone(const Scene& scene, DrivePlan& plan);
+  std::vector<WantedTone> tones_for(const Scene& scene, DrivePlan& plan);
+  physics::PlanChoice choose(const Scene& scene, const std::vector<Tone>& tones,
+                             std::optional<Model> placed_by) const;
+  bool place_by_field(const std::vector<WantedTone>& wanted, std::vector<double>& frequencies_Hz) const;
+  Solution solve(const Scene& scene, const std::vector<WantedTone>& wanted);
+  const Solution& solution_for(const Scene& scene, const std::vector<WantedTone>& wanted);
   void drive(DrivePlan& plan, const std::vector<Tone>& tones, const Solution& solution) const;
   void refuse_beyond_limits(const DrivePlan& plan) const;
 };
@@ -112,13 +124,19 @@ const physics::BoundaryMap& Planner::State::map_for(const physics::Edge& edge) {
   return *found->second;
 }
 
-double Planner::State::frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m) {
+physics::MapOptions Planner::State::edge_options(const physics::Edge& edge, double displacement_m) const {
   physics::MapOptions options;
   options.edge = edge;
+  if (edge.kind == physics::Edge::Kind::friction)
+    options.friction = physics::FrictionContext{friction, displacement_m, rig.friction.fingertip_m};
+  return options;
+}
+
+double Planner::State::frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m) {
+  const auto options = edge_options(edge, displacement_m);
   if (edge.kind == physics::Edge::Kind::friction) {
     // An edge defined by friction depends on the displacement, which roving changes in every trial, so a map
     // would be used only once.
-    options.friction = physics::FrictionContext{friction, displacement_m, rig.friction.fingertip_m};
     if (const auto frequency = physics::solve_frequency_Hz(surface, options, boundary_m)) return *frequency;
   } else if (const auto frequency = map_for(edge).frequency_Hz(boundary_m)) {
     return *frequency;
@@ -138,26 +156,25 @@ double Planner::State::target_displacement(const Scene& scene) const {
                                 number(wanted), number(friction.lowest_friction())));
 }
 
-std::vector<Tone> Planner::State::single(const Scene& scene) {
+std::vector<WantedTone> Planner::State::single(const Scene& scene) {
   const double displacement = target_displacement(scene) * std::pow(10.0, scene.rove_dB / 20);
   const double frequency = frequency_for(*scene.boundary_m, scene.edge, displacement);
-  return {{frequency, physics::drive_amplitude_m(surface, frequency, displacement), 0}};
+  return {{frequency, displacement, 0, scene.edge, scene.boundary_m}};
 }
 
-std::vector<Tone> Planner::State::explicit_tones(const Scene& scene) {
-  std::vector<Tone> tones;
+std::vector<WantedTone> Planner::State::explicit_tones(const Scene& scene) {
+  std::vector<WantedTone> tones;
   for (const auto& target : scene.tones) {
     const double displacement = target.displacement_m * std::pow(10.0, scene.rove_dB / 20);
     const double frequency = target.frequency_Hz
                                  ? *target.frequency_Hz
                                  : frequency_for(*target.boundary_m, target.edge, displacement);
-    tones.push_back(
-        {frequency, physics::drive_amplitude_m(surface, frequency, displacement), target.phase_rad});
+    tones.push_back({frequency, displacement, target.phase_rad, target.edge, target.boundary_m});
   }
   return tones;
 }
 
-std::vector<Tone> Planner::State::zone(const Scene& scene, DrivePlan& plan) {
+std::vector<WantedTone> Planner::State::zone(const Scene& scene, DrivePlan& plan) {
   const auto& wanted = *scene.zone;
   const double designed_for = wanted.design_friction.value_or(wanted.friction);
   const auto key = fmt::format("{} {} {} {} {}", *scene.boundary_m, physics::format(scene.edge),
@@ -180,19 +197,26 @@ std::vector<Tone> Planner::State::zone(const Scene& scene, DrivePlan& plan) {
   double scale = 1;
   if (wanted.friction != designed_for) scale = scale_to_friction(surface, friction, rig, tones, scene);
   scale *= std::pow(10.0, scene.rove_dB / 20);
-  for (auto& tone : tones) tone.amplitude_m *= scale;
-  return tones;
+  std::vector<WantedTone> list;
+  for (const auto& tone : tones) {
+    const double frequency_Hz = on_grid(tone.frequency_Hz, kGridPerHz);
+    const double drive_m = physics::drive_amplitude_m(surface, frequency_Hz, 1);
+    list.push_back({frequency_Hz, scale * tone.amplitude_m / drive_m, tone.phase_rad, scene.edge, {}});
+  }
+  return list;
 }
 
-std::vector<Tone> Planner::State::tones_for(const Scene& scene, DrivePlan& plan) {
+std::vector<WantedTone> Planner::State::tones_for(const Scene& scene, DrivePlan& plan) {
   if (scene.zone) return zone(scene, plan);
   if (!scene.tones.empty()) return explicit_tones(scene);
   return single(scene);
 }
 
-physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector<Tone>& tones) const {
+physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector<Tone>& tones,
+                                           std::optional<Model> placed_by) const {
   physics::PlanRequest request;
   request.tones = tones;
+  request.placed_by = placed_by;
   request.edge = scene.edge;
   request.normalise = physics::Normalise::none;
   request.tolerance.boundary_m = scene.tolerance.boundary_m;
@@ -203,10 +227,37 @@ physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector
   return physics::choose_model(surface, request);
 }
 
-Solution Planner::State::solve(const Scene& scene, std::vector<Tone> tones) {
-  for (auto& tone : tones) tone.amplitude_m = 1, tone.phase_rad = 0;
+/// Moves the tones that have a boundary to where `modes` puts their edge; false if it has no such edge.
+bool Planner::State::place_by_field(const std::vector<WantedTone>& wanted,
+                                    std::vector<double>& frequencies_Hz) const {
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (!wanted[i].boundary_m) continue;
+    auto options = edge_options(wanted[i].edge, wanted[i].displacement_m);
+    options.model = Model::modes;
+    const auto found =
+        physics::solve_frequency_Hz(surface, options, *wanted[i].boundary_m, wanted[i].frequency_Hz);
+    if (!found) return false;
+    frequencies_Hz[i] = *found;
+  }
+  return true;
+}
+
+Solution Planner::State::solve(const Scene& scene, const std::vector<WantedTone>& wanted) {
   Solution solution;
-  solution.choice = choose(scene, tones);
+  std::vector<Tone> tones;
+  for (const auto& tone : wanted) {
+    tones.push_back({tone.frequency_Hz, 1, 0});
+    solution.frequencies_Hz.push_back(tone.frequency_Hz);
+  }
+  // Zones are designed by the first mode, so their boundary has its error whichever model is chosen.
+  const auto placed_by = scene.zone ? std::optional(Model::mode) : std::nullopt;
+  solution.choice = choose(scene, tones, placed_by);
+  if (solution.choice.model == Model::modes && !place_by_field(wanted, solution.frequencies_Hz))
+    solution.choice = choose(scene, tones, Model::mode);
+  for (std::size_t i = 0; i < tones.size(); ++i) {
+    solution.frequencies_Hz[i] = on_grid(solution.frequencies_Hz[i], kGridPerHz);
+    tones[i].frequency_Hz = solution.frequencies_Hz[i];
+  }
   solution.fields = physics::evaluate_tones(surface, tones, physics::linspace_points(surface, profile_points),
                                             at_least_mode(solution.choice.model), physics::Normalise::none);
   for (const auto& tone : tones)
@@ -217,30 +268,17 @@ Solution Planner::State::solve(const Scene& scene, std::vector<Tone> tones) {
   return solution;
 }
 
-const Solution& Planner::State::solution_for(const Scene& scene, const std::vector<Tone>& tones) {
+const Solution& Planner::State::solution_for(const Scene& scene, const std::vector<WantedTone>& wanted) {
   auto key = fmt::format("{} {} {} {} {}", physics::format(scene.edge),
                          scene.tolerance.boundary_m.value_or(0), scene.tolerance.level_dB.value_or(0),
                          scene.tolerance.friction.value_or(0), scene.zone || scene.tones.size() > 1);
-  for (const auto& tone : tones) key += fmt::format(" {}", tone.frequency_Hz);
+  for (const auto& tone : wanted)
+    key +=
+        fmt::format(" {} {} {}", tone.frequency_Hz, physics::format(tone.edge), tone.boundary_m.value_or(-1));
   const auto found = solutions.find(key);
   if (found != solutions.end()) return found->second;
   if (solutions.size() >= kSolutions) solutions.clear();
-  return solutions.emplace(key, solve(scene, tones)).first->second;
-}
-
-/// Tones are set to equal level by the model `mode`. If only `modes` is accurate enough, other modes
-/// contribute to the last maximum as well, so the amplitudes are corrected to give the same level by `modes`.
-void Planner::State::equalise(std::vector<Tone>& tones, const Solution& solution) const {
-  if (solution.choice.model != Model::modes) return;
-  for (std::size_t i = 0; i < tones.size(); ++i) {
-    const auto& info = solution.fields[i].info;
-    if (!info.last_peak_m) continue;
-    try {
-      tones[i].amplitude_m /= info.gain * physics::drive_amplitude_m(surface, tones[i].frequency_Hz, 1);
-      // The model `mode` has no last maximum here, so there is no level to match.
-    } catch (const std::domain_error&) {
-    }
-  }
+  return solutions.emplace(key, solve(scene, wanted)).first->second;
 }
 
 void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones, const Solution& solution) const {
@@ -307,11 +345,8 @@ DrivePlan Planner::plan(const Scene& scene) {
 DrivePlan Planner::make(const Scene& scene) {
   DrivePlan plan;
   plan.scene = scene;
-  // Positions come from the validated table, which is both the fastest and the most accurate. The choice of a
-  // model only affects the profile.
-  auto tones = state_->tones_for(scene, plan);
-  for (auto& tone : tones) tone.frequency_Hz = on_grid(tone.frequency_Hz, kGridPerHz);
-  const Solution& solution = state_->solution_for(scene, tones);
+  const auto wanted = state_->tones_for(scene, plan);
+  const Solution& solution = state_->solution_for(scene, wanted);
   const auto& choice = solution.choice;
   plan.model = choice.model;
   plan.inside_tolerance = choice.inside;
@@ -321,7 +356,16 @@ DrivePlan Planner::make(const Scene& scene) {
   plan.reason = choice.reason;
   plan.uncertainty_m = solution.uncertainty_m;
   if (scene.boundary_m && !plan.boundary_m) plan.boundary_m = scene.boundary_m;
-  state_->equalise(tones, solution);
+  std::vector<Tone> tones;
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const auto& info = solution.fields[i].info;
+    const double frequency_Hz = solution.frequencies_Hz[i];
+    // Where the two-dimensional field has no last maximum, the first mode's sets the level.
+    const double drive_m =
+        info.last_peak_m ? wanted[i].displacement_m / info.gain
+                         : physics::drive_amplitude_m(surface(), frequency_Hz, wanted[i].displacement_m);
+    tones.push_back({frequency_Hz, drive_m, wanted[i].phase_rad});
+  }
   physics::assign_phases(tones);
   for (auto& tone : tones) {
     tone.amplitude_m = on_grid(tone.amplitude_m, kGridPerMetre);
