@@ -11,6 +11,7 @@
 
 #include "station/protocol/combinations.hpp"
 #include "station/random/draws.hpp"
+#include "station/simulation/cue_score.hpp"
 #include "station/simulation/cue_table.hpp"
 #include "station/simulation/one_cue.hpp"
 #include "station/simulation/trial_census.hpp"
@@ -74,22 +75,6 @@ struct Presentation {
 /// All cells of the census, each with its presentations and its number of trials.
 using Cells = std::vector<std::pair<const std::vector<Presentation>*, double>>;
 
-/// Number of trials, of right answers, and of answers that each key alone would get right.
-struct Score {
-  double trials = 0, right = 0;
-  std::array<double, 3> keys{};
-
-  void add(const Score& other, double times) {
-    trials += times * other.trials, right += times * other.right;
-    for (std::size_t i = 0; i < keys.size(); ++i) keys[i] += times * other.keys[i];
-  }
-  double accuracy() const { return trials > 0 ? right / trials : 0; }
-  std::size_t best_key() const {
-    return static_cast<std::size_t>(std::max_element(keys.begin(), keys.end()) - keys.begin());
-  }
-  double one_key() const { return trials > 0 ? keys[best_key()] / trials : 0; }
-};
-
 /// Which value the observer uses in an interval of two scenes.
 enum class Feature { last, change, first };
 
@@ -127,27 +112,6 @@ std::pair<double, double> range_of(const std::vector<Look>& looks, std::size_t i
     for (std::size_t i = 0; i < intervals; ++i)
       low = std::min(low, look.x[i]), high = std::max(high, look.x[i]);
   return {low, high};
-}
-
-Score sum_of(const std::vector<Score>& sessions) {
-  Score sum;
-  for (const auto& one : sessions) sum.add(one, 1);
-  return sum;
-}
-
-// The larger of two standard errors: of the proportion correct, and of its gain over a single key.
-double standard_error(const std::vector<Score>& sessions) {
-  const auto all = sum_of(sessions);
-  if (all.trials == 0) return 0;
-  double error = 0;
-  for (const double less : {0.0, 1.0}) {
-    const auto more = [&](const Score& score) { return score.right - less * score.keys[all.best_key()]; };
-    const double share = more(all) / all.trials;
-    double squares = 0;
-    for (const auto& one : sessions) squares += std::pow(more(one) - share * one.trials, 2);
-    error = std::max(error, std::sqrt(squares) / all.trials);
-  }
-  return error;
 }
 
 class Guard {

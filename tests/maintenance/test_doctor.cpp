@@ -7,7 +7,7 @@
 using namespace turnpoint;
 using Status = lines::Finding::Status;
 
-TEST_CASE("the doctor fails where the machine swaps, and says how to turn it off", "[app][doctor]") {
+TEST_CASE("the doctor fails where the machine swaps, and says how to turn it off", "[maintenance][doctor]") {
   const TemporaryFolder folder;
   const auto file = folder / "swaps";
   const std::string heading = "Filename\t\t\t\tType\t\tSize\t\tUsed\t\tPriority\n";
@@ -23,7 +23,7 @@ TEST_CASE("the doctor fails where the machine swaps, and says how to turn it off
   CHECK(maintenance::check_swap(folder / "nothing").status == Status::warning);  // not "off"
 }
 
-TEST_CASE("the doctor says whether the hardware watchdog is fed", "[app][doctor]") {
+TEST_CASE("the doctor says whether the hardware watchdog is fed", "[maintenance][doctor]") {
   const TemporaryFolder folder;
   CHECK(maintenance::check_watchdog(folder.path).status == Status::warning);
   std::filesystem::create_directory(folder / "watchdog0");

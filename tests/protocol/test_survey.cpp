@@ -7,6 +7,7 @@
 #include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/quick_rig.hpp"
 
 using namespace turnpoint;
 namespace fs = std::filesystem;
@@ -15,21 +16,8 @@ namespace {
 
 const std::string root = TURNPOINT_SOURCE_DIR;
 
-std::string replaced(std::string where, const std::string& from, const std::string& to) {
-  const auto at = where.find(from);
-  REQUIRE(at != std::string::npos);
-  return where.replace(at, from.size(), to);
-}
-
 std::string source(const std::string& name) { return system::read_file(root + "/protocols/" + name); }
 std::string rig_source() { return system::read_file(root + "/deploy/rigs/simulated.toml"); }
-// With twice the thickness and simply supported sides, the plate has almost the same map in closed form, so
-// surveys are fast.
-std::string quick_source() {
-  return replaced(replaced(rig_source(), "edges = \"clamped\"", "edges = \"supported\""),
-                  "thickness_mm = 2.0", "thickness_mm = 4.2");
-}
-rig::Rig quick() { return rig::parse(quick_source(), "r.toml"); }
 rig::Rig simulated() { return rig::load(root + "/deploy/rigs/simulated.toml"); }
 
 std::string all_of(const std::vector<text::Problem>& problems) {
@@ -60,7 +48,7 @@ void check_shipped(const rig::Rig& rig) {
 
 TEST_CASE("every shipped protocol can be run, without a warning, on a rig like the simulated one",
           "[protocol]") {
-  check_shipped(quick());
+  check_shipped(quick_rig());
 }
 
 // Run this test by name: maps of a clamped plate are computed from its two-dimensional field, which takes
@@ -76,7 +64,7 @@ TEST_CASE("the demo can be run on the simulated rig, without a warning", "[.slow
 }
 
 TEST_CASE("a survey plans each combination of level and mark once, with its boundary", "[protocol]") {
-  const auto survey = protocol::survey(protocol::parse(source("demo.toml"), "p.toml"), quick());
+  const auto survey = protocol::survey(protocol::parse(source("demo.toml"), "p.toml"), quick_rig());
   CHECK(survey.combinations == 10);
   REQUIRE(survey.sights.size() == 10);
   for (const auto& sight : survey.sights) {
@@ -89,7 +77,7 @@ TEST_CASE("a survey plans each combination of level and mark once, with its boun
 
 TEST_CASE("a boundary that the rig cannot reach is refused with what it can reach", "[protocol]") {
   auto text = replaced(source("demo.toml"), "levels = [150.0, 160.0]", "levels = [250.0, 260.0]");
-  const auto found = problems(text, quick());
+  const auto found = problems(text, quick_rig());
   CHECK(contains(found, "p.toml:25:15: scene \"edge\" in block \"main\" at mark_mm = 250, offset_mm = "));
   CHECK(contains(found, "more cases"));
   CHECK(contains(found, "with this edge the rig reaches"));
@@ -97,13 +85,13 @@ TEST_CASE("a boundary that the rig cannot reach is refused with what it can reac
 
 TEST_CASE("a displacement above the rig's limit is refused, roving included", "[protocol]") {
   const auto quiet = replaced(source("demo.toml"), "rove_dB = 2.0", "rove_dB = 0.0");
-  const auto limit = replaced(quick_source(), "displacement_um = 8.0", "displacement_um = 4.0");
+  const auto limit = replaced(quick_rig_source(), "displacement_um = 8.0", "displacement_um = 4.0");
   const auto rig = rig::parse(limit, "r.toml");
   const auto peak = protocol::survey(protocol::parse(quiet, "p.toml"), rig);
   REQUIRE(peak.problems.empty());
   double largest_um = 0;
   for (const auto& sight : peak.sights) largest_um = std::max(largest_um, sight.displacement_um);
-  const auto tight = rig::parse(replaced(quick_source(), "displacement_um = 8.0",
+  const auto tight = rig::parse(replaced(quick_rig_source(), "displacement_um = 8.0",
                                          "displacement_um = " + std::to_string(1.05 * largest_um)),
                                 "r.toml");
   CHECK(problems(quiet, tight).empty());
@@ -113,26 +101,27 @@ TEST_CASE("a displacement above the rig's limit is refused, roving included", "[
 TEST_CASE("devices that the task needs and the rig lacks are named at the key that asks for them",
           "[protocol]") {
   const auto buttons = replaced(source("demo.toml"), "device = \"either\"", "device = \"buttons\"");
-  const auto without = rig::parse(replaced(quick_source(), "[buttons]\nuri = \"sim:\"\n", ""), "r.toml");
+  const auto without = rig::parse(replaced(quick_rig_source(), "[buttons]\nuri = \"sim:\"\n", ""), "r.toml");
   CHECK(contains(problems(buttons, without), "p.toml:35:10: the task needs buttons, and the rig has none"));
   CHECK(problems(source("demo.toml"), without).empty());
-  const auto no_contact = rig::parse(replaced(quick_source(), "[contact]\nuri = \"sim:\"\n", ""), "r.toml");
+  const auto no_contact =
+      rig::parse(replaced(quick_rig_source(), "[contact]\nuri = \"sim:\"\n", ""), "r.toml");
   const auto lift =
       replaced(source("demo.toml"), "response_zero = \"go_cue\"", "response_zero = \"lift_off\"");
   CHECK(contains(problems(lift, no_contact), "the rig does not sense it"));
-  CHECK(problems(lift, quick()).empty());
+  CHECK(problems(lift, quick_rig()).empty());
   const auto masked =
       replaced(buttons, "device = \"buttons\"", "device = \"buttons\"\nsound = \"masking_noise\"");
-  CHECK(
-      contains(problems(masked, quick()), "p.toml:36:9: the task needs masking noise, and the rig has none"));
+  CHECK(contains(problems(masked, quick_rig()),
+                 "p.toml:36:9: the task needs masking noise, and the rig has none"));
   const auto headphones = rig::parse(
-      replaced(quick_source(), "[limits]", "[noise]\nchannel = 1\nrms = 0.05\n[limits]"), "r.toml");
+      replaced(quick_rig_source(), "[limits]", "[noise]\nchannel = 1\nrms = 0.05\n[limits]"), "r.toml");
   CHECK(problems(masked, headphones).empty());
 }
 
 TEST_CASE("tones that last longer than the rig allows are refused", "[protocol]") {
   const auto text = replaced(source("demo.toml"), "explore_s = 4.0", "explore_s = 40.0");
-  CHECK(contains(problems(text, quick()), "at most the rig's continuous_s = 30 s"));
+  CHECK(contains(problems(text, quick_rig()), "at most the rig's continuous_s = 30 s"));
 }
 
 TEST_CASE("what is probably not meant is a warning at its place", "[protocol]") {

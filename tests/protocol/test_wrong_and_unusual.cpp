@@ -10,6 +10,7 @@
 #include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/quick_rig.hpp"
 
 using namespace turnpoint;
 namespace fs = std::filesystem;
@@ -73,15 +74,8 @@ Edited edited(const Case& wanted) {
   return result;
 }
 
-/// A rig with a closed-form model, so that a survey is fast.
 const rig::Rig& quick() {
-  static const auto rig = [] {
-    auto text = system::read_file(root + "/deploy/rigs/simulated.toml");
-    for (const auto& [from, to] : {std::pair{"edges = \"clamped\"", "edges = \"supported\""},
-                                   std::pair{"thickness_mm = 2.0", "thickness_mm = 4.2"}})
-      text.replace(text.find(from), std::string(from).size(), to);
-    return rig::parse(text, "r.toml");
-  }();
+  static const auto rig = quick_rig();
   return rig;
 }
 

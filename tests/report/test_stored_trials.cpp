@@ -59,7 +59,7 @@ std::string yes_no(const std::string& analysis, int sign = 1, int repeats = 40) 
 
 }  // namespace
 
-TEST_CASE("a numeric factor gives one curve a level, two factors one a combination", "[app]") {
+TEST_CASE("a numeric factor gives one curve a level, two factors one a combination", "[report]") {
   auto source = replaced(shipped("demo"), "repeats = 2", "repeats = 12") + "\n[analysis]\n";
   const auto pooled = data_of(source);
   CHECK(pooled.conditions.empty());
@@ -77,7 +77,7 @@ TEST_CASE("a numeric factor gives one curve a level, two factors one a combinati
   CHECK(report_of(both)["fits"].size() == 4);
 }
 
-TEST_CASE("settings are told apart by the levels of a factor", "[app]") {
+TEST_CASE("settings are told apart by the levels of a factor", "[report]") {
   const auto source = shipped("boundary-adjustment");
   REQUIRE(source.find("mark_mm") != std::string::npos);
   const auto settings = report_of(data_of(source + "\n[analysis]\nby = \"mark_mm\"\n"))["settings"];
@@ -85,7 +85,7 @@ TEST_CASE("settings are told apart by the levels of a factor", "[app]") {
   CHECK(settings[0]["condition"].get<std::string>().find("mark ") == 0);
 }
 
-TEST_CASE("the order of conditions is the file's, whatever block came first", "[app]") {
+TEST_CASE("the order of conditions is the file's, whatever block came first", "[report]") {
   const auto first = report_of(data_of(shipped("speed-accuracy"), "sim", 0));
   const auto second = report_of(data_of(shipped("speed-accuracy"), "sim", 1));
   const auto began = [](int index) {
@@ -100,7 +100,7 @@ TEST_CASE("the order of conditions is the file's, whatever block came first", "[
   }
 }
 
-TEST_CASE("by that names another factor takes the instructions together", "[app]") {
+TEST_CASE("by that names another factor takes the instructions together", "[report]") {
   auto source = replaced(shipped("speed-accuracy"), "by = \"instruction\"", "by = \"finger\"");
   source = replaced(source, "[scene.before]",
                     "[[factor]]\nname = \"finger\"\nlevels = [\"wet\", \"dry\"]\n\n[scene.before]");
@@ -109,7 +109,7 @@ TEST_CASE("by that names another factor takes the instructions together", "[app]
   CHECK(report["instructions"][0]["instruction"] == "wet");
 }
 
-TEST_CASE("yes/no is analysed as yes/no", "[app]") {
+TEST_CASE("yes/no is analysed as yes/no", "[report]") {
   // d' grows in proportion to the change, with 1.349 at .1; 15 % false alarms.
   const auto* observer = "sim:threshold=0.1,lapse=0,criterion=1.036";
   for (const int sign : {1, -1}) {
@@ -132,14 +132,14 @@ TEST_CASE("yes/no is analysed as yes/no", "[app]") {
   }
 }
 
-TEST_CASE("same-different counts pairs that are the same as false alarms", "[app]") {
+TEST_CASE("same-different counts pairs that are the same as false alarms", "[report]") {
   const auto data = data_of(shipped("friction-same-different"), "sim:threshold=-14,lapse=0");
   const auto report = report_of(data);
   CHECK(report["fits"][0]["levels"][0]["level"].is_null());
   CHECK(report["fits"][0]["guess"].get<double>() == Approx(0.25).margin(0.12));
 }
 
-TEST_CASE("show decides what the report contains, each of its values", "[app]") {
+TEST_CASE("show decides what the report contains, each of its values", "[report]") {
   const auto source = [](const std::string& show) {
     return replaced(shipped("speed-accuracy"),
                     "show = [\"psychometric\", \"ez\", \"bis\", \"lisas\", \"caf\"]",
@@ -173,7 +173,7 @@ TEST_CASE("show decides what the report contains, each of its values", "[app]") 
   }
 }
 
-TEST_CASE("a report has the ids of answers, and the reversals that a staircase averaged", "[app]") {
+TEST_CASE("a report has the ids of answers, and the reversals that a staircase averaged", "[report]") {
   const auto source = replaced(shipped("friction-staircase"), "initial_down = 1 ",
                                "discard_reversals = 4\ninitial_down = 1 ");
   const auto data = data_of(source, "sim:threshold=-16");

@@ -7,7 +7,7 @@
 
 using namespace turnpoint;
 
-TEST_CASE("the screen's card is the first that has a connector", "[app]") {
+TEST_CASE("the screen's card is the first that has a connector", "[setup]") {
   const TemporaryFolder folder;
   const auto listed = [&folder](const char* name) { std::filesystem::create_directory(folder / name); };
   CHECK(setup::screen_card(folder / "nowhere") == "");

@@ -16,6 +16,7 @@
 #include "tests/simulation/cue_brute_force.hpp"
 #include "tests/simulation/random_protocol.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/quick_rig.hpp"
 
 using namespace turnpoint;
 
@@ -23,24 +24,11 @@ namespace {
 
 const std::string root = TURNPOINT_SOURCE_DIR;
 
-std::string replaced(std::string where, const std::string& from, const std::string& to) {
-  const auto at = where.find(from);
-  REQUIRE(at != std::string::npos);
-  return where.replace(at, from.size(), to);
-}
-
 std::string source(const std::string& name) { return system::read_file(root + "/protocols/" + name); }
-
-/// A rig with a closed-form model, so that a survey is fast.
-rig::Rig quick() {
-  auto text = system::read_file(root + "/deploy/rigs/simulated.toml");
-  text = replaced(text, "edges = \"clamped\"", "edges = \"supported\"");
-  return rig::parse(replaced(text, "thickness_mm = 2.0", "thickness_mm = 4.2"), "r.toml");
-}
 
 simulation::CueGuard guard_of(const std::string& text) {
   const auto protocol = protocol::parse(text, "p.toml");
-  return simulation::cue_guard(protocol, quick(), protocol::survey(protocol, quick()));
+  return simulation::cue_guard(protocol, quick_rig(), protocol::survey(protocol, quick_rig()));
 }
 
 const simulation::CueReport& report(const simulation::CueGuard& guard, const std::string& cue) {
@@ -63,13 +51,13 @@ Compared compare(unsigned seed, std::map<std::string, int>& features) {
   Compared compared{};
   compared.text = tests::random_protocol(seed, features);
   const auto protocol = protocol::parse(compared.text, "random.toml");
-  const auto survey = protocol::survey(protocol, quick());
+  const auto survey = protocol::survey(protocol, quick_rig());
   if (!survey.problems.empty())
     return {compared.text, "cannot run: " + format(survey.problems.front()), 0, 0};
-  const auto guard = simulation::cue_guard(protocol, quick(), survey);
+  const auto guard = simulation::cue_guard(protocol, quick_rig(), survey);
   if (guard.reports.empty())
     return {compared.text, "no reports: " + guard.not_compared + guard.nothing_to_tell, 0, 0};
-  for (const auto& expected : tests::cue_brute_force(protocol, quick())) {
+  for (const auto& expected : tests::cue_brute_force(protocol, quick_rig())) {
     const auto& stated = report(guard, expected.cue);
     const auto note = [&](const std::string& what, double said, double found, double error) {
       compared.worst = std::max(compared.worst, std::fabs(said - found));
@@ -96,7 +84,7 @@ Compared compare(unsigned seed, std::map<std::string, int>& features) {
 TEST_CASE(
     "what the guard states is what an observer of one cue reaches in whole sessions, within 2 %, for 200 "
     "random protocols",
-    "[app][cues]") {
+    "[cues]") {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   constexpr int count = 8;  // the release build tests all of them; this build only watches the memory
 #else
@@ -183,27 +171,27 @@ procedures = ["p"]
 
 TEST_CASE(
     "a standard that depends on a factor, and a target on that and the level, are compared in each trial",
-    "[app][cues]") {
+    "[cues]") {
   const auto guard = guard_of(pair_text);
   CHECK(report(guard, "strip width").accuracy == Approx(1));
   CHECK(report(guard, "duration").accuracy == Approx(0.5));
   CHECK(report(guard, "always the same key").accuracy == Approx(0.5));
 }
 
-TEST_CASE("a target that differs in both directions is found by whoever knows the standard", "[app][cues]") {
+TEST_CASE("a target that differs in both directions is found by whoever knows the standard", "[cues]") {
   const auto both = replaced(pair_text, "values = [4.0, 8.0, 16.0]", "values = [-8.0, 8.0]");
   const auto fixed = replaced(both, "levels = [150.0, 158.0]", "levels = [155.0]");
   CHECK(accuracy(fixed, "strip width") == Approx(1));
 }
 
-TEST_CASE("a target with ramps of its own is recognised by its duration", "[app][cues]") {
+TEST_CASE("a target with ramps of its own is recognised by its duration", "[cues]") {
   const auto text = source("friction-2ifc.toml");
   const std::string contrast = "friction_contrast_dB = \"contrast_dB\"";
   CHECK(accuracy(replaced(text, contrast, contrast + "\nramp_ms = 300"), "duration") == Approx(1));
   CHECK(accuracy(text, "duration") == Approx(0.5));
 }
 
-TEST_CASE("of three intervals a leak finds the odd one always, and chance is a third", "[app][cues]") {
+TEST_CASE("of three intervals a leak finds the odd one always, and chance is a third", "[cues]") {
   const auto guard = guard_of(source("two-spots-oddity.toml"));
   CHECK(report(guard, "strip width").accuracy == Approx(1));
   CHECK(report(guard, "duration").accuracy == Approx(1.0 / 3));
@@ -211,7 +199,7 @@ TEST_CASE("of three intervals a leak finds the odd one always, and chance is a t
 }
 
 TEST_CASE("a mark that stays in one place lets the strip's width tell the side, one that moves less so",
-          "[app][cues]") {
+          "[cues]") {
   const auto text = source("boundary-constant.toml");
   const auto fixed = guard_of(replaced(text, "levels = [152.0, 158.0, 164.0]", "levels = [158.0]"));
   const auto moving = guard_of(text);
@@ -220,8 +208,7 @@ TEST_CASE("a mark that stays in one place lets the strip's width tell the side, 
   CHECK(report(moving, "always the same key").accuracy == Approx(0.5));
 }
 
-TEST_CASE("an answer that depends on the distance from the mark is found by a band of the cue",
-          "[app][cues]") {
+TEST_CASE("an answer that depends on the distance from the mark is found by a band of the cue", "[cues]") {
   auto text =
       replaced(source("boundary-constant.toml"), "levels = [152.0, 158.0, 164.0]", "levels = [158.0]");
   text = replaced(text, "correct = { left = \"offset_mm < 0\", right = \"offset_mm > 0\" }",
@@ -230,7 +217,7 @@ TEST_CASE("an answer that depends on the distance from the mark is found by a ba
 }
 
 TEST_CASE("practice is kept apart: its levels neither count nor take those of the main blocks away",
-          "[app][cues]") {
+          "[cues]") {
   const auto with = guard_of(source("boundary-constant.toml"));
   auto text = source("boundary-constant.toml");
   text = replaced(text, "levels = [-28.0, 28.0]\ntrials", "levels = [3.0, 8.0, 16.0, 28.0]\ntrials");
@@ -243,7 +230,7 @@ TEST_CASE("practice is kept apart: its levels neither count nor take those of th
   CHECK(accuracy(source("speed-accuracy.toml"), "amplitude at the wide end") > 0.9);
 }
 
-TEST_CASE("trials are weighted by how often they come, catch trials too", "[app][cues]") {
+TEST_CASE("trials are weighted by how often they come, catch trials too", "[cues]") {
   const auto text =
       replaced(source("boundary-constant.toml"), "values = [-28.0, -16.0, -8.0, -3.0, 3.0, 8.0, 16.0, 28.0]",
                "values = [-3.0, 3.0, 8.0, 16.0]");
@@ -258,7 +245,7 @@ TEST_CASE("trials are weighted by how often they come, catch trials too", "[app]
   CHECK(accuracy(cut, "always the same key") == Approx(0.75));
 }
 
-TEST_CASE("of a list that is not shuffled and cut short only the first levels count", "[app][cues]") {
+TEST_CASE("of a list that is not shuffled and cut short only the first levels count", "[cues]") {
   const auto text = replaced(pair_text, "values = [4.0, 8.0, 16.0]",
                              "order = { shuffle = \"none\" }\nvalues = [4.0, 8.0, 0.0]");
   const auto cut = replaced(text, "procedures = [\"p\"]", "procedures = [\"p\"]\ntrials = 2");
@@ -285,7 +272,7 @@ std::string roved_staircase(int trials) {
 }  // namespace
 
 TEST_CASE("a cue that helps only with the easiest levels is found in sessions that it leads itself",
-          "[app][cues]") {
+          "[cues]") {
   const auto guard = guard_of(roved_staircase(60));
   const auto& amplitude = report(guard, "amplitude at the wide end");
   REQUIRE(amplitude.whole_sessions);
@@ -297,8 +284,7 @@ TEST_CASE("a cue that helps only with the easiest levels is found in sessions th
   CHECK(report(guard, "duration").whole_sessions->error == 0);
 }
 
-TEST_CASE("easy practice adds nothing to what a cue reaches in sessions that it leads itself",
-          "[app][cues]") {
+TEST_CASE("easy practice adds nothing to what a cue reaches in sessions that it leads itself", "[cues]") {
   const auto main = std::string("[[block]]\nname = \"main\"");
   const auto practised = replaced(roved_staircase(60), main,
                                   "[[block]]\nname = \"practice\"\nlevel = \"level_mm\"\nlevels = [20.0]\n"
@@ -314,7 +300,7 @@ TEST_CASE("easy practice adds nothing to what a cue reaches in sessions that it 
   CHECK(reached(practised) == Approx(reached(roved_staircase(60))).margin(0.03));
 }
 
-TEST_CASE("what a rule reaches is counted on other draws than those that chose it", "[app][cues]") {
+TEST_CASE("what a rule reaches is counted on other draws than those that chose it", "[cues]") {
   // Roving hides the amplitude, which does not depend on the level. The best of many bands only fits random
   // draws.
   std::map<std::string, int> features;
@@ -323,7 +309,7 @@ TEST_CASE("what a rule reaches is counted on other draws than those that chose i
   CHECK(amplitude.accuracy - amplitude.chance < 0.01);
 }
 
-TEST_CASE("two cues share their sessions only if they agree on every level that came up", "[app][cues]") {
+TEST_CASE("two cues share their sessions only if they agree on every level that came up", "[cues]") {
   // The amplitude does not tell 154.6 mm from 158 mm; the strip's width does. No grid of levels has an 8.
   std::map<std::string, int> features;
   const auto guard = guard_of(replaced(tests::random_protocol(31103, features), "\"155\"", "\"154.6\""));
@@ -332,7 +318,7 @@ TEST_CASE("two cues share their sessions only if they agree on every level that 
   CHECK(report(guard, "strip width").whole_sessions->accuracy > 0.995);
 }
 
-TEST_CASE("a count of sessions that had to end early says how little precise it is", "[app][cues]") {
+TEST_CASE("a count of sessions that had to end early says how little precise it is", "[cues]") {
   const auto error_of = [](const std::string& text) {
     const auto guard = guard_of(text);
     const auto& own = report(guard, "amplitude at the wide end").whole_sessions;
@@ -343,66 +329,27 @@ TEST_CASE("a count of sessions that had to end early says how little precise it 
   CHECK(error_of(replaced(roved_staircase(8), "step = [4.0, 2.0]", "step = [12.0]")) > 0.0125);
 }
 
-TEST_CASE("a procedure that tracks an answer is judged with every level equally often", "[app][cues]") {
+TEST_CASE("a procedure that tracks an answer is judged with every level equally often", "[cues]") {
   const auto guard = guard_of(source("boundary-adaptive.toml"));
   for (const auto& one : guard.reports) CHECK_FALSE(one.whole_sessions);
   CHECK(report(guard, "strip width").accuracy > 0.9);
 }
 
-TEST_CASE("the cues of a scene are those of the planner, whatever strength is drawn", "[app][cues]") {
-  auto text = source("boundary-constant.toml");
-  const auto by_friction = replaced(text, "edge = \"p50\"", "edge = { friction = 0.8 }");
-  for (const auto& edge : {text, by_friction}) {
-    const auto protocol = protocol::parse(edge, "p.toml");
-    simulation::CueTable table(protocol, quick(), protocol::survey(protocol, quick()));
-    scene::Planner planner(quick());
-    for (const double rove_dB : {-2.0, -0.7, 0.0, 1.3})
-      for (const double offset : {-26.0, -8.0, 1.0, 12.0}) {
-        const protocol::Factors factors{{"mark_mm", 158.0}, {"offset_mm", offset}};
-        const auto expected = planner.plan(protocol::resolve(protocol, "edge", factors, rove_dB)).cues;
-        auto found = table.find("edge", factors);
-        REQUIRE(found);
-        const auto cues = found->at(rove_dB);
-        CHECK(cues.strip_width_m == Approx(expected.strip_width_m).epsilon(1e-3));
-        CHECK(cues.wide_end_amplitude_m == Approx(expected.wide_end_amplitude_m).epsilon(0.1));
-        CHECK(cues.stripe_pitch_m == Approx(expected.stripe_pitch_m).epsilon(0.1));
-        CHECK(cues.edge_width_m == Approx(expected.edge_width_m).epsilon(2e-2));
-      }
-  }
-}
-
-TEST_CASE("between the plans of a zone cues are interpolated", "[app][cues]") {
+TEST_CASE("where trials cannot be compared the guard says which, and states no accuracy", "[cues]") {
   const auto protocol = protocol::parse(source("friction-2ifc.toml"), "p.toml");
-  const auto survey = protocol::survey(protocol, quick());
-  CHECK(survey.sights.size() < survey.combinations);
-  simulation::CueTable table(protocol, quick(), survey);
-  scene::Planner planner(quick());
-  for (const double level : {-28.0, -17.0, -11.0, -4.0}) {
-    const protocol::Factors factors{{"contrast_dB", level}};
-    const auto expected = planner.plan(protocol::resolve(protocol, "comparison", factors, 0)).cues;
-    const auto found = table.find("comparison", factors);
-    REQUIRE(found);
-    CHECK(found->at(0).wide_end_amplitude_m == Approx(expected.wide_end_amplitude_m).epsilon(0.07));
-  }
-  CHECK_FALSE(table.find("comparison", {{"contrast_dB", -40.0}}));
-}
-
-TEST_CASE("where trials cannot be compared the guard says which, and states no accuracy", "[app][cues]") {
-  const auto protocol = protocol::parse(source("friction-2ifc.toml"), "p.toml");
-  auto survey = protocol::survey(protocol, quick());
-  CHECK(simulation::cue_guard(protocol, quick(), survey).not_compared.empty());
+  auto survey = protocol::survey(protocol, quick_rig());
+  CHECK(simulation::cue_guard(protocol, quick_rig(), survey).not_compared.empty());
   const auto missing = [](const protocol::Sight& sight) {
     return sight.scene == "comparison" && std::get<double>(sight.factors.at("contrast_dB")) < -20;
   };
   survey.sights.erase(std::remove_if(survey.sights.begin(), survey.sights.end(), missing),
                       survey.sights.end());
-  const auto guard = simulation::cue_guard(protocol, quick(), survey);
+  const auto guard = simulation::cue_guard(protocol, quick_rig(), survey);
   CHECK(guard.reports.empty());
   CHECK(guard.not_compared.find("scene \"comparison\" at contrast_dB = ") == 0);
 }
 
-TEST_CASE("a task without right answers has nothing that a cue could tell, and the guard says so",
-          "[app][cues]") {
+TEST_CASE("a task without right answers has nothing that a cue could tell, and the guard says so", "[cues]") {
   const auto guard = guard_of(source("boundary-adjustment.toml"));
   CHECK(guard.reports.empty());
   CHECK(guard.not_compared.empty());

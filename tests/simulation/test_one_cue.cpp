@@ -16,8 +16,7 @@ double best(TaskKind task, const std::vector<Look>& looks, const simulation::Gra
 
 }  // namespace
 
-TEST_CASE("the best criterion is found in either direction, and one answer where nothing tells",
-          "[app][cues]") {
+TEST_CASE("the best criterion is found in either direction, and one answer where nothing tells", "[cues]") {
   CHECK(best(TaskKind::single_interval, {single(1, 0), single(2, 0), single(3, 1), single(4, 1)}) == 1);
   CHECK(best(TaskKind::single_interval, {single(1, 1), single(2, 1), single(3, 0), single(4, 0)}) == 1);
   CHECK(best(TaskKind::single_interval, {single(5, 1), single(5, 1), single(5, 0)}) == Approx(2.0 / 3));
@@ -26,13 +25,13 @@ TEST_CASE("the best criterion is found in either direction, and one answer where
   CHECK(simulation::accuracy({}, TaskKind::single_interval, {}) == 0);
 }
 
-TEST_CASE("a band in the middle is found, and not where the values repeat in turn", "[app][cues]") {
+TEST_CASE("a band in the middle is found, and not where the values repeat in turn", "[cues]") {
   CHECK(best(TaskKind::single_interval, {single(1, 0), single(2, 1), single(3, 1), single(4, 0)}) == 1);
   CHECK(best(TaskKind::single_interval, {single(1, 0), single(2, 1), single(3, 0), single(4, 1)}) ==
         Approx(0.75));
 }
 
-TEST_CASE("of two intervals the larger, the smaller or the unusual one is chosen", "[app][cues]") {
+TEST_CASE("of two intervals the larger, the smaller or the unusual one is chosen", "[cues]") {
   const auto two = TaskKind::two_interval;
   CHECK(best(two, {{{1, 2, 0}, 1, 1}, {{2, 1, 0}, 0, 1}}) == 1);
   CHECK(best(two, {{{1, 2, 0}, 0, 1}, {{2, 1, 0}, 1, 1}}) == 1);
@@ -40,14 +39,13 @@ TEST_CASE("of two intervals the larger, the smaller or the unusual one is chosen
   CHECK(best(two, {{{5, 5.0005, 0}, 1, 1}, {{5.0005, 5, 0}, 0, 1}}) == Approx(0.5));
 }
 
-TEST_CASE("same and different are recognised by the difference, whichever interval is larger",
-          "[app][cues]") {
+TEST_CASE("same and different are recognised by the difference, whichever interval is larger", "[cues]") {
   const auto pair = TaskKind::same_different;
   CHECK(best(pair, {{{1, 1, 0}, 0, 1}, {{2, 2, 0}, 0, 1}, {{1, 2, 0}, 1, 1}, {{2, 1, 0}, 1, 1}}) == 1);
   CHECK(best(pair, {{{1, 1, 0}, 0, 1}, {{1, 1, 0}, 1, 1}}) == Approx(0.5));
 }
 
-TEST_CASE("of three intervals the odd one is found, and equal ones are guessed", "[app][cues]") {
+TEST_CASE("of three intervals the odd one is found, and equal ones are guessed", "[cues]") {
   const auto three = TaskKind::oddity;
   CHECK(best(three, {{{1, 1, 2}, 2, 1}, {{2, 1, 2}, 1, 1}}) == 1);
   CHECK(best(three, {{{1, 1, 1}, 2, 1}, {{1, 1, 1}, 0, 1}}) == Approx(1.0 / 3));

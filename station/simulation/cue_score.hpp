@@ -1,0 +1,32 @@
+#pragma once
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace turnpoint::simulation {
+
+/// Number of trials, of right answers, and of answers that each key alone would get right.
+struct Score {
+  double trials = 0, right = 0;
+  std::array<double, 3> keys{};
+
+  void add(const Score& other, double times) {
+    trials += times * other.trials, right += times * other.right;
+    for (std::size_t i = 0; i < keys.size(); ++i) keys[i] += times * other.keys[i];
+  }
+  double accuracy() const { return trials > 0 ? right / trials : 0; }
+  std::size_t best_key() const {
+    return static_cast<std::size_t>(std::max_element(keys.begin(), keys.end()) - keys.begin());
+  }
+  double one_key() const { return trials > 0 ? keys[best_key()] / trials : 0; }
+};
+
+/// The sum over whole sessions.
+Score sum_of(const std::vector<Score>& sessions);
+
+/// The larger of two standard errors over sessions: of the proportion correct, and of its gain over a single
+/// key. 0 without trials.
+double standard_error(const std::vector<Score>& sessions);
+
+}  // namespace turnpoint::simulation

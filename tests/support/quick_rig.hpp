@@ -1,0 +1,24 @@
+#pragma once
+#include <stdexcept>
+#include <string>
+
+#include "station/rig/rig.hpp"
+#include "station/system/read_file.hpp"
+
+/// `text` with the first `from` replaced, which has to be there.
+inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  if (at == std::string::npos) throw std::logic_error("not in the text: " + from);
+  return text.replace(at, from.size(), to);
+}
+
+/// The simulated rig with simply supported sides and a thicker plate. It has almost the same map, but in
+/// closed form, so that a survey is fast.
+inline std::string quick_rig_source() {
+  const auto text =
+      turnpoint::system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml");
+  return replaced(replaced(text, "edges = \"clamped\"", "edges = \"supported\""), "thickness_mm = 2.0",
+                  "thickness_mm = 4.2");
+}
+
+inline turnpoint::rig::Rig quick_rig() { return turnpoint::rig::parse(quick_rig_source(), "r.toml"); }
