@@ -19,8 +19,8 @@ struct Options {
   std::string out;
 };
 
-plot::Panel drawn(const physics::FigurePanel& panel, const std::string& x_label) {
-  plot::Panel result;
+plot::Chart drawn(const physics::FigurePanel& panel, const std::string& x_label) {
+  plot::Chart result;
   result.title = panel.title;
   std::vector<double> values;
   for (const auto& mark : panel.marks)
@@ -40,9 +40,9 @@ plot::Figure drawn(const physics::Figure& figure) {
   plot::Figure result;
   result.title = figure.title;
   result.caption = figure.title + ". " + figure.note;
-  result.panel_width_px = 760;
-  result.panel_height_px = 300;
-  for (const auto& panel : figure.panels) result.panels.push_back(drawn(panel, figure.x_label));
+  result.chart_width_px = 760;
+  result.chart_height_px = 300;
+  for (const auto& panel : figure.panels) result.charts.push_back(drawn(panel, figure.x_label));
   return result;
 }
 

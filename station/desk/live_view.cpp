@@ -46,11 +46,11 @@ std::string in_words(const trial::TrialSpec& spec) {
   return order;
 }
 
-plot::Figure alone(const char* title, const plot::Panel& panel) {
+plot::Figure alone(const char* title, const plot::Chart& panel) {
   plot::Figure figure;
   figure.title = title;
-  figure.panels = {panel};
-  figure.panel_width_px = 430, figure.panel_height_px = 230;
+  figure.charts = {panel};
+  figure.chart_width_px = 430, figure.chart_height_px = 230;
   return figure;
 }
 
@@ -134,7 +134,7 @@ std::optional<plot::Figure> live_trace(const std::vector<LiveTrial>& trials, con
     estimates[trial.procedure].y.push_back(*trial.threshold_est);
   }
   if (levels.empty()) return std::nullopt;
-  plot::Panel panel;
+  plot::Chart panel;
   panel.title = "Levels; open: not right";
   panel.x = {"Trial", 0, std::max(10.0, static_cast<double>(trials.size()) + 1)};
   panel.y = plot::fitted(label, levels, 0.1);
@@ -158,7 +158,7 @@ std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials) {
       points.open.push_back(!trials[i].correct.value_or(true));
     }
   if (points.x.empty()) return std::nullopt;
-  plot::Panel panel;
+  plot::Chart panel;
   panel.title = "Response times; open: wrong";
   panel.x = {"Trial", 0, std::max(10.0, static_cast<double>(trials.size()) + 1)};
   panel.y = plot::fitted("Response time (s)", points.y, 0.15);

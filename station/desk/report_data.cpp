@@ -85,7 +85,7 @@ std::string session_to_report(const std::string& database, const store::SessionF
   for (const auto& session : sessions)
     if (session.trials > 0 && (!newest || session.last_trial_id > newest->last_trial_id)) newest = &session;
   if (!newest)
-    throw store::StoreError(store::Fault::missing, database + ": no session with trials to report");
+    throw store::StoreError(store::ErrorKind::missing, database + ": no session with trials to report");
   return newest->session_id;
 }
 

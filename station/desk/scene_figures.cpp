@@ -197,8 +197,8 @@ plot::Figure profile_figure(const std::vector<SceneLook>& looks) {
   if (looks.empty()) throw std::invalid_argument("no scene to draw");
   plot::Figure figure;
   figure.title = "Displacement and friction";
-  plot::Panel displacement{"Displacement", {}, {"Displacement (\u00b5m)", 0, 1}, {}};
-  plot::Panel friction{"Friction under a fingertip", {}, {"Friction, relative", 0, 1.2}, {}};
+  plot::Chart displacement{"Displacement", {}, {"Displacement (\u00b5m)", 0, 1}, {}};
+  plot::Chart friction{"Friction under a fingertip", {}, {"Friction, relative", 0, 1.2}, {}};
   const bool several = looks.size() > 1;
   double most_um = 0;
   for (std::size_t i = 0; i < looks.size(); ++i) {
@@ -225,10 +225,10 @@ plot::Figure profile_figure(const std::vector<SceneLook>& looks) {
       if (look.plan.boundary_m)
         panel->layers.push_back(plot::Rule{plot::Rule::Direction::vertical, 1e3 * *look.plan.boundary_m,
                                            several ? "" : "boundary"});
-    figure.panels.push_back(std::move(*panel));
+    figure.charts.push_back(std::move(*panel));
   }
   figure.columns = 2;
-  figure.panel_width_px = 430, figure.panel_height_px = 260;
+  figure.chart_width_px = 430, figure.chart_height_px = 260;
   return figure;
 }
 
@@ -243,7 +243,7 @@ plot::Figure spectrum_figure(const SceneLook& look) {
     points.high.push_back(1e6 * tone.amplitude_m);
     most = std::max(most, 1e6 * tone.amplitude_m);
   }
-  plot::Panel panel;
+  plot::Chart panel;
   panel.title = "Drive";
   panel.x = plot::fitted("Frequency (kHz)", points.x, 0.3);
   panel.y = {"Drive edge (\u00b5m)", 0, most > 0 ? 1.2 * most : 1};
@@ -255,8 +255,8 @@ plot::Figure spectrum_figure(const SceneLook& look) {
   panel.layers.push_back(points);
   plot::Figure figure;
   figure.title = "Tones, scene " + look.scene;
-  figure.panels.push_back(panel);
-  figure.panel_width_px = 430, figure.panel_height_px = 260;
+  figure.charts.push_back(panel);
+  figure.chart_width_px = 430, figure.chart_height_px = 260;
   return figure;
 }
 

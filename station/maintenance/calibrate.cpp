@@ -34,18 +34,18 @@ struct Comparison {
 void add(plot::Figure& figure, const Comparison& c) {
   auto range = c.measured;
   range.insert(range.end(), c.fit_y.begin(), c.fit_y.end());
-  plot::Panel fit{c.title, fitted(c.x_label, c.x), fitted(c.y_label, range), {}};
+  plot::Chart fit{c.title, fitted(c.x_label, c.x), fitted(c.y_label, range), {}};
   Line line;
   line.x = c.fit_x, line.y = c.fit_y, line.series = 0, line.name = "fit";
   Points points;
   points.x = c.x, points.y = c.measured, points.series = 1, points.name = "measured";
   fit.layers = {line, points};
-  plot::Panel rest{"Residuals", fitted(c.x_label, c.x), fitted(c.residual_label, c.residuals), {}};
+  plot::Chart rest{"Residuals", fitted(c.x_label, c.x), fitted(c.residual_label, c.residuals), {}};
   Points residuals;
   residuals.x = c.x, residuals.y = c.residuals, residuals.series = 1;
   rest.layers = {plot::Rule{plot::Rule::Direction::horizontal, 0, ""}, residuals};
-  figure.panels.push_back(std::move(fit));
-  figure.panels.push_back(std::move(rest));
+  figure.charts.push_back(std::move(fit));
+  figure.charts.push_back(std::move(rest));
 }
 
 void add_response(plot::Figure& figure, const Calibration::Transducer& transducer,
@@ -126,10 +126,10 @@ void add_sound(plot::Figure& figure, const std::vector<calibration::SoundPoint>&
     line.x.push_back(point.frequency_Hz * 1e-3);
     line.y.push_back(point.level_dB);
   }
-  plot::Panel panel{
+  plot::Chart panel{
       "Sound level at full scale", fitted("Frequency (kHz)", line.x), fitted("Level (dB SPL)", line.y), {}};
   panel.layers = {line};
-  figure.panels.push_back(std::move(panel));
+  figure.charts.push_back(std::move(panel));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@ namespace turnpoint::plot {
 
 enum class AxisScale { linear, log10 };
 
-/// What one axis of a panel shows.
+/// What one axis of a chart shows.
 struct Axis {
   std::string label;  ///< includes the unit: "Friction contrast (dB)"
   double low = 0, high = 1;

@@ -138,7 +138,7 @@ struct Entry {
   bool line = false, points = false, open_points = false, area = false;
 };
 
-std::vector<Entry> legend_of(const Panel& panel) {
+std::vector<Entry> legend_of(const Chart& chart) {
   std::vector<Entry> entries;
   const auto add = [&](const std::string& name, int series, bool Entry::*what) {
     if (name.empty()) return;
@@ -150,7 +150,7 @@ std::vector<Entry> legend_of(const Panel& panel) {
     entries.push_back({name, series, false, false, false, false});
     entries.back().*what = true;
   };
-  for (const auto& layer : panel.layers) {
+  for (const auto& layer : chart.layers) {
     if (const auto* line = std::get_if<Line>(&layer)) add(line->name, line->series, &Entry::line);
     if (const auto* dots = std::get_if<Points>(&layer)) {
       const bool open =
@@ -183,8 +183,8 @@ double draw_legend(Canvas* canvas, const std::vector<Entry>& entries, double lef
   return entries.empty() ? 0 : y - top + row + 6;
 }
 
-const HeatMap* heat_map(const Panel& panel) {
-  for (const auto& layer : panel.layers)
+const HeatMap* heat_map(const Chart& chart) {
+  for (const auto& layer : chart.layers)
     if (const auto* map = std::get_if<HeatMap>(&layer)) return map;
   return nullptr;
 }
@@ -246,7 +246,7 @@ struct Place {
   double left = 0, top = 0, width = 0, height = 0;
 };
 
-/// How a panel's area is divided.
+/// How a chart's area is divided.
 struct Division {
   double left = 0, width = 0, legend_top = 0;  ///< for title, legend and data
   std::vector<Tick> up;
@@ -254,58 +254,58 @@ struct Division {
   Labelled labelled;
 };
 
-Division divided(const Panel& panel, const Place& place, VerticalLabels where, int wanted_ticks) {
+Division divided(const Chart& chart, const Place& place, VerticalLabels where, int wanted_ticks) {
   Division d;
-  d.up = ticks(panel.y, wanted_ticks);
+  d.up = ticks(chart.y, wanted_ticks);
   double labels = 0;
   for (const auto& tick : d.up) labels = std::max(labels, text_width(tick.label, kText));
   d.left = place.left + kPad + 18 + labels + kTick + 3;
-  d.width = place.left + place.width - kPad - 6 - (heat_map(panel) ? 72 : 0) - d.left;
-  d.legend_top = place.top + kPad + (panel.title.empty() ? 4 : 26);
-  d.entries = legend_of(panel);
-  Frame frame{d.left, d.legend_top, d.width, 0, &panel.x, &panel.y};
+  d.width = place.left + place.width - kPad - 6 - (heat_map(chart) ? 72 : 0) - d.left;
+  d.legend_top = place.top + kPad + (chart.title.empty() ? 4 : 26);
+  d.entries = legend_of(chart);
+  Frame frame{d.left, d.legend_top, d.width, 0, &chart.x, &chart.y};
   frame.y += draw_legend(nullptr, d.entries, d.left, 0, d.width);
   frame.height = place.top + place.height - kPad - 38 - frame.y;
-  d.labelled = place_labels(panel, frame, where);
+  d.labelled = place_labels(chart, frame, where);
   return d;
 }
 
 /// Chooses as many vertical ticks as fit with a spacing of one and a half lines of text.
-Division divided(const Panel& panel, const Place& place, VerticalLabels where) {
+Division divided(const Chart& chart, const Place& place, VerticalLabels where) {
   for (int wanted = 5;; --wanted) {
-    auto d = divided(panel, place, where, wanted);
+    auto d = divided(chart, place, where, wanted);
     const double needed = 1.5 * kText * static_cast<double>(d.up.size() - 1);
     if (wanted == 2 || needed <= d.labelled.frame.height) return d;
   }
 }
 
-Division divided_with_room(const Panel& panel, const Place& place, VerticalLabels where) {
-  auto d = divided(panel, place, where);
+Division divided_with_room(const Chart& chart, const Place& place, VerticalLabels where) {
+  auto d = divided(chart, place, where);
   check(d.labelled.frame.width > 40 && d.labelled.frame.height > 40,
-        "panel \"" + panel.title + "\" leaves no room for its data");
+        "chart \"" + chart.title + "\" leaves no room for its data");
   return d;
 }
 
-void draw_panel(Canvas& canvas, const Panel& panel, const Place& place, const Division& d) {
+void draw_chart(Canvas& canvas, const Chart& chart, const Place& place, const Division& d) {
   const auto& frame = d.labelled.frame;
-  canvas.text({d.left, place.top + kPad + 14}, panel.title, kTitle, Anchor::start, kInk, 600);
+  canvas.text({d.left, place.top + kPad + 14}, chart.title, kTitle, Anchor::start, kInk, 600);
   draw_legend(&canvas, d.entries, d.left, d.legend_top, d.width);
-  draw_axes(canvas, frame, ticks_with_room(panel.x, frame.width), d.up);
-  canvas.text({place.left + kPad + 10, frame.y + frame.height / 2}, panel.y.label, kText, Anchor::middle,
+  draw_axes(canvas, frame, ticks_with_room(chart.x, frame.width), d.up);
+  canvas.text({place.left + kPad + 10, frame.y + frame.height / 2}, chart.y.label, kText, Anchor::middle,
               kInk, 400, 90);
   const auto clip = drawn_in(frame);
   canvas.begin_clip({clip.left, clip.top}, clip.right - clip.left, clip.bottom - clip.top);
-  for (const auto& layer : panel.layers) std::visit(Draw{canvas, frame}, layer);
+  for (const auto& layer : chart.layers) std::visit(Draw{canvas, frame}, layer);
   canvas.end_clip();
   for (const auto& label : d.labelled.labels)
     canvas.text(label.at, label.text, kLabelText_px, label.anchor, kSoft);
-  if (const auto* map = heat_map(panel)) draw_colour_bar(canvas, frame, d.left + d.width, *map);
+  if (const auto* map = heat_map(chart)) draw_colour_bar(canvas, frame, d.left + d.width, *map);
 }
 
-/// Small multiples are compared with each other: if one panel has to put a label above its data, all do.
-VerticalLabels labels_of(const std::vector<Panel>& panels, const std::vector<Place>& places) {
-  for (std::size_t i = 0; i < panels.size(); ++i)
-    for (const auto& label : divided(panels[i], places[i], VerticalLabels::beside).labelled.labels)
+/// Small multiples are compared with each other: if one chart has to put a label above its data, all do.
+VerticalLabels labels_of(const std::vector<Chart>& charts, const std::vector<Place>& places) {
+  for (std::size_t i = 0; i < charts.size(); ++i)
+    for (const auto& label : divided(charts[i], places[i], VerticalLabels::beside).labelled.labels)
       if (label.anchor == Anchor::middle) return VerticalLabels::above;
   return VerticalLabels::beside;
 }
@@ -326,27 +326,27 @@ std::vector<std::string> caption_lines(const std::string& caption, double width)
 }  // namespace
 
 void draw(Canvas& canvas, const Figure& figure) {
-  check(!figure.panels.empty(), "a figure needs a panel");
+  check(!figure.charts.empty(), "a figure needs a chart");
   check(figure.columns > 0, "columns: at least 1");
-  const int count = static_cast<int>(figure.panels.size());
+  const int count = static_cast<int>(figure.charts.size());
   const int columns = std::min(figure.columns, count), rows = (count + columns - 1) / columns;
-  const double width = columns * figure.panel_width_px, panels = rows * figure.panel_height_px;
+  const double width = columns * figure.chart_width_px, charts = rows * figure.chart_height_px;
   std::vector<Place> places;
   for (int i = 0; i < count; ++i)
-    places.push_back({i % columns * figure.panel_width_px, i / columns * figure.panel_height_px,
-                      figure.panel_width_px, figure.panel_height_px});
-  const auto where = labels_of(figure.panels, places);
+    places.push_back({i % columns * figure.chart_width_px, i / columns * figure.chart_height_px,
+                      figure.chart_width_px, figure.chart_height_px});
+  const auto where = labels_of(figure.charts, places);
   std::vector<Division> divisions;
   for (std::size_t i = 0; i < places.size(); ++i)
-    divisions.push_back(divided_with_room(figure.panels[i], places[i], where));
+    divisions.push_back(divided_with_room(figure.charts[i], places[i], where));
   const auto caption = caption_lines(figure.caption, width - 4 * kPad);
   const double height =
-      panels + (caption.empty() ? 0 : kPad + kCaptionLine * static_cast<double>(caption.size()));
+      charts + (caption.empty() ? 0 : kPad + kCaptionLine * static_cast<double>(caption.size()));
   canvas.begin(width, height, figure.title);
   canvas.rectangle({0, 0}, width, height, {"", "#ffffff", 0, "", 1});
   for (std::size_t i = 0; i < places.size(); ++i)
-    draw_panel(canvas, figure.panels[i], places[i], divisions[i]);
-  double y = panels + kText;
+    draw_chart(canvas, figure.charts[i], places[i], divisions[i]);
+  double y = charts + kText;
   for (const auto& line : caption) {
     canvas.text({2 * kPad, y}, line, kText, Anchor::start, kSoft);
     y += kCaptionLine;
@@ -362,7 +362,7 @@ std::string render(const Figure& figure) {
 Figure laid_out(Figure figure, double width_px, double height_px) {
   check(width_px > 0 && height_px > 0, "a figure needs a size above 0");
   constexpr double best = 1.5, least_width = 200, least_height = 165;
-  const auto count = static_cast<int>(figure.panels.size());
+  const auto count = static_cast<int>(figure.charts.size());
   Figure chosen = figure;
   double nearest = std::numeric_limits<double>::infinity();
   for (int columns = 1; columns <= count; ++columns) {
@@ -371,12 +371,12 @@ Figure laid_out(Figure figure, double width_px, double height_px) {
     const double width = width_px * larger;
     const auto caption = static_cast<double>(caption_lines(figure.caption, width - 4 * kPad).size());
     figure.columns = columns;
-    figure.panel_width_px = width / columns;
-    figure.panel_height_px = std::max(
+    figure.chart_width_px = width / columns;
+    figure.chart_height_px = std::max(
         least_height, (height_px * larger - (caption > 0 ? kPad + kCaptionLine * caption : 0)) / rows);
-    // Shrinking a panel to make it fit counts as much as distorting its proportions.
+    // Shrinking a chart to make it fit counts as much as distorting its proportions.
     const double off =
-        std::abs(std::log(figure.panel_width_px / figure.panel_height_px / best)) + 2 * std::log(larger);
+        std::abs(std::log(figure.chart_width_px / figure.chart_height_px / best)) + 2 * std::log(larger);
     if (off < nearest) nearest = off, chosen = figure;
   }
   return chosen;

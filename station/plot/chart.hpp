@@ -51,7 +51,7 @@ struct HeatMap {
   std::string name;  ///< label of the colour bar
 };
 
-/// A thin dashed line across the panel with a small label: chance, a deadline, a threshold.
+/// A thin dashed line across the chart with a small label: chance, a deadline, a threshold.
 struct Rule {
   enum class Direction { horizontal, vertical } direction = Direction::horizontal;
   double at = 0;
@@ -60,29 +60,29 @@ struct Rule {
 
 using Layer = std::variant<Band, Histogram, HeatMap, Rule, Line, Points>;
 
-struct Panel {
+struct Chart {
   std::string title;
   Axis x, y;
   std::vector<Layer> layers;  ///< in drawing order
 };
 
-/// One picture: panels in rows of `columns` (small multiples).
+/// One picture: charts in rows of `columns` (small multiples).
 struct Figure {
   std::string title;  ///< the document's title, and a description for readers who cannot see the figure
-  std::vector<Panel> panels;
+  std::vector<Chart> charts;
   int columns = 1;
-  double panel_width_px = 420, panel_height_px = 300;
-  std::string caption;  ///< text below the panels, broken into lines; "" leaves it out
+  double chart_width_px = 420, chart_height_px = 300;
+  std::string caption;  ///< text below the charts, broken into lines; "" leaves it out
 };
 
 /// Throws std::invalid_argument for lists of different lengths, axes without a range, a figure without
-/// panels, and before anything is drawn if a panel leaves no room for its data.
+/// charts, and before anything is drawn if a chart leaves no room for its data.
 void draw(Canvas& canvas, const Figure& figure);
 
 /// The figure as an SVG document. The same figure always gives the same bytes.
 std::string render(const Figure& figure);
 
-/// The figure laid out for a document of this size, with the number of columns that gives its panels the best
+/// The figure laid out for a document of this size, with the number of columns that gives its charts the best
 /// proportions. If there is not enough room, the document becomes larger than requested, in the same
 /// proportions; text keeps its size.
 Figure laid_out(Figure figure, double width_px, double height_px);

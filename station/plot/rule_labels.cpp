@@ -183,9 +183,9 @@ Box drawn_in(const Frame& frame) {
   return {frame.x - 1, frame.y - kOver, frame.x + frame.width + kOver, frame.y + frame.height + 1};
 }
 
-std::vector<Box> covered(const Panel& panel, const Frame& frame) {
+std::vector<Box> covered(const Chart& chart, const Frame& frame) {
   std::vector<Box> boxes;
-  for (const auto& layer : panel.layers) std::visit(Cover{boxes, frame}, layer);
+  for (const auto& layer : chart.layers) std::visit(Cover{boxes, frame}, layer);
   const auto clip = drawn_in(frame);
   std::erase_if(boxes, [&](const Box& box) { return !overlap(box, clip); });
   for (auto& box : boxes)
@@ -194,15 +194,15 @@ std::vector<Box> covered(const Panel& panel, const Frame& frame) {
   return boxes;
 }
 
-Labelled place_labels(const Panel& panel, Frame whole, VerticalLabels where) {
+Labelled place_labels(const Chart& chart, Frame whole, VerticalLabels where) {
   std::set<const Rule*> outside_data;
-  for (const auto& layer : panel.layers)
+  for (const auto& layer : chart.layers)
     if (const auto* rule = std::get_if<Rule>(&layer);
         rule != nullptr && !rule->label.empty() && !is_flat(*rule) && where == VerticalLabels::above)
       outside_data.insert(rule);
   for (;;) {
     const auto frame = without_labels(whole, outside_data);
-    const auto boxes = covered(panel, frame);
+    const auto boxes = covered(chart, frame);
     Labelled result{frame, {}};
     const auto free = [&](const RuleLabel& place) {
       return std::none_of(boxes.begin(), boxes.end(),
@@ -212,7 +212,7 @@ Labelled place_labels(const Panel& panel, Frame whole, VerticalLabels where) {
     };
     bool all = true;
     int rows = 0;
-    for (const auto& layer : panel.layers) {
+    for (const auto& layer : chart.layers) {
       const auto* rule = std::get_if<Rule>(&layer);
       if (rule == nullptr || rule->label.empty() || !is_shown(*rule, frame)) continue;
       if (outside_data.count(rule) > 0) {

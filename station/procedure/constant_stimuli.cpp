@@ -154,10 +154,10 @@ extern const Description constant_stimuli{
       spec.values = reader.numbers("values", any_level);
       read_list(reader, spec);
     },
-    [](const Spec& spec, std::vector<Fault>& faults) {
-      if (spec.values.empty()) faults.push_back({"values", "missing", "one or more levels"});
-      if (spec.repeats < 1) faults.push_back({"repeats", "below 1", "a whole number of 1 or more"});
-      if (spec.max_run && *spec.max_run < 1) faults.push_back({"order.max_run", "below 1", "1 or more"});
+    [](const Spec& spec, std::vector<Problem>& problems) {
+      if (spec.values.empty()) problems.push_back({"values", "missing", "one or more levels"});
+      if (spec.repeats < 1) problems.push_back({"repeats", "below 1", "a whole number of 1 or more"});
+      if (spec.max_run && *spec.max_run < 1) problems.push_back({"order.max_run", "below 1", "1 or more"});
     },
     [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {
       return std::make_unique<ConstantStimuli>(spec, context, key);

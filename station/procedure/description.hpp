@@ -24,7 +24,7 @@ struct Description {
   /// Reads the kind's own keys; name, kind, level and copy have been read already.
   void (*read)(text::TableReader& reader, Spec& spec);
   /// Adds the problems of a spec, whatever file it came from.
-  void (*validate)(const Spec& spec, std::vector<Fault>& faults);
+  void (*validate)(const Spec& spec, std::vector<Problem>& problems);
   std::unique_ptr<Procedure> (*make)(const Spec& spec, const Context& context, const random::Key& key);
   /// The share of ones on which the levels converge, given the smallest and largest possible share; empty if
   /// they do not converge or it is unknown.

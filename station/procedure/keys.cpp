@@ -70,13 +70,14 @@ void read_span(TableReader& reader, Spec& spec) {
   spec.max = reader.number("max", any_level);
 }
 
-void validate_span(const Spec& spec, std::vector<Fault>& faults) {
-  if (!spec.start) faults.push_back({"start", "missing", "the first level, a number"});
-  if (spec.min && spec.max && *spec.min >= *spec.max) faults.push_back({"min", "not below max", "min < max"});
+void validate_span(const Spec& spec, std::vector<Problem>& problems) {
+  if (!spec.start) problems.push_back({"start", "missing", "the first level, a number"});
+  if (spec.min && spec.max && *spec.min >= *spec.max)
+    problems.push_back({"min", "not below max", "min < max"});
   if (spec.start && ((spec.min && *spec.start < *spec.min) || (spec.max && *spec.start > *spec.max)))
-    faults.push_back({"start", "outside min ... max", "a level between min and max"});
+    problems.push_back({"start", "outside min ... max", "a level between min and max"});
   if (spec.scale != Scale::linear && spec.start && !(*spec.start > 0))
-    faults.push_back({"start", "not above 0 on a logarithmic scale", "a level above 0"});
+    problems.push_back({"start", "not above 0 on a logarithmic scale", "a level above 0"});
 }
 
 bool positive(const std::vector<double>& values) {

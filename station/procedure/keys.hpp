@@ -17,7 +17,7 @@ void read_list(text::TableReader& reader, Spec& spec);
 void read_span(text::TableReader& reader, Spec& spec);
 
 /// Adds the problems of a start, its limits and its scale.
-void validate_span(const Spec& spec, std::vector<Fault>& faults);
+void validate_span(const Spec& spec, std::vector<Problem>& problems);
 
 /// True if all values are above 0 and finite; also true for an empty list.
 bool positive(const std::vector<double>& values);

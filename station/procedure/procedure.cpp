@@ -53,11 +53,11 @@ std::vector<std::string> kind_names() {
   return names;
 }
 
-std::vector<Fault> validate(const Spec& spec) {
-  std::vector<Fault> faults;
-  if (spec.level.empty()) faults.push_back({"level", "missing", "the name of a factor"});
-  description(spec.kind).validate(spec, faults);
-  return faults;
+std::vector<Problem> validate(const Spec& spec) {
+  std::vector<Problem> problems;
+  if (spec.level.empty()) problems.push_back({"level", "missing", "the name of a factor"});
+  description(spec.kind).validate(spec, problems);
+  return problems;
 }
 
 void Procedure::record_setting(double) {
@@ -65,9 +65,9 @@ void Procedure::record_setting(double) {
 }
 
 std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& context, const random::Key& key) {
-  if (const auto faults = validate(spec); !faults.empty())
-    throw std::invalid_argument("procedure " + spec.name + ": " + faults.front().key + ": " +
-                                faults.front().what + "; " + faults.front().allowed);
+  if (const auto problems = validate(spec); !problems.empty())
+    throw std::invalid_argument("procedure " + spec.name + ": " + problems.front().key + ": " +
+                                problems.front().what + "; " + problems.front().allowed);
   return description(spec.kind).make(spec, context, key);
 }
 

@@ -112,43 +112,43 @@ void read_posterior(text::TableReader& reader, Spec& spec) {
   read_stop(reader, spec);
 }
 
-void validate_rate(const char* key, const Grid& grid, std::vector<Fault>& faults) {
+void validate_rate(const char* key, const Grid& grid, std::vector<Problem>& problems) {
   for (const double rate : grid.values)
     if (!(rate >= 0 && rate < 1))
-      return faults.push_back({key, "a rate outside 0 to 1", "probabilities from 0 up to, but not, 1"});
+      return problems.push_back({key, "a rate outside 0 to 1", "probabilities from 0 up to, but not, 1"});
 }
 
-void validate_prior(const char* key, const Prior& prior, const Grid& grid, std::vector<Fault>& faults) {
+void validate_prior(const char* key, const Prior& prior, const Grid& grid, std::vector<Problem>& problems) {
   if (prior.weights.empty()) return;
   const auto values = grid.values.size();
   if (prior.weights.size() != values)
-    faults.push_back({key, std::to_string(prior.weights.size()) + " weights",
-                      "as many as \"grid\" has values: " + std::to_string(values)});
+    problems.push_back({key, std::to_string(prior.weights.size()) + " weights",
+                        "as many as \"grid\" has values: " + std::to_string(values)});
   else if (std::none_of(prior.weights.begin(), prior.weights.end(), [](double w) { return w > 0; }))
-    faults.push_back({key, "all weights are 0", "at least one above 0"});
+    problems.push_back({key, "all weights are 0", "at least one above 0"});
 }
 
-void validate_posterior(const Spec& spec, std::vector<Fault>& faults) {
-  if (spec.stimuli.values.empty()) faults.push_back({"stimuli", "missing", "the levels to choose from"});
-  if (spec.threshold.values.empty()) faults.push_back({"grid.threshold", "missing", "its values"});
-  if (spec.slope.values.empty()) faults.push_back({"grid.slope", "missing", "its values"});
-  if (!positive(spec.slope.values)) faults.push_back({"grid.slope", "a slope is not above 0", "above 0"});
-  validate_rate("grid.guess", spec.guess, faults);
-  validate_rate("grid.lapse", spec.lapse, faults);
-  validate_prior("prior.threshold", spec.prior_threshold, spec.threshold, faults);
-  validate_prior("prior.slope", spec.prior_slope, spec.slope, faults);
-  validate_prior("prior.guess", spec.prior_guess, spec.guess, faults);
-  validate_prior("prior.lapse", spec.prior_lapse, spec.lapse, faults);
+void validate_posterior(const Spec& spec, std::vector<Problem>& problems) {
+  if (spec.stimuli.values.empty()) problems.push_back({"stimuli", "missing", "the levels to choose from"});
+  if (spec.threshold.values.empty()) problems.push_back({"grid.threshold", "missing", "its values"});
+  if (spec.slope.values.empty()) problems.push_back({"grid.slope", "missing", "its values"});
+  if (!positive(spec.slope.values)) problems.push_back({"grid.slope", "a slope is not above 0", "above 0"});
+  validate_rate("grid.guess", spec.guess, problems);
+  validate_rate("grid.lapse", spec.lapse, problems);
+  validate_prior("prior.threshold", spec.prior_threshold, spec.threshold, problems);
+  validate_prior("prior.slope", spec.prior_slope, spec.slope, problems);
+  validate_prior("prior.guess", spec.prior_guess, spec.guess, problems);
+  validate_prior("prior.lapse", spec.prior_lapse, spec.lapse, problems);
   // Limit for the number of combinations that one trial has to evaluate: some seconds on a small computer.
   constexpr double most = 5e7;
   double size = static_cast<double>(spec.stimuli.values.size());
   for (const auto* grid : {&spec.threshold, &spec.slope, &spec.guess, &spec.lapse})
     size *= static_cast<double>(std::max<std::size_t>(1, grid->values.size()));
   if (size > most)
-    faults.push_back({"grid.threshold", "stimuli and grids have too many combinations to choose in time",
-                      "at most 50 million"});
+    problems.push_back({"grid.threshold", "stimuli and grids have too many combinations to choose in time",
+                        "at most 50 million"});
   if (!spec.stop.trials && !spec.stop.threshold_sd && !spec.stop.entropy_nats)
-    faults.push_back({"stop", "nothing stops it", "trials or threshold_sd"});
+    problems.push_back({"stop", "nothing stops it", "trials or threshold_sd"});
 }
 
 std::unique_ptr<Procedure> make_quest_plus(const Spec& spec, const Context&, const random::Key&) {

@@ -4,8 +4,8 @@
 
 namespace turnpoint::procedure {
 
-std::vector<Fault> advise(const Spec& spec) {
-  std::vector<Fault> advice;
+std::vector<Problem> advise(const Spec& spec) {
+  std::vector<Problem> advice;
   if (spec.stimuli.values.size() == 1)
     advice.push_back({"stimuli", "a grid of one point", "two or more, to have something to choose"});
   if (spec.threshold.values.size() == 1)

@@ -85,14 +85,14 @@ std::optional<Kind> parse_kind(const std::string& text);
 std::vector<std::string> kind_names();
 
 /// One problem of a spec: its key, what is wrong, what is allowed.
-struct Fault {
+struct Problem {
   std::string key, what, allowed;
 };
 
 /// All problems of a spec, whatever file it came from; empty if it can run.
-std::vector<Fault> validate(const Spec& spec);
+std::vector<Problem> validate(const Spec& spec);
 /// Things that work but are probably mistakes: a one-point grid of stimuli, steps that miss the target, a
 /// grid whose only lapse is 0.
-std::vector<Fault> advise(const Spec& spec);
+std::vector<Problem> advise(const Spec& spec);
 
 }  // namespace turnpoint::procedure

@@ -98,24 +98,24 @@ void read_staircase(text::TableReader& reader, Spec& spec) {
   read_stop(reader, spec);
 }
 
-void validate_staircase(const Spec& spec, std::vector<Fault>& faults) {
-  validate_span(spec, faults);
+void validate_staircase(const Spec& spec, std::vector<Problem>& problems) {
+  validate_span(spec, problems);
   if (spec.step.empty() && spec.step_down.empty() && spec.step_up.empty())
-    faults.push_back({"step_down", "missing", "one or more steps above 0"});
+    problems.push_back({"step_down", "missing", "one or more steps above 0"});
   if (!positive(spec.step) || !positive(spec.step_down) || !positive(spec.step_up))
-    faults.push_back({"step_down", "a step is not above 0", "steps above 0"});
+    problems.push_back({"step_down", "a step is not above 0", "steps above 0"});
   if (spec.kind == Kind::weighted_up_down && (!spec.target || !(*spec.target > 0 && *spec.target < 1)))
-    faults.push_back({"target", "missing or outside (0, 1)", "a probability between 0 and 1"});
+    problems.push_back({"target", "missing or outside (0, 1)", "a probability between 0 and 1"});
   if (spec.kind == Kind::up_down && (spec.n_down < 1 || spec.n_up < 1))
-    faults.push_back({"n_down", "below 1", "whole numbers of 1 or more"});
+    problems.push_back({"n_down", "below 1", "whole numbers of 1 or more"});
   if (spec.kind == Kind::up_down && spec.step.empty() && (spec.step_down.empty() || spec.step_up.empty()))
-    faults.push_back({"step", "missing for one direction", "step, or both step_down and step_up"});
+    problems.push_back({"step", "missing for one direction", "step, or both step_down and step_up"});
   if (!spec.stop.trials && !spec.stop.reversals)
-    faults.push_back({"stop", "nothing stops it", "trials or reversals"});
+    problems.push_back({"stop", "nothing stops it", "trials or reversals"});
   if (spec.discard_reversals < 0 || (spec.stop.reversals && spec.stop.rule == StopRule::any &&
                                      spec.discard_reversals + 2 > *spec.stop.reversals))
-    faults.push_back({"discard_reversals", "leaves fewer than two reversals to average",
-                      "at least two fewer than the reversals at which the staircase stops"});
+    problems.push_back({"discard_reversals", "leaves fewer than two reversals to average",
+                        "at least two fewer than the reversals at which the staircase stops"});
 }
 
 std::unique_ptr<Procedure> make_staircase(const Spec& spec, const Context&, const random::Key&) {

@@ -57,14 +57,14 @@ extern const Description accelerated_stochastic_approximation{
       spec.target = reader.number("target", {0, 1, text::Range::Ends::open});
       read_stop(reader, spec);
     },
-    [](const Spec& spec, std::vector<Fault>& faults) {
-      validate_span(spec, faults);
+    [](const Spec& spec, std::vector<Problem>& problems) {
+      validate_span(spec, problems);
       if (spec.step.size() != 1 || !positive(spec.step))
-        faults.push_back({"step", "missing or not above 0", "one number above 0"});
+        problems.push_back({"step", "missing or not above 0", "one number above 0"});
       if (!spec.target || !(*spec.target > 0 && *spec.target < 1))
-        faults.push_back({"target", "missing or outside (0, 1)", "a probability between 0 and 1"});
+        problems.push_back({"target", "missing or outside (0, 1)", "a probability between 0 and 1"});
       if (!spec.stop.trials && !spec.stop.reversals)
-        faults.push_back({"stop", "nothing stops it", "trials or reversals"});
+        problems.push_back({"stop", "nothing stops it", "trials or reversals"});
     },
     [](const Spec& spec, const Context&, const random::Key&) -> std::unique_ptr<Procedure> {
       return std::make_unique<StochasticApproximation>(spec);

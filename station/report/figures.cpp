@@ -68,7 +68,7 @@ std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
       if (point.level != analysis::kNoise) levels.push_back(point.level);
   if (levels.empty()) return std::nullopt;
   const bool logarithmic = summary.data.scale == analysis::Scale::log10;
-  plot::Panel panel;
+  plot::Chart panel;
   panel.x = plot::fitted(summary.data.level_label, levels, 0.05,
                          logarithmic ? plot::AxisScale::log10 : plot::AxisScale::linear);
   const bool forced = summary.data.design == Design::forced_choice;
@@ -98,20 +98,20 @@ std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
   }
   plot::Figure figure;
   figure.title = "Psychometric function";
-  figure.panel_width_px = 620;
-  figure.panel_height_px = 380;
-  figure.panels.push_back(std::move(panel));
+  figure.chart_width_px = 620;
+  figure.chart_height_px = 380;
+  figure.charts.push_back(std::move(panel));
   return figure;
 }
 
 std::optional<plot::Figure> trace_figure(const Summary& summary) {
   plot::Figure figure;
   figure.title = "Levels in the order presented";
-  figure.panel_width_px = 620;
-  figure.panel_height_px = 240;
+  figure.chart_width_px = 620;
+  figure.chart_height_px = 240;
   for (const auto& trace : summary.traces) {
     plot::Points right, wrong;
-    right.series = wrong.series = static_cast<int>(figure.panels.size());
+    right.series = wrong.series = static_cast<int>(figure.charts.size());
     plot::Line line;
     line.series = plot::kNeutral;
     for (const auto& point : trace.points) {
@@ -124,7 +124,7 @@ std::optional<plot::Figure> trace_figure(const Summary& summary) {
       line.y.push_back(points.y.back());
     }
     if (!wrong.x.empty()) right.name = "right", wrong.name = "wrong";
-    plot::Panel panel;
+    plot::Chart panel;
     panel.title = or_default(trace.procedure, "all trials");
     panel.x = plot::fitted("Trial (number in the session)", line.x, 0.03);
     panel.y = plot::fitted(summary.data.level_label, line.y, 0.1);
@@ -137,21 +137,21 @@ std::optional<plot::Figure> trace_figure(const Summary& summary) {
     if (smooth) panel.layers.push_back(line);
     panel.layers.push_back(right);
     panel.layers.push_back(wrong);
-    figure.panels.push_back(std::move(panel));
+    figure.charts.push_back(std::move(panel));
   }
-  if (figure.panels.empty()) return std::nullopt;
+  if (figure.charts.empty()) return std::nullopt;
   return figure;
 }
 
 std::optional<plot::Figure> settings_figure(const Summary& summary) {
   plot::Figure figure;
   figure.title = "Settings in the order made";
-  figure.panel_width_px = 620;
-  figure.panel_height_px = 260;
+  figure.chart_width_px = 620;
+  figure.chart_height_px = 260;
   for (const auto& settings : summary.settings) {
     plot::Points starts, ends;
     starts.name = "start", starts.series = plot::kNeutral;
-    ends.name = "setting", ends.series = static_cast<int>(figure.panels.size());
+    ends.name = "setting", ends.series = static_cast<int>(figure.charts.size());
     for (std::size_t i = 0; i < settings.values.size(); ++i) {
       starts.x.push_back(static_cast<double>(i + 1));
       starts.y.push_back(settings.starts[i]);
@@ -161,7 +161,7 @@ std::optional<plot::Figure> settings_figure(const Summary& summary) {
     ends.x = starts.x;
     auto both = starts.y;
     both.insert(both.end(), ends.y.begin(), ends.y.end());
-    plot::Panel panel;
+    plot::Chart panel;
     panel.title = settings.procedure + (settings.condition.empty() ? "" : ", " + settings.condition);
     panel.x = plot::fitted("Setting (number)", starts.x, 0.03);
     panel.y = plot::fitted(summary.data.level_label, both, 0.1);
@@ -169,9 +169,9 @@ std::optional<plot::Figure> settings_figure(const Summary& summary) {
       panel.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, settings.mean->value, "mean"});
     panel.layers.push_back(starts);
     panel.layers.push_back(ends);
-    figure.panels.push_back(std::move(panel));
+    figure.charts.push_back(std::move(panel));
   }
-  if (figure.panels.empty()) return std::nullopt;
+  if (figure.charts.empty()) return std::nullopt;
   return figure;
 }
 
@@ -185,8 +185,8 @@ std::optional<plot::Figure> response_time_figure(const Summary& summary) {
   const int bins = std::clamp(static_cast<int>(std::lround(high / width)) * 2, 10, 60);
   plot::Figure figure;
   figure.title = "Response times";
-  figure.panel_width_px = 620;
-  figure.panel_height_px = 200;
+  figure.chart_width_px = 620;
+  figure.chart_height_px = 200;
   double tallest = 1;
   std::vector<plot::Histogram> bars;
   for (const auto& entry : summary.trade.instructions) {
@@ -196,7 +196,7 @@ std::optional<plot::Figure> response_time_figure(const Summary& summary) {
   for (std::size_t i = 0; i < bars.size(); ++i) {
     const auto& entry = summary.trade.instructions[i];
     bars[i].series = static_cast<int>(i);
-    plot::Panel panel;
+    plot::Chart panel;
     panel.title = or_default(entry.instruction, "all trials");
     panel.x = {"Response time (s)", 0, high};
     panel.y = {"Trials (number)", 0, tallest * 1.12};
@@ -204,13 +204,13 @@ std::optional<plot::Figure> response_time_figure(const Summary& summary) {
     if (entry.times)
       panel.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, entry.times->median_s,
                                         "median " + text::number(entry.times->median_s, 3) + " s"});
-    figure.panels.push_back(std::move(panel));
+    figure.charts.push_back(std::move(panel));
   }
   return figure;
 }
 
 std::optional<plot::Figure> trade_figure(const Summary& summary) {
-  plot::Panel caf{"Conditional accuracy", {}, {}, {}}, cells{"Within equal difficulty", {}, {}, {}};
+  plot::Chart caf{"Conditional accuracy", {}, {}, {}}, cells{"Within equal difficulty", {}, {}, {}};
   std::vector<double> caf_times, cell_times, accuracies;
   int series = 0;
   for (const auto& entry : summary.trade.instructions) {
@@ -252,10 +252,10 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
   plot::Figure figure;
   figure.title = "Speed and accuracy";
   figure.columns = 2;
-  figure.panel_width_px = 400;
-  figure.panel_height_px = 330;
-  if (!caf_times.empty()) figure.panels.push_back(std::move(caf));
-  figure.panels.push_back(std::move(cells));
+  figure.chart_width_px = 400;
+  figure.chart_height_px = 330;
+  if (!caf_times.empty()) figure.charts.push_back(std::move(caf));
+  figure.charts.push_back(std::move(cells));
   return figure;
 }
 

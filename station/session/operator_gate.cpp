@@ -84,10 +84,10 @@ void OperatorGate::keep(const std::function<void()>& write) {
       return write();
     } catch (const store::StoreError& error) {
       // In a simulated session there is nobody who could free some space.
-      if (error.fault() != store::Fault::disk_full || !setup_.observer.empty()) throw;
+      if (error.kind() != store::ErrorKind::disk_full || !setup_.observer.empty()) throw;
       detail = error.what();
     }
-    if (!space_again(detail)) throw store::StoreError(store::Fault::disk_full, detail);
+    if (!space_again(detail)) throw store::StoreError(store::ErrorKind::disk_full, detail);
   }
 }
 

@@ -5,7 +5,7 @@
 
 namespace turnpoint::session {
 
-// The part of a sitting that is specific to adjustments: a slider that the surface follows.
+// The part of a session that is specific to adjustments: a slider that the surface follows.
 
 void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
   auto page = pages_.of_phase(phase, trial.machine.interval(), trial.spec, *director_.block(),

@@ -10,8 +10,8 @@ namespace {
 
 constexpr int bins = 24;
 
-plot::Panel panel_of(const Recovery& recovery) {
-  plot::Panel panel;
+plot::Chart panel_of(const Recovery& recovery) {
+  plot::Chart panel;
   panel.title = recovery.source + ": " + recovery.parameter;
   auto sorted = recovery.estimates;
   std::sort(sorted.begin(), sorted.end());
@@ -44,9 +44,9 @@ plot::Figure figure_of(const Power& power, const std::string& title) {
   plot::Figure figure;
   figure.title = title;
   for (const auto& recovery : power.recoveries)
-    if (recovery.estimates.size() > 1) figure.panels.push_back(panel_of(recovery));
+    if (recovery.estimates.size() > 1) figure.charts.push_back(panel_of(recovery));
   figure.columns = 3;
-  figure.panel_width_px = 360, figure.panel_height_px = 240;
+  figure.chart_width_px = 360, figure.chart_height_px = 240;
   figure.caption = title + ". " + std::to_string(power.observers) + " simulated sessions; mean length " +
                    text::number(power.trials, 3) + " trials and " + text::number(power.minutes, 2) +
                    " minutes.";

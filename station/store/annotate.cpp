@@ -25,7 +25,7 @@ void abandon(const std::string& path, const std::string& session_id, const std::
   auto writer = open_writer(path, IfMissing::fail);
   const auto session = session_record(writer.database, session_id);
   if (session.status != SessionStatus::interrupted)
-    throw StoreError(Fault::refused,
+    throw StoreError(ErrorKind::refused,
                      fmt::format("database {}: session {} is {}; only an interrupted one is abandoned", path,
                                  session_id, name(session.status)));
   Transaction transaction(writer.database);

@@ -27,8 +27,8 @@ void make_folder(const std::string& directory) {
   std::error_code error;
   fs::create_directories(directory, error);
   if (error)
-    throw StoreError(Fault::read_only, fmt::format("backup to {}: {}; name a folder that can be written",
-                                                   directory, error.message()));
+    throw StoreError(ErrorKind::read_only, fmt::format("backup to {}: {}; name a folder that can be written",
+                                                       directory, error.message()));
 }
 
 std::string id_of(Database& database) {
@@ -61,7 +61,7 @@ void read_back(BackupReport& report, std::int64_t sessions) {
   report.trials = copy.integer("SELECT count(*) FROM trial");
   if (report.sessions < sessions)
     throw StoreError(
-        Fault::corrupt,
+        ErrorKind::corrupt,
         fmt::format("backup {}: it holds {} sessions of {}; older backups are untouched; check the disk",
                     report.path, report.sessions, sessions));
 }
@@ -72,7 +72,7 @@ void verify_checksum_file(const std::string& path) {
   if (!file_exists(path + ".sha256")) return;
   const auto expected = read_bytes(path + ".sha256").substr(0, 64);
   if (sha256_of_file(path) == expected) return;
-  throw StoreError(Fault::corrupt,
+  throw StoreError(ErrorKind::corrupt,
                    fmt::format("{} does not agree with {}.sha256: it was damaged or changed after it "
                                "was written; nothing was read from it; take another copy",
                                path, path));

@@ -46,7 +46,7 @@ StoredBackup read_backup(const std::string& path, const std::smatch& name) {
     backup.station = database.text("SELECT station_id FROM session LIMIT 1");
     backup.database_id = meta(database, "database_id");
   } catch (const StoreError& error) {
-    const bool damaged = error.fault() == Fault::corrupt || error.fault() == Fault::not_a_database;
+    const bool damaged = error.kind() == ErrorKind::corrupt || error.kind() == ErrorKind::not_a_database;
     if (!damaged) backup.trouble = error.what();
     backup.database_id.clear();
   }
@@ -102,7 +102,7 @@ namespace {
 dev_t file_system_of(const std::string& folder) {
   struct stat status {};
   if (::stat((folder + "/.").c_str(), &status) == 0) return status.st_dev;
-  fail_system(fault_of_errno(errno), folder, errno, "check the folder and its disk");
+  fail_system(kind_of_errno(errno), folder, errno, "check the folder and its disk");
 }
 
 bool is_mount_point(const std::string& folder) {
@@ -114,7 +114,7 @@ bool is_mount_point(const std::string& folder) {
 void require_disk(const std::string& folder, const std::string& database) {
   const auto above = folder_of(folder);
   const auto refuse = [&](const std::string& why) {
-    throw StoreError(Fault::missing,
+    throw StoreError(ErrorKind::missing,
                      fmt::format("backup to {}: {}; nothing was written; mount the disk of the "
                                  "backups, or, where a plain folder is meant, say --to folder",
                                  folder, why));

@@ -26,9 +26,9 @@ StoredBackup newest_backup(const std::string& directory, const std::string& path
   for (const auto& backup : stored_backups(directory))
     if (backup.readable() ? backup.database_id == id : backup.stem == stem) newest = backup;
   if (newest.path.empty())
-    throw StoreError(Fault::missing, fmt::format("drill: {} holds no backup of {}", directory, path));
+    throw StoreError(ErrorKind::missing, fmt::format("drill: {} holds no backup of {}", directory, path));
   if (!newest.readable())
-    throw StoreError(Fault::corrupt,
+    throw StoreError(ErrorKind::corrupt,
                      fmt::format("drill: the newest backup, {}, cannot be read: {}; check its disk and make "
                                  "another backup",
                                  newest.path, newest.trouble.empty() ? "it is damaged" : newest.trouble));

@@ -5,7 +5,7 @@
 namespace turnpoint::store {
 
 /// The kind of database error, by what the caller can do about it.
-enum class Fault {
+enum class ErrorKind {
   disk_full,       ///< earlier rows are intact; repeat the same call once there is space
   read_only,       ///< the file, folder or disk cannot be written
   corrupt,         ///< the file is damaged; it was not changed
@@ -23,11 +23,11 @@ enum class Fault {
 /// reported, and what to do.
 class StoreError : public std::runtime_error {
  public:
-  StoreError(Fault fault, const std::string& message) : std::runtime_error(message), fault_(fault) {}
-  Fault fault() const { return fault_; }
+  StoreError(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  ErrorKind kind() const { return kind_; }
 
  private:
-  Fault fault_;
+  ErrorKind kind_;
 };
 
 }  // namespace turnpoint::store

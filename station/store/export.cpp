@@ -65,7 +65,7 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
   for (auto& [id, selection] : protocols) {
     const auto folder = folder_name(id);
     if (const auto [owner, fresh] = owners.emplace(folder, id); !fresh)
-      throw StoreError(Fault::conflict,
+      throw StoreError(ErrorKind::conflict,
                        fmt::format("export: the protocols \"{}\" and \"{}\" would share the folder "
                                    "{}; export them one by one with --protocol",
                                    owner->second, id, folder));
@@ -91,7 +91,7 @@ auto writing(const std::string& path, Write write) {
   } catch (const std::system_error& error) {
     const bool full = error.code() == std::errc::no_space_on_device;
     throw StoreError(
-        full ? Fault::disk_full : Fault::read_only,
+        full ? ErrorKind::disk_full : ErrorKind::read_only,
         fmt::format("export to {}: {}; {}", path, error.what(),
                     full ? "free some space and export again" : "name a folder that can be written"));
   }
@@ -169,9 +169,10 @@ std::vector<ExportedFile> export_data(const std::string& path, const std::string
   database.execute("BEGIN");
   const auto selections = select(database, directory, options);
   if (selections.empty())
-    throw StoreError(Fault::missing, fmt::format("export: no session of {} is asked for by these options; "
-                                                 "`turnpoint sessions --db {}` lists what there is",
-                                                 path, path));
+    throw StoreError(ErrorKind::missing,
+                     fmt::format("export: no session of {} is asked for by these options; "
+                                 "`turnpoint sessions --db {}` lists what there is",
+                                 path, path));
   std::vector<ExportedFile> files;
   for (const auto& selection : selections) {
     // Until the last file is written, files of an earlier export may exist beside new ones.

@@ -82,7 +82,7 @@ void refuse_leftovers(const std::string& folder, const Labels& labels) {
     const auto name = entry.path().filename().string();
     if (name.rfind("sub-", 0) == 0 && expected.count(name) == 0)
       throw StoreError(
-          Fault::conflict,
+          ErrorKind::conflict,
           fmt::format("export bids: {} holds {}, which is not of this export; remove it or name an "
                       "empty folder",
                       folder, name));

@@ -298,7 +298,7 @@ const Table<SessionRecord>& session_table() {
        start<&S::run_mode>(
            {"run_mode", "run_mode", "Whether these are data of a study", "", "live | pilot | simulated"}),
        field<&R::session_index>(
-           {"session_index", "session_index", "Sitting of this participant with this protocol, from 1"}),
+           {"session_index", "session_index", "Session of this participant with this protocol, from 1"}),
        field<&R::sequence_index>(
            {"sequence_index", "sequence_index", "Participant's place in the counterbalancing, from 0"}),
        start<&S::seed>({"seed", "seed", "Seed of all random draws of the session"}),

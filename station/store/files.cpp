@@ -25,7 +25,7 @@ namespace {
 
 struct stat status_of(int descriptor, const std::string& path) {
   struct stat status {};
-  if (::fstat(descriptor, &status) != 0) fail_system(fault_of_errno(errno), path, errno, "check the disk");
+  if (::fstat(descriptor, &status) != 0) fail_system(kind_of_errno(errno), path, errno, "check the disk");
   return status;
 }
 
@@ -35,34 +35,34 @@ void give_to_owner_of_folder(int descriptor, const std::string& path) {
   struct stat folder {};
   const auto name = folder_of(path);
   if (::stat(name.c_str(), &folder) != 0 || ::fchown(descriptor, folder.st_uid, folder.st_gid) != 0)
-    fail_system(fault_of_errno(errno), "owner of " + path, errno,
+    fail_system(kind_of_errno(errno), "owner of " + path, errno,
                 "run this as the user of the folder " + name);
 }
 
 }  // namespace
 
-void fail_system(Fault fault, const std::string& what, int code, const std::string& advice) {
-  throw StoreError(fault, fmt::format("{}: {}; {}", what, std::strerror(code), advice));
+void fail_system(ErrorKind kind, const std::string& what, int code, const std::string& advice) {
+  throw StoreError(kind, fmt::format("{}: {}; {}", what, std::strerror(code), advice));
 }
 
-Fault fault_of_errno(int code) {
-  if (code == ENOSPC || code == EDQUOT) return Fault::disk_full;
-  if (code == EACCES || code == EROFS || code == EPERM) return Fault::read_only;
-  return code == ENOENT ? Fault::missing : Fault::io;
+ErrorKind kind_of_errno(int code) {
+  if (code == ENOSPC || code == EDQUOT) return ErrorKind::disk_full;
+  if (code == EACCES || code == EROFS || code == EPERM) return ErrorKind::read_only;
+  return code == ENOENT ? ErrorKind::missing : ErrorKind::io;
 }
 
 bool file_exists(const std::string& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) == 0) return true;
   if (errno == ENOENT) return false;
-  fail_system(fault_of_errno(errno), path, errno, "check the path, its permissions and the disk");
+  fail_system(kind_of_errno(errno), path, errno, "check the path, its permissions and the disk");
 }
 
 std::uint64_t file_size(const std::string& path) {
   struct stat status {};
   if (::stat(path.c_str(), &status) == 0) return static_cast<std::uint64_t>(status.st_size);
   if (errno == ENOENT) return 0;
-  fail_system(fault_of_errno(errno), path, errno, "check the path, its permissions and the disk");
+  fail_system(kind_of_errno(errno), path, errno, "check the path, its permissions and the disk");
 }
 
 namespace {
@@ -80,9 +80,9 @@ void read_pieces(const std::string& path, const std::function<void(std::string_v
 } catch (const std::system_error& error) {
   const int code = error.code().value();
   if (code == EISDIR || code == EINVAL)
-    fail_system(Fault::cannot_open, "read " + path, EINVAL,
+    fail_system(ErrorKind::cannot_open, "read " + path, EINVAL,
                 "it is a folder, a pipe or a device; name a file");
-  fail_system(fault_of_errno(code), "read " + path, code, "check the disk and the permissions");
+  fail_system(kind_of_errno(code), "read " + path, code, "check the disk and the permissions");
 }
 
 }  // namespace
@@ -108,7 +108,7 @@ std::vector<std::string> list_folder(const std::string& path) {
   for (; !error && entry != fs::directory_iterator(); entry.increment(error))
     names.push_back(entry->path().filename().string());
   if (error)
-    fail_system(fault_of_errno(error.value()), "list " + path, error.value(),
+    fail_system(kind_of_errno(error.value()), "list " + path, error.value(),
                 "name a folder that can be read");
   std::sort(names.begin(), names.end());
   return names;
@@ -118,20 +118,21 @@ std::string canonical(const std::string& path) {
   std::error_code error;
   const auto resolved = fs::weakly_canonical(fs::absolute(path, error), error);
   if (error)
-    fail_system(fault_of_errno(error.value()), path, error.value(), "check the path and its permissions");
+    fail_system(kind_of_errno(error.value()), path, error.value(), "check the path and its permissions");
   return resolved.string();
 }
 
 FileDescriptor open_lock(const std::string& path) {
   FileDescriptor lock(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0660));
   if (!lock.is_open() && errno == ELOOP)
-    throw StoreError(Fault::io, "lock file " + path + ": is a link; it was not followed; remove it");
+    throw StoreError(ErrorKind::io, "lock file " + path + ": is a link; it was not followed; remove it");
   if (!lock.is_open())
-    fail_system(fault_of_errno(errno), "lock file " + path, errno,
+    fail_system(kind_of_errno(errno), "lock file " + path, errno,
                 "the folder of the database must exist and be writable");
   const auto status = status_of(lock.get(), path);
   if (!S_ISREG(status.st_mode) || status.st_nlink > 1)
-    throw StoreError(Fault::io, "lock file " + path + ": has a second name; it was left alone; remove it");
+    throw StoreError(ErrorKind::io,
+                     "lock file " + path + ": has a second name; it was left alone; remove it");
   give_to_owner_of_folder(lock.get(), path);
   return lock;
 }
@@ -139,12 +140,12 @@ FileDescriptor open_lock(const std::string& path) {
 void create_private(const std::string& path) {
   const FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
   if (!file.is_open())
-    fail_system(fault_of_errno(errno), path, errno, "the folder must exist and be writable");
+    fail_system(kind_of_errno(errno), path, errno, "the folder must exist and be writable");
 }
 
 void give_to_owner_of_folder(const std::string& path) {
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
-  if (!file.is_open()) fail_system(fault_of_errno(errno), path, errno, "check the disk");
+  if (!file.is_open()) fail_system(kind_of_errno(errno), path, errno, "check the disk");
   give_to_owner_of_folder(file.get(), path);
 }
 
@@ -154,25 +155,24 @@ void permit_as(const std::string& original, const std::string& path) {
   if (!original.empty() && ::stat(original.c_str(), &status) != 0) return;
   // A disk without Unix permissions uses the same ones for all files.
   if (::chmod(path.c_str(), (status.st_mode & 0666) | 0600) != 0 && errno != EPERM)
-    fail_system(fault_of_errno(errno), "permissions of " + path, errno, "check the disk");
+    fail_system(kind_of_errno(errno), "permissions of " + path, errno, "check the disk");
 }
 
 void sync_path(const std::string& path) {
   const auto name = path.empty() ? std::string(".") : path;
   const FileDescriptor file(::open(name.c_str(), O_RDONLY | O_CLOEXEC));
   if (!file.is_open() || ::fsync(file.get()) != 0)
-    fail_system(fault_of_errno(errno), "sync " + name, errno, "check the disk");
+    fail_system(kind_of_errno(errno), "sync " + name, errno, "check the disk");
 }
 
 void rename_file(const std::string& from, const std::string& to) {
   if (::rename(from.c_str(), to.c_str()) != 0)
-    fail_system(fault_of_errno(errno), "rename " + from + " to " + to, errno,
-                "check the folder and the disk");
+    fail_system(kind_of_errno(errno), "rename " + from + " to " + to, errno, "check the folder and the disk");
 }
 
 void remove_file(const std::string& path) {
   if (::unlink(path.c_str()) != 0 && errno != ENOENT)
-    fail_system(fault_of_errno(errno), "remove " + path, errno, "remove it by hand");
+    fail_system(kind_of_errno(errno), "remove " + path, errno, "remove it by hand");
 }
 
 void remove_database(const std::string& path) {

@@ -13,8 +13,8 @@ namespace turnpoint::store {
 // functions throw StoreError.
 
 /// Reports a failed system call: "WHAT: No space left on device; ADVICE".
-[[noreturn]] void fail_system(Fault fault, const std::string& what, int code, const std::string& advice);
-Fault fault_of_errno(int code);
+[[noreturn]] void fail_system(ErrorKind kind, const std::string& what, int code, const std::string& advice);
+ErrorKind kind_of_errno(int code);
 
 /// The files that SQLite keeps beside a database in use. They belong to the database, so always move them
 /// together with it.

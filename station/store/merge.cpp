@@ -94,7 +94,7 @@ void refuse_conflicts(Database& database, const Part& part) {
   for (int i = 0; i < static_cast<int>(compared.size()); ++i)
     if (rows.integer(3 * i + 1) != 0)
       throw StoreError(
-          Fault::conflict,
+          ErrorKind::conflict,
           fmt::format("merge: table {}, {}: {} is {} here and {} there; nothing was merged; one of the "
                       "two databases was changed by hand, or the session was continued on both stations",
                       part.table, rows.text(0), compared[static_cast<std::size_t>(i)], rows.text(3 * i + 2),
@@ -110,7 +110,7 @@ void refuse_shared_places(Database& database) {
       " WHERE s.participant <> m.participant"
       " AND (s.station_id, s.participant) IN (SELECT station_id, participant FROM temp.incoming) LIMIT 1");
   if (rows.step())
-    throw StoreError(Fault::conflict,
+    throw StoreError(ErrorKind::conflict,
                      fmt::format("merge: table enrolment: station {} has given place {} of protocol "
                                  "{} to {} here and to {} there; nothing was merged; two databases "
                                  "bear the name of one station",
@@ -158,7 +158,7 @@ void refuse_changed(Database& database, const std::string& source) {
   for (const auto& session : verify_database(database, "source"))
     if (!session.problems.empty())
       throw StoreError(
-          Fault::corrupt,
+          ErrorKind::corrupt,
           fmt::format("merge: {}: session {} of {}: {}; nothing was merged; `turnpoint verify --db {}` "
                       "lists all that differs; merge a backup of that station instead",
                       source, session.session_id, session.participant, session.problems.front(), source));
@@ -183,7 +183,7 @@ void settle(Database& database, MergedSession& session, std::int64_t trials_befo
   if (session.what == MergedSession::What::unchanged && session.sha256 != before)
     session.what = MergedSession::What::extended;
   if (session.what == MergedSession::What::added && session.sha256 != there)
-    throw StoreError(Fault::corrupt,
+    throw StoreError(ErrorKind::corrupt,
                      fmt::format("merge: session {} does not read back as it was; nothing was merged; "
                                  "check the disk",
                                  id));
@@ -270,7 +270,7 @@ const char* name(MergedSession::What what) {
 MergeReport merge(const std::string& name, const std::string& source) {
   const auto path = canonical(name);
   if (fs::exists(source) && fs::exists(path) && fs::equivalent(source, path))
-    throw StoreError(Fault::refused, fmt::format("merge: {} and {} are one file", path, source));
+    throw StoreError(ErrorKind::refused, fmt::format("merge: {} and {} are one file", path, source));
   auto writer = open_writer(path, IfMissing::create);
   auto& database = writer.database;
   check_pages(database);

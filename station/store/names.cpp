@@ -12,7 +12,7 @@ template <class Values>
 auto named(const std::string& word, const Values& values) {
   for (const auto value : values)
     if (word == name(value)) return value;
-  throw StoreError(Fault::corrupt,
+  throw StoreError(ErrorKind::corrupt,
                    "the database holds the word \"" + word + "\", which no release has written");
 }
 

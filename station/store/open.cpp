@@ -27,7 +27,7 @@ FileState state_of(const std::string& path) {
 
 void refuse_empty(const std::string& path) {
   throw StoreError(
-      Fault::not_a_database,
+      ErrorKind::not_a_database,
       fmt::format("database {}: the file is empty (0 bytes): what was in it is lost, or it never was a "
                   "database; it was left untouched; restore the newest backup (turnpoint backup --db "
                   "FILE --dir FOLDER --restore), or remove it to begin a new one",
@@ -52,7 +52,7 @@ void recover_sessions(Database& database) {
 void require_writable(Database& database) {
   if (sqlite3_db_readonly(database.handle(), "main") == 0) return;
   throw StoreError(
-      Fault::read_only,
+      ErrorKind::read_only,
       fmt::format("database {}: the file or its disk cannot be written; nothing was changed; make the "
                   "file and its folder writable, or name a database elsewhere",
                   database.path()));
@@ -67,7 +67,8 @@ Database open_plain_reader(const std::string& path) {
     database.integer("SELECT count(*) FROM sqlite_schema");
     return database;
   } catch (const StoreError& error) {
-    const bool no_shared_memory = error.fault() == Fault::cannot_open || error.fault() == Fault::read_only;
+    const bool no_shared_memory =
+        error.kind() == ErrorKind::cannot_open || error.kind() == ErrorKind::read_only;
     if (!no_shared_memory || file_exists(path + "-wal")) throw;
   }
   return Database(path, Database::Access::immutable);
@@ -79,7 +80,7 @@ void refuse_second_name(const std::string& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink < 2) return;
   throw StoreError(
-      Fault::busy,
+      ErrorKind::busy,
       fmt::format("database {}: the file has a second name (a hard link), by which another station "
                   "could write it at the same time; it was left untouched; remove the other "
                   "name, or copy the file and use the copy",
@@ -109,7 +110,7 @@ StationLock::StationLock(const std::string& database) {
   const auto found = note_in(lock_.get());
   if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0)
     throw StoreError(
-        Fault::busy,
+        ErrorKind::busy,
         fmt::format("database {}: another station process{}{} is writing it; end that one first, or "
                     "name another database",
                     database, found.process.empty() ? "" : ", pid ", found.process));

@@ -87,13 +87,13 @@ std::vector<Bearer> only_person(const People& people, const std::string& name, c
   if (found.size() == 1) return found.front();
   if (found.empty())
     throw StoreError(
-        Fault::missing,
+        ErrorKind::missing,
         fmt::format("{}: the database has no participant \"{}\"; nothing was changed; `turnpoint "
                     "sessions` lists those that it has",
                     what, name));
   std::string list;
   for (const auto& person : found) list += (list.empty() ? "" : ", ") + full_name(person.front());
-  throw StoreError(Fault::refused,
+  throw StoreError(ErrorKind::refused,
                    fmt::format("{}: \"{}\" may be {} people: {}; nothing was changed; name one of them, or "
                                "`turnpoint join` them if they are one person",
                                what, name, found.size(), list));
@@ -116,7 +116,7 @@ std::string join(const std::string& path, const std::string& first, const std::s
   const bool joined = std::find(same.begin(), same.end(), b) != same.end();
   if (a == b)
     throw StoreError(
-        Fault::refused,
+        ErrorKind::refused,
         fmt::format("join: {} and {} are one code at one station; nothing was changed", first, second));
   Transaction transaction(database);
   if (relation == Relation::two_people)
@@ -130,7 +130,7 @@ std::string join(const std::string& path, const std::string& first, const std::s
         .bind(a.station_id, a.code, b.station_id, b.code, system::realtime_ns())
         .run();
   if (relation == Relation::two_people && database.changes() == 0)
-    throw StoreError(Fault::missing,
+    throw StoreError(ErrorKind::missing,
                      fmt::format("join: nobody has said that {} and {} are one person; nothing was "
                                  "changed",
                                  full_name(a), full_name(b)));

@@ -150,8 +150,8 @@ std::vector<SessionRecord> list_sessions(const std::string& path, const SessionF
 SessionRecord session_record(Database& database, const std::string& session_id) {
   auto session = SessionReader(database, LongTexts::read).read(session_id);
   if (!session)
-    throw StoreError(Fault::missing, "database " + database.path() + ": it has no session \"" + session_id +
-                                         "\"; `turnpoint sessions` lists those that it has");
+    throw StoreError(ErrorKind::missing, "database " + database.path() + ": it has no session \"" +
+                                             session_id + "\"; `turnpoint sessions` lists those that it has");
   return std::move(*session);
 }
 

@@ -23,12 +23,12 @@ void require_lost(const std::string& path) {
     auto database = open_reader(path);
     check_pages(database);
   } catch (const StoreError& error) {
-    const auto fault = error.fault();
-    const bool absent = fault == Fault::missing && !file_exists(path);
-    if (absent || fault == Fault::corrupt || fault == Fault::not_a_database) return;
+    const auto kind = error.kind();
+    const bool absent = kind == ErrorKind::missing && !file_exists(path);
+    if (absent || kind == ErrorKind::corrupt || kind == ErrorKind::not_a_database) return;
     throw;
   }
-  throw StoreError(Fault::refused,
+  throw StoreError(ErrorKind::refused,
                    fmt::format("restore: database {} is good; nothing was changed; to go back to a "
                                "backup all the same, move it away first, with {}-wal if there is one",
                                path, path));
@@ -54,14 +54,14 @@ std::string id_of_lost(const std::string& path) {
       list +=
           fmt::format("; {} (of station {}, newest {})", backup->database_id, backup->station, backup->path);
   throw StoreError(
-      Fault::conflict,
+      ErrorKind::conflict,
       fmt::format("restore: nothing tells which database {} was, and the folder holds backups of {}; "
                   "nothing was changed; name one with --database-id{}",
                   path, told.size(), list));
 }
 
 bool is_damage(const StoreError& error) {
-  return error.fault() == Fault::corrupt || error.fault() == Fault::not_a_database;
+  return error.kind() == ErrorKind::corrupt || error.kind() == ErrorKind::not_a_database;
 }
 
 /// Throws only if the bytes cannot be read.
@@ -80,7 +80,7 @@ void refuse_unread(const StoredBackup& backup) {
   if (backup.trouble.empty()) {
     if (!file_exists(backup.path + ".sha256") || !agrees_with_checksum(backup.path)) return;
   }
-  throw StoreError(Fault::io,
+  throw StoreError(ErrorKind::io,
                    fmt::format("restore: nothing was changed: {}, which may be the newest backup, cannot "
                                "be read although it is not known to be damaged; check its disk. {}",
                                backup.path, backup.trouble));
@@ -158,7 +158,7 @@ Restoration restore_backup(const std::string& name, const RestoreOptions& option
     lock.remember(restoration.database_id);
     return restoration;
   }
-  throw StoreError(Fault::missing,
+  throw StoreError(ErrorKind::missing,
                    fmt::format("restore: {} holds no good backup of {} ({} failed their check); "
                                "nothing was changed",
                                options.directory, path, restoration.rejected.size()));

@@ -281,8 +281,8 @@ CREATE TABLE same_person (
 ALTER TABLE tombstone ADD COLUMN station_id TEXT NOT NULL DEFAULT '';
 )sql";
 
-[[noreturn]] void refuse(Fault fault, const Database& database, const std::string& what) {
-  throw StoreError(fault, fmt::format("database {}: {}", database.path(), what));
+[[noreturn]] void refuse(ErrorKind kind, const Database& database, const std::string& what) {
+  throw StoreError(kind, fmt::format("database {}: {}", database.path(), what));
 }
 
 void apply(Database& database, int from, int to) {
@@ -311,12 +311,12 @@ int checked_version(Database& database) {
   const auto application = database.integer("PRAGMA application_id");
   const auto version = database.integer("PRAGMA user_version");
   if (application != kApplicationId || version < 1)
-    refuse(Fault::not_a_database, database,
+    refuse(ErrorKind::not_a_database, database,
            "is an SQLite file, but not Turnpoint's; nothing was changed; name another file, or one that does "
            "not "
            "exist yet");
   if (version > schema_version())
-    refuse(Fault::newer_schema, database,
+    refuse(ErrorKind::newer_schema, database,
            fmt::format(
                "has schema {}, this program knows schemas up to {}; nothing was changed; update Turnpoint "
                "on this station",

@@ -32,14 +32,14 @@ void require_space(const std::string& database) {
   const auto free_bytes = static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize;
   if (free_bytes >= kFreeBytesWanted) return;
   throw StoreError(
-      Fault::disk_full,
+      ErrorKind::disk_full,
       fmt::format("database {}: {} MiB are free on its disk and a session wants {}; nothing was written; "
                   "free some space, then begin again",
                   database, free_bytes >> 20U, kFreeBytesWanted >> 20U));
 }
 
-void refuse(Database& database, Fault fault, const std::string& what) {
-  throw StoreError(fault, fmt::format("database {}: {}", database.path(), what));
+void refuse(Database& database, ErrorKind kind, const std::string& what) {
+  throw StoreError(kind, fmt::format("database {}: {}", database.path(), what));
 }
 
 /// Assigns the participant's place in the protocol's counterbalancing: the existing place of a known code,
@@ -47,7 +47,7 @@ void refuse(Database& database, Fault fault, const std::string& what) {
 int enrol(Database& database, const SessionStart& start) {
   const Bearer bearer{start.station_id, start.participant};
   if (is_withdrawn(database, bearer))
-    throw StoreError(Fault::refused,
+    throw StoreError(ErrorKind::refused,
                      fmt::format("database {}: participant {} has withdrawn; the code is not given out "
                                  "again; take a new one",
                                  database.path(), start.participant));
@@ -198,7 +198,7 @@ SessionLog SessionLog::resume(const std::string& path, const std::string& id, co
   auto& database = impl->writer.database;
   auto stored = read_session(database, id);
   if (stored.session.status != SessionStatus::interrupted)
-    refuse(database, Fault::refused,
+    refuse(database, ErrorKind::refused,
            fmt::format("session {} is {}; only an interrupted one can be continued", id,
                        name(stored.session.status)));
   const int index = stored.session.segments + 1;
@@ -242,7 +242,7 @@ void SessionLog::begin_block(const BlockStart& block) {
   known.bind(block.name, block.instruction, block.practice, id, block.block_index, block.attempt);
   const bool exists = known.step();
   if (exists && known.integer(0) == 0)
-    refuse(database, Fault::conflict,
+    refuse(database, ErrorKind::conflict,
            fmt::format("block {} attempt {} of session {} was begun with another name or instruction",
                        block.block_index, block.attempt, id));
   known.reset();
@@ -268,7 +268,7 @@ void SessionLog::presented(int trial_index, std::int64_t time_ns) {
 
 void SessionLog::append(const TrialRow& trial) {
   if (!impl_->in_block)
-    refuse(impl_->writer.database, Fault::refused, "a trial belongs to a block; begin_block comes first");
+    refuse(impl_->writer.database, ErrorKind::refused, "a trial belongs to a block; begin_block comes first");
   const auto now = system::realtime_ns();
   Transaction transaction(impl_->writer.database);
   impl_->rows.trial(impl_->place, trial, now);

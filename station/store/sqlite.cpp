@@ -11,46 +11,46 @@ namespace turnpoint::store {
 
 namespace {
 
-Fault fault_of(int code) {
+ErrorKind kind_of(int code) {
   switch (code & 0xff) {
     case SQLITE_FULL:
-      return Fault::disk_full;
+      return ErrorKind::disk_full;
     case SQLITE_READONLY:
     case SQLITE_PERM:
-      return Fault::read_only;
+      return ErrorKind::read_only;
     case SQLITE_CORRUPT:
-      return Fault::corrupt;
+      return ErrorKind::corrupt;
     case SQLITE_NOTADB:
-      return Fault::not_a_database;
+      return ErrorKind::not_a_database;
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-      return Fault::busy;
+      return ErrorKind::busy;
     case SQLITE_CANTOPEN:
-      return Fault::cannot_open;
+      return ErrorKind::cannot_open;
     case SQLITE_CONSTRAINT:
-      return Fault::refused;
+      return ErrorKind::refused;
     default:
-      return Fault::io;
+      return ErrorKind::io;
   }
 }
 
-const char* advice(Fault fault) {
-  switch (fault) {
-    case Fault::disk_full:
+const char* advice(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::disk_full:
       return "rows committed before are intact; free some space, then go on (the same trial is kept)";
-    case Fault::read_only:
+    case ErrorKind::read_only:
       return "make the file and its folder writable, or name a database elsewhere";
-    case Fault::corrupt:
+    case ErrorKind::corrupt:
       return "it was left untouched; copy it away for safety and restore the newest good backup "
              "(turnpoint backup --db FILE --dir FOLDER --restore)";
-    case Fault::not_a_database:
+    case ErrorKind::not_a_database:
       return "name a Turnpoint database, or a file that does not exist yet";
-    case Fault::busy:
+    case ErrorKind::busy:
       return "another program has it open; end that one first";
-    case Fault::cannot_open:
+    case ErrorKind::cannot_open:
       return "check the permissions of the file and of its folder; nothing is known to be wrong with its "
              "content";
-    case Fault::refused:
+    case ErrorKind::refused:
       return "the row contradicts the rules of the data and was not written";
     default:
       return "check the disk; rows committed before are intact";
@@ -142,7 +142,7 @@ void Statement::bind_integer(int index, std::int64_t value) {
 void Statement::bind_real(int index, double value) {
   // SQLite would silently turn NaN into NULL, that is, into a missing value.
   if (!std::isfinite(value))
-    throw StoreError(Fault::refused,
+    throw StoreError(ErrorKind::refused,
                      fmt::format("database {}: parameter {} of {} is not a finite number; the row "
                                  "was not written",
                                  database_->path(), index, sqlite3_sql(statement_)));
@@ -163,10 +163,10 @@ Database::Database(const std::string& path, Access access) : path_(path) {
   const int system = sqlite3_system_errno(handle_);
   const std::string reason = sqlite3_errmsg(handle_);
   sqlite3_close(handle_);
-  const auto fault = fault_of(code);
-  throw StoreError(
-      fault, fmt::format("open database {}: {}{}; {}", path, reason,
-                         system != 0 ? fmt::format(" ({})", std::strerror(system)) : "", advice(fault)));
+  const auto kind = kind_of(code);
+  throw StoreError(kind,
+                   fmt::format("open database {}: {}{}; {}", path, reason,
+                               system != 0 ? fmt::format(" ({})", std::strerror(system)) : "", advice(kind)));
 }
 
 // The cached statements are not moved, because they point to the old object. They are prepared again when
@@ -211,9 +211,9 @@ std::string Database::text(const std::string& sql) {
 int Database::changes() const { return sqlite3_changes(handle_); }
 
 void Database::fail(int code, const std::string& what) const {
-  const auto fault = fault_of(code);
+  const auto kind = kind_of(code);
   throw StoreError(
-      fault, fmt::format("database {}: {}: {}; {}", path_, what, sqlite3_errmsg(handle_), advice(fault)));
+      kind, fmt::format("database {}: {}: {}; {}", path_, what, sqlite3_errmsg(handle_), advice(kind)));
 }
 
 Transaction::Transaction(Database& database) : database_(database) { database_.begin_statement().run(); }

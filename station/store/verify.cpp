@@ -22,7 +22,7 @@ struct Exported {
 /// Reads the sessions and their checksums from an exported sessions.csv.
 std::vector<Exported> read_export(const std::string& path) {
   const auto refuse = [&](const std::string& why) -> std::size_t {
-    throw StoreError(Fault::missing,
+    throw StoreError(ErrorKind::missing,
                      fmt::format("verify: {}; name a sessions.csv that `turnpoint export` wrote", why));
   };
   std::string bytes;

@@ -21,7 +21,7 @@ namespace {
 void verify(const std::string& path) {
   for (const auto* suffix : kLogSuffixes)
     if (file_size(path + suffix) > 0)
-      throw StoreError(Fault::io,
+      throw StoreError(ErrorKind::io,
                        fmt::format("{}: SQLite left {} of it behind; check the disk", path, suffix));
   Database copy(path, Database::Access::immutable);
   checked_version(copy);
@@ -92,7 +92,7 @@ void check_ends(Database& database) {
     row.bind(last.text(1));
     const bool needed = std::string_view("session segment block").find(table) != std::string_view::npos;
     if (!row.step() && needed)
-      throw StoreError(Fault::corrupt,
+      throw StoreError(ErrorKind::corrupt,
                        fmt::format("database {}: the last trial has lost its {}; it was left "
                                    "untouched; restore the newest good backup (turnpoint backup "
                                    "--db FILE --dir FOLDER --restore)",
@@ -103,9 +103,10 @@ void check_ends(Database& database) {
 void refuse_absent(const std::string& path) {
   const auto orphan = orphan_of(path);
   if (orphan.empty())
-    throw StoreError(Fault::missing, fmt::format("database {}: there is no such file; check the path", path));
+    throw StoreError(ErrorKind::missing,
+                     fmt::format("database {}: there is no such file; check the path", path));
   throw StoreError(
-      Fault::missing,
+      ErrorKind::missing,
       fmt::format(
           "database {}: there is no such file, but {} is there: the database was removed without its log, or "
           "a restore was interrupted; nothing was changed; restore the newest backup (turnpoint backup --db "
@@ -133,7 +134,7 @@ void copy_to_file(Database& from, const std::string& to, const std::string& orig
     copy_database(from, copy);
     // Take the copy out of WAL mode: a single file can be read from any medium.
     if (copy.text("PRAGMA journal_mode = DELETE") != "delete")
-      throw StoreError(Fault::io, "copy " + temporary + ": it cannot leave WAL mode; check the disk");
+      throw StoreError(ErrorKind::io, "copy " + temporary + ": it cannot leave WAL mode; check the disk");
     copy.execute("PRAGMA synchronous = EXTRA");
     if (finish) finish(copy);
   });

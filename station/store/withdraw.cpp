@@ -41,7 +41,7 @@ void require_withdrawn_before(Database& database, const WithdrawOptions& options
   const auto station = at == std::string::npos ? options.station : options.participant.substr(at + 1);
   if (!options.participant.empty() && has_tombstone(database, station, code)) return;
   throw StoreError(
-      Fault::missing,
+      ErrorKind::missing,
       fmt::format("withdraw: database {} has no participant \"{}\"{}; nothing was removed", database.path(),
                   options.participant, options.station.empty() ? "" : " at station " + options.station));
 }
@@ -70,7 +70,7 @@ Withdrawal choose(Database& database, const WithdrawOptions& options) {
   }
   if (options.session_id.empty()) withdrawal.bearers = bearers;
   if (withdrawal.sessions.empty() && !options.session_id.empty())
-    throw StoreError(Fault::missing,
+    throw StoreError(ErrorKind::missing,
                      fmt::format("withdraw: participant \"{}\" has no session {}; nothing was removed",
                                  options.participant, options.session_id));
   if (withdrawal.sessions.empty()) require_withdrawn_before(database, options);
@@ -146,7 +146,7 @@ void scrub(Database& database) {
   database.execute("PRAGMA temp_store = MEMORY; VACUUM");
   Statement checkpoint(database, "PRAGMA wal_checkpoint(TRUNCATE)");
   if (!checkpoint.step() || checkpoint.integer(0) != 0)
-    throw StoreError(Fault::busy,
+    throw StoreError(ErrorKind::busy,
                      fmt::format("database {}: the rows are deleted, but a reader keeps the log from "
                                  "being cut; end the other program and withdraw again",
                                  database.path()));
@@ -191,7 +191,7 @@ Withdrawal withdraw(const std::string& name, const WithdrawOptions& options) {
     note_copies(withdrawal, copies);
     remove_copies(copies, options.backup_directory);
   } catch (const StoreError& error) {
-    throw StoreError(error.fault(),
+    throw StoreError(error.kind(),
                      fmt::format("withdraw: the database no longer holds them, but copies of it may: {}; "
                                  "then withdraw again",
                                  error.what()));

@@ -33,9 +33,9 @@ bool belongs(const std::string& solver, const Series& series) {
 }
 
 /// Errors below `floor` are drawn at `floor`, because a logarithmic axis needs an end.
-plot::Panel panel_of(const std::string& scene, const std::vector<PhysicsRow>& rows,
+plot::Chart panel_of(const std::string& scene, const std::vector<PhysicsRow>& rows,
                      const std::vector<Series>& series, double floor) {
-  plot::Panel panel;
+  plot::Chart panel;
   panel.title = scene;
   panel.x = {"time for 1000 points (\u00b5s)", 10, 1e5, plot::AxisScale::log10};
   panel.y = {"largest error of |v|", floor, 1, plot::AxisScale::log10};
@@ -64,12 +64,12 @@ plot::Figure figure_of(const std::string& title, const std::vector<PhysicsRow>& 
   plot::Figure figure;
   figure.title = title;
   figure.columns = 2;
-  figure.panel_width_px = 480;
-  figure.panel_height_px = 360;
+  figure.chart_width_px = 480;
+  figure.chart_height_px = 360;
   for (const auto& row : wanted) {
-    const bool known = std::any_of(figure.panels.begin(), figure.panels.end(),
+    const bool known = std::any_of(figure.charts.begin(), figure.charts.end(),
                                    [&](const auto& panel) { return panel.title == row.scene; });
-    if (!known) figure.panels.push_back(panel_of(row.scene, wanted, series, floor));
+    if (!known) figure.charts.push_back(panel_of(row.scene, wanted, series, floor));
   }
   return figure;
 }
@@ -79,7 +79,7 @@ plot::Figure figure_of(const std::string& title, const std::vector<PhysicsRow>& 
 std::vector<Picture> physics_pictures(const std::vector<PhysicsRow>& rows) {
   std::vector<Picture> pictures;
   const auto add = [&](const char* name, plot::Figure figure) {
-    if (!figure.panels.empty()) pictures.push_back({name, std::move(figure)});
+    if (!figure.charts.empty()) pictures.push_back({name, std::move(figure)});
   };
   add("physics-field",
       figure_of("Models against the two-dimensional field", rows, Task::field, kRungs, 1e-8));

@@ -82,7 +82,7 @@ std::vector<std::vector<Cell>> peer(const std::string& name, const Shape& shape,
 
 /// Time per trial against the size of the grid, one series per program.
 Picture picture_of_procedures(const Table& table) {
-  plot::Panel panel;
+  plot::Chart panel;
   panel.title = "One trial of QUEST+: median (marker) to 99th percentile";
   std::vector<double> sizes, times;
   std::vector<std::string> names;

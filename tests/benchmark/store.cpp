@@ -7,7 +7,7 @@ namespace turnpoint::benchmark {
 namespace {
 
 Picture picture_of_store(const Table& table) {
-  plot::Panel panel;
+  plot::Chart panel;
   panel.title = "A durable trial: median (marker) to 99th percentile";
   std::vector<double> times;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {

@@ -10,8 +10,8 @@ namespace turnpoint::benchmark {
 
 namespace {
 
-plot::Panel panel_of(const char* title, const SynthBenchmark& measured, std::size_t from, std::size_t to) {
-  plot::Panel panel;
+plot::Chart panel_of(const char* title, const SynthBenchmark& measured, std::size_t from, std::size_t to) {
+  plot::Chart panel;
   panel.title = title;
   for (std::size_t m = from; m < std::min(to, measured.methods.size()); ++m) {
     const auto& method = measured.methods[m];
@@ -36,9 +36,9 @@ Picture picture_of_synth(const SynthBenchmark& measured) {
   plot::Figure figure;
   figure.title = "Ways of making a sinusoid";
   figure.columns = 2;
-  figure.panel_width_px = 480;
-  figure.panel_height_px = 400;
-  figure.panels = {panel_of("phase from the frame's number", measured, 0, exact),
+  figure.chart_width_px = 480;
+  figure.chart_height_px = 400;
+  figure.charts = {panel_of("phase from the frame's number", measured, 0, exact),
                    panel_of("phase or time that runs on", measured, exact, measured.methods.size())};
   figure.caption =
       fmt::format("{} Hz at {} Hz; nanoseconds per tone and frame.", measured.frequency_Hz, measured.rate_Hz);

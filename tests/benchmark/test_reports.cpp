@@ -66,6 +66,6 @@ TEST_CASE("a peer that is not installed gives no lines", "[benchmark]") {
 TEST_CASE("the pictures have a panel for each scene", "[benchmark]") {
   const auto pictures = physics_pictures(rows());
   REQUIRE(!pictures.empty());
-  CHECK(pictures[0].figure.panels.size() == 6);
+  CHECK(pictures[0].figure.charts.size() == 6);
   CHECK(!turnpoint::plot::render(pictures[0].figure).empty());
 }

@@ -123,5 +123,5 @@ TEST_CASE("the same look is the same picture, and another boundary another one",
   CHECK(draw("9") != draw("-9"));
   const auto look = preview.look("edge", factors(preview, {}));
   CHECK(plot::render(desk::profile_figure({look})).find("<svg") != std::string::npos);
-  CHECK(desk::spectrum_figure(look).panels.front().layers.size() >= 1);
+  CHECK(desk::spectrum_figure(look).charts.front().layers.size() >= 1);
 }

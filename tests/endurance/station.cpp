@@ -189,7 +189,7 @@ Station::Ending Station::live_and_die(const session::Setup& setup) {
     how = death.what();
   } catch (const store::StoreError& error) {
     how = error.what();
-    if (error.fault() != store::Fault::disk_full && !dead_) return give_up(how);
+    if (error.kind() != store::ErrorKind::disk_full && !dead_) return give_up(how);
   } catch (const std::exception& error) {
     return give_up(error.what());
   }

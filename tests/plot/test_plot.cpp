@@ -13,14 +13,14 @@ namespace {
 Figure example() {
   Figure figure;
   figure.title = "Example <1>";
-  Panel panel{
+  Chart chart{
       "A & B", {"Level (dB)", -32, -8, AxisScale::linear}, {"Proportion", 0.4, 1, AxisScale::linear}, {}};
-  panel.layers.push_back(Band{{-30, -20, -10}, {0.45, 0.6, 0.9}, {0.6, 0.8, 1}, 0, ""});
-  panel.layers.push_back(Rule{Rule::Direction::horizontal, 0.5, "chance"});
-  panel.layers.push_back(Line{{-30, -20, NAN, -15, -10}, {0.5, 0.7, 0.8, 0.8, 0.95}, 0, "fit"});
-  panel.layers.push_back(
+  chart.layers.push_back(Band{{-30, -20, -10}, {0.45, 0.6, 0.9}, {0.6, 0.8, 1}, 0, ""});
+  chart.layers.push_back(Rule{Rule::Direction::horizontal, 0.5, "chance"});
+  chart.layers.push_back(Line{{-30, -20, NAN, -15, -10}, {0.5, 0.7, 0.8, 0.8, 0.95}, 0, "fit"});
+  chart.layers.push_back(
       Points{{-30, -20, -10}, {0.5, 0.7, 0.95}, {0.4, 0.6, 0.9}, {0.6, 0.8, 1}, {10, 20, 40}, {}, 1, "data"});
-  figure.panels = {panel};
+  figure.charts = {chart};
   return figure;
 }
 
@@ -94,43 +94,43 @@ TEST_CASE("Each series differs from every other by colour, by marker, and lines 
   CHECK(style(6).colour == style(0).colour);
 }
 
-TEST_CASE("A figure laid out for a place fills it, in the arrangement that suits its panels", "[plot]") {
+TEST_CASE("A figure laid out for a place fills it, in the arrangement that suits its charts", "[plot]") {
   Figure figure;
   figure.title = "Two";
-  Panel panel;
-  panel.x = {"x", 0, 1};
-  panel.y = {"y", 0, 1};
-  panel.layers.push_back(Line{{0, 1}, {0, 1}, 0, ""});
-  figure.panels = {panel, panel};
+  Chart chart;
+  chart.x = {"x", 0, 1};
+  chart.y = {"y", 0, 1};
+  chart.layers.push_back(Line{{0, 1}, {0, 1}, 0, ""});
+  figure.charts = {chart, chart};
   const auto wide = laid_out(figure, 640, 200);
   CHECK(wide.columns == 2);
-  CHECK(wide.panel_width_px == 320);
-  CHECK(wide.panel_height_px == 200);
+  CHECK(wide.chart_width_px == 320);
+  CHECK(wide.chart_height_px == 200);
   const auto high = laid_out(figure, 400, 540);
   CHECK(high.columns == 1);
-  CHECK(high.panel_width_px == 400);
-  CHECK(high.panel_height_px == 270);
+  CHECK(high.chart_width_px == 400);
+  CHECK(high.chart_height_px == 270);
   // The figure still fits with a caption below it.
   figure.caption = "Bars show what nineteen of twenty repetitions would lie between.";
   const auto told = laid_out(figure, 640, 240);
-  CHECK(told.panel_height_px < 240);
+  CHECK(told.chart_height_px < 240);
   CHECK(render(told).find("height=\"240\"") != std::string::npos);
   // If there is not enough room, the document grows and the text keeps its size.
   figure.caption.clear();
   const auto tiny = laid_out(figure, 100, 40);
-  CHECK(tiny.panel_height_px >= 165);
+  CHECK(tiny.chart_height_px >= 165);
   CHECK_NOTHROW(render(tiny));
 }
 
 TEST_CASE("Lists whose lengths differ are refused", "[plot]") {
   auto figure = example();
-  figure.panels[0].layers = {Line{{1, 2}, {1}, 0, ""}};
+  figure.charts[0].layers = {Line{{1, 2}, {1}, 0, ""}};
   CHECK_THROWS_AS(render(figure), std::invalid_argument);
-  figure.panels[0].layers = {Points{{1}, {1}, {0.5, 0.6}, {0.5, 0.6}, {}, {}, 0, ""}};
+  figure.charts[0].layers = {Points{{1}, {1}, {0.5, 0.6}, {0.5, 0.6}, {}, {}, 0, ""}};
   CHECK_THROWS_AS(render(figure), std::invalid_argument);
-  figure.panels[0].layers = {HeatMap{{0, 1}, {0, 1, 2}, {0.5}, 0, 1, ""}};
+  figure.charts[0].layers = {HeatMap{{0, 1}, {0, 1, 2}, {0.5}, 0, 1, ""}};
   CHECK_THROWS_AS(render(figure), std::invalid_argument);
-  figure.panels.clear();
+  figure.charts.clear();
   CHECK_THROWS_AS(render(figure), std::invalid_argument);
 }
 

@@ -36,23 +36,23 @@ std::string crossed(const std::string& svg, double width, double height) {
   return "";
 }
 
-Figure with(Panel panel, double width_px, double height_px) {
+Figure with(Chart chart, double width_px, double height_px) {
   Figure figure;
   figure.title = "Labels";
-  figure.panels.push_back(std::move(panel));
-  figure.panel_width_px = width_px, figure.panel_height_px = height_px;
+  figure.charts.push_back(std::move(chart));
+  figure.chart_width_px = width_px, figure.chart_height_px = height_px;
   return figure;
 }
 
 Rule vertical(double at, std::string label) { return {Rule::Direction::vertical, at, std::move(label)}; }
 Rule horizontal(double at, std::string label) { return {Rule::Direction::horizontal, at, std::move(label)}; }
 
-Panel empty_panel() {
-  Panel panel;
-  panel.title = "Drive, and a tone's quality";
-  panel.x = {"Frequency (kHz)", 15, 45};
-  panel.y = {"Drive edge (\u00b5m)", 0, 0.72};
-  return panel;
+Chart empty_panel() {
+  Chart chart;
+  chart.title = "Drive, and a tone's quality";
+  chart.x = {"Frequency (kHz)", 15, 45};
+  chart.y = {"Drive edge (\u00b5m)", 0, 0.72};
+  return chart;
 }
 
 }  // namespace
@@ -62,10 +62,10 @@ TEST_CASE("The label of a rule never stands on a tone's mark, however close both
   for (double tone = 15; tone <= 45; tone += 2.5)
     for (double off = -4; off <= 4; off += 0.25) {
       if (tone + off < 15 || tone + off > 45) continue;
-      auto panel = empty_panel();
-      panel.layers.push_back(vertical(tone + off, "resonance"));
-      panel.layers.push_back(Points{{tone}, {0.6}, {0}, {0.6}, {}, {}, 0, ""});
-      const auto svg = render(with(panel, width, height));
+      auto chart = empty_panel();
+      chart.layers.push_back(vertical(tone + off, "resonance"));
+      chart.layers.push_back(Points{{tone}, {0.6}, {0}, {0.6}, {}, {}, 0, ""});
+      const auto svg = render(with(chart, width, height));
       CAPTURE(width, height, tone, off);
       REQUIRE(labels_on(svg) == 1);
       REQUIRE(crossed(svg, width, height).empty());
@@ -78,29 +78,29 @@ TEST_CASE("Where curves leave no place, a rule's label stands outside of the dat
     dense.x.push_back(15 + 0.01 * i);
     dense.y.push_back(0.36 + 0.36 * std::sin(2.0 * i));
   }
-  auto panel = empty_panel();
+  auto chart = empty_panel();
   const int rules = GENERATE(1, 2, 3);
   const char* names[] = {"resonance", "edge of the zone", "level"};
-  for (int i = 0; i < rules; ++i) panel.layers.push_back(vertical(29 + 0.5 * i, names[i]));
+  for (int i = 0; i < rules; ++i) chart.layers.push_back(vertical(29 + 0.5 * i, names[i]));
   SECTION("vertical rules, above it, in rows") {}
-  SECTION("and a horizontal one, to the right") { panel.layers.push_back(horizontal(0.3, "chance")); }
+  SECTION("and a horizontal one, to the right") { chart.layers.push_back(horizontal(0.3, "chance")); }
   SECTION("and two horizontal ones, close together") {
-    panel.layers.push_back(horizontal(0.3, "chance"));
-    panel.layers.push_back(horizontal(0.31, "mean"));
+    chart.layers.push_back(horizontal(0.3, "chance"));
+    chart.layers.push_back(horizontal(0.31, "mean"));
   }
-  panel.layers.push_back(dense);
-  const auto svg = render(with(panel, 430, 260));
+  chart.layers.push_back(dense);
+  const auto svg = render(with(chart, 430, 260));
   CHECK(labels_on(svg) >= rules);
   CHECK(crossed(svg, 430, 260).empty());
 }
 
 TEST_CASE("Labels of several rules keep apart from each other, from curves, bars and error bars",
           "[plot][labels]") {
-  auto panel = empty_panel();
-  panel.y = {"Proportion", 0.4, 1};
-  for (const double at : {20.0, 20.4, 44.0}) panel.layers.push_back(vertical(at, "truth 3.14"));
-  panel.layers.push_back(horizontal(0.5, "chance"));
-  panel.layers.push_back(horizontal(GENERATE(0.52, 0.9, 1.0), "deadline"));
+  auto chart = empty_panel();
+  chart.y = {"Proportion", 0.4, 1};
+  for (const double at : {20.0, 20.4, 44.0}) chart.layers.push_back(vertical(at, "truth 3.14"));
+  chart.layers.push_back(horizontal(0.5, "chance"));
+  chart.layers.push_back(horizontal(GENERATE(0.52, 0.9, 1.0), "deadline"));
   Points dots{{20, 25, 30, 35, 40},
               {0.5, 0.6, 0.7, 0.9, 0.98},
               {0.4, 0.5, 0.6, 0.8, 0.9},
@@ -109,20 +109,20 @@ TEST_CASE("Labels of several rules keep apart from each other, from curves, bars
               {},
               1,
               "data"};
-  panel.layers.push_back(Line{dots.x, dots.y, 0, "fit"});
-  panel.layers.push_back(dots);
-  panel.layers.push_back(Histogram{{22, 24, 26}, {0.6, 0.8}, 2, ""});
-  const auto svg = render(with(panel, 430, 260));
+  chart.layers.push_back(Line{dots.x, dots.y, 0, "fit"});
+  chart.layers.push_back(dots);
+  chart.layers.push_back(Histogram{{22, 24, 26}, {0.6, 0.8}, 2, ""});
+  const auto svg = render(with(chart, 430, 260));
   CHECK(labels_on(svg) == 5);
   CHECK(crossed(svg, 430, 260).empty());
 }
 
 TEST_CASE("A free label stands at its rule's upper right, and a rule beyond the axes shows nothing",
           "[plot][labels]") {
-  auto panel = empty_panel();
-  panel.layers.push_back(vertical(20, "here"));
-  panel.layers.push_back(vertical(60, "beyond"));
-  const auto svg = render(with(panel, 430, 260));
+  auto chart = empty_panel();
+  chart.layers.push_back(vertical(20, "here"));
+  chart.layers.push_back(vertical(60, "beyond"));
+  const auto svg = render(with(chart, 430, 260));
   REQUIRE(labels_on(svg) == 1);
   const auto rules = svg_geometry::elements(svg, "line");
   const auto dashed = std::find_if(rules.begin(), rules.end(), [](const auto& line) {
@@ -142,7 +142,7 @@ TEST_CASE("Panels of one figure keep one height, also where only one of them has
   tall.layers = {Histogram{{15, 25, 35, 45}, {0.7, 0.7, 0.7}, 0, ""}, vertical(30, "median 1.02 s")};
   flat.layers = {Histogram{{15, 25, 35, 45}, {0.1, 0.1, 0.1}, 0, ""}, vertical(30, "median 1.02 s")};
   auto figure = with(tall, 430, 200);
-  figure.panels.push_back(flat);
+  figure.charts.push_back(flat);
   figure.columns = 2;
   const auto heights = [](const std::string& svg) {
     std::vector<double> found;
@@ -155,17 +155,17 @@ TEST_CASE("Panels of one figure keep one height, also where only one of them has
   REQUIRE(together.size() == 2);
   CHECK(together[0] == together[1]);
   CHECK(crossed(render(figure), 860, 200).empty());
-  // Without the first panel, the second one has its label in the data and is higher.
+  // Without the first chart, the second one has its label in the data and is higher.
   CHECK(heights(render(with(flat, 430, 200)))[0] > together[1]);
 }
 
-TEST_CASE("Numbers beside an axis stand a line and a half apart, however low the panel is", "[plot]") {
+TEST_CASE("Numbers beside an axis stand a line and a half apart, however low the chart is", "[plot]") {
   for (const double height : {170.0, 200.0, 300.0}) {
-    auto panel = empty_panel();
-    panel.y = {"Trials", 0, 151};
-    panel.layers = {Line{{15, 45}, {0, 140}, 0, "named"}, vertical(30, "median")};
+    auto chart = empty_panel();
+    chart.y = {"Trials", 0, 151};
+    chart.layers = {Line{{15, 45}, {0, 140}, 0, "named"}, vertical(30, "median")};
     std::vector<double> lines;
-    const auto svg = render(with(panel, 430, height));
+    const auto svg = render(with(chart, 430, height));
     for (const auto& line : svg_geometry::elements(svg, "line"))
       if (svg_geometry::attribute(line, "stroke") == "#e6e6e6")
         lines.push_back(svg_geometry::number(line, "y1"));

@@ -17,7 +17,6 @@ namespace {
 const std::string root = TURNPOINT_SOURCE_DIR;
 
 std::string source(const std::string& name) { return system::read_file(root + "/protocols/" + name); }
-std::string rig_source() { return system::read_file(root + "/deploy/rigs/simulated.toml"); }
 rig::Rig simulated() { return rig::load(root + "/deploy/rigs/simulated.toml"); }
 
 std::string all_of(const std::vector<text::Problem>& problems) {

@@ -132,13 +132,13 @@ inline Database raw(const std::string& path) { return Database(path, Database::A
 
 /// The fault and message that `action` throws; fault io and "" if it throws nothing.
 template <class Action>
-std::pair<Fault, std::string> failure(Action&& action) {
+std::pair<ErrorKind, std::string> failure(Action&& action) {
   try {
     action();
   } catch (const StoreError& error) {
-    return {error.fault(), error.what()};
+    return {error.kind(), error.what()};
   }
-  return {Fault::io, ""};
+  return {ErrorKind::io, ""};
 }
 
 inline bool contains(const std::string& text, const std::string& part) {

@@ -15,7 +15,7 @@ TEST_CASE("rows of trials, tones and events are never changed or deleted", "[sto
                "DELETE FROM event", "UPDATE session SET seed = 1", "UPDATE session SET participant = 'P02'");
   INFO(sql);
   const auto [fault, message] = sample::failure([&] { raw.execute(sql); });
-  CHECK(fault == Fault::refused);
+  CHECK(fault == ErrorKind::refused);
   CHECK((sample::contains(message, "append-only") || sample::contains(message, "never changed")));
   CHECK(raw.integer("SELECT count(*) FROM trial WHERE trial_index = 2 OR response = 'second'") == 2);
 }
@@ -42,7 +42,7 @@ TEST_CASE("a trial that was not answered has no answer, no score and no response
   SECTION("a movement time is refused") { trial.movement_time_s = 0.1; }
   SECTION("a score is refused") { trial.correct = true; }
   const auto [fault, message] = sample::failure([&] { log.append(trial); });
-  CHECK(fault == Fault::refused);
+  CHECK(fault == ErrorKind::refused);
   CHECK(sample::contains(message, "CHECK constraint failed"));
   CHECK(sample::raw(db).integer("SELECT count(*) FROM trial") == 0);
 }
@@ -71,7 +71,7 @@ TEST_CASE(
   SECTION("a negative response time") { trial.response_time_s = -0.016; }
   SECTION("a score against the answer") { trial.correct = !*trial.correct; }
   SECTION("a score where nothing is right") { trial.correct_response.reset(); }
-  CHECK(sample::failure([&] { log.append(trial); }).first == Fault::refused);
+  CHECK(sample::failure([&] { log.append(trial); }).first == ErrorKind::refused);
 }
 
 TEST_CASE("a trial index comes once in a session", "[store]") {
@@ -79,7 +79,7 @@ TEST_CASE("a trial index comes once in a session", "[store]") {
   auto log = SessionLog::begin(folder / "a.sqlite", sample::start(), sample::segment());
   log.begin_block(sample::block());
   log.append(sample::answered(0));
-  CHECK(sample::failure([&] { log.append(sample::answered(0)); }).first == Fault::refused);
+  CHECK(sample::failure([&] { log.append(sample::answered(0)); }).first == ErrorKind::refused);
   log.append(sample::answered(1));
   CHECK(log.session().trials == 2);
 }
@@ -95,5 +95,5 @@ TEST_CASE("tables are STRICT: a word where a number belongs is refused", "[store
   CHECK(raw.integer("SELECT wr FROM pragma_table_list WHERE name = 'trial'") == 0);  // a rowid table
   CHECK(sample::failure([&] {
           raw.execute("INSERT INTO event SELECT session_id, 99, 1, 'soon', 'touch', '', NULL FROM session");
-        }).first == Fault::refused);
+        }).first == ErrorKind::refused);
 }

@@ -258,7 +258,7 @@ TEST_CASE("verify compares a database with a sessions.csv that was exported befo
     REQUIRE(::mkfifo((folder / "fifo.csv").c_str(), 0600) == 0);
     const auto message = [&](const std::string& against) {
       const auto [fault, text] = sample::failure([&] { verify(db, {"", against}); });
-      CHECK(fault == Fault::missing);
+      CHECK(fault == ErrorKind::missing);
       return text;
     };
     CHECK(sample::contains(message(folder / "empty.csv"), "empty.csv: it is empty"));
@@ -293,7 +293,7 @@ TEST_CASE("a database whose rows were changed is not merged", "[store]") {
   sample::session(b, 4, sample::start("P05"));
   { unguarded(b).execute("UPDATE trial SET level = 7 WHERE trial_index = 3"); }
   const auto [fault, message] = sample::failure([&] { merge(a, b); });
-  CHECK(fault == Fault::corrupt);
+  CHECK(fault == ErrorKind::corrupt);
   CHECK(sample::contains(message, "trial 3"));
   CHECK(list_sessions(a).size() == 1);
 }

@@ -54,7 +54,7 @@ TEST_CASE("neither a new nor a restored database gets the log of a lost one", "[
   const auto log = sample::bytes_of(db + "-wal");
   REQUIRE(log.size() > 10000);
   const auto [fault, message] = sample::failure([&] { sample::session(db, 1); });
-  CHECK(fault == Fault::missing);
+  CHECK(fault == ErrorKind::missing);
   CHECK(sample::contains(message, "a.sqlite-wal is there"));
   CHECK_FALSE(fs::exists(db));
   CHECK(sample::bytes_of(db + "-wal") == log);
@@ -74,7 +74,7 @@ TEST_CASE(
   sample::session(db, 4);
   backup(db, {dir, 9});
   fs::rename(db, db + ".restored");  // the old file was already moved aside
-  CHECK(sample::failure([&] { sample::session(db, 1); }).first == Fault::missing);
+  CHECK(sample::failure([&] { sample::session(db, 1); }).first == ErrorKind::missing);
   CHECK(restore_backup(db, {dir, ""}).trials == 4);
   CHECK_FALSE(fs::exists(db + ".restored"));
 }
@@ -104,7 +104,7 @@ TEST_CASE("a good database that cannot be opened is not replaced", "[store]") {
     int status = 3;
     if (::setuid(65534) == 0) {
       const auto [fault, message] = sample::failure([&] { restore_backup(db, {dir, ""}); });
-      status = fault == Fault::cannot_open && sample::contains(message, "permissions") ? 0 : 1;
+      status = fault == ErrorKind::cannot_open && sample::contains(message, "permissions") ? 0 : 1;
     }
     ::_exit(status);
   }
@@ -150,7 +150,7 @@ TEST_CASE("a lost database whose id nothing tells is not taken for another", "[s
   SECTION("nothing tells") {
     fs::remove(lab + ".lock");
     const auto [fault, message] = sample::failure([&] { restore_backup(lab, {dir, ""}); });
-    CHECK(fault == Fault::conflict);
+    CHECK(fault == ErrorKind::conflict);
     CHECK(sample::contains(message, id));
     CHECK(sample::contains(message, "--database-id"));
     CHECK(restore_backup(lab, {dir, id}).trials == 1);
@@ -266,7 +266,7 @@ TEST_CASE("without a list of the backups nothing is withdrawn, and another datab
   sample::session(b, 4, at_station("P01", "b"));
   sample::session(a, 1, at_station("P02", "a"));
   merge(a, b);
-  CHECK(sample::failure([&] { withdraw(a, {"P01", "", "", dir}); }).first == Fault::missing);
+  CHECK(sample::failure([&] { withdraw(a, {"P01", "", "", dir}); }).first == ErrorKind::missing);
   CHECK(list_sessions(a).size() == 2);
   const auto other = backup(b, {dir, 9});
   const auto gone = withdraw(a, {"P01", "", "", dir});
@@ -288,7 +288,7 @@ TEST_CASE("the same code at two stations is two people until somebody joins them
     return names;
   };
   CHECK(persons() == std::vector<std::string>{"P01@a", "P01@b", "P07"});
-  CHECK(sample::failure([&] { withdraw(a, {"P01", "", "", ""}); }).first == Fault::refused);
+  CHECK(sample::failure([&] { withdraw(a, {"P01", "", "", ""}); }).first == ErrorKind::refused);
   CHECK(join(a, "P01@a", "P07") == "P01@a");
   CHECK(persons() == std::vector<std::string>{"P01@a", "P01@a", "P01@b"});
   // Their sessions continue to be numbered, at any station.
@@ -296,8 +296,8 @@ TEST_CASE("the same code at two stations is two people until somebody joins them
   CHECK(read_session(a, id).session.session_index == 2);
   CHECK(join(a, "P01@a", "P07", Relation::two_people) == "P01@a");
   CHECK(persons() == std::vector<std::string>{"P01@a", "P01@a", "P01@b", "P07"});
-  CHECK(sample::failure([&] { join(a, "P01", "P07"); }).first == Fault::refused);
-  CHECK(sample::failure([&] { join(a, "P99", "P07"); }).first == Fault::missing);
+  CHECK(sample::failure([&] { join(a, "P01", "P07"); }).first == ErrorKind::refused);
+  CHECK(sample::failure([&] { join(a, "P99", "P07"); }).first == ErrorKind::missing);
 }
 
 TEST_CASE("a withdrawal takes one of two people of a code, or one station, or one session", "[store]") {
@@ -312,7 +312,8 @@ TEST_CASE("a withdrawal takes one of two people of a code, or one station, or on
     CHECK(list_sessions(a).size() == 2);
     // nobody has withdrawn at this station
     CHECK(sample::session(a, 1, at_station("P01", "a")).size() == 36);
-    CHECK(sample::failure([&] { sample::session(a, 1, at_station("P01", "b")); }).first == Fault::refused);
+    CHECK(sample::failure([&] { sample::session(a, 1, at_station("P01", "b")); }).first ==
+          ErrorKind::refused);
     CHECK(merge(a, b).sessions[0].what == MergedSession::What::withdrawn);
   }
   SECTION("by station") { CHECK(withdraw(a, {"P01", "a", "", ""}).trials == 4); }

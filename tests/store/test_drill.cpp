@@ -64,13 +64,13 @@ TEST_CASE("a drill finds a backup that is damaged, changed, or of other data tha
     auto bytes = sample::bytes_of(made.path);
     bytes[bytes.size() / 2] ^= 1;
     std::ofstream(made.path, std::ios::binary) << bytes;
-    CHECK(sample::failure([&] { drill_restore(db, dir); }).first == Fault::corrupt);
+    CHECK(sample::failure([&] { drill_restore(db, dir); }).first == ErrorKind::corrupt);
   }
   SECTION("cut to nothing, although an older one is good") {
     backup(db, {dir, 9});
     const auto made = backup(db, {dir, 9});
     fs::resize_file(made.path, 0);
-    CHECK(sample::failure([&] { drill_restore(db, dir); }).first == Fault::corrupt);
+    CHECK(sample::failure([&] { drill_restore(db, dir); }).first == ErrorKind::corrupt);
   }
   SECTION("rows were changed before it was made") {
     sample::raw(db).execute("DROP TRIGGER trial_is_never_changed; UPDATE trial SET level = 7");
@@ -93,7 +93,7 @@ TEST_CASE("a drill finds a backup that is damaged, changed, or of other data tha
   }
   SECTION("there is none") {
     fs::create_directory(dir);
-    CHECK(sample::failure([&] { drill_restore(db, dir); }).first == Fault::missing);
+    CHECK(sample::failure([&] { drill_restore(db, dir); }).first == ErrorKind::missing);
   }
   for (const auto& entry : fs::recursive_directory_iterator(folder.path))
     CHECK_FALSE(sample::contains(entry.path().filename().string(), ".drill"));
@@ -146,7 +146,7 @@ TEST_CASE("a backup that wants a disk is refused where none is mounted", "[store
   fs::create_directory(folder / "mnt");
   for (const auto& dir : {folder / "mnt", folder / "mnt/backups"}) {
     const auto [fault, message] = sample::failure([&] { backup(db, {dir, 9, Destination::disk}); });
-    CHECK(fault == Fault::missing);
+    CHECK(fault == ErrorKind::missing);
     CHECK(sample::contains(message, "no disk is mounted"));
     CHECK(fs::is_empty(folder / "mnt"));
   }
@@ -168,7 +168,7 @@ TEST_CASE("a backup that wants a disk is refused where none is mounted", "[store
   const auto [fault, message] = sample::failure([&] {
     backup(dir + "/b.sqlite", {dir, 9, Destination::disk});
   });
-  CHECK(fault == Fault::missing);
+  CHECK(fault == ErrorKind::missing);
   CHECK(sample::contains(message, "the disk of the database itself"));
   fs::remove_all(dir);
 }

@@ -190,7 +190,7 @@ TEST_CASE("options select by session, participant and protocol; each protocol ha
   CHECK(export_data(db, folder / "two", options)[0].rows == 2);
   options.participant = "P09";
   const auto [fault, message] = sample::failure([&] { export_data(db, folder / "none", options); });
-  CHECK(fault == Fault::missing);
+  CHECK(fault == ErrorKind::missing);
   CHECK_FALSE(std::filesystem::exists(folder / "none"));
 }
 

@@ -50,14 +50,14 @@ TEST_CASE(
     log.begin_block(sample::block());
     disk.bytes_left(bytes);
     int acknowledged = 0;
-    std::pair<Fault, std::string> failure;
+    std::pair<ErrorKind, std::string> failure;
     for (; acknowledged < 100 && failure.second.empty(); ++acknowledged) {
       log.event({1, "touch", "", acknowledged});
       failure = sample::failure([&] { log.append(sample::answered(acknowledged)); });
     }
     --acknowledged;
     REQUIRE(acknowledged < 99);
-    CHECK(failure.first == Fault::disk_full);
+    CHECK(failure.first == ErrorKind::disk_full);
     CHECK(sample::contains(failure.second, "free some space"));
     auto reader = sample::raw(db);
     CHECK(reader.integer("SELECT count(*) FROM trial") == acknowledged);
@@ -77,7 +77,7 @@ TEST_CASE("a file of 0 bytes is a lost database, not a new one", "[store]") {
   for (const auto& action : std::vector<std::function<void()>>{
            [&] { SessionLog::begin(db, sample::start(), sample::segment()); }, [&] { list_sessions(db); }}) {
     const auto [fault, message] = sample::failure(action);
-    CHECK(fault == Fault::not_a_database);
+    CHECK(fault == ErrorKind::not_a_database);
     CHECK(sample::contains(message, "0 bytes"));
     CHECK(sample::contains(message, "restore"));
   }
@@ -94,7 +94,7 @@ TEST_CASE("a file that is no database, or another program's, is not touched", "[
   const auto before = sample::bytes_of(db);
   const auto [fault, message] =
       sample::failure([&] { SessionLog::begin(db, sample::start(), sample::segment()); });
-  CHECK(fault == Fault::not_a_database);
+  CHECK(fault == ErrorKind::not_a_database);
   CHECK(sample::contains(message, db));
   CHECK(sample::bytes_of(db) == before);
 }
@@ -116,7 +116,7 @@ TEST_CASE("a damaged database is left as it is, by every command", "[store]") {
            }}) {
     const auto [fault, message] = sample::failure(action);
     INFO(message);
-    CHECK((fault == Fault::corrupt || fault == Fault::not_a_database));
+    CHECK((fault == ErrorKind::corrupt || fault == ErrorKind::not_a_database));
     CHECK(sample::contains(message, db));
   }
   CHECK(sample::bytes_of(db) == bytes);
@@ -132,13 +132,13 @@ TEST_CASE("a second station process is told who has the database, and the first 
     const auto [fault, message] =
         sample::failure([&] { SessionLog::begin(db, sample::start("P02"), sample::segment()); });
     const bool named = sample::contains(message, "pid " + std::to_string(::getppid()));
-    return fault == Fault::busy && named ? 0 : 1;
+    return fault == ErrorKind::busy && named ? 0 : 1;
   });
   CHECK(status == 0);
   std::filesystem::create_symlink(db, folder / "link.sqlite");
   CHECK(sample::failure([&] {
           SessionLog::begin(folder / "link.sqlite", sample::start("P02"), sample::segment());
-        }).first == Fault::busy);
+        }).first == ErrorKind::busy);
   log.append(sample::answered(0));
   CHECK(list_sessions(db).size() == 1);  // readers are still allowed
 }
@@ -171,7 +171,7 @@ TEST_CASE("a database that may not be written is refused before the session, and
     if (::geteuid() == 0 && ::setuid(65534) != 0) return 50;  // root can write anything
     const auto [fault, message] =
         sample::failure([&] { SessionLog::begin(db, sample::start(), sample::segment()); });
-    if (fault != Fault::read_only || !sample::contains(message, "writable")) return 1;
+    if (fault != ErrorKind::read_only || !sample::contains(message, "writable")) return 1;
     if (list_sessions(db).size() != 1) return 2;
     return export_data(db, folder / "out", {})[0].rows == 3 ? 0 : 3;
   });
@@ -183,6 +183,6 @@ TEST_CASE("a database that may not be written is refused before the session, and
 TEST_CASE("a folder that is not there is named", "[store]") {
   const auto [fault, message] = sample::failure(
       [] { SessionLog::begin("/nonexistent/folder/a.sqlite", sample::start(), sample::segment()); });
-  CHECK(fault == Fault::missing);
+  CHECK(fault == ErrorKind::missing);
   CHECK(sample::contains(message, "/nonexistent/folder"));
 }

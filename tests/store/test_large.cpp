@@ -118,7 +118,7 @@ TEST_CASE("damage far from where a session writes keeps nobody from a session, a
                                           },
                                           [&] { verify(db); }, [&] { export_data(db, folder / "out", {}); },
                                           [&] { merge(folder / "b.sqlite", db); }})
-    CHECK(sample::failure(action).first == Fault::corrupt);
+    CHECK(sample::failure(action).first == ErrorKind::corrupt);
   CHECK(backups_in(dir, db) == std::vector<std::string>{good.path});
   CHECK_FALSE(fs::exists(folder / "out"));
   CHECK(restore_backup(db, {dir, ""}).trials == 200);
@@ -130,7 +130,7 @@ TEST_CASE("a database whose last trial has lost its block is refused before a se
   sample::session(db, 5);
   sample::raw(db).execute("PRAGMA foreign_keys = OFF; DELETE FROM block");
   const auto [fault, message] = sample::failure([&] { begin_session(db); });
-  CHECK(fault == Fault::corrupt);
+  CHECK(fault == ErrorKind::corrupt);
   CHECK(sample::contains(message, "block"));
 }
 

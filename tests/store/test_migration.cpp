@@ -98,7 +98,7 @@ TEST_CASE("a database of a newer release is left alone, and the message says to 
   const auto before = sample::bytes_of(db);
   const auto check = [&](auto&& action) {
     const auto [fault, message] = sample::failure(action);
-    CHECK(fault == Fault::newer_schema);
+    CHECK(fault == ErrorKind::newer_schema);
     CHECK(sample::contains(message, "schema 99"));
     CHECK(sample::contains(message, "update Turnpoint"));
   };

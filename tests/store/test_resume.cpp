@@ -68,7 +68,7 @@ TEST_CASE("a block that goes on under another name or instruction is refused", "
   auto log = SessionLog::resume(db, broken_session(db, 2), sample::segment("resume"));
   auto other = sample::block();
   other.instruction = "accuracy";
-  CHECK(sample::failure([&] { log.begin_block(other); }).first == Fault::conflict);
+  CHECK(sample::failure([&] { log.begin_block(other); }).first == ErrorKind::conflict);
   log.begin_block(sample::block());
 }
 
@@ -78,12 +78,12 @@ TEST_CASE("only an interrupted session is resumed, and the message says what the
   const auto id = sample::session(db, 2);
   const auto [fault, message] =
       sample::failure([&] { SessionLog::resume(db, id, sample::segment("resume")); });
-  CHECK(fault == Fault::refused);
+  CHECK(fault == ErrorKind::refused);
   CHECK(sample::contains(message, "is completed"));
   CHECK(sample::failure([&] { SessionLog::resume(db, "nothing", sample::segment()); }).first ==
-        Fault::missing);
+        ErrorKind::missing);
   CHECK(sample::failure([&] { SessionLog::resume(folder / "no.sqlite", id, sample::segment()); }).first ==
-        Fault::missing);
+        ErrorKind::missing);
 }
 
 TEST_CASE("the newest interrupted session is found with its age; sessions without trials are not among them",

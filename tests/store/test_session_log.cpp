@@ -125,7 +125,7 @@ TEST_CASE("a trial outside a block is refused", "[store]") {
   TemporaryFolder folder;
   auto log = SessionLog::begin(folder / "a.sqlite", sample::start(), sample::segment());
   const auto [fault, message] = sample::failure([&] { log.append(sample::answered(0)); });
-  CHECK(fault == Fault::refused);
+  CHECK(fault == ErrorKind::refused);
   CHECK(sample::contains(message, "begin_block"));
 }
 
@@ -136,7 +136,7 @@ TEST_CASE("a number that is not finite never becomes a missing value", "[store]"
   log.begin_block(sample::block());
   auto trial = sample::answered(0);
   trial.threshold_sd = std::numeric_limits<double>::quiet_NaN();
-  CHECK(sample::failure([&] { log.append(trial); }).first == Fault::refused);
+  CHECK(sample::failure([&] { log.append(trial); }).first == ErrorKind::refused);
   CHECK(sample::raw(db).integer("SELECT count(*) FROM trial") == 0);
   trial.threshold_sd = std::nullopt;
   log.append(trial);

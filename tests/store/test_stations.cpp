@@ -108,7 +108,7 @@ TEST_CASE("merge refuses rows that contradict, says which, and merges nothing", 
     expected = "station b has given place 0 of protocol two-boundaries to P09 here and to P01 there";
   }
   const auto [fault, message] = sample::failure([&] { merge(a, b); });
-  CHECK(fault == Fault::conflict);
+  CHECK(fault == ErrorKind::conflict);
   INFO(message);
   CHECK(sample::contains(message, expected));
   CHECK(list_sessions(a).size() == sessions_before);
@@ -124,9 +124,9 @@ TEST_CASE(
   CHECK(merge(a, made.path).sessions.size() == 1);
   std::ofstream(made.path, std::ios::app | std::ios::binary) << "x";
   const auto [fault, message] = sample::failure([&] { merge(a, made.path); });
-  CHECK(fault == Fault::corrupt);
+  CHECK(fault == ErrorKind::corrupt);
   CHECK(sample::contains(message, "sha256"));
-  CHECK(sample::failure([&] { merge(a, a); }).first == Fault::refused);
+  CHECK(sample::failure([&] { merge(a, a); }).first == ErrorKind::refused);
 }
 
 TEST_CASE("a backup is made beside a running session, is checked, and older ones rotate out", "[store]") {
@@ -159,7 +159,7 @@ TEST_CASE("a damaged database is set aside and the newest good backup takes its 
   sample::session(db, 3, sample::start("P02"));
   const auto newest = backup(db, {dir, 9});
   // refused because the database is good
-  CHECK(sample::failure([&] { restore_backup(db, {dir, ""}); }).first == Fault::refused);
+  CHECK(sample::failure([&] { restore_backup(db, {dir, ""}); }).first == ErrorKind::refused);
   auto bytes = sample::bytes_of(db);
   bytes.resize(6000);
   std::ofstream(db, std::ios::binary | std::ios::trunc) << bytes;
@@ -246,7 +246,7 @@ TEST_CASE("a link in the place of the lock is not followed", "[store]") {
   SECTION("a symbolic one") { std::filesystem::create_symlink(target, db + ".lock"); }
   SECTION("a second name") { std::filesystem::create_hard_link(target, db + ".lock"); }
   const auto [fault, message] = sample::failure([&] { sample::session(db, 1); });
-  CHECK(fault == Fault::io);
+  CHECK(fault == ErrorKind::io);
   CHECK(sample::contains(message, "a.sqlite.lock"));
   CHECK(sample::contains(message, "remove it"));
   CHECK(sample::bytes_of(target) == "precious");
@@ -260,7 +260,7 @@ TEST_CASE("a database with a second name is refused, under both", "[store]") {
   const auto before = sample::bytes_of(db);
   for (const auto& name : {db, other}) {
     const auto [fault, message] = sample::failure([&] { sample::session(name, 1); });
-    CHECK(fault == Fault::busy);
+    CHECK(fault == ErrorKind::busy);
     CHECK(sample::contains(message, "has a second name"));
   }
   CHECK(sample::bytes_of(db) == before);
@@ -273,7 +273,7 @@ TEST_CASE("without a good backup nothing is moved", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   std::ofstream(db, std::ios::binary) << "";
-  CHECK(sample::failure([&] { restore_backup(db, {folder / "none", ""}); }).first == Fault::missing);
+  CHECK(sample::failure([&] { restore_backup(db, {folder / "none", ""}); }).first == ErrorKind::missing);
   CHECK(std::filesystem::exists(db));
 }
 
@@ -304,8 +304,8 @@ TEST_CASE("withdraw lists what it removes and leaves no trace in the file, its l
   CHECK(list_sessions(db).size() == 1);
   CHECK(sample::raw(db).text("PRAGMA integrity_check") == "ok");
   CHECK(withdraw(db, {"XQ77ZK", "", "", ""}).sessions.empty());  // repeating it is harmless
-  CHECK(sample::failure([&] { withdraw(db, {"P99", "", "", ""}); }).first == Fault::missing);
-  CHECK(sample::failure([&] { sample::session(db, 1, start); }).first == Fault::refused);
+  CHECK(sample::failure([&] { withdraw(db, {"P99", "", "", ""}); }).first == ErrorKind::missing);
+  CHECK(sample::failure([&] { sample::session(db, 1, start); }).first == ErrorKind::refused);
 }
 
 TEST_CASE("a plain delete leaves traces: the negative control of the search", "[store]") {
@@ -353,6 +353,6 @@ TEST_CASE("an interrupted session can be closed for good, a completed one cannot
   abandon(db, open, "too old");
   CHECK_FALSE(interrupted_session(db));
   CHECK(read_session(db, open).session.status_reason == "too old");
-  CHECK(sample::failure([&] { abandon(db, done, ""); }).first == Fault::refused);
+  CHECK(sample::failure([&] { abandon(db, done, ""); }).first == ErrorKind::refused);
   CHECK_THROWS_AS(annotate(db, done, ""), turnpoint::terms::UsageError);
 }

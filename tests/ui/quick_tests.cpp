@@ -22,7 +22,7 @@ class Setup : public QObject {
     script_ = new turnpoint::ui::ScriptedSession(QCoreApplication::instance());
     desk_ = new turnpoint::ui::OperatorDesk(*script_->bridge(), QCoreApplication::instance());
     inspector_ = new turnpoint::ui::PageInspector(QCoreApplication::instance());
-    sitting_ = new turnpoint::ui::RealSession(QCoreApplication::instance());
+    session_ = new turnpoint::ui::RealSession(QCoreApplication::instance());
     room_ = new turnpoint::ui::StationRoom(QCoreApplication::instance());
   }
 
@@ -30,7 +30,7 @@ class Setup : public QObject {
     turnpoint::ui::set_fonts();
     engine->addImportPath("qrc:/qt/qml");
     engine->rootContext()->setContextProperty("script", script_);
-    engine->rootContext()->setContextProperty("sitting", sitting_);
+    engine->rootContext()->setContextProperty("session", session_);
     engine->rootContext()->setContextProperty("desk", desk_);
     engine->rootContext()->setContextProperty("inspector", inspector_);
     engine->rootContext()->setContextProperty("room", room_);
@@ -38,7 +38,7 @@ class Setup : public QObject {
 
  private:
   turnpoint::ui::ScriptedSession* script_ = nullptr;
-  turnpoint::ui::RealSession* sitting_ = nullptr;
+  turnpoint::ui::RealSession* session_ = nullptr;
   turnpoint::ui::OperatorDesk* desk_ = nullptr;
   turnpoint::ui::PageInspector* inspector_ = nullptr;
   turnpoint::ui::StationRoom* room_ = nullptr;

@@ -11,7 +11,7 @@ Item {
     ParticipantView {
         id: view
         anchors.fill: parent
-        bridge: sitting.bridge
+        bridge: session.bridge
         pixelsPerMm: 5.2
     }
 
@@ -19,7 +19,7 @@ Item {
         name: "Adjustment"
         when: windowShown
 
-        readonly property PageModel page: sitting.bridge.page
+        readonly property PageModel page: session.bridge.page
 
         function find(parent, name) {
             for (let i = 0; i < parent.children.length; ++i) {
@@ -48,8 +48,8 @@ Item {
         }
 
         function test_settings_by_slider_and_steps_reach_the_rows() {
-            sitting.bridge.watch(stage.Window.window)
-            sitting.start("adjust.toml")
+            session.bridge.watch(stage.Window.window)
+            session.start("adjust.toml")
             tap("proceed")
 
             // Drag with a finger from the current position to -8, then two steps up.
@@ -76,14 +76,14 @@ Item {
             mouseClick(slider, slider.width - 1, y)
             tap("proceed")
 
-            tryCompare(sitting, "over", true, 20000)
-            compare(sitting.failure, "")
-            compare(sitting.column("response"), "-7 -20.5")
-            compare(sitting.column("outcome"), "answered answered")
-            const boundaries = sitting.column("boundary_mm").split(" ")
+            tryCompare(session, "over", true, 20000)
+            compare(session.failure, "")
+            compare(session.column("response"), "-7 -20.5")
+            compare(session.column("outcome"), "answered answered")
+            const boundaries = session.column("boundary_mm").split(" ")
             fuzzyCompare(Number(boundaries[0]), 153, 0.01)
             fuzzyCompare(Number(boundaries[1]), 139.5, 0.01)
-            verify(sitting.events("slider").split(" ").length >= 4)
+            verify(session.events("slider").split(" ").length >= 4)
         }
     }
 }

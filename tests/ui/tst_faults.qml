@@ -11,7 +11,7 @@ Item {
     ParticipantView {
         id: view
         anchors.fill: parent
-        bridge: sitting.bridge
+        bridge: session.bridge
         pixelsPerMm: 5.2
     }
 
@@ -19,9 +19,9 @@ Item {
         name: "Faults"
         when: windowShown
 
-        readonly property PageModel page: sitting.bridge.page
+        readonly property PageModel page: session.bridge.page
 
-        SignalSpy { id: shown; target: sitting.bridge; signalName: "shown" }
+        SignalSpy { id: shown; target: session.bridge; signalName: "shown" }
 
         function find(parent, name) {
             for (let i = 0; i < parent.children.length; ++i) {
@@ -74,64 +74,64 @@ Item {
         }
 
         function test_after_each_fault_the_session_goes_on_where_it_was() {
-            sitting.bridge.watch(stage.Window.window)
-            sitting.start("short.toml")
+            session.bridge.watch(stage.Window.window)
+            session.start("short.toml")
             tap("proceed")
 
             untilAsked()
-            sitting.setStop(true)
+            session.setStop(true)
             explained("emergency stop")
             arm()
             tryVerify(() => page.detail.includes("refused"), 5000)   // the stop is still pressed
-            sitting.setStop(false)
+            session.setStop(false)
             arm()
             tryCompare(page, "kind", PageModel.Paused, 5000)
             tap("proceed")
             answer()
 
             untilAsked()
-            sitting.setAmplifierFault(true)
+            session.setAmplifierFault(true)
             explained("amplifier reports")
-            sitting.setAmplifierFault(false)
+            session.setAmplifierFault(false)
             arm()
             tryCompare(page, "kind", PageModel.Paused, 5000)
             tap("proceed")
             untilAsked()
-            sitting.setDiskFull(true)
+            session.setDiskFull(true)
             mouseClick(find(view, "answer1"))
             explained("disk is full")
             const before = shown.count
             tap("proceed")
             tryVerify(() => shown.count > before, 5000)
             explained("disk is full")                                // the disk is still full
-            sitting.setDiskFull(false)
+            session.setDiskFull(false)
             tap("proceed")
 
             tryCompare(page, "kind", PageModel.Rest, 20000)
-            sitting.find("converter_gone")
+            session.find("converter_gone")
             explained("sound device was disconnected")
             tap("proceed")
             tryCompare(page, "kind", PageModel.Rest, 5000)
 
             untilAsked()
-            sitting.find("touch_gone")
+            session.find("touch_gone")
             explained("touch panel was disconnected")
             tap("proceed")
             answer()
             untilAsked()
-            sitting.loseFrames(3)
-            sitting.find("stimulus_missed")
+            session.loseFrames(3)
+            session.find("stimulus_missed")
             explained("was interrupted")
             tap("proceed")
             answer()
 
-            tryCompare(sitting, "over", true, 20000)
-            compare(sitting.failure, "")
+            tryCompare(session, "over", true, 20000)
+            compare(session.failure, "")
             compare(page.kind, PageModel.End)
-            compare(sitting.column("outcome"), "fault answered fault answered fault answered fault answered")
-            const levels = sitting.column("level").split(" ")
+            compare(session.column("outcome"), "fault answered fault answered fault answered fault answered")
+            const levels = session.column("level").split(" ")
             for (let i = 0; i < 8; i += 2) compare(levels[i + 1], levels[i])
-            compare(sitting.events("frames_lost"), "3")
+            compare(session.events("frames_lost"), "3")
         }
     }
 }

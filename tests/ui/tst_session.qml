@@ -10,7 +10,7 @@ Item {
     ParticipantView {
         id: view
         anchors.fill: parent
-        bridge: sitting.bridge
+        bridge: session.bridge
         pixelsPerMm: 5.2
     }
 
@@ -18,7 +18,7 @@ Item {
         name: "Session"
         when: windowShown
 
-        readonly property PageModel page: sitting.bridge.page
+        readonly property PageModel page: session.bridge.page
 
         function answer(choice) {
             tryCompare(page, "answersOpen", true, 20000)
@@ -50,8 +50,8 @@ Item {
 
         // The answers below do not depend on the levels: each row must contain the answer that was tapped.
         function test_a_whole_session_tapped_through_is_in_the_database() {
-            sitting.bridge.watch(stage.Window.window)
-            sitting.start("short.toml")
+            session.bridge.watch(stage.Window.window)
+            session.start("short.toml")
             tryCompare(page, "kind", PageModel.Instructions, 30000)
             compare(page.runMode, "pilot")
             proceed()
@@ -62,15 +62,15 @@ Item {
             proceed()
             answer(1)
             answer(1)
-            tryCompare(sitting, "over", true, 20000)
-            compare(sitting.failure, "")
+            tryCompare(session, "over", true, 20000)
+            compare(session.failure, "")
             compare(page.kind, PageModel.End)
-            compare(sitting.column("response"), "left right right right")
-            compare(sitting.column("outcome"), "answered answered answered answered")
-            compare(sitting.column("run_mode"), "pilot pilot pilot pilot")
-            compare(sitting.column("response_time_quality"), "toolkit toolkit toolkit toolkit")
-            compare(sitting.column("extra_touches"), "0 0 0 0")
-            const times = sitting.column("response_time").split(" ")
+            compare(session.column("response"), "left right right right")
+            compare(session.column("outcome"), "answered answered answered answered")
+            compare(session.column("run_mode"), "pilot pilot pilot pilot")
+            compare(session.column("response_time_quality"), "toolkit toolkit toolkit toolkit")
+            compare(session.column("extra_touches"), "0 0 0 0")
+            const times = session.column("response_time").split(" ")
             for (let i = 0; i < times.length; ++i) verify(Number(times[i]) > 0.1 && Number(times[i]) < 2, times[i])
         }
     }
