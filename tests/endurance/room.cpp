@@ -259,7 +259,7 @@ void Room::strike(Fault fault) {
       world_.wall_offset_ns += by_ns;
       return push(InputKind::notice, {}, "the wall clock was set");
     }
-    case ErrorKind::disk_full:
+    case Fault::disk_full:
       return disk_.bytes_left(world_.course.between(0, 40'000));
     case Fault::kill_in_write:
     case Fault::power_cut_in_write:

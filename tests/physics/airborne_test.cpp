@@ -1,0 +1,128 @@
+#include "physics/airborne.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "physics/field.hpp"
+#include "physics/taper.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::physics;
+
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A piston of radius `a_m` that moves by `u_m`, in rings of equal width with points of nearly equal
+/// distance.
+std::vector<SoundSource> piston(double a_m, double u_m, int rings) {
+  std::vector<SoundSource> sources;
+  for (int ring = 0; ring < rings; ++ring) {
+    const double inner = a_m * ring / rings, outer = a_m * (ring + 1) / rings, middle = 0.5 * (inner + outer);
+    const int count = 6 * ring + 6;
+    const double area = pi * (outer * outer - inner * inner) / count;
+    for (int k = 0; k < count; ++k)
+      sources.push_back(
+          {middle * std::cos(2 * pi * k / count), middle * std::sin(2 * pi * k / count), u_m * area});
+  }
+  return sources;
+}
+
+/// The same integral by the midpoint rule on a fine grid, with the clamped strip's first shape by its
+/// equation.
+std::complex<double> by_midpoints(const Surface& surface, const Tone& tone, Model model, const Place& place) {
+  constexpr int across = 400;
+  const Air air;
+  const int along = 3000;
+  const double omega = 2 * pi * tone.frequency_Hz, k = omega / air.speed_m_s, b = 2.3650203724313523;
+  std::vector<double> x;
+  for (int i = 0; i < along; ++i) x.push_back(surface.length_m * (i + 0.5) / along);
+  const auto v = evaluate_tones(surface, {&tone, 1}, x, model, Normalise::none).front().v;
+  const auto shape = [&](double eta) {
+    if (surface.tension_Pa > 0) return std::cos(pi / 2 * eta);
+    return (std::cosh(b) * std::cos(b * eta) - std::cos(b) * std::cosh(b * eta)) /
+           (std::cosh(b) - std::cos(b));
+  };
+  std::complex<double> sum;
+  for (int i = 0; i < along; ++i) {
+    const double w = half_width_m(surface, x[i]);
+    for (int j = 0; j < across; ++j) {
+      const double eta = -1 + (j + 0.5) * 2 / across;
+      const double r = std::hypot(place.x_m - x[i], place.y_m - eta * w, place.z_m);
+      sum += v[i] * shape(eta) * (surface.length_m / along) * (2 * w / across) * std::polar(1 / r, -k * r);
+    }
+  }
+  return -air.density_kg_m3 * omega * omega / (2 * pi) * sum;
+}
+
+}  // namespace
+
+TEST_CASE("the sound on a piston's axis is the closed form's, near and far", "[physics][airborne]") {
+  const double f = 30000, a = 0.02, u = 1e-6;
+  const Air air;
+  const double omega = 2 * pi * f, k = omega / air.speed_m_s;
+  const auto sources = piston(a, u, 120);
+  for (const double z : {0.01, 0.05, 0.3, 2.0}) {
+    const Place place{0, 0, z};
+    const double expected = 2 * air.density_kg_m3 * air.speed_m_s * omega * u *
+                            std::abs(std::sin(k / 2 * (std::hypot(z, a) - z)));
+    CHECK(std::abs(radiated_pressure_Pa(sources, f, {&place, 1}).front()) == Approx(expected).epsilon(2e-3));
+  }
+  const Place far{0, 0, 2};
+  CHECK_THROWS_AS(radiated_pressure_Pa(sources, 0, {&far, 1}), std::invalid_argument);
+}
+
+TEST_CASE("the integral over a strip is that on a far finer grid, at the ear and close by",
+          "[physics][airborne]") {
+  const auto plate = aluminium_plate();
+  for (const double f : {22400.0, 45000.0}) {
+    const Tone tone{f, 1e-6, 0.3};
+    const auto sources = sound_sources(plate, tone, Model::mode);
+    for (const Place& place : {Place{0.15, 0, 0.4}, Place{-0.2, 0.1, 0.3}, Place{0.3, -0.2, 0.05}}) {
+      const auto expected = by_midpoints(plate, tone, Model::mode, place);
+      const auto found = radiated_pressure_Pa(sources, f, {&place, 1}).front();
+      INFO(f << " Hz at " << place.x_m << ", " << place.y_m << ", " << place.z_m);
+      CHECK(std::abs(found - expected) < 3e-3 * std::abs(expected) + 1e-4);
+    }
+  }
+}
+
+TEST_CASE("no place at that distance or beyond is louder than the loudest one by a tenth of a decibel",
+          "[physics][airborne]") {
+  const auto plate = aluminium_plate();
+  const double distance = 0.4;
+  for (const double f : {22400.0, 31000.0, 45000.0}) {
+    const Tone tone{f, 1e-6, 0};
+    const auto loudest = loudest_sound(plate, tone, Model::mode, distance);
+    const auto sources = sound_sources(plate, tone, Model::mode);
+    std::vector<Place> places;
+    std::uint64_t state = 1;
+    const auto draw = [&state] {
+      state = state * 6364136223846793005u + 1442695040888963407u;
+      return static_cast<double>(state >> 11) * 0x1p-53;
+    };
+    while (places.size() < 1500) {
+      const Place place{-1 + 2.5 * draw(), -0.6 + 1.2 * draw(), 1.2 * draw()};
+      const double nearest = std::clamp(place.x_m, 0.0, plate.length_m);
+      if (std::hypot(place.x_m - nearest, place.y_m, place.z_m) >= distance) places.push_back(place);
+    }
+    for (int i = -600; i <= 600; ++i)  // around the loudest place, along the strip and away from it
+      places.push_back({loudest.place.x_m + 1e-4 * i, 0, std::max(loudest.place.z_m, distance)});
+    double most = 0;
+    for (const auto& p : radiated_pressure_Pa(sources, f, places)) most = std::max(most, std::abs(p));
+    const double level = 20 * std::log10(most / std::numbers::sqrt2 / 20e-6);
+    INFO(f << " Hz: " << loudest.level_dB << " dB at x " << loudest.place.x_m << ", z " << loudest.place.z_m);
+    CHECK(level < loudest.level_dB + 0.1);
+    CHECK(level > loudest.level_dB - 6);
+  }
+}
+
+TEST_CASE("the level follows the displacement, and a distance inside the first Fresnel zone is refused",
+          "[physics][airborne]") {
+  const auto plate = aluminium_plate();
+  const auto soft = loudest_sound(plate, {30000, 1e-7, 0}, Model::mode, 0.4),
+             loud = loudest_sound(plate, {30000, 1e-6, 0}, Model::mode, 0.4);
+  CHECK(loud.level_dB - soft.level_dB == Approx(20).margin(1e-9));
+  CHECK_THROWS_AS(loudest_sound(plate, {30000, 1e-6, 0}, Model::mode, 0.011), std::invalid_argument);
+}

@@ -1,0 +1,117 @@
+#include "station/ui/operator/painter_canvas.hpp"
+
+#include <QGuiApplication>
+#include <QImage>
+#include <cmath>
+
+#include "station/plot/chart.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+constexpr QRgb kPaper = qRgb(255, 255, 255);
+
+/// The picture that `draw` paints into the middle of a sheet of 400 x 300.
+template <class Draw>
+QImage painted(Draw draw) {
+  QImage sheet(400, 300, QImage::Format_RGB32);
+  sheet.fill(kPaper);
+  QPainter painter(&sheet);
+  ui::PainterCanvas canvas(painter, QRectF(0, 0, 400, 300));
+  draw(canvas);
+  return sheet;
+}
+
+/// The smallest rectangle that holds everything that is not paper.
+QRect inked(const QImage& sheet) {
+  QRect all;
+  for (int y = 0; y < sheet.height(); ++y)
+    for (int x = 0; x < sheet.width(); ++x)
+      if (sheet.pixel(x, y) != kPaper) all |= QRect(x, y, 1, 1);
+  return all;
+}
+
+/// Fonts need an application.
+struct Screen {
+  bool offscreen = qputenv("QT_QPA_PLATFORM", "offscreen");
+  int argc = 1;
+  char name[5] = "test";
+  char* argv[2] = {name, nullptr};
+  QGuiApplication application{argc, argv};
+};
+
+const plot::Paint kBlack{"", "#000000", 1, "", 1};
+
+}  // namespace
+
+TEST_CASE("a figure is painted as large as fits, in the middle, with its proportions", "[ui]") {
+  const auto sheet = painted([](plot::Canvas& canvas) {
+    canvas.begin(100, 100, "square");
+    canvas.rectangle({0, 0}, 100, 100, kBlack);
+  });
+  CHECK(inked(sheet) == QRect(50, 0, 300, 300));
+}
+
+TEST_CASE("what lies outside a clip is not painted, and what comes after it is", "[ui]") {
+  const auto clipped = painted([](plot::Canvas& canvas) {
+    canvas.begin(400, 300, "clip");
+    canvas.begin_clip({100, 100}, 50, 60);
+    canvas.line({0, 0}, {400, 300}, {"#000000", "", 4, "", 1});
+    canvas.rectangle({0, 0}, 400, 300, kBlack);
+    canvas.end_clip();
+  });
+  CHECK(inked(clipped) == QRect(100, 100, 50, 60));
+  const auto after = painted([](plot::Canvas& canvas) {
+    canvas.begin(400, 300, "clip");
+    canvas.begin_clip({100, 100}, 50, 60);
+    canvas.end_clip();
+    canvas.rectangle({0, 0}, 20, 30, kBlack);
+  });
+  CHECK(inked(after) == QRect(0, 0, 20, 30));
+}
+
+TEST_CASE("dashes have the figure's length, whatever the width of the line", "[ui]") {
+  for (const double width : {2.0, 6.0}) {
+    const auto sheet = painted([&](plot::Canvas& canvas) {
+      canvas.begin(400, 300, "dashes");
+      canvas.line({0, 150}, {400, 150}, {"#000000", "", width, "40 60", 1});
+    });
+    int dark = 0;
+    for (int x = 0; x < 400; ++x) dark += qGray(sheet.pixel(x, 150)) < 128 ? 1 : 0;
+    CHECK(std::abs(dark - 160) <= 8);
+  }
+}
+
+TEST_CASE("text starts, has its middle or ends where it should, and turns counter-clockwise", "[ui]") {
+  const Screen screen;
+  const auto at = [](plot::Anchor anchor, double degrees) {
+    return inked(painted([&](plot::Canvas& canvas) {
+      canvas.begin(400, 300, "text");
+      canvas.text({200, 150}, "HHHH", 24, anchor, "#000000", 400, degrees);
+    }));
+  };
+  CHECK(std::abs(at(plot::Anchor::start, 0).left() - 200) <= 4);
+  CHECK(std::abs(at(plot::Anchor::middle, 0).center().x() - 200) <= 4);
+  CHECK(std::abs(at(plot::Anchor::end, 0).right() - 200) <= 4);
+  CHECK(std::abs(at(plot::Anchor::start, 0).bottom() - 150) <= 2);
+  const auto upwards = at(plot::Anchor::start, 90);
+  CHECK(upwards.height() > upwards.width());
+  CHECK(std::abs(upwards.bottom() - 150) <= 4);
+}
+
+TEST_CASE("on the screen a figure fills the same frame as in a file", "[ui]") {
+  const Screen screen;
+  plot::Figure figure;
+  figure.title = "A figure";
+  plot::Chart chart{"", {"x", 0, 1, plot::AxisScale::linear}, {"y", 0, 1, plot::AxisScale::linear}, {}};
+  chart.layers.emplace_back(plot::Line{{0, 0.5, 1}, {0.5, 40, 0.5}, 0, ""});
+  figure.charts.push_back(chart);
+  figure.chart_width_px = 400, figure.chart_height_px = 300;
+  const auto sheet = painted([&](plot::Canvas& canvas) { plot::draw(canvas, figure); });
+  int above = 0;
+  for (int x = 0; x < 400; ++x) above += sheet.pixel(x, 4) != kPaper ? 1 : 0;
+  CHECK(above == 0);  // the line leaves the chart, but not its frame
+  CHECK(inked(sheet).width() > 350);
+}
