@@ -110,7 +110,7 @@ LoudestSound loudest_sound(const Surface& surface, const Tone& tone, Model model
   // In the plane y = 0 both halves are equally far away.
   std::erase_if(sources, [](const SoundSource& source) { return source.y_m < 0; });
   for (SoundSource& source : sources) source.volume_m3 *= 2;
-  const auto places = places_around(surface.length_m, distance_m, std::min(3e-3, 0.25 * wave_m));
+  const auto places = places_around(surface.length_m, distance_m, std::min(5e-3, 0.5 * wave_m));
   const auto pressure = radiated_pressure_Pa(sources, tone.frequency_Hz, places, air);
   LoudestSound loudest{std::numeric_limits<double>::lowest(), places.front()};
   for (std::size_t i = 0; i < places.size(); ++i) {

@@ -34,7 +34,7 @@ std::vector<std::complex<double>> radiated_pressure_Pa(std::span<const SoundSour
                                                        double frequency_Hz, std::span<const Place> places,
                                                        const Air& air = {});
 
-// The surface under one tone as sources, at most an eighth of the wavelength in air apart. Across the strip
+// The surface under one tone as sources, about six in a wavelength in air. Across the strip
 // it moves like the first transverse mode at its cut-off. Throws like evaluate_tones().
 std::vector<SoundSource> sound_sources(const Surface& surface, const Tone& tone, Model model,
                                        const Air& air = {});
@@ -47,7 +47,7 @@ struct LoudestSound {
 // The loudest of all places in the plane y = 0 whose distance from the nearest point of the centre line is
 // `distance_m`. Beside that plane and farther away it is less loud, as long as the half-width is below
 // sqrt(wavelength x distance), the width of the first Fresnel zone. The places are a quarter of a wavelength
-// in air apart, at most 3 mm, which costs less than 0.1 dB. Throws std::invalid_argument for a distance
+// in air apart, at most 5 mm, which misses less than 0.3 dB. Throws std::invalid_argument for a distance
 // within that range or below a wavelength.
 LoudestSound loudest_sound(const Surface& surface, const Tone& tone, Model model, double distance_m,
                            const Air& air = {});

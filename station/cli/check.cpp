@@ -7,6 +7,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/sound.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/setup/places.hpp"
 #include "station/simulation/check.hpp"
@@ -111,6 +112,7 @@ Json to_json(const simulation::Check& check) {
        {{"lowest_Hz", planned ? json_number(extremes.lowest_Hz) : Json(nullptr)},
         {"highest_Hz", planned ? json_number(extremes.highest_Hz) : Json(nullptr)}}},
       {"displacement_um", planned ? json_number(extremes.displacement_um) : Json(nullptr)},
+      {"sound", json_sound(check.sound)},
       {"models", check.survey.models},
       {"combinations", check.survey.combinations},
       {"scenes", scenes_json(check.survey)},
@@ -171,6 +173,7 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
       "Tones: {} to {} kHz; the surface moves at most {} um; models: {} ({} of {} combinations planned)\n",
       number(1e-3 * extremes.lowest_Hz, 4), number(1e-3 * extremes.highest_Hz, 4),
       number(extremes.displacement_um, 3), models, check.survey.sights.size(), check.survey.combinations);
+  fmt::print(out, "Sound: {}\n", in_words(check.sound));
   print_cues(out, check.cues);
   if (!check.protocol_defaults.empty()) fmt::print(out, "Defaults used:\n");
   for (const auto& line : check.protocol_defaults) fmt::print(out, "  {}\n", line);

@@ -5,6 +5,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/sound.hpp"
 #include "station/desk/preview.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/resolve.hpp"
@@ -39,7 +40,8 @@ Json tones_json(const scene::DrivePlan& plan) {
   return tones;
 }
 
-Json to_json(const scene::DrivePlan& plan, const protocol::Factors& factors) {
+Json to_json(const scene::DrivePlan& plan, const protocol::Factors& factors,
+             const std::optional<scene::SoundBound>& sound) {
   Json values;
   for (const auto& [name, value] : factors)
     std::visit([&values, &name = name](const auto& v) { values[name] = v; }, value);
@@ -63,6 +65,7 @@ Json to_json(const scene::DrivePlan& plan, const protocol::Factors& factors) {
           {"residual", json_number(plan.residual)},
           {"lowest_friction", json_number(plan.lowest_friction)},
           {"peak_displacement_um", json_number(plan.peak_displacement_m * 1e6)},
+          {"sound", json_sound(sound)},
           {"peak_full_scale", json_number(plan.peak_full_scale)},
           {"crest_factor", json_number(plan.crest_factor)},
           {"audible_products", products},
@@ -77,7 +80,7 @@ Json to_json(const scene::DrivePlan& plan, const protocol::Factors& factors) {
           {"warnings", json_warnings(plan.warnings)}};
 }
 
-void print(std::ostream& out, const scene::DrivePlan& plan) {
+void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<scene::SoundBound>& sound) {
   using text::number;
   fmt::print(out, "Scene {}: boundary {} mm ({} edge)\n", plan.scene.name,
              plan.boundary_m ? number(*plan.boundary_m * 1e3) : "none", physics::format(plan.scene.edge));
@@ -97,6 +100,7 @@ void print(std::ostream& out, const scene::DrivePlan& plan) {
   fmt::print(out, "  surface moves {} um at most, crest factor {}, lowest friction {}\n",
              number(plan.peak_displacement_m * 1e6, 4), number(plan.crest_factor, 3),
              number(plan.lowest_friction, 3));
+  fmt::print(out, "  sound: {}\n", in_words(sound));
   for (const auto& product : plan.audible_products)
     fmt::print(out, "  audible product: {} Hz, order {}\n", number(product.frequency_Hz), product.order);
   for (const auto& warning : plan.warnings) fmt::print(out, "  warning: {}\n", warning.text);
@@ -117,10 +121,14 @@ void plan(const Options& options, Context& context) {
                factors.at(name));
   scene::Planner planner(rig);
   const auto result = planner.plan(protocol::resolve(protocol, options.scene, factors, 0));
+  std::vector<physics::Tone> tones;
+  for (const auto& tone : result.tones)
+    tones.push_back({tone.frequency_Hz, tone.amplitude_m, tone.phase_rad});
+  const auto sound = scene::sound_bound(rig, tones, result.model);
   if (context.json)
-    context.out << to_json(result, factors).dump(2) << "\n";
+    context.out << to_json(result, factors, sound).dump(2) << "\n";
   else
-    print(context.out, result);
+    print(context.out, result, sound);
 }
 
 }  // namespace plan_command

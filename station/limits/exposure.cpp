@@ -96,20 +96,33 @@ double Exposure::earliest_start_s(double wanted_s, std::span<const Exposed> tria
   throw LimitExceeded("the intervals of a trial never keep the rig's limits together; shorten them");
 }
 
-std::string sound_problem(double frequency_Hz, double amplitude, const std::vector<SoundLevel>& measured) {
-  constexpr double lowest_Hz = terms::kAudible_Hz, ultrasonic_Hz = 25000, audible_dB = 75,
-                   ultrasonic_dB = 110;
-  if (!(amplitude > 0)) return "";
+namespace {
+
+/// The first measured level at or above the frequency; the end if the frequency is outside of what was
+/// measured.
+auto measured_from(double frequency_Hz, const std::vector<SoundLevel>& measured) {
   const auto above = std::find_if(measured.begin(), measured.end(), [=](const SoundLevel& level) {
     return level.frequency_Hz >= frequency_Hz;
   });
-  const bool known =
-      above != measured.end() && (above->frequency_Hz == frequency_Hz || above != measured.begin());
-  if (!known)
-    return frequency_Hz < lowest_Hz
+  const bool outside =
+      above == measured.begin() && above != measured.end() && above->frequency_Hz > frequency_Hz;
+  return outside ? measured.end() : above;
+}
+
+}  // namespace
+
+bool sound_measured(double frequency_Hz, const std::vector<SoundLevel>& measured) {
+  return measured_from(frequency_Hz, measured) != measured.end();
+}
+
+std::string sound_problem(double frequency_Hz, double amplitude, const std::vector<SoundLevel>& measured) {
+  if (!(amplitude > 0)) return "";
+  const auto above = measured_from(frequency_Hz, measured);
+  if (above == measured.end())
+    return frequency_Hz < terms::kAudible_Hz
                ? fmt::format(
                      "tone of {:.1f} Hz below {} Hz without a measured sound level in the calibration",
-                     frequency_Hz, lowest_Hz)
+                     frequency_Hz, terms::kAudible_Hz)
                : "";
   double full_scale_dB = above->level_dB;
   if (above->frequency_Hz != frequency_Hz) {
@@ -118,7 +131,7 @@ std::string sound_problem(double frequency_Hz, double amplitude, const std::vect
     full_scale_dB = std::max(below.level_dB, above->level_dB);
   }
   const double level_dB = full_scale_dB + 20 * std::log10(amplitude);
-  const double allowed_dB = frequency_Hz < ultrasonic_Hz ? audible_dB : ultrasonic_dB;
+  const double allowed_dB = terms::allowed_sound_dB(frequency_Hz);
   if (level_dB <= allowed_dB) return "";
   return fmt::format("tone of {:.1f} Hz would be {:.1f} dB loud; allowed {} dB", frequency_Hz, level_dB,
                      allowed_dB);

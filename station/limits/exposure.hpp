@@ -71,10 +71,12 @@ struct SoundLevel {
   double level_dB = 0;
 };
 
-/// For live sessions. A tone below 22.4 kHz needs a measured level at its frequency (between two measured
-/// ones) that stays within 75 dB at its amplitude. From there to 25 kHz a measured level must also stay
-/// within 75 dB; at and above 25 kHz, within 110 dB. Returns the problem, or "" if there is none. The limits
-/// follow occupational guidance; see the rig's documentation.
+/// True if a level was measured at this frequency, or at one below and one above it.
+bool sound_measured(double frequency_Hz, const std::vector<SoundLevel>& measured);
+
+/// For live sessions. A tone below 22.4 kHz needs a measured level (see sound_measured()). A measured level,
+/// at the tone's amplitude, must stay within terms::allowed_sound_dB(). Returns the problem, or "" if there
+/// is none.
 std::string sound_problem(double frequency_Hz, double amplitude, const std::vector<SoundLevel>& measured);
 
 }  // namespace turnpoint::limits

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "physics/model.hpp"
+#include "physics/tone.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/cues.hpp"
@@ -18,6 +20,8 @@ struct Sight {
   std::string block;
   Factors factors;  ///< the factors on which the scene depends
   double lowest_Hz = 0, highest_Hz = 0;
+  std::vector<physics::Tone> tones;  ///< at the drive edge, with the strength roved upwards
+  physics::Model field_model = physics::Model::mode;
   std::optional<double> boundary_mm;
   double displacement_um = 0;  ///< largest anywhere on the surface, with the strength roved upwards
   double lowest_friction = 1;

@@ -1,11 +1,14 @@
 #include "station/setup/prepare.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <regex>
 
 #include "station/calibration/apply.hpp"
 #include "station/limits/exposure.hpp"
 #include "station/protocol/survey.hpp"
+#include "station/scene/sound.hpp"
 #include "station/text/number.hpp"
 #include "station/text/toml.hpp"
 
@@ -42,6 +45,20 @@ bool has_response(const session::Setup& setup) {
          !calibration::parse(setup.calibration_text, "calibration").transducers.empty();
 }
 
+/// What is said if the tones may be too loud in air and not all of their levels were measured.
+std::string unmeasured_sound(const session::Setup& setup, const protocol::Sight& sight) {
+  const auto measured = [&](const physics::Tone& tone) {
+    return limits::sound_measured(tone.frequency_Hz, setup.sound);
+  };
+  if (std::all_of(sight.tones.begin(), sight.tones.end(), measured)) return "";
+  const auto bound = scene::sound_bound(setup.rig, sight.tones, sight.field_model);
+  if (bound && bound->level_dB <= bound->allowed_dB) return "";
+  if (!bound) return "no bound is known for the airborne sound of this surface";
+  return fmt::format(
+      "at {:.1f} kHz the airborne sound may reach {:.0f} dB {} m away; recommended: at most {} dB",
+      1e-3 * bound->frequency_Hz, bound->level_dB, scene::kEarDistance_m, bound->allowed_dB);
+}
+
 /// A live session has stricter requirements than a pilot: everything that reaches the finger must have been
 /// measured.
 void check_live(const session::Setup& setup, const protocol::Survey& survey, std::vector<Problem>& problems) {
@@ -59,7 +76,8 @@ void check_live(const session::Setup& setup, const protocol::Survey& survey, std
   for (const auto& sight : survey.sights) {
     // Check only that a level was measured. Whether it is allowed depends on each tone's amplitude and is
     // checked in the trial.
-    const auto problem = limits::sound_problem(sight.lowest_Hz, 1e-9, setup.sound);
+    auto problem = limits::sound_problem(sight.lowest_Hz, 1e-9, setup.sound);
+    if (problem.empty()) problem = unmeasured_sound(setup, sight);
     if (problem.empty()) continue;
     add("scene \"" + sight.scene + "\": " + problem, "measured levels around it in the calibration");
     break;

@@ -108,6 +108,22 @@ void estimate(const Protocol& protocol, int sessions, const std::stop_token& sto
   check.simulated_sessions = sessions;
 }
 
+std::optional<scene::SoundBound> loudest(const protocol::Survey& survey, const rig::Rig& rig,
+                                         const std::stop_token& stop) {
+  std::vector<std::optional<scene::SoundBound>> bounds(survey.sights.size());
+  in_parallel(static_cast<int>(bounds.size()), processors(), {}, [&](int i) {
+    if (stop.stop_requested()) throw protocol::Abandoned();
+    const auto& sight = survey.sights[static_cast<std::size_t>(i)];
+    bounds[static_cast<std::size_t>(i)] = scene::sound_bound(rig, sight.tones, sight.field_model);
+  });
+  std::optional<scene::SoundBound> most;
+  for (const auto& bound : bounds) {
+    if (!bound) return std::nullopt;
+    if (!most || bound->level_dB - bound->allowed_dB > most->level_dB - most->allowed_dB) most = bound;
+  }
+  return most;
+}
+
 }  // namespace
 
 Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options,
@@ -135,6 +151,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   try {
     estimate(*protocol, options.sessions, stop, check);
     if (stop.stop_requested()) throw protocol::Abandoned();
+    if (check.problems.empty()) check.sound = loudest(check.survey, *rig, stop);
     if (check.problems.empty()) check.cues = cue_guard(*protocol, *rig, check.survey, stop);
   } catch (const protocol::Abandoned&) {
     throw;

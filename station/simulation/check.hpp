@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -6,6 +7,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/rig/rig.hpp"
+#include "station/scene/sound.hpp"
 #include "station/simulation/cue_guard.hpp"
 
 namespace turnpoint::simulation {
@@ -34,6 +36,8 @@ struct Check {
   int simulated_sessions = 0;
   protocol::Survey survey;
   CueGuard cues;
+  /// of the loudest combination; empty if the bound is not known for this rig
+  std::optional<scene::SoundBound> sound;
   std::vector<std::string> protocol_defaults, rig_defaults;
 };
 

@@ -7,6 +7,11 @@ namespace turnpoint::terms {
 /// lower end of the third-octave band around 25 kHz.
 inline constexpr double kAudible_Hz = 22400;
 
+/// The recommended limit of airborne sound (rms, re 20 uPa) in the third-octave band of a frequency: 75 dB in
+/// the bands up to 20 kHz, 110 dB above. For workplaces: INIRC/IRPA, Health Physics 46 (1984) 969; Health
+/// Canada, Safety Code 24 (1991). For the public INIRC/IRPA recommends 70 and 100 dB.
+constexpr double allowed_sound_dB(double frequency_Hz) { return frequency_Hz < kAudible_Hz ? 75 : 110; }
+
 /// Highest frequency of a tone as a share of the sampling rate: the pass band of common converters.
 inline constexpr double kHighestShareOfRate = 0.45;
 

@@ -1,0 +1,30 @@
+#pragma once
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+
+#include "station/cli/json.hpp"
+#include "station/scene/sound.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::cli {
+
+/// The bound of the airborne sound, for a line of text.
+inline std::string in_words(const std::optional<scene::SoundBound>& sound) {
+  if (!sound) return "no bound is known for this surface; a live session needs measured levels";
+  return fmt::format("at most {} dB at an ear {} m away ({} kHz); recommended: at most {} dB{}",
+                     text::number(sound->level_dB, 4), text::number(scene::kEarDistance_m),
+                     text::number(1e-3 * sound->frequency_Hz, 4), text::number(sound->allowed_dB),
+                     sound->level_dB > sound->allowed_dB ? "; a live session needs measured levels" : "");
+}
+
+inline Json json_sound(const std::optional<scene::SoundBound>& sound) {
+  if (!sound) return nullptr;
+  return {{"bound_dB", json_number(sound->level_dB)},
+          {"allowed_dB", json_number(sound->allowed_dB)},
+          {"frequency_Hz", json_number(sound->frequency_Hz)},
+          {"ear_distance_m", scene::kEarDistance_m}};
+}
+
+}  // namespace turnpoint::cli
