@@ -1,10 +1,10 @@
-# The destinations of `cmake --install`, and the Debian package: `cpack -G DEB` in the build folder.
+# Where `cmake --install` puts the files, and the Debian package (run `cpack -G DEB` in the build folder).
 install(TARGETS turnpoint RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT station)
 if(TURNPOINT_UI)
   install(TARGETS turnpoint-ui RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT station)
 endif()
 install(DIRECTORY protocols deploy/rigs DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint COMPONENT station)
-# Keep the manuals' folder structure, so that their links work.
+# Keep the folder structure of the manuals, so that the links between them work.
 file(GLOB drawings RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS deploy/drawings/*.svg)
 foreach(manual README.md LICENSE deploy/README.md deploy/boards.md deploy/to-measure.md deploy/rigs/README.md ${drawings} physics/README.md protocols/README.md
         station/store/README.md tests/README.md)
@@ -18,8 +18,8 @@ install(FILES deploy/system/turnpoint.udev DESTINATION lib/udev/rules.d RENAME 6
 install(FILES deploy/system/turnpoint.sysusers DESTINATION lib/sysusers.d RENAME turnpoint.conf COMPONENT station)
 install(FILES deploy/system/turnpoint.tmpfiles DESTINATION lib/tmpfiles.d RENAME turnpoint.conf COMPONENT station)
 
-# QML modules and fonts are loaded at run time, so no tool detects them as dependencies: they are the `run`
-# packages.
+# QML modules and fonts are loaded at run time, so no tool detects these dependencies. They are listed in the
+# section `run` of deploy/packages.
 file(STRINGS deploy/packages packages REGEX "^run ")
 list(TRANSFORM packages REPLACE "^run +" "")
 list(TRANSFORM packages REPLACE "\\|" " | ")

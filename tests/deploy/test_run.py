@@ -96,8 +96,8 @@ class Run(unittest.TestCase):
                         {"WAYLAND_DISPLAY": self.folder + "/wayland-0"}, {"WAYLAND_DISPLAY": "wayland-0"}):
             name = next(iter(display.values()))
             status, errors, calls = self.run_it(**display)
-            self.assertEqual((status, errors), (0, f"deploy/run: display {name} cannot be reached; a simulated observer "
-                                                   "answers, without a screen\n"))
+            self.assertEqual((status, errors), (0, f"deploy/run: display {name} cannot be reached; running without a screen, "
+                                                   "with a simulated observer\n"))
             self.assertIn("--headless --observer sim\n", calls)
             _, errors, _ = self.run_it("--headless", **display)
             self.assertEqual(errors, "", "without a screen, no display is looked for")
