@@ -53,7 +53,7 @@ TEST_CASE("A trend over trials is found with level taken out, and is none for fe
   for (int i = 0; i < 80; ++i) {
     const double jitter = 0.02 * ((i * 7) % 5 - 2);
     slowing.push_back(answered(i, i % 2, i % 2, 0.5 + 0.002 * i + jitter));
-    // All hard (slow) trials come late: there is a trend only if level is not controlled for.
+    // All hard trials, which are also slow, come late: there is a trend only if level is not controlled for.
     steady.push_back(answered(i, i >= 40, i >= 40, (i >= 40 ? 0.9 : 0.5) + jitter));
   }
   const auto found = fatigue(slowing);

@@ -73,7 +73,7 @@ TEST_CASE("A step leaves the slope limited, not estimated", "[analysis]") {
   const auto fit = fit_psychometric({{-20, 20, 0}, {-10, 20, 0}, {10, 20, 20}, {20, 20, 20}}, options);
   REQUIRE(fit.parameters);
   CHECK(says(fit.statements, "step"));
-  CHECK(fit.at_bound.slope_low);  // the spread of a normal: its lower bound
+  CHECK(fit.at_bound.slope_low);  // the slope is at its lower bound
   CHECK(fit.parameters->threshold > -10);
   CHECK(fit.parameters->threshold < 10);
   const auto drawn = bootstrap(fit, {});
@@ -199,8 +199,8 @@ TEST_CASE("A bootstrap depends on its seed and stream alone", "[analysis]") {
 
 TEST_CASE("The fit agrees with psignifit 4.3 on the same data", "[analysis]") {
   // Results of psignifit 4.3 (Python) for 2AFC with sigmoids weibull and norm, default priors and maximum a
-  // posteriori. Its threshold is the 50 % point and its width the 5-95 % range of the core. 95 % intervals
-  // below.
+  // posteriori: the threshold is the 50 % point, the width is the 5-95 % range of the core, low and high are
+  // the ends of the threshold's 95 % interval.
   struct Row {
     Function function;
     double threshold, width, low, high;
@@ -217,7 +217,7 @@ TEST_CASE("The fit agrees with psignifit 4.3 on the same data", "[analysis]") {
     const double half = fit.parameters->threshold + core_inverse(row.function, 0.5) / rate;
     const double width = (core_inverse(row.function, 0.95) - core_inverse(row.function, 0.05)) / rate;
     CHECK(half == Approx(row.threshold).margin(0.25));
-    CHECK(width == Approx(row.width).epsilon(0.1));  // the prior of psignifit on the width pulls it outwards
+    CHECK(width == Approx(row.width).epsilon(0.1));  // psignifit's prior makes the width larger
     const auto drawn = bootstrap(fit, {});
     const double shift = half - fit.parameters->threshold;
     CHECK(drawn.threshold->interval.low + shift == Approx(row.low).margin(1.2));
@@ -227,8 +227,9 @@ TEST_CASE("The fit agrees with psignifit 4.3 on the same data", "[analysis]") {
 
 TEST_CASE("Bootstrap intervals cover the truth about as often as they say", "[analysis]") {
   // A longer run (400 sessions with 300 replicates) gave these coverages of threshold, slope and 75 % point.
-  // Weibull, 6 levels x 40: .95, .93, .94. Normal with tied lapse, 8 levels x 20: .95, .94, .94; without
-  // lapse, x 10: .97, .94, .94. This test uses fewer sessions, so that two standard errors are .04.
+  // Weibull, 6 levels x 40 trials: .95, .93, .94. Normal with tied lapse, 8 levels x 20: .95, .94, .94.
+  // Normal without lapse, 8 levels x 10: .97, .94, .94. This test uses fewer sessions: two standard errors
+  // are .04.
   struct Design {
     FitOptions options;
     Psychometric truth;
@@ -258,12 +259,13 @@ TEST_CASE("Bootstrap intervals cover the truth about as often as they say", "[an
     }
     CHECK(threshold >= 0.91 * sessions);
     CHECK(slope >= 0.90 * sessions);
-    CHECK(narrow < 0.85 * sessions);  // an interval of half the width would be detected
+    CHECK(narrow < 0.85 * sessions);  // negative control: intervals of half the width fail
   }
 }
 
 TEST_CASE("trials without a signal fix the rate of false alarms", "[analysis]") {
-  // Expected counts of P = .2 + .78 (1 - exp(-(x/4)^2)). The fit must return these parameters.
+  // The data are the expected counts of P = .2 + .78 (1 - exp(-(x/4)^2)). The fit must return these
+  // parameters.
   FitOptions options;
   options.scale = Scale::log10;
   options.guess = Guess::fitted;
@@ -279,14 +281,14 @@ TEST_CASE("trials without a signal fix the rate of false alarms", "[analysis]") 
   CHECK(fit.parameters->slope == Approx(2).epsilon(3e-3));
   CHECK(fit.parameters->guess == Approx(0.2).margin(1e-3));
   CHECK(fit.parameters->lapse == Approx(0.02).margin(1e-3));
-  // Trials without a signal determine the asymptote, even if there are few trials at levels near it.
+  // Many trials without a signal determine the guess rate, even if there are few trials at the other levels.
   for (auto& point : data) point.trials /= 1000, point.positive /= 1000;
   data[0] = {kNoise, 400, 160};
   const auto found = bootstrap(fit_psychometric(data, options), {100, 0.95, 1, 0, 5});
   REQUIRE(found.guess);
   CHECK(found.guess->interval.low > 0.3);
   CHECK(found.guess->interval.high < 0.5);
-  CHECK(found.band_level.front() > 0.5);  // the band does not include the noise level
+  CHECK(found.band_level.front() > 0.5);  // the band excludes trials without a signal
   const auto posterior = fit_posterior(data, options, {0.5, 30, 0.3, 10}, 5);
   REQUIRE(posterior.intervals.guess);
   CHECK(posterior.intervals.guess->interval.low > 0.3);

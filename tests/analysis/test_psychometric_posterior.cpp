@@ -11,7 +11,7 @@ namespace rnd = turnpoint::random;
 
 namespace {
 
-/// A two-down-one-up staircase in steps of 2 dB and then 1 dB from -5 dB: levels that the answers choose.
+/// A two-down-one-up staircase from -5 dB in steps of 2 dB and then 1 dB, whose levels depend on the answers.
 std::vector<LevelCount> staircase(const Psychometric& truth, int trials, int run) {
   rnd::Draws draws({5, rnd::Stream::observer, run, 0, 0});
   std::vector<LevelCount> data;
@@ -59,7 +59,7 @@ reference::Samples sampled(const PosteriorFit& fit) {
       1'500'000, 3);
 }
 
-/// Checks that 2.5 % of the samples lie beyond either end of the interval and half of them below the
+/// Checks that 2.5 % of the samples lie below the interval, 2.5 % above it, and half of them below the
 /// estimate, within sampling error.
 void check_interval(const std::vector<double>& samples, double estimate, const ParameterInterval& found) {
   CHECK(reference::share_inside(samples, -1e300, estimate) == Approx(0.5).margin(0.03));

@@ -19,7 +19,8 @@ analysis::TrialRecord set_to(double value, double start = 0) {
 }  // namespace
 
 TEST_CASE("Settings have their mean, scatter and intervals by Student and chi squared", "[analysis]") {
-  // Eight values; the 97.5 % points are t(7) = 2.364624 and chi2(7) = 16.012764 and 1.689869 (tables).
+  // The 97.5 % points for these eight values are t(7) = 2.364624 and chi2(7) = 16.012764 and 1.689869
+  // (tables).
   const std::vector<double> values{2, 4, 4, 4, 5, 5, 7, 9};
   std::vector<analysis::TrialRecord> trials;
   for (const double v : values) trials.push_back(set_to(v));
@@ -33,7 +34,7 @@ TEST_CASE("Settings have their mean, scatter and intervals by Student and chi sq
   CHECK(all[0].sd->value == Approx(sd));
   CHECK(all[0].sd->interval.low == Approx(std::sqrt(32 / 16.012764)).epsilon(1e-6));
   CHECK(all[0].sd->interval.high == Approx(std::sqrt(32 / 1.689869)).epsilon(1e-6));
-  CHECK_FALSE(all[0].start_slope);  // every slider began at the same place
+  CHECK_FALSE(all[0].start_slope);  // all settings started from the same slider position
 }
 
 TEST_CASE("Settings that follow where the slider started are said to", "[analysis]") {

@@ -79,8 +79,8 @@ TEST_CASE("The normal quantile inverts the distribution function", "[analysis]")
 
 namespace {
 
-/// A session in which an observer with a criterion answers yes/no (or gives ratings, if there are more
-/// answers); half of the trials are noise.
+/// A session of yes/no answers of an observer with a criterion, or of ratings if there are more than two
+/// answers. Half of the trials are noise.
 std::vector<TrialRecord> yes_no_session(const turnpoint::observer::Observer& observer, int answers,
                                         int trials, int run) {
   using namespace turnpoint;
@@ -107,7 +107,7 @@ bool holds(const std::optional<Estimate>& estimate, double value) {
 }  // namespace
 
 TEST_CASE("d' and criterion of a yes/no observer are recovered inside their intervals", "[analysis]") {
-  // d' is 1.349 at level 3 and twice that at 6; c is the criterion minus half of d'.
+  // d' is 1.349 at level 3 and twice that at level 6; c is the criterion minus half of d'.
   const turnpoint::observer::Observer observer(
       turnpoint::observer::parse("sim:threshold=3,lapse=0,criterion=0.9"));
   const int sessions = 400;
@@ -152,7 +152,7 @@ TEST_CASE("d' of sides and of forced choice follow their definitions", "[analysi
   const auto forced = detect(trials, {}, Detecting::forced_choice, 1);
   CHECK(*forced[0].level == -12);
   CHECK(forced[0].d_prime->value == Approx(direct.d_prime / std::sqrt(2.0)));
-  trials.resize(100);  // only trials with a signal
+  trials.resize(100);  // keep only the trials with a signal: no d'
   CHECK_FALSE(detect(trials, {}, Detecting::forced_choice, 1)[0].d_prime);
 }
 
@@ -162,12 +162,13 @@ TEST_CASE("the ROC of ratings has the area that d' gives, and its interval holds
   REQUIRE(example->points.size() == 4);
   CHECK(example->points[1].hits == Approx(0.6));
   CHECK(example->points[1].false_alarms == Approx(0.1));
-  // Mann and Whitney's count of pairs by hand: (30 (15 + 30 + 5/2) + 15 (30 + 15/2) + 5 (30/2)) / 2500.
+  // The expected area, counted by hand as Mann and Whitney count pairs: (30 (15 + 30 + 5/2) + 15 (30 + 15/2)
+  // + 5 (30/2)) / 2500.
   CHECK(example->area.value == Approx((30 * 47.5 + 15 * 37.5 + 5 * 15) / 2500.0));
   const turnpoint::observer::Observer observer(turnpoint::observer::parse("sim:threshold=3,lapse=0"));
   int held = 0;
   const int sessions = 200;
-  double expected = 0, below = 0;  // the area below six ratings
+  double expected = 0, below = 0;  // `expected` is the area below the ROC of six ratings
   turnpoint::observer::Question question;
   question.decides = turnpoint::observer::Decides::presence, question.answers = 6;
   for (int rating = 0; rating < 6; ++rating) {

@@ -17,7 +17,8 @@ bool says(const std::vector<Statement>& statements, const std::string& code) {
   return false;
 }
 
-/// Trials of a simulated diffusion with three difficulties; boundary and Ter depend on the instruction.
+/// Simulated diffusion trials with three difficulties; boundary and non-decision time (Ter) depend on the
+/// instruction.
 std::vector<TrialRecord> session(double speed_boundary, double accuracy_boundary, int per_cell, int run) {
   rnd::Draws draws({5, rnd::Stream::observer, run, 0, 0});
   std::vector<TrialRecord> trials;
@@ -81,7 +82,7 @@ TEST_CASE("The shared fit of one condition is plain EZ, and of exact moments the
   CHECK(one->boundary == Approx(0.1399702).margin(1e-7));
   CHECK(one->drift[0] == Approx(0.0999385).margin(1e-7));
   CHECK(one->nondecision_s == Approx(0.30003).margin(1e-6));
-  // Moments for a = .12 and Ter = .3, from Wagenmakers' equations 3, 5 and 9.
+  // Exact moments for boundary a = .12 and Ter = .3, from equations 3, 5 and 9 of Wagenmakers et al. (2007).
   std::vector<EzMoments> exact;
   for (const double v : {0.02, 0.1, 0.25}) {
     const double a = 0.12, s2 = 0.01, y = -v * a / s2, e = std::exp(y);
@@ -98,7 +99,8 @@ TEST_CASE("The shared fit of one condition is plain EZ, and of exact moments the
 TEST_CASE("Boundary and time outside the decision are recovered inside their intervals", "[analysis]") {
   TradeOptions options;
   options.replicates = 200;
-  // with 600 sessions: .95 for boundaries, .93 for Ter, .96 for differences of boundaries
+  // A run of 600 sessions gave coverages of .95 for boundaries, .93 for Ter, .96 for differences of
+  // boundaries.
   const int sessions = 300;
   double sum_a = 0, sum_t = 0;
   int boundary = 0, nondecision = 0, separated = 0, drift = 0, gap = 0, without = 0;
@@ -107,7 +109,8 @@ TEST_CASE("Boundary and time outside the decision are recovered inside their int
     REQUIRE(result.instructions.size() == 2);
     const auto& speed = result.instructions[0];
     const auto& accuracy = result.instructions[1];
-    // In about one session of several hundred too many replicates cannot be fitted; there is then no number.
+    // In one of some hundred sessions too many bootstrap replicates cannot be fitted, so there is no
+    // interval.
     if (!speed.boundary || !accuracy.boundary || !result.differences[2].estimate) {
       ++without;
       continue;
@@ -188,7 +191,7 @@ TEST_CASE("The conditional accuracy function has bins of equal counts", "[analys
   std::vector<bool> correct;
   for (int i = 0; i < 102; ++i) {
     times.push_back(1.02 - 0.01 * i);
-    correct.push_back(i < 51);  // only slow answers are right
+    correct.push_back(i < 51);  // slow answers are right, fast ones wrong
   }
   const auto bins = conditional_accuracy(times, correct, 5);
   REQUIRE(bins.size() == 5);

@@ -14,7 +14,7 @@ import tempfile
 
 SECTOR = 512
 FLUSH, DISCARD = 1, 4
-MARK_SECTOR = (31 << 20) // SECTOR  # as in programs/disk_marker.hpp
+MARK_SECTOR = (31 << 20) // SECTOR  # the sector of marks, as in programs/disk_marker.hpp
 
 
 @dataclasses.dataclass
@@ -26,7 +26,8 @@ class Entry:
 
 @dataclasses.dataclass
 class Cut:
-    files: pathlib.Path  # the files on the disk after the cut and the file system's own repair; replaced at the next cut
+    # the disk's files after the cut and the file system's repair; the next cut replaces them
+    files: pathlib.Path
     marked: int          # number of the last mark that the disk had accepted
     position: int        # position of the cut in the record
 
@@ -96,7 +97,7 @@ def cuts(name, count, seed):
     draw = random.Random(seed)
     positions = sorted(draw.randrange(marked[0][0], marked[-1][0]) for _ in range(count))
     flushed = bytearray((out / "disk.start.img").read_bytes())
-    done = 0  # number of entries that are in `flushed`
+    done = 0  # number of recorded writes that `flushed` contains
     memory = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
     with tempfile.TemporaryDirectory(dir=memory, prefix="power-cut-") as directory:
         for position in positions:

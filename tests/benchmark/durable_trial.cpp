@@ -18,7 +18,7 @@ using namespace store;
 
 namespace {
 
-constexpr int kEvents = 4;  // touches and answers in a usual trial
+constexpr int kEvents = 4;  // number of touches and answers in a usual trial
 
 SessionStart bench_session() {
   SessionStart start;
@@ -138,7 +138,7 @@ std::vector<DurableTrial> time_durable_trials(const std::string& directory, int 
   ways.emplace_back("session log", through_the_log(folder.path + "/log.sqlite"));
   ways.emplace_back("bare SQLite, OFF (not durable)", bare(folder.path + "/off.sqlite", "OFF"));
   std::vector<std::vector<double>> times_ms(ways.size());
-  // Take turns, so that other activity on the disk affects all methods equally.
+  // The methods take turns, so that other activity on the disk affects all of them equally.
   for (int trial = 0; trial < trials; ++trial)
     for (std::size_t way = 0; way < ways.size(); ++way) {
       const auto start = std::chrono::steady_clock::now();

@@ -8,16 +8,16 @@ namespace turnpoint::benchmark {
 struct DurableTrial {
   std::string what;
   int trials = 0;
-  /// cost of `presented` and of the trial with its tones and events, both durable
+  /// time to make `presented` durable plus time to make the trial with its tones and events durable
   double median_ms = 0, p99_ms = 0;
-  double ratio = 0;  ///< median, relative to bare SQLite
+  double ratio = 0;  ///< median divided by that of plain SQLite
 };
 
-/// Writes trials into databases below `directory` (its disk is what is measured), alternately through a
-/// session log and through plain SQLite calls. The plain calls write the same rows in the same transactions
-/// with WAL and synchronous FULL, but without triggers, checks and keys. For comparison there is plain SQLite
-/// that does not wait for the disk (synchronous OFF), which shows how much of the cost is the disk's. The
-/// files are removed. Throws store::StoreError.
+/// Writes trials into databases below `directory`, whose disk is measured, alternately through a session log
+/// and through plain SQLite calls. The plain calls write the same rows in the same transactions with WAL and
+/// synchronous FULL, but without triggers, checks and keys. To show how much of the cost is the disk's, plain
+/// SQLite is also measured with synchronous OFF, which does not wait for the disk. The files are removed.
+/// Throws store::StoreError.
 std::vector<DurableTrial> time_durable_trials(const std::string& directory, int trials);
 
 }  // namespace turnpoint::benchmark

@@ -30,13 +30,12 @@ struct Block {
 struct Method {
   std::string name;
   std::function<void(std::int64_t frame, Block& out)> render;
-  bool free_running =
-      false;  ///< its error grows with the number of frames computed, not with the frame's number
+  bool free_running = false;  ///< true if the error grows with every frame computed since the start
   bool narrow = false;
 };
 
-// The exact sine for the frequency that the increment represents, so that methods are judged by their
-// arithmetic and not by the rounding of the frequency. The phase of a frame is an exact 64-bit fraction of a
+// The exact sine for the frequency that the phase increment represents, so that a method is judged by its
+// arithmetic and not by the rounding of its frequency. The phase of a frame is an exact 64-bit fraction of a
 // cycle.
 double exact_sine(std::uint64_t increment, std::int64_t frame) {
   const auto phase = static_cast<std::int64_t>(increment * static_cast<std::uint64_t>(frame));

@@ -8,21 +8,21 @@ namespace turnpoint::benchmark {
 /// cost.
 struct SynthMethod {
   std::string name;
-  std::vector<double> error_dB;  ///< re full scale, at each of `times_s`
-  double ns_per_tone_frame = 0;  ///< on this machine
+  std::vector<double> error_dB;  ///< largest error relative to full scale, one value for each of `times_s`
+  double ns_per_tone_frame = 0;  ///< time to compute one frame of one tone on this machine
 };
 
 struct SynthBenchmark {
   double frequency_Hz = 0;
   int rate_Hz = 0;
-  std::string processor;  ///< which of our loops was used
+  std::string processor;  ///< instruction set of the station's synthesis loop that was used
   std::vector<double> times_s;
-  std::vector<SynthMethod> methods;  ///< ours is first
+  std::vector<SynthMethod> methods;  ///< the station's own method is first
 };
 
-/// Compares our method with common ones (table with linear interpolation, rotation, biquad, libm with an
-/// exact phase, sin(2 pi f t) with a growing t in double and float): error against time. Runs for about a
-/// second.
+/// Compares the station's method with common ones (table with linear interpolation, rotation, biquad, libm
+/// with an exact phase, sin(2 pi f t) with a growing t in double and float): error against time. Runs for
+/// about a second.
 SynthBenchmark benchmark_synthesis(double frequency_Hz = 19600.123, int rate_Hz = 192000);
 
 }  // namespace turnpoint::benchmark

@@ -93,7 +93,7 @@ void bench_field(const Scene& scene, double budget_s, std::vector<PhysicsRow>& r
       const double error = largest_difference(amplitudes(*make(), x), truth);
       const double took = best_time(budget_s, [&] { make()->evaluate(x, 1.0, 0.0, v, ln); });
       rows.push_back({Task::field, scene.name, std::string(physics::name(model)), "", kPoints, took, error});
-    } catch (const std::domain_error&) {  // this model does not exist here
+    } catch (const std::domain_error&) {  // this model cannot describe this scene
     }
   }
   for (const auto& [setting, resolution] : resolutions()) {
@@ -160,7 +160,7 @@ void bench_equation(const Scene& scene, double budget_s, std::vector<PhysicsRow>
   for (const ScipyRun& run : run_scipy(problem)) add(run.name, run.setting, run.seconds, run.v);
 }
 
-/// The closed Airy profile: compares our Airy function with Boost.Math's at the same arguments.
+/// Measures the closed Airy profile, and compares our Airy function with Boost.Math's at the same arguments.
 void bench_airy(const Scene& scene, double budget_s, std::vector<PhysicsRow>& rows) {
   const auto scale = physics::airy_scale(scene.surface, scene.frequency_Hz);
   std::vector<double> arguments, ours(kPoints);

@@ -6,23 +6,24 @@
 
 namespace turnpoint::benchmark {
 
-/// The reference for the error. Only answers with the same reference can be compared.
+/// Selects the reference solution for the error. Only errors against the same reference can be compared.
 enum class Task {
-  field,     ///< the two-dimensional field, by `modes` at a much finer resolution
-  equation,  ///< the one-mode equation, in extended precision by an unrelated method
-  airy,      ///< the seed's closed Airy profile
-  look_up    ///< conversion between boundary and frequency by a map: error of the round trip, in metres
+  field,     ///< reference: the two-dimensional field, by `modes` at a much finer resolution
+  equation,  ///< reference: the one-mode equation solved in extended precision by an unrelated method
+  airy,      ///< reference: the closed Airy profile of the 1998 paper
+  look_up    ///< converts a boundary to a frequency and back by a map; the error is that of the round trip,
+             ///< in metres
 };
 
 /// One row of results. `error` is the largest difference of |v| with the last maximum at one (for look_up:
 /// metres); negative means not measured.
 struct PhysicsRow {
   Task task = Task::field;
-  std::string scene;    ///< "seed brass 19.6 kHz, lossless", ...
+  std::string scene;    ///< such as "seed brass 19.6 kHz, lossless"
   std::string solver;   ///< name of a model or of a general solver
   std::string setting;  ///< tolerance or resolution
   int points = 0;
-  double seconds = 0;  ///< best of several runs, for all points
+  double seconds = 0;  ///< time for all points, best of several runs
   double error = -1;
 };
 
@@ -31,7 +32,8 @@ struct PhysicsRow {
 /// `budget_s`.
 std::vector<PhysicsRow> measure_physics(double budget_s);
 
-/// Figures of error against time, one panel per scene, for the field and for the equation.
+/// Figures of the error against the time, one panel per scene: one figure for the tasks `field` and one for
+/// `equation`.
 std::vector<Picture> physics_pictures(const std::vector<PhysicsRow>& rows);
 
 Report bench_physics(double budget_s);

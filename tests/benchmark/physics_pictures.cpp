@@ -7,11 +7,11 @@ namespace turnpoint::benchmark {
 
 namespace {
 
-/// A series in the figure, in the order of the legend: all solvers whose names begin with one of these.
+/// A series in the figure: all solvers whose names begin with one of these. The legend has the same order.
 struct Series {
   const char* label;
   std::vector<std::string> beginnings;
-  bool joined = true;  ///< draw a line through several settings of one solver
+  bool joined = true;  ///< whether to draw a line through the settings of a solver
 };
 
 const std::vector<Series> kRungs{{"airy", {"airy"}},

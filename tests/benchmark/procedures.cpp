@@ -12,7 +12,7 @@ namespace turnpoint::benchmark {
 
 namespace {
 
-/// `count` evenly spaced values between from and to.
+/// `count` evenly spaced values from `from` to `to`.
 std::vector<double> spaced(double from, double to, std::size_t count) {
   std::vector<double> values(count);
   for (std::size_t i = 0; i < count; ++i)
@@ -26,7 +26,7 @@ struct Shape {
   int trials;
 };
 
-// A usual and a fine grid for threshold, slope and lapse.
+// A grid of usual size and a fine one for threshold, slope and lapse.
 constexpr std::array<Shape, 2> kShapes{{{41, 81, 21, 5, 200}, {81, 101, 41, 11, 60}}};
 
 procedure::Spec spec_of(const Shape& shape) {
@@ -62,17 +62,18 @@ std::vector<Cell> own(const Shape& shape) {
           static_cast<double>(posterior.memory_bytes()) / 1e6};
 }
 
-/// The grid's size as arguments for the scripts of both other programs: stimuli, thresholds, slopes, lapses.
+/// The grid's size as arguments for the scripts of the other programs: stimuli, thresholds, slopes, lapses.
 std::vector<std::string> arguments_of(const Shape& shape) {
   return {std::to_string(shape.stimuli), std::to_string(shape.thresholds), std::to_string(shape.slopes),
           std::to_string(shape.lapses)};
 }
 
-/// Reads a row for another program from its line "version median p99"; empty if the program is missing.
+/// Makes a table row for another program from its output "version median p99"; empty if the program is
+/// missing.
 std::vector<std::vector<Cell>> peer(const std::string& name, const Shape& shape,
                                     const std::vector<std::string>& lines) {
   if (lines.empty()) return {};
-  std::istringstream words(lines.back());  // only the last line counts: a program may print a greeting first
+  std::istringstream words(lines.back());  // use the last line, because a program may print a greeting first
   std::string version;
   double median_ms = 0, p99_ms = 0;
   if (!(words >> version >> median_ms >> p99_ms)) return {};
@@ -80,7 +81,7 @@ std::vector<std::vector<Cell>> peer(const std::string& name, const Shape& shape,
            static_cast<double>(shape.thresholds * shape.slopes * shape.lapses), median_ms, p99_ms, Cell{}}};
 }
 
-/// Time per trial against the size of the grid, one series per program.
+/// A figure of the time per trial against the size of the grid, one series per program.
 Picture picture_of_procedures(const Table& table) {
   plot::Chart panel;
   panel.title = "One trial of QUEST+: median (marker) to 99th percentile";

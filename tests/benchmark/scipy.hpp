@@ -13,8 +13,8 @@ struct ScipyRun {
   Solution v;
 };
 
-/// Runs solve_ivp (DOP853, three tolerances) on the same equation and, on a wedge, special.jv (complex
-/// argument). Empty if python3 has no SciPy.
+/// Solves the same equation with SciPy's solve_ivp (DOP853, three tolerances) and, on a wedge, with
+/// special.jv (complex argument). Returns an empty list if python3 has no SciPy.
 std::vector<ScipyRun> run_scipy(const OneModeProblem& problem);
 
 }  // namespace turnpoint::benchmark

@@ -31,11 +31,11 @@ Complex potential(const OneModeProblem& p, double x) {
   return p.k_squared - (p.b + p.c * w1 * w1) / (w * w);
 }
 
-/// Starting point of a solver: where the mode has decayed by e^-36 beyond its turning point, or the end of
-/// the surface.
+/// Starting point of a solver: the point beyond the turning point where the mode has decayed by e^-36, or the
+/// end of the surface if that comes first.
 struct Start {
   double x_m = 0;
-  bool held = false;  ///< true if it starts at the end, where g = 0
+  bool held = false;  ///< true if the start is the end of the surface, where g = 0
 };
 
 Start start_of(const OneModeProblem& p) {
@@ -52,14 +52,14 @@ Start start_of(const OneModeProblem& p) {
 
 constexpr double small = 1e-16;
 
-/// Value and slope at the start, in the direction of the drive edge.
+/// Value and slope of g at the start. The slope is taken in the direction of the drive edge.
 std::array<Complex, 2> start_values(const OneModeProblem& p, const Start& start) {
   if (start.held) return {0.0, small / p.length_m};
   return {small, small * std::sqrt(-potential(p, start.x_m))};
 }
 
-/// Numerov's scheme from the start to the drive edge. Values between its steps come from cubics through
-/// values and second derivatives, which have the same order.
+/// Numerov's scheme from the start to the drive edge. Between two steps, a cubic polynomial interpolates the
+/// values and second derivatives; its error has the same order as the scheme's.
 Solution numerov(const OneModeProblem& p, int n) {
   const Start start = start_of(p);
   const double h = start.x_m / n, c = h * h / 12;
@@ -91,8 +91,8 @@ Solution numerov(const OneModeProblem& p, int n) {
 #ifdef TURNPOINT_BOOST_PEERS
 namespace ode = boost::numeric::odeint;
 
-/// The equation as a real system in the distance from the start, with two unknowns without loss and four with
-/// loss.
+/// The equation as a real first-order system in the distance from the start: two unknowns without loss, four
+/// with loss.
 template <class Real, std::size_t size>
 struct System {
   using State = std::array<Real, size>;
@@ -136,7 +136,7 @@ Solution integrate(const OneModeProblem& p, Stepper stepper) {
   const System<Real, size> system{p, Real(start.x_m)};
   ode::integrate_times(
       stepper, system, y, times.begin(), times.end(), Real(1e-5), [&](const auto& state, Real) {
-        if (next++ == 0) return;  // skip the start itself
+        if (next++ == 0) return;  // the first value is the start itself, which is not asked for
         const std::size_t i = points[next - 2];
         const Complex g(static_cast<double>(state[0]), size == 4 ? static_cast<double>(state[1]) : 0.0);
         v[i] = g / std::sqrt(p.half_width_m(p.x_m[i]));

@@ -12,12 +12,12 @@ struct OneModeProblem {
   std::complex<double> k_squared;
   double b = 0, c = 0;
   double w0 = 0, slope = 0, decay_m = 0, length_m = 0;
-  std::vector<double> x_m;  ///< ascending
+  std::vector<double> x_m;  ///< points at which the solution is wanted, ascending
 
   double half_width_m(double x) const;
   double width_slope(double x) const;
   bool wedge() const { return decay_m == 0; }
-  /// order of the wedge's exact solution J_mu(k s), with s measured from the apex
+  /// the order mu of the wedge's exact solution J_mu(k s), where s is the distance from the apex
   double bessel_order() const;
 };
 
@@ -25,20 +25,20 @@ struct OneModeProblem {
 using Solution = std::vector<std::complex<double>>;
 
 struct Solver {
-  std::string name;     ///< "Boost.Odeint dopri5", ...
+  std::string name;     ///< such as "Boost.Odeint dopri5"
   std::string setting;  ///< tolerance or number of steps; "" if there is none
   std::function<Solution(const OneModeProblem&)> solve;
 };
 
-/// A plain Numerov scheme. If Boost was found at build time, also Boost.Odeint and, on a wedge without loss,
-/// Boost.Math's Bessel function.
+/// The solvers to compare with: a plain Numerov scheme and, if Boost was found at build time, Boost.Odeint
+/// and (on a wedge without loss) Boost.Math's Bessel function.
 std::vector<Solver> general_solvers(const OneModeProblem& problem);
 
-/// The reference for errors: the same equation in extended precision, by a method that shares nothing with
-/// the library's. Empty if this build has no Boost.
+/// The reference for errors: solves the same equation in extended precision, by a method that shares no code
+/// with the library. Empty if this build has no Boost.
 Solution reference_solution(const OneModeProblem& problem);
 
-/// Ai at each argument by Boost.Math; empty without Boost.
+/// The Airy function Ai at each argument, computed by Boost.Math; empty without Boost.
 std::vector<double> boost_airy(const std::vector<double>& arguments);
 
 }  // namespace turnpoint::benchmark

@@ -5,7 +5,7 @@
 
 namespace turnpoint::benchmark {
 
-/// Best time (s) of all runs that fit into the budget, but at least two.
+/// Runs `work` at least twice and until the budget (s) is used up. Returns the shortest time (s).
 template <class Work>
 double best_time(double budget_s, Work work) {
   using clock = std::chrono::steady_clock;

@@ -5,8 +5,8 @@
 
 namespace turnpoint::benchmark {
 
-/// Compares durable trials through the session log with plain SQLite below `directory`, whose disk is what is
-/// measured.
+/// Compares durable trials written through the session log with plain SQLite. Measures the disk of
+/// `directory`.
 Report bench_store(const std::string& directory, int trials);
 
 }  // namespace turnpoint::benchmark

@@ -29,9 +29,9 @@ plot::Chart panel_of(const char* title, const SynthBenchmark& measured, std::siz
   return panel;
 }
 
-/// Error against the time since the start, with the cost per tone and frame in the legend.
+/// A figure of the error against the time since the start; the legend gives the cost per tone and frame.
 Picture picture_of_synth(const SynthBenchmark& measured) {
-  // ours comes first, then other methods whose error does not grow with time
+  // The first methods are the station's own and others whose error does not grow with time.
   constexpr std::size_t exact = 5;
   plot::Figure figure;
   figure.title = "Ways of making a sinusoid";

@@ -3,7 +3,7 @@
 
 namespace turnpoint::benchmark {
 
-/// Compares methods of generating a sinusoid: error after a time against cost.
+/// Compares methods of generating a sinusoid by their error after some time and their cost.
 Report bench_synth();
 
 }  // namespace turnpoint::benchmark

@@ -14,7 +14,7 @@ using namespace turnpoint::calibration;
 namespace {
 
 std::string written(const char* name, const std::string& content) {
-  static const TemporaryFolder folder;  // tests run in parallel
+  static const TemporaryFolder folder;  // a folder of its own, because tests run in parallel
   const std::string path = folder / name;
   std::ofstream(path) << content;
   return path;

@@ -11,14 +11,14 @@ using Law = BoundaryFit::Law;
 
 namespace {
 
-// Turning points of the 1998 brass membrane: apex at 300 mm, C = c / 4 d.
+// Turning points of the 1998 brass membrane, with its apex at 300 mm and C = c / 4 d.
 std::vector<BoundaryPoint> brass(std::initializer_list<double> frequencies_Hz) {
   std::vector<BoundaryPoint> points;
   for (const double f : frequencies_Hz) points.push_back({f, 0.3 - 1986.39 / f, 0});
   return points;
 }
 
-// |u| of a resonator, multiplied by a constant.
+// The amplitude |u| of a resonator, multiplied by a constant.
 std::vector<ResponsePoint> resonator(double f0_Hz, double q, double from_Hz, double to_Hz, int count) {
   std::vector<ResponsePoint> sweep;
   for (int k = 0; k < count; ++k) {
@@ -94,7 +94,7 @@ TEST_CASE("frequency and Q of a resonance come from its width", "[calibration]")
     CHECK(found[0].quality_factor == Approx(q).epsilon(0.05));
   }
   CHECK_FALSE(quality_of(find_resonances(resonator(28000, 500, 20000, 40000, 41)))
-                  .has_value());  // the sweep is too coarse
+                  .has_value());  // the sweep is too coarse for this resonance
 }
 
 TEST_CASE("a hump without a turn of the phase is no resonance", "[calibration]") {

@@ -9,19 +9,20 @@ using namespace turnpoint;
 using calibration::least_squares;
 
 TEST_CASE("a line through points far from the origin keeps its digits", "[calibration]") {
-  // Columns 1 and x are nearly the same: squaring them would leave five digits of the slope.
+  // The columns 1 and x are nearly the same: a method that squares them would keep only five digits of the
+  // slope.
   std::vector<std::vector<double>> rows;
   std::vector<double> values, weights;
   const double scatter[] = {1, -2, 0, 3, -1, 0, -3, 2, 1, -2, 1};
   double w = 0, wx = 0, wy = 0;
   for (int i = 0; i <= 10; ++i) {
-    const double x = 1 + i * std::ldexp(1.0, -20);  // exact, as are the values
+    const double x = 1 + i * std::ldexp(1.0, -20);  // x and the values below are exact in binary
     rows.push_back({1, x});
     values.push_back(2 + 3 * x + scatter[i] * std::ldexp(1.0, -22));
     weights.push_back(1 + i % 3);
     w += weights.back(), wx += weights.back() * i, wy += weights.back() * scatter[i];
   }
-  // In whole numbers: i instead of x, the scatter instead of y.
+  // Computes the expected fit in whole numbers, with i instead of x and the scatter instead of y.
   double square = 0, product = 0, rest = 0;
   for (int i = 0; i <= 10; ++i) {
     square += weights[i] * (i - wx / w) * (i - wx / w);

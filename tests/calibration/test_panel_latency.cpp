@@ -13,7 +13,7 @@ TEST_CASE("a panel's latency is the median from the button to the touch, its jit
   std::vector<std::int64_t> edges, touches;
   for (int k = 0; k < 12; ++k) {
     edges.push_back(k * s);
-    touches.push_back(k * s + (60 + k % 3) * ms);  // delays of 60, 61 and 62 ms
+    touches.push_back(k * s + (60 + k % 3) * ms);  // each touch follows its edge by 60, 61 or 62 ms
   }
   const auto delay = pair_delays(touches, edges, LatencyReference::button);
   REQUIRE(delay);
@@ -21,7 +21,7 @@ TEST_CASE("a panel's latency is the median from the button to the touch, its jit
   CHECK(delay->unmatched == 0);
   CHECK(delay->median_s == Approx(0.061));
   CHECK(delay->sd_s == Approx(0.000853).epsilon(1e-3));
-  // A photodiode responds after the touch, so edges before it do not match.
+  // A photodiode responds after the touch, so edges before a touch must not be matched with it.
   CHECK_FALSE(pair_delays(touches, edges, LatencyReference::photodiode));
   CHECK(pair_delays(edges, touches, LatencyReference::photodiode)->median_s == Approx(0.061));
 }

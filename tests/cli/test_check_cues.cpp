@@ -34,8 +34,7 @@ std::string cues_of(const std::string& protocol) {
 }  // namespace
 
 TEST_CASE("check says how precise it knows what a cue reaches in simulated sessions", "[cli]") {
-  // After roving the amplitude is still a hint. A staircase then makes the level easier until the hint is
-  // sufficient.
+  // The roved amplitude still says something about the answer. Easier levels of the staircase reveal more.
   const auto text = with(turnpoint::system::read_file(source + "/protocols/friction-staircase.toml"),
                          {{"tolerance = { level_dB = 0.1 }", "rove_dB = 2.5"},
                           {"-3.0", "-9.0"},
@@ -47,8 +46,8 @@ TEST_CASE("check says how precise it knows what a cue reaches in simulated sessi
 }
 
 TEST_CASE("check compares each cue with its own chance", "[cli]") {
-  // In three of four trials the answer is "right", so a single key reaches 75 % without any cue. The
-  // amplitude must be compared with that.
+  // In three of four trials "right" is correct, so always pressing that key reaches 75 % without any cue. The
+  // accuracy of the amplitude must be compared with 75 %.
   const auto text =
       with(turnpoint::system::read_file(source + "/protocols/boundary-constant.toml"),
            {{"values = [-28.0, -16.0, -8.0, -3.0, 3.0, 8.0, 16.0, 28.0]", "values = [-3.0, 3.0, 8.0, 16.0]"},

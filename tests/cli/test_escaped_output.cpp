@@ -20,7 +20,7 @@ std::string escaped(const std::string& text) {
 TEST_CASE("control characters are shown instead of sent to the terminal, and no other text is touched",
           "[text]") {
   CHECK(escaped("\x1b[31mred\x07\r\x7f\x08") == "\\x1b[31mred\\x07\\x0d\\x7f\\x08");
-  CHECK(escaped("\xc2\x9b[31m") == "\\u009b[31m");  // the single-character form of ESC [
+  CHECK(escaped("\xc2\x9b[31m") == "\\u009b[31m");  // U+009B is a single character that acts like ESC [
   const std::string plain = "line\n\t\xc2\xb5m \xc3\xbc \xe3\x81\xaa\xe3\x82\x81 \xf0\x9f\x99\x82 \xc2\xa0.";
   CHECK(escaped(plain) == plain);
   CHECK(escaped("cut \xc2") == "cut \xc2");

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kPatience_ms = 20000;
 
-/// Runs `turnpoint operator-code` on its own terminal.
+/// Runs `turnpoint operator-code` on a terminal made for the test.
 class Terminal {
  public:
   explicit Terminal(const std::string& config) {
@@ -120,7 +120,6 @@ TEST_CASE("a locked station begins with a stored code alone, and no command line
     CHECK(child.outcome() == 2);
     return child.said();
   };
-  CHECK(station({"--locked"}).find("store your own: sudo turnpoint operator-code") !=
-        std::string::npos);
+  CHECK(station({"--locked"}).find("store your own: sudo turnpoint operator-code") != std::string::npos);
   CHECK(station({"--operator-code", "7391"}).find("--operator-code") != std::string::npos);
 }

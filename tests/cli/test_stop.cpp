@@ -12,11 +12,12 @@ using namespace turnpoint;
 
 namespace {
 
-/// Long enough for a busy machine. A request that is ignored would take for ever.
+/// Waits for the process at most this long, which is enough on a busy machine. A test of an ignored request
+/// must still end.
 constexpr int kPatience_ms = 20000;
-/// Limit for the time from the signal to the end of the process. A service manager kills after 5 s.
+/// Longest time allowed from the signal to the end of the process. A service manager kills after 5 s.
 constexpr int kPrompt_ms = 1000;
-/// Limit for a whole simulated session, even with a sanitizer.
+/// Longest time allowed for a whole simulated session, even with a sanitizer.
 constexpr int kWhole_ms = 120000;
 
 std::vector<std::string> run(const std::string& protocol, const std::string& database,
@@ -81,7 +82,7 @@ store::SessionRecord only_session(const std::string& database) {
   return sessions[0];
 }
 
-/// Without the warm-up trials of a resumed session.
+/// The trials of the session, without the warm-up trials that follow a resume.
 std::vector<records::TrialRow> trials_of(const std::string& database) {
   std::vector<records::TrialRow> trials;
   for (const auto& block : store::read_session(database, only_session(database).session_id).blocks)

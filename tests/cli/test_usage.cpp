@@ -40,7 +40,7 @@ TEST_CASE("the doctor warns of a simulated panel beside a real converter", "[cli
   std::ifstream simulated(kRig);
   std::string text{std::istreambuf_iterator<char>(simulated), {}};
   const std::string warning = "simulated: answers by touch have no kernel time";
-  for (const char* output : {"null:", "alsa:hw:31"}) {  // a card that does not exist
+  for (const char* output : {"null:", "alsa:hw:31"}) {  // the card hw:31 does not exist
     const auto uri = text.find("uri = \"null:\"");
     if (uri != std::string::npos) text.replace(uri, 13, std::string("uri = \"") + output + "\"");
     std::ofstream(rig) << text;

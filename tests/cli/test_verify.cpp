@@ -16,7 +16,7 @@ namespace {
 constexpr int kPatience_ms = 60000;
 const std::string kSource = TURNPOINT_SOURCE_DIR;
 
-/// Runs a program to its end and returns its output.
+/// Runs a program until it ends and returns its output.
 std::string said_by(const std::vector<std::string>& command, int outcome = 0) {
   Child child(command);
   REQUIRE(child.ends_within(kPatience_ms));

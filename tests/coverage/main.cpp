@@ -23,7 +23,7 @@ struct Request {
   bool table_only = false;
 };
 
-/// Number of sessions between two writes.
+/// Number of sessions that are run before they are saved.
 constexpr std::size_t kPart = 20;
 
 std::string file_of(const Request& request, const std::string& procedure, std::size_t source) {
@@ -57,7 +57,7 @@ std::string cell(const Tally& tally, const std::string& broken) {
   return broken.empty() ? text : text + " BROKEN:" + broken;
 }
 
-/// Returns true if every promise is kept with the requested number of sessions.
+/// Prints the table. Returns true if every cell keeps its promises and has the requested number of sessions.
 bool print_table(const Request& request) {
   fmt::print("| procedure | true values | trials | sessions | threshold | slope | 75 % point |\n");
   fmt::print("|---|---|---|---|---|---|---|\n");

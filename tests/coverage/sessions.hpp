@@ -16,24 +16,27 @@ inline constexpr std::array kTrials{48, 96, 200};
 enum Quantity { threshold, slope, level_75 };
 inline constexpr std::array kQuantities{"threshold", "slope", "75 % point"};
 
-/// A Weibull function of the level in dB; guesses are right half of the time.
+/// The observer's true psychometric function: a Weibull function of the level in dB; half of the guesses are
+/// right.
 struct Truth {
   double threshold_dB = 0, slope = 1, lapse = 0;
   double of(Quantity quantity) const;
 };
 
-/// Where true values come from. Without `fixed`, each session draws its own from the prior of the report.
+/// Determines the true values of sessions: `fixed` ones, or, without `fixed`, values that each session draws
+/// from the prior of the report.
 struct Source {
   std::string name;
   std::optional<Truth> fixed;
 };
-/// The prior, and fixed values off its centre (-16.5 dB, slope 1.9), within the middle half of its ranges.
+/// All sources: the prior, and fixed values that are off its centre (-16.5 dB, slope 1.9) but within the
+/// middle half of its ranges.
 const std::vector<Source>& sources();
 
 using Ends = std::pair<double, double>;
 
 /// What a session's report prints after this many trials. An interval is empty if the report gives none.
-/// `reference` is the central interval of an independent sampler, if it was requested.
+/// `reference` is the central interval of an independent sampler, if one was requested.
 struct Printed {
   std::array<std::optional<Ends>, 3> interval, reference;
 };
@@ -44,7 +47,7 @@ struct Session {
   std::array<Printed, kTrials.size()> after;
 };
 
-/// The protocol of a procedure, whose sessions are simulated and analysed as in `turnpoint power`.
+/// A protocol with one procedure, whose sessions are simulated and analysed as in `turnpoint power`.
 class Design {
  public:
   explicit Design(const std::string& procedure);

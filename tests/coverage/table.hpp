@@ -11,8 +11,7 @@ namespace coverage {
 struct Tally {
   int sessions = 0, printed = 0, held = 0;
   double median_width = 0;
-  /// Median width divided by that of the reference, over sessions that have a reference and print an
-  /// interval.
+  /// Median of the intervals' width divided by the reference interval's, over the sessions that have both.
   std::optional<double> width_ratio;
 
   double coverage() const { return static_cast<double>(held) / printed; }
@@ -24,16 +23,17 @@ struct Tally {
 Tally tally(const std::vector<Session>& sessions, std::size_t trials_index, Quantity quantity,
             double stretch = 1);
 
-/// The promise that this cell breaks; "" if it keeps all. Coverage with true values from the prior: 93.5 to
-/// 96.5 %; with fixed ones: at least 93 %, for the slope 95 %. The observed share is compared without an
-/// allowance for chance. Width: at most 1.3 times the reference. Missing threshold intervals: at most 5 %
-/// from 96 trials on.
+/// The promise that this cell breaks; "" if it keeps all of them. Promised coverage: 93.5 to 96.5 % with true
+/// values from the prior; with fixed ones at least 93 %, for the slope 95 %. The observed share must reach
+/// these figures without an allowance for chance. Promised width: at most 1.3 times the reference. Missing
+/// threshold intervals: at most 5 % from 96 trials on.
 std::string broken_promise(const Tally& tally, const Source& source, Quantity quantity, int trials);
 
-/// Reads the cell's sessions from a file with one line each and every number in full. Drops an incomplete
-/// last line. Throws std::runtime_error if a seed occurs twice, as when parts of two runs are joined.
+/// Reads a cell's sessions from a file that has one session per line and every number with all its digits.
+/// Drops an incomplete last line. Throws std::runtime_error if a seed occurs twice, as after joining two
+/// runs.
 std::vector<Session> read(const std::string& path);
-/// The missing seeds from 1 to `sessions`, ascending.
+/// The seeds from 1 to `sessions` that have no session yet, ascending.
 std::vector<std::uint64_t> missing_seeds(const std::vector<Session>& there, int sessions);
 void append(const std::string& path, const std::vector<Session>& sessions);
 

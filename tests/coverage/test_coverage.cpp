@@ -28,7 +28,8 @@ std::vector<Session> sessions_of(const std::string& procedure, const Source& sou
 
 TEST_CASE("Printed 95 % intervals after 96 trials of QUEST+ hold true values drawn from the prior",
           "[coverage]") {
-  // One cell of the table of build/release/bin/coverage. Three standard errors of 2000 sessions are 1.5 %.
+  // Tests one cell of the table that build/release/bin/coverage makes. Three standard errors of 2000 sessions
+  // are 1.5 %.
   const auto sessions = sessions_of("quest-plus", sources()[0], 2000, 96, 40);
   for (const auto quantity : {threshold, slope, level_75}) {
     const auto found = tally(sessions, 1, quantity);
@@ -47,7 +48,8 @@ TEST_CASE("Printed 95 % intervals after 96 trials of QUEST+ hold true values dra
 
 TEST_CASE("Intervals after 200 trials of QUEST+ hold the slope of a shallow function off the prior's centre",
           "[coverage]") {
-  // A prior that is flat up to its ends gives 92 %. Two standard errors of 800 sessions are 1.4 %.
+  // With a prior that is flat up to its ends, the coverage would be 92 %. Two standard errors of 800 sessions
+  // are 1.4 %.
   const auto sessions = sessions_of("quest-plus", sources()[3], 800, 200, 0);
   CHECK(tally(sessions, 2, slope).coverage() >= 0.945);
   CHECK(tally(sessions, 2, threshold).coverage() >= 0.93);
@@ -105,7 +107,7 @@ TEST_CASE("A run of the coverage table that was cut off goes on where it stopped
   const auto path = folder / "cell.csv";
   const auto sessions = sessions_of("psi", sources()[0], 3, 48, 1);
   append(path, sessions);
-  std::ofstream(path, std::ios::app) << "4,-12.5,1";  // interrupted while writing
+  std::ofstream(path, std::ios::app) << "4,-12.5,1";  // an incomplete line, as after an interruption
   const auto found = read(path);
   REQUIRE(found.size() == 3);
   for (std::size_t i = 0; i < 3; ++i) {

@@ -34,7 +34,7 @@ def verify():
     with tempfile.TemporaryDirectory() as work:
         for unit in UNITS:
             with open(os.path.join(SYSTEM, unit), encoding="utf-8") as file:
-                text = file.read().replace(PROGRAM, "/bin/true")  # the unit checks whether the program exists
+                text = file.read().replace(PROGRAM, "/bin/true")  # systemd-analyze requires a program that exists
             with open(os.path.join(work, unit), "w", encoding="utf-8") as file:
                 file.write(text)
         done = subprocess.run(["systemd-analyze", "verify", "--man=no", *(os.path.join(work, unit) for unit in UNITS)],
@@ -61,7 +61,7 @@ class Unit:
         environment.update(configuration)
         words = []
         for word in shlex.split(self.line):
-            if re.fullmatch(r"\$\w+", word):  # split into words as systemd does
+            if re.fullmatch(r"\$\w+", word):  # systemd splits the value of $NAME into words
                 words += environment.get(word[1:], "").split()
             else:
                 words.append(re.sub(r"\$\{(\w+)\}", lambda name: environment.get(name[1], ""), word))

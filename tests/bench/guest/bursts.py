@@ -3,8 +3,8 @@ as PREFIX0.raw, PREFIX1.raw, ...; of a long one the middle SECONDS."""
 import array
 import sys
 
-RATE, STEP = 192000, 960  # looks every 5 ms
-FRAME = 8                 # bytes
+RATE, STEP = 192000, 960  # the level is checked every 960 frames = 5 ms
+FRAME = 8                 # bytes per frame
 QUIET = 1 << 20
 
 with open(sys.argv[1], "rb") as file:

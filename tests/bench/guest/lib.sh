@@ -1,5 +1,5 @@
-# Functions for scenarios. A scenario is sourced after this file with `set -eu`, so its first failing command
-# makes it fail.
+# Functions for scenarios. The runner sources this file and then the scenario, with `set -eu`: the first
+# command that fails makes the scenario fail.
 set -eu
 PATH=$BENCH_DIR/bin:$BIN:$PATH
 say() { echo "# $*"; }
@@ -11,7 +11,8 @@ near() {
     fail "$1 is $2, expected $3 within $4"
   say "$1: $2 (expected $3 within $4)"
 }
-# fails STATUS COMMAND...: passes if the command exits with this status; its output is in refusal.txt.
+# fails STATUS COMMAND...: passes if the command exits with this status. Writes the command's output to
+# refusal.txt.
 fails() {
   local expected=$1 status=0; shift
   "$@" >refusal.txt 2>&1 || status=$?
@@ -20,14 +21,15 @@ fails() {
 }
 # eventually SECONDS COMMAND...: repeats the command until it succeeds. Fails the scenario after SECONDS.
 eventually() {
-  local end=$((SECONDS + $1 + 1)); shift   # +1 because SECONDS may be about to advance
+  local end=$((SECONDS + $1 + 1)); shift   # +1 because the clock SECONDS counts whole seconds
   until "$@"; do [ $SECONDS -lt $end ] || fail "did not happen in time: $*"; sleep 0.1; done
 }
-has() { grep -q "$2" "$1"; }   # has FILE PATTERN
+has() { grep -q "$2" "$1"; }   # has FILE PATTERN: true if the file contains the pattern
 equals() { [ "$($1 $2)" = "$3" ]; }
 
-# gpio_sim NAME...: makes a simulated chip with these line names, in order. Afterwards `pull NAME up|down`
-# drives an input, `level NAME` reads a line's level, and `pull_file NAME` is for gpio_line press.
+# gpio_sim NAME...: makes a simulated chip whose lines have these names, in this order. Afterwards `pull NAME
+# up|down` drives an input, `level NAME` reads a line's level, and `pull_file NAME` prints the file that
+# gpio_line press needs.
 gpio_sim() {
   local n=0 name chip=/sys/kernel/config/gpio-sim/bench
   if [ -s "$BENCH_DIR/gpio-sim.ko" ]; then insmod "$BENCH_DIR/gpio-sim.ko"; else modprobe gpio-sim; fi
@@ -53,8 +55,8 @@ level() { cat "$(line_of "$1")/value"; }
 # keep_outputs Y|N: whether an output keeps its level when its holder ends, as on most chips; N by default.
 keep_outputs() { echo "$1" >/sys/module/gpio_sim_bench/parameters/keep_outputs; }
 
-# rig_with DEVICE=URI... <RIG >RIG: a rig file with these devices. Sound gets buffers that outlast a stalled
-# host.
+# rig_with DEVICE=URI... <RIG >RIG: writes a copy of a rig file with these devices. Sound gets buffers so long
+# that a pause of the host does not empty them.
 rig_with() {
   local device script=
   for device in "$@"; do
@@ -63,8 +65,8 @@ rig_with() {
   done
   sed "$script"
 }
-# calibrate_for_live RIG: makes the calibration that a live session requires, for an actuator that nobody
-# measured.
+# calibrate_for_live RIG: makes the calibration that a live session requires, with invented values for the
+# actuator.
 calibrate_for_live() {
   awk 'BEGIN { print "frequency_Hz,displacement_um,phase_deg"
     for (f = 20000; f <= 50000; f += 500) print f "," 0.3 + 4e-6 * f ",-20" }' >sweep.csv
@@ -73,13 +75,14 @@ calibrate_for_live() {
   turnpoint calibrate --rig "$1" --response main=sweep.csv --full-scale 0.1 --friction friction.csv --sound sound.csv
 }
 
-# loopback: a sound card whose playback side (hw:Loopback,0) can be recorded bit by bit from hw:Loopback,1.
+# loopback: makes a sound card; what is played on hw:Loopback,0 can be recorded, bit by bit, from
+# hw:Loopback,1.
 loopback() { modprobe snd-aloop pcm_substreams=1; eventually 5 test -e /dev/snd/pcmC0D1c; }
 # record SECONDS FILE [RATE]: records raw S32_LE stereo in the background; $! is its process.
 record() { arecord -q -D hw:Loopback,1 -t raw -f S32_LE -c 2 -r "${3:-192000}" --period-size=9600 --buffer-size=192000 -d "$1" "$2" & }
 
-# disk_begin [WHERE]: mounts the empty `disk` on /run/disk or there. NAME.after checks its content with
-# power_cuts.py.
+# disk_begin [WHERE]: mounts the empty `disk` on WHERE (default /run/disk). After the scenario, NAME.after
+# checks the disk's content with power_cuts.py.
 disk_begin() {
   modprobe virtio_blk; eventually 5 test -b /dev/vda
   mkdir -p "${1:-/run/disk}"
@@ -110,15 +113,15 @@ screen_begin() {
 # $OUT/NAME.png. Both read what the card scans out, whether eglfs or the frame buffer drew it.
 pixel() { kms_screen "$1" "$2"; }
 screenshot() { kms_screen | python3 "$BENCH_SOURCE/guest/screenshot.py" "$OUT/$1.png"; }
-# On the participant's pages: detects by colour whether something at X Y can be pressed, and which page is
+# For the participant's pages: find out by colour whether something at X Y can be pressed, and which page is
 # shown.
 action=5c3d0f
 shows() { [ "$(pixel "$1" "$2")" = $action ]; }
 answers_open() { shows 60 400 && shows 740 400; }
 continues() { shows 290 390 && ! shows 60 400; }
 
-# For the installed kiosk on its panel of 800 x 480: a tap, a press of one second, and entering with the
-# operator's code 2580.
+# For the installed kiosk on its panel of 800 x 480: `tap` taps, `hold` presses for one second, `unlock`
+# enters the operator's code 2580.
 tap() { touch_do tap "$1" "$2"; sleep 0.2; }
 hold() { touch_do down 0 "$1" "$2"; touch_do sleep 1200; touch_do up 0; sleep 1.6; }
 keypad() { shows 280 75 && shows 397 75; }

@@ -11,7 +11,8 @@ def chunk(kind, data):
 WIDTH, HEIGHT = map(int, sys.stdin.buffer.readline().split())
 pixels = sys.stdin.buffer.read(WIDTH * HEIGHT * 4)
 rgb = bytearray(WIDTH * HEIGHT * 3)
-for target, source in ((0, 2), (1, 1), (2, 0)):  # the bytes of a pixel are blue, green, red, unused
+# a pixel of the screen is blue, green, red, unused; a PNG needs red, green, blue
+for target, source in ((0, 2), (1, 1), (2, 0)):
     rgb[target::3] = pixels[source::4]
 rows = b"".join(b"\0" + rgb[y * WIDTH * 3:(y + 1) * WIDTH * 3] for y in range(HEIGHT))
 with open(sys.argv[1], "wb") as file:

@@ -20,7 +20,8 @@ int add(const char* card_name, const char* name) {
   snd_ctl_elem_value_set_id(on, id);
   snd_ctl_elem_value_set_boolean(on, 0, 1);
   int error = snd_ctl_elem_add_boolean(card, id, 1);
-  if (error >= 0) error = snd_ctl_elem_unlock(card, id);  // otherwise only this process could change it
+  // a locked switch could be changed only by this process
+  if (error >= 0) error = snd_ctl_elem_unlock(card, id);
   if (error >= 0) error = snd_ctl_elem_write(card, on);
   snd_ctl_close(card);
   return error;

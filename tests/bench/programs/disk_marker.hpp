@@ -7,8 +7,9 @@
 #include <cstring>
 #include <string>
 
-/// Writes marks into the record of a disk's writes. A mark is a sector behind the file system that is written
-/// past all caches but not flushed. It proves that the disk had accepted everything recorded before it.
+/// Writes marks into the record of a disk's writes. A mark is a sector behind the file system, written past
+/// all caches but not flushed. A mark in the record proves that the disk had accepted everything recorded
+/// before that.
 class DiskMarker {
  public:
   /// Opens `device` as a block device. Exits with a message if that fails.
@@ -28,7 +29,7 @@ class DiskMarker {
  private:
   static constexpr std::size_t size = 512;
   static constexpr off_t offset =
-      31 << 20;  ///< power_cuts.py looks for marks here; the file system ends before
+      31 << 20;  ///< power_cuts.py looks for marks at this offset, which is behind the end of the file system
   int fd_;
   void* sector_ = nullptr;
 };

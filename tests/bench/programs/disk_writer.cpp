@@ -24,5 +24,5 @@ int main(int argc, char** argv) {
     run("INSERT INTO row VALUES (" + std::to_string(i) + ", hex(randomblob(200)))");
     marker.mark(mode + " " + std::to_string(i));
   }
-  std::_Exit(0);  // do not close cleanly: leave the files as a running station would
+  std::_Exit(0);  // leave the database open, as a running station would at a power cut
 }

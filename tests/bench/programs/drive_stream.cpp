@@ -1,6 +1,6 @@
 // drive_stream URI PERIOD_FRAMES SECONDS: plays a real-time stream with a burst of 100 ms twice a second.
-// Prints each event with CLOCK_MONOTONIC in ns, and at the end the counters, the clock and the rights that
-// the thread received.
+// Prints each event with CLOCK_MONOTONIC in ns, and at the end the counters, the clock, and the priority and
+// memory lock that the audio thread received.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
     StreamConfig config;
     config.output.uri = argv[1];
     config.output.period_frames = std::atoi(argv[2]);
-    config.output.periods = 32;  // if the host stalls for less than this, the guest's card keeps up
+    config.output.periods = 32;  // a long buffer, so that short pauses of the host cause no underrun
     run(config, std::atof(argv[3]));
     return 0;
   } catch (const std::exception& error) {

@@ -57,13 +57,13 @@ long long now_ns() {
   return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
 }
 
-/// Waits without sleeping, because in a guest of a busy host a sleep takes too long.
+/// Waits without sleeping, because in the guest of a busy host a short sleep can take far too long.
 void busy_wait_ns(long long length_ns) {
   for (const auto end = now_ns() + length_ns; now_ns() < end;) {
   }
 }
 
-/// One press. At either end the contact bounces this many times, for 0.5 ms each.
+/// Makes one press. The contact bounces this many times, for 0.5 ms each, at the press and at the release.
 int press(const char* file, int ms, int bounces) {
   const int fd = ::open(file, O_WRONLY | O_CLOEXEC);
   const auto drive = [fd](const std::string& pull) { return ::write(fd, pull.data(), pull.size()) > 0; };
@@ -86,7 +86,7 @@ int press(const char* file, int ms, int bounces) {
   return 0;
 }
 
-/// Measures from outside how long it takes from driving an input until another line is low.
+/// Drives an input and measures from outside how long it takes until another line is low.
 int until_low(const char* pull_file, const char* value_file) {
   const int pull = ::open(pull_file, O_WRONLY | O_CLOEXEC), value = ::open(value_file, O_RDONLY | O_CLOEXEC);
   const auto start = now_ns();

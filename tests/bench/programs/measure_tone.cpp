@@ -27,7 +27,7 @@ std::vector<double> read_channel(const char* path, std::size_t channels, std::si
   return samples;
 }
 
-/// The loudest stretch of this length. The silence around a burst says nothing about its tone.
+/// Returns the loudest part of this length, because the silence around a burst must not be analysed.
 Samples loudest(Samples x, std::size_t length) {
   if (x.size() <= length) return x;
   double energy = 0, best = -1;
@@ -39,8 +39,8 @@ Samples loudest(Samples x, std::size_t length) {
   return x.subspan(begin, length);
 }
 
-/// Hann-weighted Fourier component at this frequency (cycles per frame): peak amplitude and phase of the
-/// tone.
+/// Hann-weighted Fourier component at this frequency (cycles per frame): a complex number with the peak
+/// amplitude and phase of the tone.
 std::complex<double> component(Samples x, double cycles_per_frame) {
   const double turn = 2 * std::numbers::pi, n = static_cast<double>(x.size());
   const auto step = std::polar(1.0, -turn * cycles_per_frame), window_step = std::polar(1.0, turn / n);
@@ -53,8 +53,8 @@ std::complex<double> component(Samples x, double cycles_per_frame) {
   return 4.0 * sum / n;
 }
 
-/// In cycles per frame: a coarse scan over a short piece, then a fine one and a golden-section search on
-/// everything.
+/// Returns the strongest frequency in cycles per frame: a coarse scan over a short piece, then a fine scan
+/// and a golden-section search over the whole recording.
 double strongest_frequency(Samples x) {
   const Samples piece = x.first(std::min<std::size_t>(x.size(), 1024));
   double best = 0, at = 0;

@@ -33,7 +33,8 @@ void check(const turnpoint::drive::Amplifier::Refusal& refusal) {
   if (refusal) throw std::runtime_error("refused: " + turnpoint::terms::describe(*refusal));
 }
 
-/// Four threads that use all the processor time they can get, and the session with a lower priority.
+/// Starts four threads that use all the processor time they can get, and a fifth that simulates the session
+/// with a lower priority.
 std::vector<std::jthread> crowd(turnpoint::drive::Amplifier& amplifier) {
   std::vector<std::jthread> threads;
   for (int k = 0; k < 4; ++k)
@@ -51,18 +52,20 @@ std::vector<std::jthread> crowd(turnpoint::drive::Amplifier& amplifier) {
   return threads;
 }
 
-/// The measuring thread runs above the load, so that it need not wait for it, and below the guard. The kernel
-/// delivers edges by a thread of priority 50. A measuring thread below that priority does not disturb it; one
-/// above blocks it, as a busy audio thread would, and the guard has to read the level.
+/// Gives the measuring thread this real-time priority: above the load, so that it need not wait, and below
+/// the guard. The kernel delivers edges by a thread of priority 50. Below 50 the measuring thread does not
+/// disturb that thread; above 50 it blocks it, as a busy audio thread would, and the guard has to read the
+/// line's level instead.
 void stand_at(int priority) {
   sched_param parameters{};
   parameters.sched_priority = priority;
   if (::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters) != 0)
-    throw std::runtime_error("no right to SCHED_FIFO");
+    throw std::runtime_error("no permission to use SCHED_FIFO");
 }
 constexpr int priorities[] = {40, 60};
 
-/// Reaction times, separated by how the guard learned of the stop.
+/// Reaction times, one list for stops that the guard noticed by an edge and one for those it noticed by
+/// reading the level.
 struct Times {
   std::array<std::array<int, std::size(edges_us)>, 2> histogram{};
   std::int64_t longest_ns = 0;
@@ -97,7 +100,7 @@ class Stop {
     if (::pread(value_, &level, 1, 0) != 1) throw std::runtime_error("cannot see the line");
     return level == '1';
   }
-  /// Presses the stop. Returns the time until the line is low.
+  /// Presses the stop. Returns the time (ns) until the enable line is low.
   std::int64_t press() const {
     const auto start_ns = monotonic_ns();
     pull("pull-up");
@@ -118,13 +121,13 @@ int run(int count, const Stop& stop) {
   Times times;
   for (int k = 0; k < count; ++k) {
     const auto way = static_cast<std::size_t>(k % 2);
-    stand_at(priorities[way]);  // after starting the load, which would otherwise inherit the priority
+    stand_at(priorities[way]);  // set only now, so that the load does not inherit this priority
     amplifier->audio_alive();
     amplifier->session_alive();
     check(amplifier->clear());
     check(amplifier->arm());
     check(amplifier->enable());
-    ::usleep(300 + static_cast<useconds_t>(random() % 1000));  // let the load run
+    ::usleep(300 + static_cast<useconds_t>(random() % 1000));  // press the stop at a random moment
     if (!stop.high()) throw std::runtime_error("the line was not high before the stop");
     times.add(way, stop.press());
     stop.pull("pull-down");

@@ -88,7 +88,7 @@ void plug_in_mouse() {
   for (const int button : {BTN_LEFT, BTN_RIGHT}) ::ioctl(mouse, UI_SET_KEYBIT, button);
   for (const int axis : {REL_X, REL_Y}) ::ioctl(mouse, UI_SET_RELBIT, axis);
   create(mouse, "bench mouse");
-  sleep_ms(1000);  // wait until programs that watch for devices have found it
+  sleep_ms(1000);  // allow programs that watch for new devices to find this one
 }
 
 void move_mouse(int dx, int dy) {

@@ -1,10 +1,10 @@
-# proves: a 192 kHz S32 tone goes through ALSA bit by bit: frequency, level and channel are measured on the other side
+# proves: a 192 kHz S32 tone passes through ALSA bit by bit: frequency, level and channel are measured on the other side
 # suite: core
 # timeout: 240
 loopback
 make_tone 192000 19600.123 -6 0.8 >played.raw
-# On a busy machine snd-aloop may drop a piece of what is playing while it drains. Make sure that this is
-# silence.
+# On a busy machine snd-aloop may drop the last piece that is playing. Append silence, so that only silence is
+# lost.
 { cat played.raw; head -c $((8 * 192000)) /dev/zero; } >with_silence.raw
 record 6 tone.raw; recorder=$!
 aplay -q -D hw:Loopback,0 -t raw -f S32_LE -c 2 -r 192000 --period-size=1920 --buffer-size=192000 with_silence.raw
@@ -15,7 +15,7 @@ near "level (dB)" "$level" -6 0.001
 near "residual (dB re tone)" "$residual" -150 50
 [ "$(measure_tone tone.raw 192000 2 1)" = "0 -inf 0" ] || fail "the other channel is not silent"
 
-same_bits() {  # both begin with silence, of different length
+same_bits() {  # compares without the silence at the beginning, which can have any length
   python3 - played.raw "$1" <<'PYTHON'
 import sys
 played, recorded = ((lambda d: d[(len(d) - len(d.lstrip(b"\0"))) // 8 * 8:])(open(f, "rb").read()) for f in sys.argv[1:])
@@ -28,7 +28,7 @@ PYTHON
 }
 same_bits tone.raw || fail "the recording differs from what was played"
 
-# Negative control: one frame is removed.
+# Negative control: the comparison must detect that one frame was removed.
 { head -c $((8 * 60000)) played.raw; tail -c +$((8 * 60001 + 1)) played.raw; } >cut.raw
 ! same_bits cut.raw || fail "a missing frame was not noticed"
 read -r _ _ residual <<<"$(tail -c +$((8 * 36001)) cut.raw | head -c $((8 * 48000)) >middle.raw; measure_tone middle.raw 192000 2 0)"

@@ -1,4 +1,4 @@
-# proves: with the processor fully loaded and a session that gets hardly any of it, a stop takes the enable line low within 1 ms
+# proves: with the processor fully loaded and a session that gets hardly any processor time, a stop takes the enable line low within 1 ms
 # timeout: 1800
 gpio_sim AMP_EN AMP_FAULT STOP AMP_HB
 for line in AMP_EN AMP_FAULT STOP AMP_HB; do pull $line down; done

@@ -1,4 +1,4 @@
-# proves: presses of the station's buttons carry the kernel's time of their first edge, and bouncing counts once
+# proves: presses of the station's buttons have the kernel's time of their first edge, and a bouncing press counts once
 # timeout: 240
 gpio_sim OTHER BTN_R BTN_L
 pull BTN_L down; pull BTN_R down

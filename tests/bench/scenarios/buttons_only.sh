@@ -1,4 +1,4 @@
-# proves: a session without a screen: the operator types, a person answers with buttons, each answer has its time
+# proves: a session without a screen works: the operator types, a person answers with buttons, and each answer has its time
 # timeout: 400
 gpio_sim BTN_L BTN_R
 pull BTN_L down; pull BTN_R down

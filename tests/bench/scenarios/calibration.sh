@@ -1,4 +1,4 @@
-# proves: a sweep played on a real card and measured by a simulated vibrometer becomes a calibration; a live session with it moves the surface as far as its database says
+# proves: a sweep that is played on a real card and measured by a simulated vibrometer becomes a calibration; in a live session with it, the surface moves as far as the database says
 # timeout: 500
 gpio_sim AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R
 for line in AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R; do pull $line down; done
@@ -8,7 +8,7 @@ rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,
 sed -e 's/device = "touch"/device = "buttons"/' "$SOURCE/tests/ui/short.toml" >short.toml
 live() { turnpoint run short.toml --rig rig.toml --mode live --participant P1 --db lab.sqlite --buttons-only --json "$@"; }
 
-# If a steady tone is interrupted, it ends with its ramp, and the amplifier is switched off after it.
+# A steady tone that is interrupted must end with its ramp before the amplifier is switched off.
 cut_short() {
   record 20 cut.raw; recorder=$!
   turnpoint synth --rig rig.toml --tone 30000:0.5 --seconds 20 --out alsa:hw:Loopback,0 --arm 2>cut.txt & tone=$!
@@ -18,7 +18,8 @@ cut_short() {
   kill $recorder; wait $recorder || true
   cat cut.txt
   [ "$(level AMP_EN)" = 0 ] || fail "the amplifier stays on after a signal"
-  has cut.txt SIGTERM || return 1    # on a stalled host the guard trips earlier
+  # On a stalled host the guard can trip before SIGTERM arrives; then the test is repeated.
+  has cut.txt SIGTERM || return 1
   [ $status = 1 ] || fail "a tone that was told to end ended with $status"
 }
 cut_short || cut_short || cut_short || fail "the tone was never told to end"
@@ -32,20 +33,22 @@ print(max(map(abs, heard[last - 384:last + 1])) / max(map(abs, heard)))
 PYTHON
 )" 0 0.01
 
-# Refused before calibration.
+# Without a calibration a live session must be refused.
 fails 2 live </dev/null
 has refusal.txt "no calibration in force" || fail "a live session without a calibration"
 
-# The transducer's true response in um at full scale: a resonance that is not in the rig file.
+# true_um FREQUENCY: the transducer's true response in um at full scale, with a resonance that is not in the
+# rig file.
 true_um() { awk -v f="$1" 'BEGIN { u = (f - 30000) / 8000; printf "%.6f", 3.1 * (1 + 0.5 * exp(-u * u)) }'; }
-# moved FILE: frequency (Hz) and displacement (um) of what was played, as a vibrometer on that transducer
-# would measure them
+# moved FILE: frequency (Hz) and displacement (um) of the tone in a recording, as a vibrometer on that
+# transducer would measure them.
 moved() {
   read -r frequency level _ <<<"$(measure_tone "$1" 192000 2 0)"
   awk -v f="$frequency" -v l="$level" -v r="$(true_um "$frequency")" 'BEGIN { printf "%.3f %.6f\n", f, r * 10 ^ (l / 20) }'
 }
 turnpoint calibrate --rig rig.toml --sweep --points 24 --amplitude 0.1 >sweep.csv
-sweep() {  # on a stalled host the guard trips, as it should; an operator would start again
+# On a stalled host the guard trips, as it should. Then start the sweep again, as an operator would.
+sweep() {
   record 60 heard.raw; recorder=$!
   turnpoint calibrate --rig rig.toml --sweep --points 24 --amplitude 0.1 --sweep-out alsa:hw:Loopback,0 --arm || status=$?
   kill $recorder; wait $recorder || true
@@ -71,12 +74,12 @@ printf '%s\n' frequency_Hz,level_dB 14000,70 30000,60 60000,50 >sound.csv
 turnpoint calibrate --rig rig.toml --response main=response.csv --full-scale 0.1 --friction friction.csv --sound sound.csv --note bench
 ls rig.calibration-*.toml
 
-# Four trials of a live session with this calibration, answered by buttons.
+# Runs four trials of a live session with this calibration, answered by buttons.
 record 120 heard.raw; recorder=$!
 mkfifo operator
 live <operator >summary.json 2>console.txt & session=$!
 exec 8>operator
-# Answers whatever the session asks for, also if the guard tripped on a stalled host and a trial is repeated.
+# Answers each question of the session. On a stalled host the guard may trip, and a trial is repeated.
 said() { grep -cE "$1" console.txt || true; }
 armed=0 went_on=0 answered=0
 while kill -0 $session 2>/dev/null; do
@@ -98,7 +101,7 @@ python3 "$BENCH_SOURCE/guest/bursts.py" heard.raw burst 0.1
 heard=0
 for burst in burst*.raw; do
   read -r frequency_Hz um <<<"$(moved $burst)"
-  # the tone in the database, and the measured displacement as a multiple of the stored one
+  # the frequency stored in the database, and the measured displacement divided by the stored one
   read -r told_Hz ratio <<<"$(awk -v f="$frequency_Hz" -v u="$um" '{ d = f - $1; if (d < 0.02 && d > -0.02) print $1, u / $2 }' told.txt)"
   near "stimulus $heard (Hz)" "$frequency_Hz" "${told_Hz:-0}" 0.02
   near "displacement of the drive edge against the database's (ratio)" "$ratio" 1 0.02

@@ -1,4 +1,4 @@
-# proves: an output follows its holder and falls back to its pull when the holder is killed; edges carry the kernel's time
+# proves: an output keeps the level that its holder sets, and falls back to its pull when the holder is killed; edges have the kernel's time
 # suite: core
 # timeout: 240
 gpio_sim SPARE AMP_EN BTN_LEFT
@@ -7,7 +7,7 @@ pull AMP_EN down
 gpio_line hold AMP_EN 1 >holder.txt & holder=$!
 eventually 5 has holder.txt ready
 [ "$(level AMP_EN)" = 1 ] || fail "the line is not set"
-fails 1 gpio_line hold AMP_EN 0       # a second holder is refused
+fails 1 gpio_line hold AMP_EN 0       # a second process that requests the line is refused
 has refusal.txt busy || fail "no word about the line being busy"
 kill -KILL $holder
 eventually 1 equals level AMP_EN 0

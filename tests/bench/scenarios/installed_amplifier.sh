@@ -1,4 +1,4 @@
-# proves: on a chip that keeps its outputs, the installed unit takes the amplifier's line low within 2 s when the station is killed, and within 13 s when it is frozen, for the rig that it was started with
+# proves: on a chip that keeps its outputs, the installed unit takes the amplifier's enable line low within 2 s of the station being killed, and within 13 s of it being frozen; this holds for the rig with which the station was started
 # needs: installed screen
 # timeout: 1800
 gpio_sim AMP_EN AMP_FAULT STOP AMP_HB OTHER
@@ -8,7 +8,7 @@ panel_begin
 screen_begin
 udevadm settle
 
-# The installed rig file names another line than the rig with which the station is started.
+# The installed rig file names a different enable line than the rig with which the station is started.
 rig_with "touch=evdev:bench touch panel" amplifier=gpio:enable=OTHER </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
 rig_with "touch=evdev:bench touch panel" amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB \
   </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/second.toml
@@ -23,26 +23,26 @@ state() { systemctl show -P "$1" turnpoint; }
 off() { [ "$(level AMP_EN)" = 0 ]; }
 failed() { [ "$(state ActiveState)" = failed ]; }
 
-# drives: waits until the station drives the amplifier, in the first stimulus of a session that was chosen and
-# armed by touch.
+# drives: starts a session by touch, arms it, and waits until its first stimulus enables the amplifier.
 drives() {
   systemctl stop turnpoint
   rm -f /var/lib/turnpoint/second.sqlite*
   systemctl start turnpoint || { journalctl -u turnpoint --no-pager | tail -30; fail "the unit did not get ready"; }
   unlock
   sleep 0.5
-  tap 150 215                       # demo
-  tap 303 392                       # "enter it now"
+  tap 150 215                       # choose the protocol "demo"
+  tap 303 392                       # tap "enter it now"
   sleep 0.5
-  tap 437 360; tap 736 240; tap 63 240; tap 700 425   # P01
-  hold 385 443                      # arm
-  tap 694 443                       # begin
+  tap 437 360; tap 736 240; tap 63 240; tap 700 425   # enter the participant's code P01
+  hold 385 443                      # arm the amplifier
+  tap 694 443                       # begin the session
   eventually 30 english; sleep 0.5; tap 400 150
   off || fail "on before the first stimulus"
   goes_on
   eventually 30 equals level AMP_EN 1
 }
-# seconds_to_off SIGNAL LIMIT: how long the line stays high after the station received the signal.
+# seconds_to_off SIGNAL LIMIT: sends the signal to the station, and measures how long the enable line stays
+# high.
 seconds_to_off() {
   local station start; station=$(state MainPID) start=$(date +%s%N)
   kill -"$1" "$station"
@@ -72,7 +72,7 @@ systemctl daemon-reload
 drives
 ! seconds_to_off KILL 5 || fail "low without amplifier-off: this scenario shows nothing"
 eventually 5 failed
-turnpoint amplifier-off             # for the installed rig, which has another line
+turnpoint amplifier-off             # without --rig, this affects only the line of the installed rig
 ! off || fail "low without the rig that the station was started with"
 turnpoint amplifier-off --locked --rig /etc/turnpoint/second.toml
 off || fail "amplifier-off does not lower it"

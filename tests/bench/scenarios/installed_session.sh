@@ -1,4 +1,4 @@
-# proves: under the installed unit a session by buttons drives what its database says; stop, clock jump, lost sound card, full disk and a kill keep every stored trial, and nothing arms by itself
+# proves: under the installed unit, a session with buttons plays what its database says; a stop, a clock jump, a lost sound card, a full disk and a kill lose no stored trial, and nothing arms by itself
 # needs: installed
 # timeout: 900
 gpio_sim AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R
@@ -23,7 +23,7 @@ station() {
   systemctl start turnpoint
 }
 lasts() { [ "$(systemctl show -P ActiveState turnpoint)" = active ]; }
-# says TEXT: waits until the station prints this, after the text that was waited for before.
+# says TEXT: waits until the station prints this text. Output that an earlier call has read does not count.
 read_so_far=0
 said() {
   lasts || { cat $log; fail "the session ended, waiting for: $1"; }
@@ -38,7 +38,7 @@ press() { gpio_line press "$(pull_file "$1")" 50 >/dev/null; }
 stored() { [ "$(rows "SELECT count(*) FROM trial")" = "$1" ]; }
 stimulus() { says "^stimulus"; eventually 5 on; sleep 1; }
 answer() { press BTN_R; eventually 5 off; }
-armed() { operator arm; sleep 0.5; said "$1"; }   # arming is refused as long as the reason exists
+armed() { operator arm; sleep 0.5; said "$1"; }   # tries to arm, and checks the station's reply
 
 record 120 heard0.raw; recorder=$!
 station run /usr/share/turnpoint/protocols/demo.toml --participant P01 --db $db --buttons-only --seed 3
@@ -98,7 +98,7 @@ kill $recorder; wait $recorder || true
 near "clock jumps logged" "$(rows "SELECT count(*) FROM event WHERE value LIKE '%wall clock was set by +7%'")" 1 0
 [[ "$(rows "SELECT realtime_rights FROM session")" == "fifo 70, memory locked"* ]] || fail "$(rows "SELECT realtime_rights FROM session")"
 
-# Compares each recorded stimulus with its row: the tones in the order of presentation.
+# Compares each recorded stimulus with the tone in the database, in the order of presentation.
 rows "SELECT tone.frequency_Hz FROM tone ORDER BY trial_index" >frequencies.txt
 for k in 0 1; do python3 "$BENCH_SOURCE/guest/bursts.py" heard$k.raw burst$k 0.1; done
 ls burst*.raw | head -4 | paste -d ' ' - frequencies.txt >pairs.txt

@@ -1,4 +1,4 @@
-# proves: on the installed unit, unchanged and on eglfs, a participant does a whole session by touch alone, through libinput; a panel that is plugged in again works, and a mouse brings no pointer onto the screen
+# proves: on the installed unit, unchanged and on eglfs, a participant does a whole session by touch alone, through libinput; a panel works again after it was unplugged, and a mouse shows no pointer on the screen
 # needs: installed screen
 # timeout: 1200
 panel_begin
@@ -8,8 +8,8 @@ db=/var/lib/turnpoint/turnpoint.sqlite
 rows() { sqlite3 -separator ' ' "file:$db?mode=ro" "$1" 2>/dev/null || true; }
 stored() { [ "$(rows "SELECT count(*) FROM trial")" = "$1" ]; }
 
-# Only the settings that every station needs: its rig, its operator's code, and the size of a panel that does
-# not report it. The screenshot must include a pointer if there is one.
+# Sets only what every station needs: its rig, its operator's code, and the size of a panel that does not
+# report its size. Screenshots must include a mouse pointer if there is one.
 rig_with "touch=evdev:bench touch panel" </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
 echo '{"device": "/dev/dri/card0", "hwcursor": false}' >/etc/turnpoint/kms.json
 printf 'TURNPOINT_DPI=132\nQT_QPA_EGLFS_KMS_CONFIG=/etc/turnpoint/kms.json\n' >/etc/turnpoint/environment
@@ -32,13 +32,13 @@ eventually 30 keypad
 shows_no_pointer
 unlock
 sleep 0.5; screenshot start_page
-tap 150 215                       # demo
-tap 303 392                       # "enter it now"
+tap 150 215                       # choose the protocol "demo"
+tap 303 392                       # tap "enter it now"
 sleep 0.5
-tap 437 360; tap 736 240; tap 63 240; tap 700 425   # P01
+tap 437 360; tap 736 240; tap 63 240; tap 700 425   # enter the participant's code P01
 screenshot chosen
-hold 385 443                      # arm
-tap 694 443                       # begin
+hold 385 443                      # arm the amplifier
+tap 694 443                       # begin the session
 eventually 30 english; sleep 0.5; tap 400 150
 goes_on
 by_touch() { eventually 30 answers_open; sleep 1; touch_do tap 200 370; eventually 20 stored "$1"; }
@@ -48,7 +48,7 @@ screenshot trial
 say "the panel is unplugged, and comes back"
 eventually 30 answers_open
 touch_do gone
-eventually 10 stored 4            # a fault: the trial is repeated
+eventually 10 stored 4            # the fault makes the fourth trial void; it will be repeated
 panel_begin
 sleep 1.5; tap 535 395
 for trial in 5 6 7 8 9 10 11; do by_touch $trial; done
@@ -67,7 +67,7 @@ shows_no_pointer
 unlock
 
 say "a service that may only read the devices is told so by the doctor"
-# Uses a unit file, because the guest has no bus for systemd-run.
+# Runs the doctor by a unit file, because the guest has no message bus for systemd-run.
 doctor() {
   cat >/run/systemd/system/bench-doctor.service <<UNIT
 [Service]

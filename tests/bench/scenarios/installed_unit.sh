@@ -1,4 +1,4 @@
-# proves: the installed unit gets ready under systemd, on eglfs, is hardened, listens nowhere, stops when it is told to, and leaves a lab's data where they are
+# proves: the installed unit starts under systemd on eglfs, is hardened, listens on no network port, can be stopped, and purging the package keeps the lab's data
 # needs: installed screen
 # timeout: 900
 state() { systemctl show -P "$1" turnpoint; }
@@ -9,13 +9,13 @@ modprobe vgem
 eventually 5 test -e /dev/dri/card0
 screen_begin
 [ -e /sys/class/drm/card1-Virtual-1 ] || fail "not at the second card: $(ls /sys/class/drm)"
-# Without its own operator's code the station does not start, and says how to store one.
+# Without an operator's code of its own, the station must not start, and must say how to store one.
 systemctl start --no-block turnpoint
 refused() { journal | grep -q 'store your own: sudo turnpoint operator-code'; }
 eventually 30 refused
 echo 7391 | turnpoint operator-code
 systemctl stop turnpoint
-# As installed: eglfs on kernel mode setting, rendered in software because there is no GPU.
+# Starts the unit as installed: eglfs on kernel mode setting, rendered in software because there is no GPU.
 systemctl start turnpoint || { journal | tail -30; fail "the unit did not get ready on eglfs"; }
 mount -t debugfs debugfs /sys/kernel/debug
 sed -n '/^plane/,/^crtc/p' /sys/kernel/debug/dri/1/state >shown.txt
@@ -30,7 +30,7 @@ score=$(systemd-analyze security turnpoint --no-pager | awk '/Overall exposure/ 
 near "exposure" "$score" 0.75 0.75
 [ -z "$(ss -H -l -n -t -u -p | grep -v 'AF_NETLINK' || true)" ] || fail "something listens: $(ss -H -lntup)"
 
-# Stopping it works both on its first page and while it starts, and does not count as a failure.
+# The unit can be stopped both on its first page and while it starts, and then does not count as failed.
 stops() { systemctl stop turnpoint; [ "$(state Result)" = success ] || fail "stopped $1, it ended as $(state Result)"; }
 stops "on its first page"
 systemctl start --no-block turnpoint

@@ -1,4 +1,4 @@
-# proves: a whole live session on the installed kiosk, from the operator's page to the last answer, by touches and buttons; panel, sound card and GPIO chip lost and back, hung and killed in a stimulus; every boundary that was heard is the database's
+# proves: a whole live session on the installed kiosk, from the operator's page to the last answer, by touches and buttons; panel, sound card and GPIO chip are unplugged and return, and the station hangs and is killed during a stimulus; every stimulus that was played has the boundary stored in the database
 # needs: installed screen
 # timeout: 1800
 gpio_sim AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R
@@ -10,8 +10,8 @@ udevadm settle
 db=/var/lib/turnpoint/turnpoint.sqlite
 rows() { sqlite3 -separator ' ' "file:$db?mode=ro" "$1" 2>/dev/null || true; }
 
-# The rig, calibrated for live sessions. Then the installed unit, with the only difference that the pixels of
-# its screen can be read.
+# Calibrates the rig for live sessions. Then starts the installed unit, changed only so that the pixels of its
+# screen can be read.
 rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB buttons=gpio:left=BTN_L,right=BTN_R "touch=evdev:$PANEL" \
   </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
 calibrate_for_live /etc/turnpoint/rig.toml
@@ -28,27 +28,27 @@ stored() { [ "$(rows "SELECT count(*) FROM trial")" = "$1" ]; }
 stimulus() { eventually 30 answers_open; eventually 5 on; sleep 0.8; echo "$1" >>presented.txt; }
 by_touch() { stimulus stored; touch_do tap 200 370; eventually 5 off; eventually 10 stored "$1"; }
 by_button() { stimulus stored; gpio_line press "$(pull_file BTN_R)" 50 >/dev/null; eventually 5 off; eventually 10 stored "$1"; }
-# The operator's part: "for the experimenter", the code, and the long press that arms.
-asked() { keypad || { tap 536 400; sleep 0.5; return 1; }; }   # a tap before the page can have been read is ignored
+# What the operator does: taps "for the experimenter", enters the code, and arms by a long press.
+asked() { keypad || { tap 536 400; sleep 0.5; return 1; }; }   # a page ignores taps in its first moments, so try again
 arm() { eventually 15 asked; operator_code; hold 536 400; }
 carry_on() { sleep 0.7; tap 535 395; }
 
 systemctl start turnpoint
 eventually 30 keypad
-sleep 0.3; tap 397 107; tap 280 188; tap 519 188; tap 397 269; tap 519 349   # the built-in code, which is not valid here
+sleep 0.3; tap 397 107; tap 280 188; tap 519 188; tap 397 269; tap 519 349   # 2468, the wrong code
 sleep 0.5; keypad || fail "2468 opens a station whose code is another"
 first=$(systemctl show -P MainPID turnpoint)
 unlock
 record 110 heard0.raw; recorder=$!
-tap 150 215                       # demo
-tap 303 392                       # "enter it now"
+tap 150 215                       # choose the protocol "demo"
+tap 303 392                       # tap "enter it now"
 sleep 0.5; screenshot code
-tap 437 360; tap 736 240; tap 63 240; tap 700 425   # P01
-tap 197 443                       # live
-hold 385 443                      # arm
+tap 437 360; tap 736 240; tap 63 240; tap 700 425   # enter the participant's code P01
+tap 197 443                       # choose a live session
+hold 385 443                      # arm the amplifier
 screenshot chosen
 off || fail "on before the session"
-tap 694 443                       # begin
+tap 694 443                       # begin the session
 eventually 20 english; sleep 0.5; tap 400 150
 goes_on
 by_touch 1
@@ -131,7 +131,7 @@ kill $recorder; wait $recorder || true
 [ "$(rows "PRAGMA integrity_check")" = ok ] || fail "the database is damaged"
 screenshot start_page
 
-# Checks the answers, their device and their time: touches on the left, buttons on the right.
+# Checks each stored answer, its device and its time: touches chose the left answer, buttons the right one.
 near "restarts" "$(systemctl show -P NRestarts turnpoint)" 2 0
 near "sessions" "$(rows "SELECT count(*) FROM session WHERE run_mode = 'live'")" 1 0
 [ "$(rows "SELECT group_concat(coalesce(response, outcome), ' ') FROM trial")" = \
@@ -141,7 +141,7 @@ near "presses" "$(rows "SELECT count(*) FROM event WHERE kind = 'button'")" 4 0
 near "refused armings" "$(rows "SELECT count(*) FROM event WHERE kind = 'arm' AND value LIKE 'refused: amplifier: its lines are gone%'")" 1 0
 near "armings" "$(rows "SELECT count(*) FROM event WHERE kind = 'arm' AND value = 'armed'")" 5 0
 
-# The recording is checked outside the guest, where that is faster.
+# Only splits the recording into bursts; NAME.after checks them outside the guest, where that is faster.
 for k in 0 1; do python3 "$BENCH_SOURCE/guest/bursts.py" heard$k.raw "$OUT/burst$k."; done
 cp presented.txt /etc/turnpoint/rig.toml "$OUT"
 rows "SELECT frequency_Hz, boundary_mm, model FROM tone ORDER BY trial_index" >"$OUT/rows.txt"

@@ -1,4 +1,4 @@
-# proves: a press counts once, with the kernel's time of its first edge, however it bounces; a spike is a glitch and no press; lost edges and a lost chip are told
+# proves: a bouncing press counts once, with the kernel's time of its first edge; a spike is reported as a glitch and not as a press; lost edges and a lost chip are reported
 # timeout: 90
 # suite: core
 gpio_sim BTN_L BTN_R FINGER
@@ -6,7 +6,8 @@ for line in BTN_L BTN_R FINGER; do pull $line down; done
 panel_events gpio:left=BTN_L,right=BTN_R,refractory_ms=400 gpio:line=FINGER 30 >events.txt & panel=$!
 eventually 5 has events.txt ready
 for i in 1 2 3; do
-  for bounce in 1 2 3; do gpio_line press "$(pull_file BTN_R)" 5; done >pressed.txt   # within 400 ms
+  # three presses within the refractory time of 400 ms
+  for bounce in 1 2 3; do gpio_line press "$(pull_file BTN_R)" 5; done >pressed.txt
   eventually 5 sh -c "[ \$(grep -c '^press 1' events.txt) = $i ]"
   stamp=$(awk '/^press 1/ { print $3 }' events.txt | tail -1)
   read -r before after _ <pressed.txt
@@ -16,14 +17,14 @@ done
 pull FINGER up; eventually 5 grep -q "^contact 1" events.txt
 pull FINGER down; eventually 5 grep -q "^contact 0" events.txt
 [ "$(grep -c ^press events.txt)" = 3 ] || fail "$(grep -c ^press events.txt) presses, not 3"
-# A level that is too short to count.
+# A press that is too short must be reported as a glitch.
 gpio_line press "$(pull_file BTN_L)" 0 >spike.txt
 eventually 5 grep -q "^glitch left" events.txt
 read -r before after _ <spike.txt
 awk -v b="$before" -v a="$after" '/^glitch left/ { exit !($3 >= b && $3 <= a + 1e6 && $5 < 1.5e6) }' events.txt ||
   fail "$(grep ^glitch events.txt), spike from $before to $after"
 ! grep -q "^press 0" events.txt || fail "a spike was taken for a press"
-# While the station is frozen, there are more edges than the kernel can store.
+# Freeze the program while more edges happen than the kernel can store.
 kill -STOP $panel
 for k in $(seq 40); do pull BTN_L up; pull BTN_L down; done
 kill -CONT $panel

@@ -1,4 +1,4 @@
-# proves: the panel's latency is found on its calibration page; then a whole live session on the bare frame buffer, answered by touches and buttons: each answer has its kernel time, each touch the latency beside it
+# proves: the panel's latency is measured on the calibration page; then, in a live session on the bare frame buffer answered by touches and buttons, each answer has its kernel time, and each touch also the panel's latency
 # needs: screen
 # timeout: 1200
 gpio_sim BTN_L BTN_R AMP_EN AMP_FAULT STOP AMP_HB
@@ -13,49 +13,51 @@ turnpoint calibrate --rig rig.toml --panel --json >result.json 2>page.log & page
 shown() { [ "$(pixel 20 460)" = eef4f6 ]; }
 eventually 60 shown
 screenshot field
+# presses the button for $delay ms, then touches the panel
 for delay in 20 40 30 50 25 35 45 30 20 40 30 35; do
   sleep 0.5
-  gpio_line press "$(pull_file BTN_L)" "$delay" | head -1 >>edges.txt     # release the button, then touch the panel
+  gpio_line press "$(pull_file BTN_L)" "$delay" | head -1 >>edges.txt
   touch_do tap 600 300
   eventually 5 equals "grep -c ^tapped" panel.out "$(wc -l <edges.txt)"
 done
 sleep 0.5; screenshot measured
-touch_do tap 740 450                                                     # Keep this
+touch_do tap 740 450                                                     # tap "Keep this"
 status=0; wait $page || status=$?
 cat result.json page.log
 [ $status = 0 ] || fail "calibrate ended with $status"
-# The true latency: from each edge to its injected touch, and the median of these.
+# The true latency is the median time from the button's edge to the injected touch.
 paste -d ' ' edges.txt <(grep ^tapped panel.out | head -12) | awk '{ print ($4 - $1) * 1e-9 }' | sort -n >truth.txt
 truth=$(awk '{ v[NR] = $1 } END { print (v[6] + v[7]) / 2 }' truth.txt)
 stored=$(awk '$1 == "response_offset_s" { print $3 }' rig.calibration-*.toml)
 near "response_offset_s" "$stored" "$truth" 0.0001
 [ "$(awk '$1 == "response_offset_unmatched" { print $3 }' rig.calibration-*.toml)" = 0 ] || fail "a tap was not matched"
 
-# Makes the rest of the calibration; the panel's latency stays in it.
+# Adds the other parts of a calibration. The panel's latency must be kept.
 calibrate_for_live rig.toml
 near "response_offset_s, calibrated again" "$(awk '$1 == "response_offset_s" { print $3 }' rig.calibration-*.toml)" "$truth" 0.0001
 
-# A live session from the first question to the thanks. The amplifier is on while there is something to feel.
+# Runs a live session from the language page to the last page. The amplifier must be on only during stimuli.
 sed -e 's/device = "touch"/device = "either"/' "$SOURCE/tests/ui/short.toml" >short.toml
 turnpoint run short.toml --rig rig.toml --db lab.sqlite --mode live --consent 2026-03 --json \
   >summary.json 2>session.log & session=$!
 tap() { touch_do tap "$1" "$2"; sleep 0.2; }
 trials() { sqlite3 lab.sqlite "SELECT count(*) FROM trial" 2>/dev/null || echo 0; }
-# Both record for each answer the times (ns) between which it was given.
+# touch_answer and press give an answer, and record the two times (ns) between which it was given.
 touch_answer() { touch_do tap "$1" 370; sleep 0.2; tail -1 panel.out | cut -d ' ' -f 2,3 >>given.txt; }
 press() { gpio_line press "$(pull_file "$1")" 50 | head -1 >>given.txt; }
-# A tap before the page can have been read is ignored; then tap once more.
+# goes_on: taps to continue until answers are accepted. A page ignores taps in its first moments, so tap
+# again.
 goes_on() { answers_open && return; ! continues || tap 400 390; return 1; }
 
 eventually 60 has session.log "first page"
 near "first page (ms)" "$(awk '/first page/ { print $5 }' session.log)" 0 3000
 screenshot language
 eventually 10 shows 200 200
-tap 400 210                       # English
+tap 400 210                       # choose English
 eventually 10 shows 400 410
-tap 480 410                       # consent
+tap 480 410                       # give consent
 screenshot code
-tap 60 300; tap 130 240           # A2
+tap 60 300; tap 130 240           # enter the participant's code A2
 tap 700 425
 eventually 20 continues
 [ "$(level AMP_EN)" = 0 ] || fail "the amplifier is on before there is anything to feel"
@@ -73,7 +75,7 @@ done
 page_is_clear() { ! shows 60 400; }
 eventually 20 page_is_clear
 sleep 1; screenshot end
-tap 560 390                       # Close
+tap 560 390                       # tap "Close"
 status=0; wait $session || status=$?
 cat summary.json session.log
 [ $status = 0 ] && has summary.json '"completed"' || fail "the session ended with $status"
@@ -81,7 +83,7 @@ cat summary.json session.log
 
 rows() { sqlite3 -separator ' ' lab.sqlite "$1"; }
 [ "$(rows "SELECT participant FROM session")" = A2 ] || fail "not the participant who typed the code"
-# The error of each stored answer time beyond the time that the injection itself took, in ms.
+# By how much (ms) each stored answer time lies outside the two times between which the answer was injected.
 rows "SELECT onset_ns + CAST(round(response_time_s * 1e9) AS INTEGER) FROM trial ORDER BY trial_index" >recovered.txt
 paste -d ' ' given.txt recovered.txt | awk '
   { late = $3 > $2 ? $3 - $2 : $3 < $1 ? $3 - $1 : 0; sum += late < 0 ? -late : late; after += ($3 - $1) / 1e6; print $1, $2, $3, late * 1e-6 " ms" }

@@ -1,9 +1,9 @@
-# proves: samples reach a card bit by bit, as S32_LE in its 2 channels and as S24_3LE in 2 of its 6; a card of another layout is refused with what it takes; the doctor sees a converter that mutes itself, and its advice ends that
+# proves: samples reach a card bit by bit, as S32_LE in its 2 channels and as S24_3LE in 2 of its 6; if a card needs another layout, it is refused with a message that says which; the doctor finds a converter that mutes itself, and its advice solves that
 # timeout: 900
 loopback
 # Both channels have a tone, so that swapped channels are detected.
 second='[[transducer]]\nname = "second"\nchannel = 1\nband_kHz = [60, 80]\num_per_full_scale = 4.0\n'
-rig() {  # RIG BITS [DEVICE_CHANNELS]
+rig() {  # rig FILE BITS [DEVICE_CHANNELS]: writes a rig file with this output format
   sed -e "s/^rate_Hz.*/&\nbits = $2\nperiod_frames = 1920\nperiods = 40${3:+\ndevice_channels = $3}/" -e "s/^\[output\]/$second\n&/" \
     -e 's/"null:"/"alsa:hw:CARD=Loopback,DEV=0"/' "$SOURCE/deploy/rigs/simulated.toml" >"$1"
 }
@@ -12,16 +12,17 @@ rig six.toml 24 6
 rig deep.toml 32
 synth() { turnpoint synth --rig "$1" --tone 30000:1 --tone 70000:2 --seconds 0.5 --out "$2" --json >report.json; }
 onset() { sed -n 's/.*"onset_frame": \([0-9]*\).*/\1/p' report.json; }
-# expected: the samples of the burst in the last report
+# expected: computes the samples of the burst in the last report.
 expected() { burst_samples "$(onset)" 0.5 30000:0.25:0 70000:0.5:1 >expected.raw; }
-# card FORMAT CHANNELS: opens the other side of the card with these, so that this side accepts nothing else.
+# card FORMAT CHANNELS: opens the card's recording side in this format, so that its playback side accepts no
+# other.
 card() {
   arecord -q -D hw:Loopback,1 -t raw -f "$1" -c "$2" -r 192000 --period-size=9600 --buffer-size=76800 heard.raw & recorder=$!
   eventually 10 grep -q RUNNING /proc/asound/Loopback/pcm1c/sub0/status
 }
 no_card() { kill $recorder; wait $recorder || true; }
-# same_bits FILE BYTES CHANNELS: the file contains the whole expected burst, in samples of BYTES bytes, and
-# otherwise zeros.
+# same_bits FILE BYTES CHANNELS: passes if the file contains the whole expected burst, in samples of BYTES
+# bytes, and only zeros around it.
 same_bits() {
   python3 - "$@" <<'PYTHON'
 import sys
@@ -39,27 +40,28 @@ sys.exit(not same)
 PYTHON
 }
 
-# The same command written to a file gives the expected samples.
+# First check burst_samples: `turnpoint synth` must write the same samples to a file.
 synth two.toml wav:tone.wav
 expected
 tail -c +69 tone.wav >tone.raw
 same_bits tone.raw 4 2 || fail "burst_samples and turnpoint synth differ"
 
-plays() {  # RIG FORMAT BYTES CHANNELS
+plays() {  # plays RIG FORMAT BYTES CHANNELS: plays the burst and compares what the card received
   card "$2" "$4"
   synth "$1" alsa:hw:Loopback,0
   sed -n '/^format\|^channels/p' </proc/asound/Loopback/pcm1c/sub0/hw_params
-  sleep 0.7   # samples still on their way
+  sleep 0.7   # wait for the last samples to arrive
   no_card
-  has report.json '"underruns": 0' || return 1   # the host may stall
+  has report.json '"underruns": 0' || return 1   # if the host stalled, the caller tries again
   expected
   same_bits heard.raw "$3" "$4" || fail "$2 in $4 channels: other samples than expected"
 }
 bits() { plays "$@" || plays "$@" || plays "$@" || fail "an underrun each time"; }
 bits two.toml S32_LE 4 2
 bits six.toml S24_3LE 3 6
-# Negative controls of the comparison: a wrong bit, a missing frame, and a signal in an unused channel.
-spoilt() {  # WHAT POSITION BYTES FLIP: changes BYTES bytes by FLIP, or removes them if FLIP is 0
+# Negative controls: the comparison must detect a wrong bit, a missing frame, and a signal in an unused
+# channel.
+spoilt() {  # spoilt WHAT POSITION BYTES FLIP: changes BYTES bytes by FLIP, or removes them if FLIP is 0
   python3 - "$@" <<'PYTHON'
 import sys
 data = bytearray(open("heard.raw", "rb").read())
@@ -87,7 +89,7 @@ card S16_LE 2
 refused two.toml "takes neither 32-bit samples (S32_LE) nor 24-bit ones (S24_3LE)"
 no_card
 
-# `turnpoint doctor` prints the line "converter mute" only for a card that has the switch Auto Mute.
+# `turnpoint doctor` prints the line "converter mute" only for a card that has a mixer switch named Auto Mute.
 doctor() {
   status=0
   turnpoint doctor --rig two.toml --data . >doctor.txt 2>&1 || status=$?

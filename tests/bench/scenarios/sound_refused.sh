@@ -1,4 +1,4 @@
-# proves: a device at another rate, behind a resampler, in use or absent is refused, and the message says which it is
+# proves: a device that has another rate, is behind a resampler, is in use or is absent is refused, and the message says which of these it is
 # timeout: 240
 loopback
 sed '/^rate_Hz/a period_frames = 1920' "$SOURCE/deploy/rigs/simulated.toml" >rig.toml
@@ -11,9 +11,9 @@ aplay -q -D hw:Loopback,0 -t raw -f S32_LE -c 2 -r 192000 /dev/zero & other=$!
 eventually 5 grep -q RUNNING /proc/asound/Loopback/pcm0p/sub0/status
 refused alsa:hw:Loopback,0 "in use"
 kill $other; wait $other || true
-# The two sides of the card share one rate. With 44.1 kHz on the other side, 192 kHz is not available.
+# Both sides of the card must have the same rate. While the other side runs at 44.1 kHz, 192 kHz is refused.
 record 20 /dev/null 44100; recorder=$!
 eventually 5 grep -q RUNNING /proc/asound/Loopback/pcm1c/sub0/status
 refused alsa:hw:Loopback,0 "rate 192000 Hz not supported; it offers 44100"
 kill $recorder; wait $recorder || true
-synth alsa:hw:Loopback,0     # without obstacles it plays
+synth alsa:hw:Loopback,0     # negative control: without any of these obstacles the card plays

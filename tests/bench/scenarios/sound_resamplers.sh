@@ -1,4 +1,4 @@
-# proves: every alsa-lib name by which this card could be resampled or mixed is refused; only the hardware itself is taken
+# proves: every alsa-lib name by which this card could be resampled or mixed is refused; only the hardware device itself is accepted
 # timeout: 90
 loopback
 cat >/root/.asoundrc <<'CONF'

@@ -1,4 +1,4 @@
-# proves: a sound card that sleeps with the machine and wakes has its stream started anew: the gap is told once, frames count on and have their times again
+# proves: when a sound card sleeps and wakes with the machine, its stream is restarted: the gap is reported once, frames continue to be counted, and their times are correct again
 # timeout: 150
 loopback
 drive_stream alsa:hw:Loopback,0 1920 8 >events.txt & stream=$!
@@ -6,7 +6,7 @@ eventually 10 grep -q started events.txt
 sleep 1
 cp "$BENCH_DIR/card_sleep.ko" .
 insmod card_sleep.ko
-kill -STOP $stream    # running programs are frozen while devices sleep
+kill -STOP $stream    # the machine freezes its programs before devices are suspended
 grep -q SUSPENDED /proc/asound/Loopback/pcm0p/sub0/status || fail "the card does not sleep"
 lines=$(wc -l <events.txt)
 sleep 2
@@ -20,7 +20,7 @@ has events.txt " underrun .* error -86" || fail "it is not told as a suspend (ES
 has events.txt "losses 0 " || fail "taken for an unplugged card"
 awk '/ started / { if ($4 <= last) exit 1; last = $4 }' events.txt || fail "frames went back"
 awk '/^clock/ { exit !($3 > 191900 && $3 < 192100 && $5 < 2000) }' events.txt || fail "the clock's regression is off"
-# Each burst is rendered one buffer before it is heard, and heard at the time that was predicted once the new
-# relation was known.
+# Each burst must be rendered one buffer before it is heard. Once the clock has been fitted again, it must be
+# heard at the predicted time.
 awk '/ scheduled / && $5 > $1 { due[$3] = $5 } / started / && $4 in due { ahead = due[$4] - $1; n++; if (ahead < 0 || ahead > 4e8) exit 1 } END { if (n < 8) exit 1 }' events.txt ||
   fail "a burst began at another time than was predicted"

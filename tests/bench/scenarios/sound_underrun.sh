@@ -1,4 +1,4 @@
-# proves: a station that is held up for longer than its buffer says how many frames passed in silence and goes on; a card in use is refused
+# proves: a station that is delayed for longer than its buffer reports how many frames were silent, and continues; a card in use is refused
 # timeout: 150
 loopback
 drive_stream alsa:hw:Loopback,0 1920 8 >events.txt & stream=$!

@@ -1,4 +1,4 @@
-# proves: a card that is unplugged is noticed, reopened by name when it returns, and frames count on
+# proves: an unplugged card is detected and reopened by name when it returns, and frames continue to be counted
 # timeout: 150
 loopback
 drive_stream alsa:hw:Loopback,0 1920 9 >events.txt & stream=$!

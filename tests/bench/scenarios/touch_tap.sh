@@ -1,4 +1,4 @@
-# proves: a touch is read from evdev with the kernel's monotonic time, two fingers apart, a lift among dropped events is noticed, and a vanished panel too
+# proves: touches read from evdev have the kernel's monotonic time, two fingers are distinguished, and a lift among dropped events and a vanished panel are noticed
 # suite: core
 # timeout: 240
 panel_begin
@@ -7,16 +7,16 @@ eventually 5 has times.txt ready
 for x in 100 300 500 700; do touch_do tap $x 240; touch_do sleep 50; done
 eventually 10 equals "grep -c" "^tapped panel.out" 4
 eventually 10 equals "grep -c" "^[0-9] times.txt" 4
-# Stamps have a resolution of microseconds and are taken when the report ends.
+# Time stamps have a resolution of 1 us and are taken at the end of the kernel's report.
 paste -d ' ' <(awk '$1 == "tapped" { print $2, $3 }' panel.out) <(grep '^[0-9]' times.txt) | tee pairs.txt
 awk '$3 < $1 - 1000 || $3 > $2 + 1000 { bad++ } END { exit bad || NR != 4 }' pairs.txt ||
   fail "a stamp is not that of its touch (injected between these two, stamp; ns)"
 
 touch_do down 0 100 100; touch_do down 1 700 400; touch_do up 0; touch_do up 1
-eventually 10 equals "grep -c" "^[0-9] times.txt" 5   # two overlapping fingers count as one touch
+eventually 10 equals "grep -c" "^[0-9] times.txt" 5   # two fingers at the same time count as one touch
 
-# While the station is frozen, there are more events than the kernel can store, and the lift is among the
-# dropped ones.
+# Freeze the program while there are more events than the kernel can store, so that the lift of the finger is
+# lost.
 panel_events "" "evdev:bench touch panel" 60 >contact.txt & contact=$!
 eventually 5 has contact.txt ready
 touch_do down 0 100 100
@@ -24,7 +24,7 @@ eventually 5 has contact.txt "^contact 1"
 kill -STOP $contact
 for x in $(seq 101 600); do touch_do move 0 $x 100; done
 touch_do up 0
-touch_do tap 700 300              # a further tap shows that all previous events were processed
+touch_do tap 700 300              # once this tap is printed, all events before it were processed
 eventually 20 equals "grep -c" "^tapped panel.out" 5
 eventually 10 equals "grep -c" "^[0-9] times.txt" 7
 kill -CONT $contact

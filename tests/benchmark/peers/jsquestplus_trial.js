@@ -1,6 +1,6 @@
-// A trial of QUEST+ by jsQuestPlus, which keeps a table of stimuli times parameters. Arguments: the numbers
-// of stimuli, thresholds, slopes and lapse rates of the grid. Prints "version median slowest", times in
-// milliseconds.
+// Measures a trial of QUEST+ in jsQuestPlus, which keeps a table of stimuli times parameters. Arguments: the
+// numbers of stimuli, thresholds, slopes and lapse rates of the grid. Prints "version median slowest", times
+// in milliseconds.
 const Q = require('jsquest-plus');
 const [stimuli, thresholds, slopes, lapses] = process.argv.slice(2).map(Number);
 const grid = (a, b, n) => Array.from({length: n}, (_, i) => a + (b - a) * i / (n - 1));

@@ -1,5 +1,5 @@
-# A trial of QUEST+ by questplus. Arguments: the numbers of stimuli, thresholds, slopes and lapse rates of the
-# grid. Prints "version median slowest", times in milliseconds.
+# Measures a trial of QUEST+ in questplus. Arguments: the numbers of stimuli, thresholds, slopes and lapse
+# rates of the grid. Prints "version median slowest", times in milliseconds.
 import sys
 import time
 from importlib.metadata import version
