@@ -49,7 +49,7 @@ desk::LiveTrial answered(bool correct, double response_time_s) {
   return trial;
 }
 
-/// Passes on the beginnings of the first trials, then ends the session.
+/// Passes on the beginnings of the session's first trials to another monitor, then ends the session.
 struct FirstTrials : session::Monitor {
   session::Monitor& to;
   int left;
@@ -63,7 +63,7 @@ struct FirstTrials : session::Monitor {
   }
 };
 
-/// The drive of each displayed tone, such as "0.512 um on", in order.
+/// The drives that the page shows, one for each tone, such as "0.512 um on", in order.
 std::vector<std::string> drives_shown(const desk::LiveState& state) {
   std::vector<std::string> drives;
   for (const auto& [label, value] : state.scene) {
@@ -187,7 +187,8 @@ TEST_CASE("the live view shows what is played: each scene of each interval, with
       CHECK(state.surfaces.size() == static_cast<std::size_t>(scenes));
     }
   CHECK(trial == trials);
-  CHECK((roved > 0 || scenes > 1));  // otherwise the first request of a scene's plan would have been enough
+  // negative control: some trials need more than the first request of a plan
+  CHECK((roved > 0 || scenes > 1));
 }
 
 TEST_CASE("a slider that moves fast is shown a few times a second, and in the end where it stands",
@@ -218,7 +219,8 @@ TEST_CASE("a slider that moves fast is shown a few times a second, and in the en
     return !states.empty() && states.back().heading.find(", now 24.5:") != std::string::npos;
   }));
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - from;
-  CHECK(states.size() <= 2 + took / std::chrono::milliseconds(200));  // the beginning, and slider settings
+  // one state at the start and at the slider setting, the others 200 ms apart
+  CHECK(states.size() <= 2 + took / std::chrono::milliseconds(200));
   const auto plan = plans.take(spec).plans.front().back();
   CHECK(drives_shown(states.back()) ==
         std::vector<std::string>{text::number(1e6 * plan.tones.front().amplitude_m, 3) + " \u00b5m on"});

@@ -49,13 +49,14 @@ TEST_CASE("a code opens by its digits alone, and its hash tells nothing about th
   for (const auto* wrong : {"", "739", "73911", "7392", "2468", "1937"}) CHECK_FALSE(code.opens(wrong));
   CHECK(code.hash().substr(0, 3) == "$y$");  // the prefix of yescrypt
   CHECK(code.hash().find("7391") == std::string::npos);
-  CHECK(desk::OperatorCode::of_digits("7391").hash() != code.hash());  // hashes are salted
+  // hashes are salted, so the same code gives another hash
+  CHECK(desk::OperatorCode::of_digits("7391").hash() != code.hash());
   CHECK(desk::OperatorCode::of_hash(code.hash()).opens("7391"));
 }
 
 TEST_CASE("the hash is the one that other programs make of a password", "[code]") {
-  // Made by perl -e 'print crypt("7391", "\$y\$j9T\$abcdefghijklmnopqrstu.")' on Debian 12; the format is
-  // that of crypt(5).
+  // This hash was made on Debian 12 by perl -e 'print crypt("7391", "\$y\$j9T\$abcdefghijklmnopqrstu.")';
+  // crypt(5) describes the format.
   const auto known = desk::OperatorCode::of_hash(
       "$y$j9T$abcdefghijklmnopqrstu.$Cc1pVTPQa0zlBFjGhM8JKmhg2p/63he89aBGE3QLOPC");
   CHECK(known.opens("7391"));

@@ -23,14 +23,15 @@ protocol::Factors factors(const desk::Preview& preview, const std::vector<std::s
   return desk::factors_for(preview.protocol(), set, assumed);
 }
 
-/// The position of the boundary in a surface's picture: the only line of this colour.
+/// The position of the boundary in the picture of a surface. Only the boundary's line has this colour.
 double boundary_x(const std::string& svg) {
   for (const auto& line : svg_geometry::elements(svg, "line"))
     if (svg_geometry::attribute(line, "stroke") == "#b3400a") return svg_geometry::number(line, "x1");
   throw std::runtime_error("no boundary drawn");
 }
 
-/// Finds words in a surface's picture that overlap others, the boundary or the edge; "" if there are none.
+/// Finds words in the picture of a surface that overlap other words, the boundary or the picture's edge; ""
+/// if there are none.
 std::string clash(const std::string& svg, double height) {
   const auto texts = svg_geometry::texts(svg);
   const double line_x = boundary_x(svg);
@@ -70,8 +71,8 @@ TEST_CASE("a look puts the boundary where the factors say, and the displacement 
   const auto last_peak = std::max_element(profile.displacement_m.begin(), profile.displacement_m.end());
   const auto beyond = std::lower_bound(profile.x_m.begin(), profile.x_m.end(), *look.plan.boundary_m);
   const auto at = static_cast<std::size_t>(beyond - profile.x_m.begin());
-  // The boundary is that of the lossless first mode. The profile also contains loss and is sampled every 0.75
-  // mm.
+  // The boundary is that of the lossless first mode. The profile includes loss and is sampled every 0.75 mm,
+  // so it agrees only roughly.
   CHECK(profile.displacement_m[at] / *last_peak == Approx(0.5).margin(0.05));
   CHECK(look.facts.front().second.find("159 mm") != std::string::npos);
   CHECK_FALSE(look.cues.empty());

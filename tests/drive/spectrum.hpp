@@ -6,7 +6,7 @@
 
 namespace turnpoint::drive {
 
-/// In-place radix-2 transform; the size is a power of two.
+/// Fourier transform in place (radix 2); the size must be a power of two.
 inline void transform(std::vector<std::complex<double>>& a) {
   const std::size_t n = a.size();
   for (std::size_t i = 1, j = 0; i < n; ++i) {
@@ -27,7 +27,7 @@ inline void transform(std::vector<std::complex<double>>& a) {
       }
 }
 
-/// Modified Bessel function I_0 by its power series, for the window.
+/// Modified Bessel function I_0 by its power series; the Kaiser window needs it.
 inline double bessel_i0(double x) {
   double term = 1, sum = 1;
   for (int k = 1; term > sum * 1e-17; ++k) {
@@ -37,8 +37,8 @@ inline double bessel_i0(double x) {
   return sum;
 }
 
-/// Levels in dB re full scale of bins 0 ... n/2: a tone of amplitude 1 on a bin is 0 dB. Kaiser window with
-/// beta 36: side lobes below -270 dB, main lobe +-12 bins.
+/// Levels of the spectrum's bins 0 ... n/2 in dB re full scale; a tone of amplitude 1 on a bin has 0 dB. Uses
+/// a Kaiser window with beta 36: side lobes below -270 dB, main lobe +-12 bins.
 inline std::vector<double> levels_dB(const std::vector<double>& samples) {
   constexpr double beta = 36;
   const std::size_t n = samples.size();

@@ -13,7 +13,7 @@ namespace {
 
 void quiet(const char*, int, const char*, int, const char*, ...) {}
 
-// Makes alsa-lib use the definitions of these tests.
+// Makes alsa-lib read the device definitions of these tests.
 const bool configured = [] {
   ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
   snd_lib_error_set_handler(quiet);
@@ -63,7 +63,7 @@ TEST_CASE("every plug-in of alsa-lib that resamples or mixes is refused by defau
     INFO(name);
     CHECK_FALSE(opens(config_for(name)));
   }
-  CHECK_FALSE(opens(config_for("straight")));  // also not hardware
+  CHECK_FALSE(opens(config_for("straight")));  // "straight" does not resample, but is not hardware either
 }
 
 TEST_CASE("a resampler behind an allowed plug-in is refused as well", "[drive][alsa]") {
@@ -77,7 +77,7 @@ TEST_CASE("a resampler behind an allowed plug-in is refused as well", "[drive][a
 }
 
 TEST_CASE("asking for an exact rate is not enough: alsa-lib's plug says yes", "[drive][alsa]") {
-  // Negative control of the two tests above: these definitions can be opened and do claim 192 kHz.
+  // Negative control of the two tests above: these devices can be opened and do claim to run at 192 kHz.
   for (const char* name :
        {"rated", "rated_linear", "plugged", "file_over_rate", "copy_over_rate", "asym_over_rate",
         "empty_over_rate", "hooks_over_rate", "route_over_rate", "multi_over_rate"}) {

@@ -20,8 +20,8 @@ void steps(DeviceStream& stream, int count) {
   for (int k = 0; k < count; ++k) stream.step();
 }
 
-/// Error of the stream's idea of the current frame, in frames. The card is playing, and the initial silence
-/// is over.
+/// Error, in frames, of the frame that the stream takes to be the current one. The card must be playing, and
+/// the initial silence be over.
 double error_frames(DeviceStream& stream) {
   const auto& card = fake_pcm();
   const auto next = stream.counters().frames;
@@ -47,11 +47,11 @@ TEST_CASE("before the device has told its position nothing is known of its time"
 
 TEST_CASE("a restart is never forgotten, however long nobody listened", "[drive][clock]") {
   DeviceStream stream(on_fake_card());
-  steps(stream, 5000);  // ten seconds: the ring of positions has been full for long
+  steps(stream, 5000);  // ten seconds, in which the ring of positions fills up
   fake_pcm().fail(FakePcm::State::xrun);
   fake_pcm().pass(5000);
   stream.step();
-  CHECK_FALSE(stream.time_of(0));  // everything in the ring is from before the restart
+  CHECK_FALSE(stream.time_of(0));  // all positions in the ring are from before the restart
   steps(stream, 3);
   CHECK(std::abs(error_frames(stream)) <= 1);
   steps(stream, 200);
@@ -113,7 +113,7 @@ TEST_CASE("an underrun is told with its first lost frame and the burst that it c
   REQUIRE(told);
   CHECK(told->frame == rendered);
   CHECK(told->frames == 100 + 384);
-  CHECK(told->burst == 0);  // before the burst, which is not affected
+  CHECK(told->burst == 0);  // the frames were lost before the burst began
   steps(stream, 100);
   const auto in_burst = stream.counters().frames;
   card.pass(card.queued() + 50);

@@ -13,7 +13,7 @@ std::vector<unsigned char> packed(const std::vector<std::int32_t>& samples, int 
   const auto frames = samples.size() / static_cast<std::size_t>(channels);
   std::vector<unsigned char> out(frames * layout.bytes() + 1, 0xee);
   pack(samples, channels, layout, out);
-  CHECK(out.back() == 0xee);  // bytes after the last frame are not changed
+  CHECK(out.back() == 0xee);  // bytes behind the last frame are not written
   out.pop_back();
   return out;
 }

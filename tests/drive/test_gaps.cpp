@@ -7,9 +7,9 @@
 #include "tests/drive/fake_pcm.hpp"
 #include "tests/support/catch.hpp"
 
-// Steps the station's ALSA output, its stream and its trial machine by hand on a sound card in memory.
-// Whether a trial must be void depends on what the card really played: its samples are compared with those of
-// an uninterrupted synthesis, independent of what the program believes.
+// Runs the station's ALSA output, its stream and its trial machine step by step on a sound card in memory.
+// Whether a trial must be void depends on what the card really played, not on what the program believes: the
+// card's samples are compared with those of an uninterrupted synthesis.
 
 using namespace turnpoint;
 using namespace turnpoint::drive;
@@ -28,7 +28,7 @@ Burst burst_of(std::int64_t length_frames) {
   return burst;
 }
 
-/// Channel 0 of frames [first, end) as rendered by a synthesis without gaps.
+/// Channel 0 of frames [first, end), as an uninterrupted synthesis renders it.
 std::vector<std::int32_t> unbroken(std::span<const PreparedBurst> bursts, const Format& format,
                                    std::int64_t first, std::int64_t end) {
   Synth synth(format);
@@ -42,7 +42,7 @@ std::vector<std::int32_t> unbroken(std::span<const PreparedBurst> bursts, const 
   return channel;
 }
 
-/// Number of places where, after silence, sound rises above a twentieth of its amplitude within 16 frames.
+/// Number of places where sound rises from silence above a twentieth of its amplitude within 16 frames.
 int abrupt_onsets(const std::vector<std::int32_t>& heard) {
   int abrupt = 0;
   std::size_t silent = 0;
@@ -73,9 +73,9 @@ struct Run {
   std::vector<Event> losses;
   bool restarted = false;
   trial::Result result;
-  bool told_after_answer = false;  ///< a loss that made the trial void
-  /// Time passed between a write and the check whether the device has overtaken it. It cannot be known
-  /// whether it was overtaken before the write, so the block counts as lost.
+  bool told_after_answer = false;  ///< a loss reported after the answer made the trial void
+  /// Time passed between a write and the check whether the device had overtaken the written frames. Whether
+  /// that happened before the write cannot be known, so the block counts as lost.
   bool doubtful = false;
 
   bool both_heard() const { return heard.size() == 2; }
@@ -119,7 +119,7 @@ class Bench {
         run.scheduled.back().start_frame + kLengths[1] - stream.counters().frames + 4 * buffer();
     plan(mishaps, kinds, frames);
     const auto last = fake_pcm().now + frames + 3 * buffer() + lasting_;
-    const auto one_in = pick({1, 3, 40});  // a session listens now and then
+    const auto one_in = pick({1, 3, 40});  // the session polls only in one of this many steps
     bool answered = false;
     while (fake_pcm().now < last || !machine.done()) {
       stream.step();
@@ -230,7 +230,7 @@ class Bench {
 
 struct Truth {
   bool whole = false;    ///< both bursts and the pause between them were played sample by sample
-  bool on_time = false;  ///< and began at the predicted time
+  bool on_time = false;  ///< both bursts began at the predicted time
 };
 
 Truth truth_of(const Run& run, const OutputConfig& output) {
@@ -249,7 +249,7 @@ struct Tally {
   int whole = 0, broken = 0, late = 0, gaps = 0, told_after_answer = 0, void_in_doubt = 0;
 };
 
-/// A trial must be void exactly if the card did not play all of it in time.
+/// Checks for many runs that a trial is void exactly if the card did not play all of it in time.
 Tally judge(int runs, std::uint64_t seed, const std::vector<Mishap>& kinds) {
   Tally tally;
   for (int k = 0; k < runs; ++k) {
@@ -260,7 +260,7 @@ Tally judge(int runs, std::uint64_t seed, const std::vector<Mishap>& kinds) {
     const bool good = truth.whole && truth.on_time;
     if (run.both_heard() && !good) FAIL("said to be heard, and was not");
     if (run.answered() && !good) FAIL("a trial that was not felt whole counts");
-    // After a restart earlier predictions are invalid, even if they happen to be right.
+    // A restart invalidates earlier predictions, even if they happen to be right.
     const bool may_be_void = run.restarted || run.doubtful;
     if (!run.both_heard() && good && !may_be_void) FAIL("said to have lost frames, and had not");
     if (!run.answered() && good && !may_be_void) FAIL("a trial that was felt whole is void");

@@ -1,6 +1,6 @@
-// "memory locked" may be recorded only if it is true. This test looks in /proc/self/smaps for the audio
-// thread's stack and for everything that engine and output allocate, on a thread whose memory is not the
-// program's heap.
+// The station may record "memory locked" only if that is true. This test looks in /proc/self/smaps for the
+// audio thread's stack and for all memory that engine and output allocate. They allocate on a thread whose
+// memory is separate from the program's heap.
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
@@ -22,7 +22,7 @@ using namespace turnpoint::system;
 
 namespace {
 
-/// Finds out where the audio thread's stack is, from inside that thread.
+/// Finds the address of the audio thread's stack, from inside that thread.
 struct StackProbe : Amplifier {
   std::atomic<std::uintptr_t> address{0};
 
@@ -92,7 +92,7 @@ TEST_CASE("what is recorded as locked is locked: the audio thread's stack, its b
     while (probe.address == 0) std::this_thread::yield();
     const auto all = mappings();
     CHECK(unlocked(all, probe.address - 16384, 16384) == 0);
-    // The clock's pairs, 16 kB, belong to the control side and need no lock.
+    // The clock's pairs of frame and time, 16 kB, are used only by the control side, so they need no lock.
     std::size_t engine = 0, left_out = 0;
     for (const auto& allocation : allocations) {
       if (allocation.size < 1024) continue;

@@ -50,7 +50,7 @@ TEST_CASE("the audio side allocates, locks and logs nothing, whatever it is sent
   core.change(id, change);
   CHECK(run(50) == 0);
   core.stop(0, Ramp{}, std::nullopt);
-  frame += 1000;  // lost frames
+  frame += 1000;  // simulates lost frames
   CHECK(run(100) == 0);
   CHECK(violations_in([&] { core.report({EventKind::underrun, 0, frame, 1000, -EPIPE}); }) == 0);
   while (core.poll()) {
@@ -60,8 +60,8 @@ TEST_CASE("the audio side allocates, locks and logs nothing, whatever it is sent
 
 TEST_CASE("writing through alsa-lib allocates, locks and logs nothing", "[drive][realtime][alsa]") {
   ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
-  // alsa-lib guards plug-ins (but never hardware) with their own mutex. Switch it off to get the behaviour of
-  // hardware.
+  // alsa-lib protects plug-ins (but never hardware) with its own mutex. Switch that off, so that the null
+  // plug-in behaves like hardware.
   ::setenv("LIBASOUND_THREAD_SAFE", "0", 1);
   OutputConfig config;
   config.uri = "alsa:straight";

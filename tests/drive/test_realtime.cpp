@@ -48,7 +48,8 @@ TEST_CASE("a burst that takes longer to check than the buffer lasts begins after
   burst.length_frames = 1920000;
   const auto stream = open_realtime({});
   burst.start_frame = stream->earliest_frame();
-  CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);  // its start frame is past once it has been checked
+  // checking it took so long that its start frame has passed
+  CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);
   const auto scheduled = stream->schedule_soon(burst);
   CHECK(scheduled.start_frame > burst.start_frame);
   std::optional<Event> first;

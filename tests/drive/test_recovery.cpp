@@ -69,12 +69,12 @@ TEST_CASE("more than three underruns within a minute are too many", "[drive][rec
   CHECK_FALSE(limit.exceeded_by(0));
   CHECK_FALSE(limit.exceeded_by(20 * second));
   CHECK_FALSE(limit.exceeded_by(40 * second));
-  CHECK_FALSE(limit.exceeded_by(61 * second));  // the first one is more than a minute ago
+  CHECK_FALSE(limit.exceeded_by(61 * second));  // the first underrun is more than a minute ago
   CHECK(limit.exceeded_by(62 * second));
 }
 
 TEST_CASE("a device that really runs at another rate is found out within seconds", "[drive][rate]") {
-  // The device updates its position only every `tick_s`, so that frames and times match only roughly.
+  // The device updates its position only every `tick_s`, so a reported position can be that old.
   const auto measured = [](double real_rate_Hz, double tick_s, double seconds) {
     RateCheck check(192000);
     for (int i = 0; i < seconds / 0.002; ++i) {
@@ -87,6 +87,7 @@ TEST_CASE("a device that really runs at another rate is found out within seconds
   CHECK(std::abs(measured(192000, 0, 2.1).value().deviation_ppm) < 10);
   CHECK(measured(192000 * (1 + 300e-6), 0, 2.1).value().deviation_ppm == Approx(300).margin(10));
   CHECK(measured(48000 * 4.001, 0, 2.1).value().deviation_ppm > RateCheck::tolerance_ppm);
-  CHECK_FALSE(measured(192000, 0.013, 2.1).has_value());  // too coarse to judge yet
+  // with this coarse tick, 2 s are too short for a result
+  CHECK_FALSE(measured(192000, 0.013, 2.1).has_value());
   CHECK(std::abs(measured(192000, 0.013, 20.5).value().deviation_ppm) < 100);
 }

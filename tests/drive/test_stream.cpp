@@ -40,7 +40,7 @@ TEST_CASE("10 000 onsets in a rendered stream are where they were asked for: jit
   std::int64_t next = 500;
   std::uint64_t random = 1;
   for (int k = 0; k < 10000; ++k) {
-    Burst burst = one_tone(24000, 0.5, M_PI / 8);  // no sample of it is 0
+    Burst burst = one_tone(24000, 0.5, M_PI / 8);  // with this phase no sample is 0
     burst.start_frame = next;
     burst.length_frames = 64;
     burst.ramp.frames = 0;
@@ -130,7 +130,7 @@ TEST_CASE("a burst too late, one too many, or too loud beside another is refused
   burst.tones.tones[0].amplitude = 0.01;
   stream->schedule(burst);
   stream->schedule(burst);
-  CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);  // no voice left
+  CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);  // all voices are in use
   stream->advance(200000);
   burst.start_frame = stream->earliest_frame();
   CHECK_NOTHROW(stream->schedule(burst));
@@ -174,13 +174,14 @@ TEST_CASE(
   stream->change(id, louder);
   Burst second = one_tone(20500, 0.45);
   second.start_frame = 60'000;
-  CHECK_THROWS_AS(stream->schedule(second), BurstRefused);  // 0.6 + 0.45, even before the burst's own change
+  // 0.6 + 0.45 > 1, although the first burst has not reached 0.6 yet
+  CHECK_THROWS_AS(stream->schedule(second), BurstRefused);
   second.tones.tones[0].amplitude = 0.39;
   stream->schedule(second);
   louder.at_frame = 80'000;
   louder.to.tones[0].amplitude = 0.65;
-  CHECK_THROWS_AS(stream->change(id, louder), BurstRefused);  // together with the second burst
-  // once that burst is over, the change is allowed
+  CHECK_THROWS_AS(stream->change(id, louder), BurstRefused);  // too loud together with the second burst
+  // Once the second burst is over, the change is allowed.
   stream->advance(200'000);
   louder.at_frame = 250'000;
   CHECK_NOTHROW(stream->change(id, louder));
@@ -198,7 +199,7 @@ TEST_CASE("a burst that a live change made louder leaves that much less room bes
   stream->change(id, Change{30'000, 9600, one_tone(20000, 0.7).tones});
   Burst second = one_tone(20500, 0.45);
   second.start_frame = 60'000;
-  CHECK_THROWS_AS(stream->schedule(second), BurstRefused);  // there would have been room for it beside 0.2
+  CHECK_THROWS_AS(stream->schedule(second), BurstRefused);  // 0.7 + 0.45 > 1; beside 0.2 it would fit
   second.tones.tones[0].amplitude = 0.29;
   stream->schedule(second);
   stream->advance(400'000);
@@ -218,11 +219,11 @@ TEST_CASE("bursts that are scheduled together keep their distances, or none is t
   CHECK(scheduled[0].start_frame == 5000);
   CHECK(scheduled[1].start_frame == 5000 + 97'765);
   CHECK(scheduled[2].start_frame == 5000 + 199'001);
-  stream->stop(0, {}, {});  // before the first one begins
+  stream->stop(0, {}, {});  // stop all three before the first one begins
   stream->advance(384);
   while (stream->poll()) {
   }
-  bursts[1].start_frame = 2000;  // two at the same time are too loud
+  bursts[1].start_frame = 2000;  // two bursts of 0.6 at the same time are too loud
   CHECK_THROWS_AS(stream->schedule_together(bursts), BurstRefused);
   stream->advance(400'000);
   CHECK(stream->counters().bursts == 0);

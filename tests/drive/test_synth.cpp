@@ -12,7 +12,7 @@ namespace {
 
 constexpr int rate = 192000;
 
-// Channel 0 of `frames` frames from `from` on, in blocks of `block`.
+// Renders channel 0 of `frames` frames from frame `from` on, in blocks of `block` frames.
 std::vector<double> rendered(Synth& synth, std::int64_t from, std::size_t frames, std::size_t block = 384) {
   std::vector<double> out, samples;
   for (std::size_t done = 0; done < frames; done += block) {
@@ -37,7 +37,7 @@ std::vector<double> rendered(const Burst& burst, const Kernels& kernels = best_k
   return rendered(synth, 0, static_cast<std::size_t>(burst.start_frame + burst.length_frames));
 }
 
-// A long burst of eight tones. Spectra are taken from its middle.
+// A long burst of eight tones; spectra are computed from its middle part.
 Burst eight_tones() {
   Burst burst;
   burst.length_frames = 300000;
@@ -115,8 +115,8 @@ TEST_CASE("samples do not depend on how the stream is cut into blocks", "[drive]
 }
 
 TEST_CASE("the phase is exact after ten days", "[drive][synth]") {
-  // 192 kHz * 10 days is 165 888 000 000 frames. 20 kHz has then completed whole cycles, to the last bit of
-  // the phase.
+  // 10 days at 192 kHz are 165 888 000 000 frames. A tone of 20 kHz has then completed whole cycles, so its
+  // phase must be exact to the last bit.
   Burst burst = one_tone(20000, 0.5, 1.0);
   Synth late({rate, 2, 24});
   burst.length_frames = 170'000'000'000;
@@ -141,7 +141,7 @@ TEST_CASE("a frequency glide keeps the phase continuous and ends on the target",
   for (std::size_t k = 20001; k + 1 < 80000; ++k)
     largest = std::max(largest, std::abs(samples[k + 1] - 2 * samples[k] + samples[k - 1]));
   CHECK(largest < bound);
-  // After the glide: exactly 21 kHz. 192 frames are 21 cycles.
+  // After the glide the tone is exactly 21 kHz, so 192 frames are 21 cycles.
   for (std::size_t k = 50000; k < 60000; ++k) REQUIRE(samples[k + 192] == Approx(samples[k]).margin(1e-9));
 }
 
@@ -176,7 +176,7 @@ TEST_CASE("a burst starts at its frame, ends at its frame, and silence around it
   const auto samples = quantised(synth, 0, 100000, 500);
   for (std::size_t k = 0; k < 2 * 777; ++k) REQUIRE(samples[k] == 0);
   for (std::size_t k = 2 * (777 + 96000); k < samples.size(); ++k) REQUIRE(samples[k] == 0);
-  for (std::size_t k = 1; k < samples.size(); k += 2) REQUIRE(samples[k] == 0);  // the other channel
+  for (std::size_t k = 1; k < samples.size(); k += 2) REQUIRE(samples[k] == 0);  // channel 1 is silent
   REQUIRE(synth.events().size() == 2);
   CHECK(synth.events()[0].kind == SynthEventKind::started);
   CHECK(synth.events()[0].frame == 777);
@@ -209,7 +209,8 @@ TEST_CASE("a stop ramps down and frames that were lost come back ramped", "[driv
 TEST_CASE("stops that follow one another go on from the gain that is reached, each of them sooner at its end",
           "[drive][synth]") {
   Synth synth({rate, 1, 24});
-  Burst burst = one_tone(rate / 4.0, 1 / std::sqrt(0.5) / 2, M_PI / 4);  // every sample has magnitude 1/2
+  // the magnitude of every sample is 1/2
+  Burst burst = one_tone(rate / 4.0, 1 / std::sqrt(0.5) / 2, M_PI / 4);
   REQUIRE(synth.start(prepare(burst, {rate, 1, 24})));
   std::vector<double> samples;
   const auto render = [&](std::size_t frames) {
@@ -222,8 +223,8 @@ TEST_CASE("stops that follow one another go on from the gain that is reached, ea
   render(14'000);
   synth.stop(0, 0, {9'600});
   render(2'000);
-  synth.stop(0, 36'500, {1'000});  // takes effect later; until then the others continue
-  synth.stop(0, 0, {48'000});      // ends later, so it changes nothing
+  synth.stop(0, 36'500, {1'000});  // takes effect at frame 36 500; earlier stops continue until then
+  synth.stop(0, 0, {48'000});      // would end later than the others, so it changes nothing
   render(4'000);
   double largest_step = 0;
   for (std::size_t k = 20'000; k < samples.size(); ++k) {

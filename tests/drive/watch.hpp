@@ -4,13 +4,14 @@
 
 namespace turnpoint::drive {
 
-/// Counts what an audio thread must not do: allocate or free memory, lock mutexes, write text. Counts calls
-/// of the calling thread while it runs `function`. The C library's functions are intercepted, so alsa-lib's
-/// calls are included.
+/// Counts what an audio thread must not do: allocate or free memory, lock mutexes, write text.
+/// violations_in() counts such calls of the calling thread while `function` runs. The C library's functions
+/// are intercepted, so calls from alsa-lib count as well.
 void begin_watch() noexcept;
 int end_watch() noexcept;
 
-/// Memory that the calling thread allocated between the two calls and has not freed.
+/// A block of memory that the calling thread allocated between begin_record() and end_record() and has not
+/// freed.
 struct Allocation {
   const void* start = nullptr;
   std::size_t size = 0;

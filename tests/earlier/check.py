@@ -78,7 +78,7 @@ class Release:
         for session in self.sessions(database):
             self.call("report", "--db", database, "--session", session["session_id"], "--out", self.path("report.html"))
 
-    # Test cases
+    # Test cases:
 
     def finished(self):
         for database in ("lab.sqlite", "station-a.sqlite", "station-b.sqlite"):

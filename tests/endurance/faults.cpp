@@ -10,7 +10,7 @@ const char* name(Fault fault) {
   return kNames[static_cast<int>(fault)];
 }
 
-// Distributions of the standard library differ between implementations. These draws must not.
+// Not std::uniform_int_distribution, whose results differ between implementations. These draws must not.
 std::int64_t Course::between(std::int64_t low, std::int64_t high) {
   return low + static_cast<std::int64_t>(random_() % static_cast<std::uint64_t>(high - low + 1));
 }

@@ -59,7 +59,7 @@ struct Tally {
   int sessions = 0, lives = 0, days = 0;
 };
 
-/// Use a new database for each round of protocols, so that the memory that one needs becomes visible.
+/// Each round of protocols has a new database, so that memory does not grow just because the database does.
 Tally run(World& world, const Request& request) {
   Tally tally;
   world.end_ns = static_cast<std::int64_t>(request.hours * 3600e9);

@@ -15,8 +15,9 @@ using session::InputKind;
 namespace {
 
 constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
-constexpr std::int64_t kContinue_ns = 1'000'000'000;  // how long the virtual stage reads a page
-constexpr std::int64_t kSettle_ns = 50'000'000, kTail_ns = 20'000'000;  // as on the real stage
+// time for which the virtual stage waits on a page before it continues
+constexpr std::int64_t kContinue_ns = 1'000'000'000;
+constexpr std::int64_t kSettle_ns = 50'000'000, kTail_ns = 20'000'000;  // same values as on the real stage
 constexpr std::int64_t kDay_ns = 86'400'000'000'000;
 
 }  // namespace
@@ -31,7 +32,7 @@ Room::Room(World& world, Disk disk, std::unique_ptr<session::Stage> inner, int r
 }
 
 Room::~Room() {
-  // The line falls back to its pull, however the process ends.
+  // However the process ends, its enable line falls back to its pull.
   world_.amplifier.line(world_ns(), false);
   for (const char* what : {"amplifier line", "stop pressed", "lines gone"}) world_.amplifier.over(what);
   world_.now_ns = world_ns();
@@ -58,7 +59,7 @@ void Room::push(InputKind kind, FaultKind fault, const std::string& text) {
   inputs_.push_back(std::move(input));
 }
 
-/// Does what guard thread and session do in between on the real stage.
+/// Does what the guard's thread and the session do between two events on the real stage.
 void Room::attend() {
   if (disk_.dead()) throw Died("in a write");
   const auto now = now_ns();
@@ -126,7 +127,8 @@ std::int64_t Room::silence() {
   return quiet_ns_;
 }
 
-/// The loss is reported once it is over. It affects the stimulus that is being presented.
+/// The stream reports lost frames once the gap is over. The loss affects the stimulus that is being
+/// presented.
 void Room::strike_underrun() {
   const auto now = now_ns();
   push(InputKind::xrun, {}, "960 frames lost");
@@ -171,7 +173,8 @@ void Room::finish() {
   world_.amplifier.cause(world_ns(), "the session's end");
 }
 
-/// The operator: whenever arming is required, arms after some seconds, whether the cause is gone or not.
+/// Plays the operator: whenever a page requires arming, arms after some seconds, even if the cause is still
+/// present.
 void Room::show(const session::Page& page) {
   if (disk_.dead()) return;
   world_.amplifier.page(world_ns(), page.kind);
@@ -185,7 +188,7 @@ void Room::show(const session::Page& page) {
   });
 }
 
-// Reports a fault to the session as the real stage does: once for each latched fault.
+// Reports a guard's fault to the session as the real stage does: once for each latched fault.
 void Room::tell_guard_fault() {
   line();
   if (guard_.state() != AmplifierState::faulted || std::exchange(fault_told_, true)) return;
@@ -210,8 +213,8 @@ void Room::strike_device() {
   plan(world_.course.seconds(0.5, 10), [this] { push(InputKind::notice, {}, "the converter is back"); });
 }
 
-/// Buttons and amplifier are on one chip, so the fault is reported twice. Arming is refused until the chip is
-/// back.
+/// Buttons and amplifier are on the same GPIO chip, so its loss is reported twice. Arming is refused until
+/// the chip is back.
 void Room::strike_chip() {
   world_.amplifier.cause(world_ns(), "lines gone");
   world_.amplifier.lasts("lines gone");
@@ -238,7 +241,7 @@ void Room::strike(Fault fault) {
       return strike_chip();
     case Fault::audio_silent: {
       guard_.session_alive(now_ns() + 150'000'000);
-      guard_.tick(now_ns() + 150'000'000);  // by then the last report of the audio thread is this old
+      guard_.tick(now_ns() + 150'000'000);  // the audio thread's last report is then 150 ms old
       if (guard_.state() == AmplifierState::faulted) world_.amplifier.cause(world_ns(), "audio silent");
       return tell_guard_fault();
     }

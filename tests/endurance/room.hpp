@@ -12,15 +12,16 @@
 
 namespace endurance {
 
-/// Violations planted on purpose. The checker must detect each of them.
+/// Violations that a run plants on purpose. The checks must detect each of them.
 enum class Plant { none, deaf_guard, never_off, lost_trial, careless_disk, leak };
 
-/// Ends the process: thrown out of the run, after its files were copied as they were at that moment.
+/// Simulates the death of the process. Thrown out of the run after the files were copied as they were at that
+/// moment.
 struct Died : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The surroundings of a station, which continue whatever happens to its process.
+/// The surroundings of a station, which exist longer than a process of the station.
 struct World {
   explicit World(Course c, Plant p) : course(std::move(c)), plant(p) {}
 
@@ -31,17 +32,18 @@ struct World {
   TrialWatch trials{violations};
   MemoryWatch memory;
   std::int64_t now_ns = 0;      ///< virtual time since the beginning of the run
-  std::int64_t end_ns = 0;      ///< session time at which the run ends
-  std::int64_t session_ns = 0;  ///< part of it in which a session was running
-  /// offset of the wall clock, which people can change
+  std::int64_t end_ns = 0;      ///< the run ends when `session_ns` reaches this time
+  std::int64_t session_ns = 0;  ///< total time in which a session was running
+  /// wall clock minus virtual time; people can change the wall clock
   std::int64_t wall_offset_ns = 1'700'000'000'000'000'000;
   std::int64_t next_fault_ns = 0;
 };
 
-/// What happens to the files when the process dies or the disk is full. The station provides these functions.
+/// What happens to the files when the process dies or the disk is full. The class Station provides these
+/// functions.
 struct Disk {
-  std::function<void(Fault)> die;             ///< copies the files as this death leaves them
-  std::function<void(Fault, int)> die_later;  ///< the same, after a number of further file operations
+  std::function<void(Fault)> die;             ///< copies the files as this kind of death leaves them
+  std::function<void(Fault, int)> die_later;  ///< the same, after this many further file operations
   std::function<void(std::int64_t)> bytes_left;
   std::function<bool()> dead;
 };
@@ -111,12 +113,12 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   Disk disk_;
   std::unique_ptr<turnpoint::session::Stage> inner_;
   turnpoint::lines::Guard guard_;
-  std::string missing_;  ///< why the GPIO chip is missing
+  std::string missing_;  ///< why the GPIO chip is missing; empty if it is present
   double ns_per_frame_;
   std::int64_t born_ns_;
   std::vector<Planned> planned_;
   std::deque<Input> inputs_;
-  /// start and end of each stimulus of the trial
+  /// start and end of each stimulus of the current trial
   std::vector<std::pair<std::int64_t, std::int64_t>> stimuli_;
   std::int64_t quiet_ns_ = 0, opened_ns_ = 0;
   bool closing_ = false, arm_planned_ = false, fault_told_ = false;

@@ -19,10 +19,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// limit for one session: beyond it the session cannot end
+// A session that has not ended after this many processes counts as unable to end.
 constexpr int kLivesAtMost = 400;
 constexpr std::int64_t kRest_ns =
-    2'400'000'000'000;  // longer than the half hour that ends a period of exposure
+    2'400'000'000'000;  // longer than the half hour without stimuli that ends a period of exposure
 
 session::Setup prepare(const std::string& protocol, const std::string& database, std::uint64_t seed) {
   setup::RunRequest request;
@@ -36,7 +36,7 @@ session::Setup prepare(const std::string& protocol, const std::string& database,
   return setup::prepare(request);
 }
 
-/// Makes it behave like a live session: an operator arms, and the finger's limits count.
+/// Makes the setup behave like a live session: an operator must arm, and the finger's limits apply.
 session::Setup as_live(session::Setup setup) {
   setup.observer.clear();
   setup.run_mode = terms::RunMode::live;
@@ -66,7 +66,7 @@ records::SessionStart start_of(const session::Setup& setup) {
   return start;
 }
 
-/// Receives each trial that the session has stored.
+/// Remembers each trial that the session reports as stored.
 struct Acknowledgements : session::Monitor {
   World& world;
   const Room& room;
@@ -78,7 +78,7 @@ struct Acknowledgements : session::Monitor {
   void trial_begins(const trial::TrialSpec&, const protocol::Block&,
                     const session::PlanAhead::Plans&) override {}
   void trial_ended(const trial::TrialSpec&, const records::TrialRow& row) override {
-    if (dead) return;  // ignore reports of a process that has died
+    if (dead) return;  // the simulated process is dead, so ignore its reports
     world.trials.acknowledged(session_id, row);
     const auto answered_ns = row.onset_ns + static_cast<std::int64_t>(row.response_time_s.value_or(0) * 1e9);
     world.amplifier.trial_ended(room.world_ns(), row.outcome == terms::Outcome::answered,
@@ -106,7 +106,7 @@ Disk Station::disk() {
           [this] { return dead_; }};
 }
 
-/// Copies the files to a separate folder, as they are or as a power cut leaves them.
+/// Copies the files to a separate folder, unchanged or as a power cut leaves them.
 void Station::take_files(Fault how) {
   if (std::exchange(dead_, true)) return;
   const auto into = folder_ / std::to_string(deaths_ + 1);
@@ -117,7 +117,7 @@ void Station::take_files(Fault how) {
     if (fs::exists(database_ + suffix)) fs::copy_file(database_ + suffix, into + "/a.sqlite" + suffix);
 }
 
-/// Called after the process has died: continue with the files that it left.
+/// Called after the process has died: checks the files that it left, and continues with them.
 void Station::bury(const std::string& how) {
   operations_left_ = 0;
   full_.space_again();
@@ -138,7 +138,7 @@ void Station::bury(const std::string& how) {
   world_.memory.sample();
 }
 
-/// One life of the process. True where it came to the session's end.
+/// Runs the session in one process. Returns true if the session came to its end.
 bool Station::live(session::Setup setup) {
   ++lives;
   setup.database = database_;
@@ -179,7 +179,8 @@ Station::Ending Station::give_up(const std::string& why) {
   return Ending::unusable;
 }
 
-/// One life and its aftermath. A problem found by the station's own checks counts as a violation as well.
+/// Runs the session in one process and handles its end. A problem that the station's own checks find is a
+/// violation too.
 Station::Ending Station::live_and_die(const session::Setup& setup) {
   std::string how = "its end";
   auto ending = Ending::on_the_way;
@@ -194,7 +195,7 @@ Station::Ending Station::live_and_die(const session::Setup& setup) {
     return give_up(error.what());
   }
   bury(how);
-  world_.now_ns += world_.course.seconds(5, 120);  // until somebody notices
+  world_.now_ns += world_.course.seconds(5, 120);  // the time until somebody notices the death
   return ending;
 }
 

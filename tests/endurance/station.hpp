@@ -10,16 +10,16 @@
 
 namespace endurance {
 
-/// A database and a participant's sessions in it, through every death of the station's process. The files
-/// that a death leaves are checked, and the session continues with them. Uses the station's own session run,
-/// store, procedures, planner, drive and guard.
+/// A database and a participant's sessions in it. They continue after each death of the station's process,
+/// with the files that the death left, which are checked first. Uses the station's own session, store,
+/// procedures, planner, drive and guard.
 class Station {
  public:
   explicit Station(World& world);
 
-  /// Runs a session of this protocol from beginning to end, in as many lives as it takes, and compares it
-  /// with one without faults. It stops where it is when the run's time is over. Returns false if the database
-  /// can no longer be used.
+  /// Runs a session of this protocol from beginning to end, in as many processes as it takes, and compares it
+  /// with one without faults. Stops early if the run's time is over. Returns false if the database can no
+  /// longer be used.
   bool run_session(const std::string& protocol, std::uint64_t seed);
 
   int lives = 0, sessions = 0;

@@ -17,9 +17,10 @@ using session::PageKind;
 
 namespace {
 
-constexpr std::int64_t kAtOnce_ns = 1'000'000;  // the time that the guard guarantees
-constexpr std::int64_t kTail_ns = 250'000'000;  // for ramp, converter and amplifier after the last stimulus
-constexpr std::size_t kEnough = 8;              // number of memory samples needed for a verdict
+constexpr std::int64_t kAtOnce_ns = 1'000'000;  // time within which the guard guarantees to switch off
+// time allowed after the last stimulus for ramp, converter and amplifier
+constexpr std::int64_t kTail_ns = 250'000'000;
+constexpr std::size_t kEnough = 8;  // number of memory samples needed to judge growth
 
 bool is_trial_page(PageKind kind) {
   return kind == PageKind::cue || kind == PageKind::stimulus || kind == PageKind::pause ||
@@ -34,7 +35,7 @@ std::string AmplifierWatch::why_low() const {
   return !present_.empty() ? *present_.begin() + " lasts" : "not armed since: " + last_cause_;
 }
 
-// Judges the time since the last check, in which nothing changed.
+// Checks the time since the last check, during which nothing changed.
 void AmplifierWatch::check(std::int64_t until_ns) {
   const auto from_ns = std::exchange(now_ns_, std::max(now_ns_, until_ns));
   if (!high_) return;
@@ -112,7 +113,7 @@ void AmplifierWatch::trial_ended(std::int64_t time_ns, bool answered, std::int64
 
 namespace {
 
-/// All research data of a trial, as text.
+/// All research data of a trial as text, to compare trials.
 std::string fingerprint(const records::TrialRow& row, bool times) {
   auto text = fmt::format("{}/{} {} {} {} {} {:016x}", row.trial_in_block, store::name(row.type),
                           row.procedure, row.level.value_or(0), store::name(row.outcome),
@@ -159,7 +160,7 @@ Prints prints_in(const std::string& database) {
 void TrialWatch::check(const std::string& database, const std::string& when) {
   Prints found;
   try {
-    found = prints_in(database);  // also checks the pages of the file
+    found = prints_in(database);  // reading also makes SQLite check the file's pages
   } catch (const store::StoreError& error) {
     violations_.push_back(fmt::format("after {}: {}", when, error.what()));
   }
@@ -170,7 +171,7 @@ void TrialWatch::check(const std::string& database, const std::string& when) {
     violations_.push_back(fmt::format("trial lost: after {}: number {} of session {} {}", when, key.second,
                                       key.first, there == found.end() ? "is gone" : "has changed"));
   }
-  kept_ = std::move(found);  // reported once
+  kept_ = std::move(found);  // report a lost trial only once
 }
 
 void TrialWatch::compare(const std::string& database, const std::string& session_id,
@@ -186,7 +187,7 @@ void TrialWatch::compare(const std::string& database, const std::string& session
 }
 
 void MemoryWatch::sample() {
-  ::malloc_trim(0);  // measure memory in use, without what the allocator keeps for later
+  ::malloc_trim(0);  // return unused memory to the system, so that only memory in use is measured
   std::ifstream statm("/proc/self/statm");
   double all = 0, resident = 0;
   statm >> all >> resident;

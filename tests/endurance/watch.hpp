@@ -11,7 +11,7 @@
 
 namespace endurance {
 
-/// Collects violations. A run without any has passed.
+/// Descriptions of violations. A run with an empty list has passed.
 using Violations = std::vector<std::string>;
 
 /// Watches the amplifier's line from outside, with separate rules. It knows the line, the events in the room,
@@ -25,11 +25,13 @@ class AmplifierWatch {
   explicit AmplifierWatch(Violations& violations) : violations_(violations) {}
 
   void line(std::int64_t time_ns, bool high);
-  void begin(std::int64_t time_ns);  ///< a process begins: low until armed, and no trial in progress
-  void cause(std::int64_t time_ns, const std::string& what);  ///< low from now on, until armed again
+  void begin(std::int64_t time_ns);  ///< a process begins: no trial is in progress, and the line must be low
+                                     ///< until armed
+  void cause(std::int64_t time_ns, const std::string& what);  ///< a fault begins: the line must be low until
+                                                              ///< armed again
   void lasts(const std::string& what) { present_.insert(what); }
   void over(const std::string& what) { present_.erase(what); }
-  void armed(std::int64_t time_ns);  ///< the operator's command was accepted
+  void armed(std::int64_t time_ns);  ///< the station accepted the operator's command to arm
   void page(std::int64_t time_ns, turnpoint::session::PageKind kind);
   void stimulus(std::int64_t on_ns, std::int64_t off_ns) { stimuli_.emplace_back(on_ns, off_ns); }
   /// A trial has ended. If it was answered, its stimuli must have been driven.
@@ -49,20 +51,20 @@ class AmplifierWatch {
   bool armed_ = false, high_ = false, told_ = false;
   bool trial_page_ = false;
   std::int64_t page_ns_ = 0, on_since_ns_ = 0, low_since_ns_ = 0, now_ns_ = 0, high_ns_ = 0;
-  std::vector<std::pair<std::int64_t, std::int64_t>> stimuli_, highs_;  ///< for the trial in progress
+  std::vector<std::pair<std::int64_t, std::int64_t>> stimuli_, highs_;  ///< of the trial in progress
   int changes_ = 0;
 };
 
-/// Remembers every acknowledged trial and looks for it in the database.
+/// Remembers every trial that was reported as stored, and looks for it in the database.
 class TrialWatch {
  public:
   explicit TrialWatch(Violations& violations) : violations_(violations) {}
 
   void acknowledged(const std::string& session_id, const turnpoint::records::TrialRow& row);
-  /// Call after each death and each ending: the database must be sound and contain every acknowledged trial
-  /// unchanged.
+  /// Call after each death and each end of a session: checks that the database is sound and contains every
+  /// acknowledged trial unchanged.
   void check(const std::string& database, const std::string& when);
-  /// The experimental trials of a finished session must equal those of one without faults.
+  /// Checks that the experimental trials of a finished session equal those of a session without faults.
   void compare(const std::string& database, const std::string& session_id, const std::string& unbroken);
   void new_database() { kept_.clear(); }
 
@@ -75,11 +77,12 @@ class TrialWatch {
   int total_ = 0, lost_ = 0;
 };
 
-/// Memory use of this process during a run.
+/// Samples the memory use of this process during a run.
 class MemoryWatch {
  public:
   void sample();
-  /// Peak in the second half minus the peak in the first half, in MiB; 0 with fewer than eight samples.
+  /// Peak memory use of the second half of the run minus that of the first half, in MiB; 0 with fewer than
+  /// eight samples.
   double growth_MiB() const;
   double last_MiB() const { return samples_.empty() ? 0 : samples_.back(); }
   std::size_t samples() const { return samples_.size(); }

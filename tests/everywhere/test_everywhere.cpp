@@ -8,9 +8,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Hashes of everything that must not depend on the machine. They were recorded on amd64 with g++ 12 and also
-// hold on arm64 and with g++ 14. If a hash changes, the stimuli, draws or samples have changed: update it
-// only if that was intended.
+// Hashes of everything that must not depend on the machine. They were recorded on amd64 with g++ 12, and
+// arm64 and g++ 14 give the same ones. If a hash changes, the stimuli, draws or samples have changed: update
+// the hash only if that was intended.
 
 using namespace turnpoint;
 
@@ -22,7 +22,7 @@ std::string hash_of(const std::vector<Value>& values) {
       .substr(0, 16);
 }
 
-/// Two tones that glide to two others, with ramps, over one second; a pulse marks onset and change.
+/// A burst of one second with ramps: two tones glide to two others, and a pulse marks onset and change.
 drive::Burst burst() {
   drive::Burst burst;
   burst.start_frame = 1000;
@@ -52,7 +52,7 @@ std::string rendered(const drive::Burst& burst) {
   return hash_of(all);
 }
 
-/// Runs a simulated session of a shipped protocol into the folder.
+/// Runs a simulated session of a shipped protocol, with its files in `folder`, and returns its trials.
 std::vector<records::TrialRow> session_of(const std::string& protocol, const TemporaryFolder& folder,
                                           const std::string& output) {
   setup::RunRequest request;
@@ -73,7 +73,7 @@ std::vector<records::TrialRow> session_of(const std::string& protocol, const Tem
   return trials;
 }
 
-/// Questions and answers, to the last bit.
+/// A hash of the questions and answers, to the last bit.
 std::string decided(const std::vector<records::TrialRow>& trials) {
   std::ostringstream text;
   text << std::hexfloat;
@@ -88,7 +88,7 @@ std::string decided(const std::vector<records::TrialRow>& trials) {
   return text::sha256(text.str()).substr(0, 16);
 }
 
-/// Stimuli and their times, to the last bit.
+/// A hash of the stimuli and their times, to the last bit.
 std::string driven(const std::vector<records::TrialRow>& trials) {
   std::ostringstream text;
   text << std::hexfloat;
@@ -121,7 +121,7 @@ constexpr Recorded kSessions[] = {
 
 TEST_CASE("a burst has the same samples on every machine, bit for bit", "[everywhere]") {
   CHECK(rendered<double>(burst()) == "a63dd0d74bfd91b0");
-  CHECK(rendered<std::int32_t>(burst()) == "485448f497561d34");  // dithered and quantised
+  CHECK(rendered<std::int32_t>(burst()) == "485448f497561d34");  // with dither and quantisation
   auto other = burst();
   other.tones.tones[0].frequency_Hz += 1e-9;  // negative control: the hash detects a change of the last digit
   CHECK(rendered<double>(other) != rendered<double>(burst()));

@@ -2,7 +2,7 @@
 // Linux and glibc only; the program must be linked dynamically.
 //
 //   FAULT_UNDER=FOLDER   only calls on files in this folder count (absolute, without links)
-//   FAULT_AT=N           the N-th of them fails, counted from 1; 0 or empty: none
+//   FAULT_AT=N           the N-th such call fails, counted from 1; 0 or empty: none fails
 //   FAULT_KIND=KIND      kill: the process is killed before the call, or in the middle of a write
 //                        EIO: this call fails
 //                        ENOSPC: this call and all later ones that need space fail, as on a full disk
@@ -81,10 +81,10 @@ std::string absolute(const char* path) {
 enum class Effect {
   reads,
   writes,    ///< calls that need space on the disk
-  arranges,  ///< calls that change something but need no space
+  arranges,  ///< calls that change files or folders but need no space
 };
 
-/// Returns true, with errno set, if this call must fail. `torn` performs the first half of the call.
+/// Returns true, with errno set, if this call must fail. `torn` executes only the first half of the call.
 template <class Torn>
 bool fails(const char* call, Effect effect, const std::string& path, Torn torn) {
   const auto& set = settings();

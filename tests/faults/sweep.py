@@ -228,7 +228,8 @@ class Restore(Backup):
             if os.path.exists(path + "-wal") and os.path.getsize(path + "-wal") > 0:
                 wrong("the restored file has a log that is not its own")
             trials(path)
-        # Until the restored file is in place, no process may create a new database.
+        # As long as the database is missing because a restore was interrupted, no session may create a new
+        # one.
         if not os.path.exists(path):
             started = self.run(folder, *self.session("lab.sqlite", "P05"))
             if started.returncode == 0 or os.path.exists(path):
@@ -396,7 +397,7 @@ class Sweep:
         before = {database: trials(os.path.join(self.start, database)) for database in ("lab.sqlite", "other.sqlite")
                   if name not in ("restore", "calibrate")}
         points = self.calls(operation)
-        if self.careless:  # otherwise no incomplete file may be left that could be published later
+        if self.careless:  # test only kills while a .new file is being written
             points = [point for point in points if point[2] == "kill" and ".new" in point[1]]
         failures, tried = [], 0
         for index, (number, what, kind) in enumerate(points):

@@ -1,5 +1,5 @@
-// Drives the fuzz target if libFuzzer is not available: fuzz_protocol RUNS FOLDER... It is deterministic: run
-// N of the same folders always uses the same bytes, so a failure can be repeated by its number.
+// Runs the fuzz target if libFuzzer is not available: fuzz_protocol RUNS FOLDER... It is deterministic: run N
+// with the same folders always uses the same bytes, so a failure can be repeated by its number.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>

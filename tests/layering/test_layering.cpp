@@ -17,8 +17,9 @@ namespace {
 using Layers = std::set<std::string>;
 
 struct Table {
-  std::map<std::string, Layers> allowed;                         // layer -> layers
-  std::vector<std::pair<std::string, std::string>> system_only;  // header prefix, path prefix
+  std::map<std::string, Layers> allowed;  // a layer -> the layers that it may use
+  // prefix of a system header -> prefix of the only paths that may include it
+  std::vector<std::pair<std::string, std::string>> system_only;
 };
 
 Table parse_table(std::istream& lines) {
@@ -46,21 +47,21 @@ Table table_of_the_tree() {
   return parse_table(file);
 }
 
-/// "physics", or "station/<layer>".
+/// The layer of a source file: "physics" or "station/<layer>".
 std::string layer_of(const std::string& path) {
   const auto first = path.find('/');
   if (path.substr(0, first) != "station") return path.substr(0, first);
   return path.substr(0, path.find('/', first + 1));
 }
 
-/// The layer that has this namespace, or "".
+/// The layer to which this namespace belongs; "" if there is none.
 std::string layer_of_namespace(const Table& table, const std::string& name) {
   for (const auto& layer : {name, "station/" + name})
     if (table.allowed.count(layer) > 0) return layer;
   return "";
 }
 
-/// A line without its comment and without what stands in quotes.
+/// The line without its comment and without text in quotes.
 std::string code_of(const std::string& line) {
   std::string code;
   char quote = '\0';
@@ -87,8 +88,8 @@ std::string included_by(const std::string& line) {
   return open == std::string::npos ? "" : line.substr(open);
 }
 
-/// The layers other than its own that a line of `file` uses: includes, qualified names, and declarations in
-/// another layer's namespace.
+/// The other layers that a line of `file` uses by an include, a qualified name, or a declaration in another
+/// layer's namespace.
 Layers used_by(const Table& table, const std::string& file, const std::string& line) {
   Layers used;
   const auto header = included_by(line);
@@ -108,7 +109,7 @@ Layers used_by(const Table& table, const std::string& file, const std::string& l
   return used;
 }
 
-/// What a line of `file` breaks, or "".
+/// Describes how a line of `file` breaks the rules; "" if it does not.
 std::string violation(const Table& table, const std::string& file, const std::string& line) {
   const auto header = included_by(line);
   for (const auto& [prefix, home] : table.system_only) {
@@ -131,13 +132,13 @@ void each_line(const fs::path& root, const Take& take) {
       const auto extension = entry.path().extension();
       if (extension != ".hpp" && extension != ".cpp") continue;
       const auto file = fs::relative(entry.path(), root).generic_string();
-      if (file.starts_with("physics/example")) continue;  // a client of the installed library
+      if (file.starts_with("physics/example")) continue;  // the example is a client of the installed library
       std::ifstream text(entry.path());
       for (std::string line; std::getline(text, line);) take(file, line);
     }
 }
 
-/// Entries of the table that no line of these needs: "LAYER: LAYER".
+/// Entries of the table that no line of the sources needs, each as "LAYER: LAYER".
 std::vector<std::string> unused(const Table& table, const std::map<std::string, Layers>& used) {
   std::vector<std::string> all;
   for (const auto& [layer, allowed] : table.allowed)
@@ -186,7 +187,7 @@ TEST_CASE("a name of a layer that the table does not allow is found without an i
   CHECK(breaks("  const auto rows = turnpoint::store::read_session(path, id);"));
   CHECK(breaks("std::vector<store::SessionRecord> all;"));
   CHECK(breaks("using namespace store;"));
-  CHECK(breaks("namespace turnpoint::store {"));  // a forward declaration
+  CHECK(breaks("namespace turnpoint::store {"));  // as in a forward declaration
   CHECK_FALSE(breaks("namespace turnpoint::trial {"));
   CHECK_FALSE(breaks("  return terms::name(outcome);"));
   CHECK_FALSE(breaks("  log(\"store::read_session\");  // as store::read_session"));

@@ -25,7 +25,7 @@ TEST_CASE("the interval stretches just as far as the duty needs, and no sliding 
     const double start = exposure.earliest_start_s(time, 9.0);
     all.push_back({start, start + 9.0});
     exposure.add(all.back());
-    time = start + 9.0 + 0.6;  // requests a duty cycle of 0.94
+    time = start + 9.0 + 0.6;  // with these pauses the duty cycle would be 0.94
   }
   double largest = 0;
   for (double from = 0; from < all.back().end_s; from += 0.25) {
@@ -43,7 +43,8 @@ TEST_CASE("stimuli without a rest between them count as one continuous exposure"
   Exposure exposure(limits, 0);
   exposure.add({0, 20});
   CHECK(exposure.earliest_start_s(20.1, 5) == Approx(20.1));
-  CHECK(exposure.earliest_start_s(20.1, 15) == Approx(20.5));  // after a rest
+  // a stimulus of 15 s must wait for a rest of 0.5 s
+  CHECK(exposure.earliest_start_s(20.1, 15) == Approx(20.5));
 }
 
 TEST_CASE("a restart forgets nothing: history and session start come from the database",
@@ -62,10 +63,11 @@ TEST_CASE("a live session needs a measured sound level below 22.4 kHz", "[drive]
   const std::vector<SoundLevel> measured{{8000, 80}, {20000, 70}, {30000, 120}};
   CHECK(sound_problem(22400, 1, {}).empty());
   CHECK_FALSE(sound_problem(22399, 1, {}).empty());
-  CHECK_FALSE(sound_problem(7000, 0.1, measured).empty());  // outside the measured range
+  CHECK_FALSE(sound_problem(7000, 0.1, measured).empty());  // 7 kHz is outside the measured range
   CHECK_FALSE(sound_problem(8000, 1, measured).empty());
-  CHECK(sound_problem(8000, 0.5, measured).empty());         // 74 dB
-  CHECK_FALSE(sound_problem(15000, 0.6, measured).empty());  // the louder neighbour counts
+  CHECK(sound_problem(8000, 0.5, measured).empty());  // 74 dB
+  // between two measured levels the louder one counts
+  CHECK_FALSE(sound_problem(15000, 0.6, measured).empty());
   CHECK_FALSE(sound_problem(26000, 1, measured).empty());
   CHECK(sound_problem(26000, 0.3, measured).empty());
 }

@@ -10,7 +10,7 @@ namespace {
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr double kNow_s = 1.8e9;
 
-/// A session of one segment that began `ago_s` before now, with its monotonic clock at 5 s.
+/// A session of one segment that began `ago_s` before now, when its monotonic clock read 5 s.
 store::StoredSession session_of(double ago_s) {
   store::StoredSession session;
   records::SegmentStart segment;
@@ -46,24 +46,25 @@ TEST_CASE("a trial that a crash cut off counts as the longest stimulus", "[sessi
   add(session, 10, "presented", "");
   const auto history = finger_history({session}, kNow_s, 30);
   REQUIRE(history.stimuli.size() == 1);
-  CHECK(history.stimuli[0].end_s - kNow_s == Approx(0).margin(1e-5));  // not in the future
+  CHECK(history.stimuli[0].end_s - kNow_s == Approx(0).margin(1e-5));  // it is cut off at the present
   records::BlockRecord block;
   block.trials.emplace_back();
-  session.blocks.push_back(block);  // negative control: the trial ended and has recorded its stimulus itself
+  session.blocks.push_back(block);  // negative control: the trial ended, so its own record counts
   CHECK(finger_history({session}, kNow_s, 30).stimuli.empty());
 }
 
 TEST_CASE("a crash does not begin a new period of exposure, a pause of half an hour does",
           "[session][limits]") {
   auto earlier = session_of(3000);
-  add(earlier, 1500, "stimulus", "1");  // active until 1500 s ago
+  add(earlier, 1500, "stimulus", "1");  // the finger was stimulated until 1500 s ago
   CHECK(finger_history({earlier}, kNow_s, 30).period_start_s == Approx(kNow_s - 3000).epsilon(1e-12));
   auto long_ago = session_of(5000);
-  add(long_ago, 1000, "stimulus", "1");  // active until 4000 s ago, that is, 1000 s before the other began
+  // stimulated until 4000 s ago, which is 1000 s before the other session began
+  add(long_ago, 1000, "stimulus", "1");
   CHECK(finger_history({earlier, long_ago}, kNow_s, 30).period_start_s ==
         Approx(kNow_s - 5000).epsilon(1e-12));
   auto rested = session_of(3000);
-  add(rested, 1000, "stimulus", "1");  // active until 2000 s ago
+  add(rested, 1000, "stimulus", "1");  // the finger was stimulated until 2000 s ago
   CHECK(finger_history({rested}, kNow_s, 30).period_start_s == kNow_s);
 }
 

@@ -15,7 +15,8 @@ using terms::FaultKind;
 
 namespace {
 
-// Waits for something that another thread does. After 5 s the test fails; the limit is not a measurement.
+// Waits for something that another thread does, for at most 5 s. The limit only ends the test; it measures
+// nothing.
 template <typename Condition>
 bool eventually(Condition&& condition) {
   const std::int64_t end = system::monotonic_ns() + 5'000'000'000;
@@ -38,7 +39,7 @@ struct Bench {
   }
 };
 
-/// "" on success, otherwise the reason.
+/// The reason of a refusal; "" if there was none.
 std::string why_not(const drive::Amplifier::Refusal& refusal) {
   return refusal ? terms::describe(*refusal) : "";
 }
@@ -57,7 +58,7 @@ TEST_CASE("the guard thread drops the enable line on a fault edge and latches it
   CHECK(why_not(bench.amplifier->enable()) == "amplifier reports a fault: latched; clear it first");
   CHECK(why_not(bench.amplifier->clear()) == "amplifier reports a fault");
   bench.lines->set(2, false, system::monotonic_ns());
-  CHECK_FALSE(bench.amplifier->clear());  // the level is read even if no edge was seen
+  CHECK_FALSE(bench.amplifier->clear());  // clear() reads the line's level, even if no edge was seen
   CHECK(bench.amplifier->state() == AmplifierState::disarmed);
 }
 
@@ -87,10 +88,11 @@ TEST_CASE(
   CHECK(bench.amplifier->fault().kind == FaultKind::lines_gone);
   CHECK(bench.amplifier->fault().detail == "simulated gpio chip: No such device");
   bench.amplifier->disable();
-  bench.amplifier->trip(FaultKind::suspended, "another reason");  // the first fault is kept
+  bench.amplifier->trip(FaultKind::suspended, "another reason");  // a later fault does not replace the first
   CHECK(bench.amplifier->fault().kind == FaultKind::lines_gone);
   CHECK(why_not(bench.amplifier->clear()) == "GPIO lines disconnected: simulated gpio chip: No such device");
-  bench.lines->set(SharedLines::stop, true, system::monotonic_ns());  // pressed while the chip was away
+  // the stop is pressed while the chip is missing
+  bench.lines->set(SharedLines::stop, true, system::monotonic_ns());
   bench.lines->put_back();
   const auto cleared = [&] { return why_not(bench.amplifier->clear()); };
   CHECK(eventually([&] { return cleared() == "emergency stop pressed"; }));

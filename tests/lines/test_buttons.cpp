@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t us = 1'000, ms = 1'000'000;
 }
 
-// The filter's output for edges given as (us, level), followed by silence until `until_us`.
+// The filter's output for edges given as (time in us, level), followed by silence until `until_us`.
 std::vector<LineChange> changes(EdgeFilter& filter, const std::vector<std::pair<std::int64_t, bool>>& edges,
                                 std::int64_t until_us) {
   std::vector<LineChange> all;
@@ -121,7 +121,7 @@ TEST_CASE("a contact that opens again within the refractory time was bouncing", 
 
 TEST_CASE("a level that no edge explains is lost edges and no press", "[lines][buttons]") {
   EdgeFilter filter({}, false);
-  CHECK_FALSE(filter.level(1000 * us, true));  // the edge may still be on its way
+  CHECK_FALSE(filter.level(1000 * us, true));  // the edge for this level may still arrive
   CHECK_FALSE(filter.level(1001 * us, false));
   CHECK_FALSE(filter.level(2000 * us, true));
   CHECK_FALSE(filter.level(3499 * us, true));
@@ -199,7 +199,7 @@ TEST_CASE("presses, contact, lost edges, and a chip lost and back reach the hand
     return false;
   };
   const std::int64_t now = system::monotonic_ns();
-  // The second and third come within a second of the first and are only counted.
+  // The second and third edge come less than a second after the first and are only counted.
   for (const std::int64_t ago : {2000, 1980, 1960, 10}) lines->pulse(0, now - ago * ms, 3 * us);
   REQUIRE(reached(glitches, 2));
   CHECK(glitches[0].line == "left");
@@ -227,7 +227,7 @@ TEST_CASE("presses, contact, lost edges, and a chip lost and back reach the hand
   CHECK(faults[1].find("simulated gpio chip") == 0);
   CHECK(presses.size() == 2);
   CHECK(panel->missing() == "simulated gpio chip: No such device");
-  lines->set(1, true, now + 200 * ms);  // held down while the chip comes back: not a press
+  lines->set(1, true, now + 200 * ms);  // a button held down while the chip returns is not a press
   lines->put_back();
   REQUIRE(reached(returns, 1));
   CHECK(panel->missing().empty());

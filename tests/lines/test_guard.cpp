@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// "" on success, otherwise the reason.
+/// The reason of a refusal; "" if there was none.
 std::string why_not(const std::optional<Guard::Refusal>& refusal) {
   if (!refusal) return "";
   return std::string(name(refusal->kind)) + (refusal->latched ? " latched" : "");
@@ -64,7 +64,7 @@ TEST_CASE("a fault drops the line and stays latched until the cause is gone and 
   CHECK(guard.fault().kind == FaultKind::amplifier);
   CHECK(guard.fault().time_ns == 5 * ms);
   guard.stop_line(6 * ms, true);
-  CHECK(guard.fault().kind == FaultKind::amplifier);  // the first cause is kept
+  CHECK(guard.fault().kind == FaultKind::amplifier);  // a later cause does not replace the first
   CHECK(why_not(guard.clear()) == "amplifier");
   guard.fault_line(7 * ms, false);
   CHECK(guard.outputs().enable == 0);
@@ -109,7 +109,7 @@ TEST_CASE("a page that has given a sign of life has to go on doing so", "[lines]
     show_life(guard, t * ms);
     guard.tick(t * ms);
   }
-  CHECK(guard.outputs().enable == 1);  // a session without a screen sends no page reports
+  CHECK(guard.outputs().enable == 1);  // no page has ever reported, as in a session without a screen
   guard.page_alive(5000 * ms);
   int beats = 0, last = guard.outputs().heartbeat;
   for (std::int64_t t = 5000; t < 9000; t += 10) {

@@ -13,8 +13,8 @@ TEST_CASE("an input device that can be read but not written is reported with the
   const TemporaryFolder folder;
   std::ofstream(folder / "event0");
   std::ofstream(folder / "mouse0");
-  // Even root can only read a directory. This simulates the station's service, which may only read what was
-  // allowed as "r".
+  // A directory can be opened only for reading, even by root. This simulates a device that the station's
+  // service may only read.
   std::filesystem::create_directory(folder / "event1");
   const auto devices = try_input_devices(folder.path);
   CHECK(devices.opened == 1);

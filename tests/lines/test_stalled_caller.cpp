@@ -1,6 +1,6 @@
 // A thread that uses the amplifier loses the processor before, inside or after a call. Meanwhile a fault or a
-// stop becomes active, with or without a visible edge. The guard must still take the line low, and the line
-// must not come up again when the caller continues.
+// stop becomes active, with or without an edge that the guard sees. The guard must still take the line low,
+// and the line must stay low when the caller continues.
 #include <atomic>
 #include <cstdlib>
 #include <functional>
@@ -21,16 +21,16 @@ namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// The caller: a thread that makes one call at a time and can be held at any point of it.
+/// A thread that makes one call at a time and can be held at any point of the call.
 class Caller {
  public:
   Caller() {
     thread_ = std::jthread([this](const std::stop_token& stop) {
       for (begin_.acquire(); !stop.stop_requested(); begin_.acquire()) {
         points_ = 0;
-        point();  // before the call
+        point();  // the point before the call
         call_();
-        while (points_ <= hold_at_) point();  // after the call, if it had fewer points
+        while (points_ <= hold_at_) point();  // hold after a call that had fewer points
         finished_.release();
       }
     });
@@ -40,7 +40,7 @@ class Caller {
     begin_.release();
   }
 
-  /// Begins the call. Returns once it is held at that point.
+  /// Begins the call. Returns once the thread is held at the point with this number.
   void begin(std::function<void()> call, int hold_at) {
     call_ = std::move(call), hold_at_ = hold_at;
     begin_.release();
@@ -51,7 +51,7 @@ class Caller {
     finished_.acquire();
   }
 
-  /// Called by lines and commands. Holds only the caller's thread.
+  /// Marks a point; called by lines and commands. Holds only the caller's thread.
   void point() {
     if (std::this_thread::get_id() != thread_.get_id() || points_++ != hold_at_) return;
     held_.release();
@@ -72,7 +72,7 @@ struct WatchedLines : SharedLines {
       : SharedLines(shared), caller(caller_), edges_done(edges_done_), beats(beats_), loses(loses_edges_) {}
 
   std::optional<Edge> wait(std::int64_t timeout_ns, int wake) override {
-    edges_done = edges_seen;  // the guard has asked for the next edge
+    edges_done = edges_seen;  // the guard asks for the next edge, so it has handled all earlier ones
     auto edge = SharedLines::wait(timeout_ns, wake);
     if (!edge) return edge;
     ++edges_seen;
@@ -115,8 +115,8 @@ struct Bench {
 
   bool high() { return lines->level(SharedLines::enable); }
 
-  /// Waits until the guard has handled all edges so far, or, if edges are lost, the levels in two beats.
-  /// After five seconds the test fails; the limit is not a measurement.
+  /// Waits until the guard has handled all edges so far, or, if edges are lost, has read the levels in two
+  /// beats. Gives up after five seconds; the limit measures nothing.
   bool settled() {
     const auto end_ns = system::monotonic_ns() + 5000 * ms;
     const int beats_before = beats;
@@ -171,7 +171,7 @@ TEST_CASE("the line is never high with an active fault or stop, wherever a calle
   for (int round = 0; round < rounds() && violations < 3; ++round) {
     bench.loses_edges = draw(4) == 0;
     bench.enable();
-    if (draw(2) == 0) amplifier.disable();  // so that enable() has something to do
+    if (draw(2) == 0) amplifier.disable();  // disabled, so that a call of enable() changes the line
     bench.caller.begin(calls[draw(8)], draw(6));
     high_when_held += bench.high() ? 1 : 0;
     const int line = draw(2) == 0 ? SharedLines::fault : SharedLines::stop;
@@ -180,10 +180,10 @@ TEST_CASE("the line is never high with an active fault or stop, wherever a calle
     bench.caller.finish();
     violations += bench.high() ? 1 : 0;
     bench.set(line, false);
-    violations += bench.high() ? 1 : 0;  // the fault is latched
+    violations += bench.high() ? 1 : 0;  // the fault is latched, so the line must stay low
   }
   CHECK(violations == 0);
-  CHECK(high_when_held > rounds() / 4);  // otherwise there was nothing to switch off
+  CHECK(high_when_held > rounds() / 4);  // negative control: the line was high in enough rounds
 }
 
 TEST_CASE("what switches the line off takes effect although its caller is held up inside the call",

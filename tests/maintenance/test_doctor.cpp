@@ -20,7 +20,8 @@ TEST_CASE("the doctor fails where the machine swaps, and says how to turn it off
   CHECK(found.what == "on: /var/swap, /dev/zram0");
   CHECK(found.mend.find("sudo swapoff -a") != std::string::npos);
   CHECK_FALSE(maintenance::fit_for_use({found}));
-  CHECK(maintenance::check_swap(folder / "nothing").status == Status::warning);  // not "off"
+  // an unreadable file must not count as "off"
+  CHECK(maintenance::check_swap(folder / "nothing").status == Status::warning);
 }
 
 TEST_CASE("the doctor says whether the hardware watchdog is fed", "[maintenance][doctor]") {

@@ -29,7 +29,8 @@ def short_times(drift, start, t):
     s = mpf(0)
     for k in range(-60, 61):
         d = 1 - start + 4 * k
-        # integral of d / sqrt(2 pi u^3) exp(drift (1 - start) - drift^2 u / 2 - d^2 / (2 u)) from 0 to t
+        # One term: the integral of d / sqrt(2 pi u^3) exp(drift (1 - start) - drift^2 u / 2 - d^2 / (2 u))
+        # from 0 to t.
         sign, b = (1, d) if d > 0 else (-1, -d)
         m = abs(drift)
         one = exp(-m * b) * erfc((b - m * t) / sqrt(2 * t)) / 2

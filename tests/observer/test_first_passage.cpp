@@ -18,8 +18,8 @@ struct Row {
   double time, upper;
 };
 
-/// For each (drift, start): the probability of having left at the upper boundary by a given time, with bound
-/// 1.
+/// The table of make_first_passage.py: for each (drift, start), the probability of having left at the upper
+/// boundary by a given time, with bound 1.
 std::map<std::pair<double, double>, std::vector<Row>> oracle() {
   std::ifstream file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/observer/first_passage.csv");
   std::map<std::pair<double, double>, std::vector<Row>> table;
@@ -35,11 +35,11 @@ std::map<std::pair<double, double>, std::vector<Row>> oracle() {
   return table;
 }
 
-/// The largest deviation, in standard errors, of 200 000 draws from any row of the table.
+/// The largest deviation of 200 000 draws from any row of the table, in standard errors.
 double distance(double drift, double start, const std::vector<Row>& rows) {
   random::Draws draws({17, random::Stream::observer, 0, 0, 0});
   const int n = 200'000;
-  const double bound = 0.7;  // times scale with the square of the bound
+  const double bound = 0.7;  // the table has bound 1; times grow with the square of the bound
   std::vector<int> counts(rows.size());
   for (int i = 0; i < n; ++i) {
     const auto passage = first_passage(drift / bound, bound, start, draws);
@@ -72,7 +72,7 @@ TEST_CASE("the comparison with the series sees a drift that is 3 % off, and a st
 }
 
 TEST_CASE("accuracy and mean time are those of Palmer, Huk and Shadlen", "[observer]") {
-  // A' = .85, k = 9 and x = .1; tR = .35 makes .95823 s of the decision's .60823 s.
+  // A' = .85, k = 9 and x = .1: the decision takes .60823 s on average, and with tR = .35 the whole .95823 s.
   CHECK(observer::upper_probability(0.9, 0.85) == Approx(0.82201).margin(1e-5));
   CHECK(observer::upper_probability(0, 0.85) == 0.5);
   random::Draws draws({3, random::Stream::observer, 0, 0, 0});

@@ -21,7 +21,7 @@ Question at_level(double level) {
   return question;
 }
 
-/// The share of each answer in this many trials.
+/// The share of each answer in this many simulated trials.
 std::vector<double> shares(const Observer& observer, Question question, int trials) {
   std::vector<double> counts(static_cast<std::size_t>(question.answers));
   for (int trial = 0; trial < trials; ++trial) {
@@ -47,7 +47,8 @@ void check_shares(const Observer& observer, const Question& question) {
 }  // namespace
 
 TEST_CASE("EZ-diffusion finds the drift, boundary and residual time of the observer", "[observer]") {
-  // a = 0.2 A' = .17, Ter = .35 + .15; v = .1 logit(Pc) / (2 A'). 100 fits of 10 000 trials each.
+  // Expected: a = 0.2 A' = .17, Ter = .35 + .15 and v = .1 logit(Pc) / (2 A'). Makes 100 fits of 10 000
+  // trials each.
   const Observer observer(parse("sim:threshold=1,lapse=0"));
   const int fits = 100, trials = 10'000;
   for (const double proportion : {0.8, 0.9, 0.97}) {
@@ -136,7 +137,7 @@ TEST_CASE("yes and no fall about the criterion", "[observer]") {
   question.decides = Decides::presence;
   for (const double criterion : {-0.5, 0.2, 1.5}) {
     const Observer observer(parse("sim:threshold=3,lapse=0,criterion=" + std::to_string(criterion)));
-    // the inverse by bisection on a different implementation of the normal distribution
+    // The inverse of the normal distribution, by bisection on another implementation of it.
     const auto z = [&](double p) {
       double low = -9, high = 9;
       for (int i = 0; i < 80; ++i) {
@@ -167,7 +168,7 @@ TEST_CASE("ratings of signal and noise overlap by d'", "[observer]") {
     const double signal = observer.share(question, rating);
     area += signal * (below + 0.5 * noise), below += noise;
   }
-  // Phi(d' / sqrt 2) is the area under the whole curve; with only six ratings the area is smaller.
+  // Phi(d' / sqrt 2) is the area under the continuous ROC; with only six ratings the area is smaller.
   const double whole = 0.5 * std::erfc(-1.349 / 2);
   CHECK(area < whole);
   CHECK(area > whole - 0.02);
@@ -191,7 +192,7 @@ TEST_CASE("a deadline lowers the bound so that few decisions come too late", "[o
 }
 
 TEST_CASE("times outside the decision vary within their range", "[observer]") {
-  // A decision at 99 times the threshold takes a few hundredths of a second.
+  // At 99 times the threshold, a decision takes a few hundredths of a second.
   const Observer observer(parse("sim:threshold=1,slope=4,bound=0.01,residual=0.5,residual_range=0.4"));
   auto question = at_level(100);
   std::vector<double> times;
