@@ -88,10 +88,6 @@ std::optional<double> turning_point_m(const Surface& surface, double frequency_H
 
 std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double frequency_Hz, Model model,
                                              Losses losses) {
-  if (surface.theory != PlateTheory::kirchhoff && (model == Model::mode || model == Model::modes)) {
-    throw std::domain_error("model " + std::string(name(model)) + " is not available for plate theory " +
-                            std::string(name(surface.theory)) + "; allowed: turning points");
-  }
   switch (model) {
     case Model::edge:
       throw std::invalid_argument("model edge gives positions only; it has no profile");

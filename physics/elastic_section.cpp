@@ -20,7 +20,7 @@ constexpr double thin_root = 2.3650203724313520;
 }  // namespace
 
 double elastic_cut_off(double t, double poisson) {
-  return section_cut_off(SectionElements(t, poisson)).omega;
+  return section_cut_off(SectionElements(t, poisson).pencil).omega;
 }
 
 ElasticCutOff::ElasticCutOff(double poisson)
@@ -68,16 +68,16 @@ double ElasticCutOff::thickness_per_half_width(double wanted) const noexcept {
 }
 
 std::vector<std::complex<double>> elastic_wavenumbers2(double t, double poisson, double omega, int count) {
-  const SectionElements s(t, poisson);
+  const SectionPencil s = SectionElements(t, poisson).pencil;
   const Eigen::Index na = s.along_mass.rows(), nb = s.mass.rows();
   const double o2 = omega * omega;
   Eigen::MatrixXd fixed = Eigen::MatrixXd::Zero(na + nb, na + nb), by = fixed;
   fixed.topLeftCorner(na, na) = s.shear - o2 * s.along_mass;
   fixed.topRightCorner(na, nb) = s.coupling;
   fixed.bottomRightCorner(nb, nb) = s.plane - o2 * s.mass;
-  by.topLeftCorner(na, na) = (s.lame + 2) * s.along_mass;
+  by.topLeftCorner(na, na) = s.along;
   by.bottomLeftCorner(nb, na) = s.coupling.transpose();
-  by.bottomRightCorner(nb, nb) = s.mass;
+  by.bottomRightCorner(nb, nb) = s.cross;
   // fixed v = -L by v, so that the smallest L are the largest -1/L of fixed^-1 by.
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(fixed.partialPivLu().solve(by)), false);
   std::vector<std::complex<double>> all;

@@ -9,6 +9,7 @@
 #include "physics/field.hpp"
 #include "physics/line_search.hpp"
 #include "physics/modal_setup.hpp"
+#include "physics/section_field.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -97,6 +98,7 @@ class ModalLine final : public CentreLine {
   }
 
  private:
+  void solve(const Surface& surface, const ModalSetup& setup, const ModalResolution& resolution);
   Scaled at(double x, int derivative) const;
   Scaled beyond(double x, int derivative) const;
 
@@ -114,6 +116,15 @@ ModalLine::ModalLine(const Surface& surface, double f, Losses losses, const Moda
   spacing_m_ = 0.25 / s.k;
   turning_m_ = s.turning_m;
   elements_ = make_modal_elements(s, resolution, match_m_);
+  if (surface.theory == PlateTheory::kirchhoff) {
+    solve(surface, s, resolution);
+  } else {
+    solve_section_elements(surface, f, losses, resolution, s, elements_);
+  }
+  peak_m_ = find_last_peak(*this, std::min(s.turning_m, length_m_), spacing_m_);
+}
+
+void ModalLine::solve(const Surface& surface, const ModalSetup& s, const ModalResolution& resolution) {
   const ModalAssembler assembler(s.taper, s.across, s.along, s.equation, s.taper.half_width_m(0));
   eliminate(assembler, s.along, elements_);
   Eigen::VectorXd drive = Eigen::VectorXd::Ones(1);
@@ -121,7 +132,6 @@ ModalLine::ModalLine(const Surface& surface, double f, Losses losses, const Moda
     drive = s.across.project(resolution.drive ? resolution.drive : drive_shape(surface, s.equation));
   }
   substitute(s, assembler, drive, elements_);
-  peak_m_ = find_last_peak(*this, std::min(s.turning_m, length_m_), spacing_m_);
 }
 
 Scaled ModalLine::at(double x, int derivative) const {

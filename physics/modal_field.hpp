@@ -18,11 +18,12 @@ struct ModalResolution {
   enum class Across { polynomials, cut_off_shape } across = Across::polynomials;  // transverse functions
 };
 
-// Galerkin solution of (membrane or simply supported plate) lap v + k^2 v = 0, or (clamped plate)
-// D lap^2 v - N lap v = (D k^4 + N k^2) v, k lossy, on |y| < W(x), 0 < x < length: v = 0 (and no slope,
-// clamped) on the sides and the far end, v = drive shape (and no slope) at x = 0. Eliminated from the tip to
-// the drive edge, so that the tail keeps its relative accuracy; beyond e^-45 of the last lobe the one-mode
-// decay continues it. The centre line has v(0) = 1. Source: Galerkin's method in the coordinates (x, y/W(x)).
+// Galerkin solution of (plate theories mindlin and elastic: see section_basis.hpp; otherwise membrane or
+// simply supported plate) lap v + k^2 v = 0, or (clamped plate) D lap^2 v - N lap v = (D k^4 + N k^2) v, k
+// lossy, on |y| < W(x), 0 < x < length: v = 0 (and no slope, clamped) on the sides and the far end, v = drive
+// shape (and no slope) at x = 0. Eliminated from the tip to the drive edge, so that the tail keeps its
+// relative accuracy; beyond e^-45 of the last lobe the one-mode decay continues it. The centre line has v(0)
+// = 1. Source: Galerkin's method in the coordinates (x, y/W(x)).
 std::unique_ptr<CentreLine> make_modal_line(const Surface& surface, double frequency_Hz, Losses losses,
                                             const ModalResolution& resolution);
 

@@ -56,7 +56,7 @@ ModalSetup make_modal_setup(const Surface& surface, double f, Losses losses,
   return {Taper(surface),
           k,
           make_across(surface, f, resolution),
-          ElementBasis{resolution.degree, plate ? 2 : 1},
+          ElementBasis{resolution.degree, plate && surface.theory == PlateTheory::kirchhoff ? 2 : 1},
           equation,
           turning_point_m(surface, f)
               .value_or(f < dispersion.cut_off_frequency_Hz(half_width_m(surface, 0)) ? 0 : surface.length_m),

@@ -1,7 +1,6 @@
 #include "physics/section_elements.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -12,78 +11,81 @@ namespace turnpoint::physics {
 namespace {
 
 using Eigen::MatrixXd;
-constexpr int degree_across = 5, degree_through = 11;
+constexpr Eigen::Index degree_across = 5, degree_through = 11;
 
-// Integrals of a set of functions of one coordinate: U V, U V', U' V'.
-struct Line {
-  MatrixXd mass, cross, stiff;
-};
+// Element ends: finer in a layer along the clamp.
+std::vector<double> element_ends(double layer) {
+  std::vector<double> ends{0, 0.5 * (1 - layer), 1 - layer};
+  for (const double part : {0.4, 0.15, 0.05, 0.015}) ends.push_back(1 - part * layer);
+  ends.push_back(1);
+  return ends;
+}
 
-// Continuous elements on [0, 1] that vanish at 1, and at 0 where `odd`.
-Line across_line(const std::vector<double>& ends, bool odd) {
+// Continuous elements on [0, 1] that vanish at 1; the odd ones at 0 too.
+LineFunctions across_functions(double layer) {
+  const std::vector<double> ends = element_ends(layer);
   const ElementBasis basis{degree_across, 1};
-  const auto elements = static_cast<Eigen::Index>(ends.size()) - 1;
-  const Eigen::Index size = elements * degree_across + 1;
-  Line all{MatrixXd::Zero(size, size), MatrixXd::Zero(size, size), MatrixXd::Zero(size, size)};
   const Quadrature rule = gauss_legendre(degree_across + 2);
+  const auto elements = static_cast<Eigen::Index>(ends.size()) - 1;
+  const auto nodes = static_cast<Eigen::Index>(rule.x.size());
+  const Eigen::Index size = elements * degree_across;
+  LineFunctions f;
+  MatrixXd value = MatrixXd::Zero(size + 1, elements * nodes), slope = value;
+  f.at.resize(elements * nodes);
+  f.weight.resize(elements * nodes);
   for (Eigen::Index e = 0; e < elements; ++e) {
-    const auto i = static_cast<std::size_t>(e);
-    const double h = ends[i + 1] - ends[i];
-    for (std::size_t q = 0; q < rule.x.size(); ++q) {
-      const BasisValues at = basis.at(2 * rule.x[q] - 1);
+    const double start = ends[static_cast<std::size_t>(e)], h = ends[static_cast<std::size_t>(e) + 1] - start;
+    for (Eigen::Index q = 0; q < nodes; ++q) {
+      const auto i = static_cast<std::size_t>(q);
+      const BasisValues one = basis.at(2 * rule.x[i] - 1);
+      f.at[e * nodes + q] = start + h * rule.x[i];
+      f.weight[e * nodes + q] = h * rule.w[i];
       for (Eigen::Index a = 0; a <= degree_across; ++a) {
-        for (Eigen::Index b = 0; b <= degree_across; ++b) {
-          const double va = at.value[static_cast<std::size_t>(a)], vb = at.value[static_cast<std::size_t>(b)];
-          const double da = at.first[static_cast<std::size_t>(a)] * 2 / h;
-          const double db = at.first[static_cast<std::size_t>(b)] * 2 / h;
-          const Eigen::Index row = e * degree_across + a, column = e * degree_across + b;
-          all.mass(row, column) += rule.w[q] * h * va * vb;
-          all.cross(row, column) += rule.w[q] * h * va * db;
-          all.stiff(row, column) += rule.w[q] * h * da * db;
-        }
+        value(e * degree_across + a, e * nodes + q) = one.value[static_cast<std::size_t>(a)];
+        slope(e * degree_across + a, e * nodes + q) = one.first[static_cast<std::size_t>(a)] * 2 / h;
       }
     }
   }
-  const Eigen::Index first = odd ? 1 : 0, kept = size - 1 - first;
-  for (MatrixXd* one : {&all.mass, &all.cross, &all.stiff})
-    *one = MatrixXd(one->block(first, first, kept, kept));
-  return all;
+  f.even = value.topRows(size);
+  f.even_slope = slope.topRows(size);
+  f.odd = value.middleRows(1, size - 1);
+  f.odd_slope = slope.middleRows(1, size - 1);
+  f.even_start = Eigen::VectorXd::Unit(size, 0);
+  return f;
 }
 
-// Rows of cross-integrals between the even functions (A, c) and the odd ones (b) of y: all functions, and the
-// odd set leaves out the first.
-MatrixXd without_first_column(const MatrixXd& m) { return m.rightCols(m.cols() - 1); }
-
-// Legendre polynomials of 2z/h on [0, h/2], odd or even; U' with respect to z.
-struct Through {
-  MatrixXd odd_mass, odd_stiff, even_mass, even_stiff;
-  MatrixXd odd_even, odd_even_slope, odd_slope_even;  // U_odd U_even, U_odd U_even', U_odd' U_even
-};
-
-Through through_thickness(double thickness) {
+// Legendre polynomials of 2z/h on [0, h/2].
+LineFunctions through_functions(double thickness) {
   constexpr Eigen::Index n = (degree_through + 1) / 2;
   const Quadrature rule = gauss_legendre(degree_through + 2);
   const auto points = static_cast<Eigen::Index>(rule.x.size());
-  MatrixXd odd(n, points), even(n, points), odd1(n, points), even1(n, points);
-  Eigen::VectorXd weight(points);
-  for (Eigen::Index q = 0; q < points; ++q) {
-    const double t = rule.x[static_cast<std::size_t>(q)];
-    weight[q] = rule.w[static_cast<std::size_t>(q)] * thickness / 2;
+  LineFunctions f;
+  for (MatrixXd* one : {&f.even, &f.even_slope, &f.odd, &f.odd_slope}) one->resize(n, points);
+  f.at.resize(points);
+  f.weight.resize(points);
+  f.even_start.resize(n);
+  for (Eigen::Index q = 0; q <= points; ++q) {  // the last is z = 0
+    const auto i = static_cast<std::size_t>(q);
+    const double t = q < points ? rule.x[i] : 0;
+    if (q < points) {
+      f.at[q] = t * thickness / 2;
+      f.weight[q] = rule.w[i] * thickness / 2;
+    }
     double p0 = 1, p1 = t, d0 = 0, d1 = 1;
     for (Eigen::Index k = 0; k <= degree_through; ++k) {
-      (k % 2 ? odd : even)(k / 2, q) = p0;
-      (k % 2 ? odd1 : even1)(k / 2, q) = d0 * 2 / thickness;
+      if (q == points) {
+        if (k % 2 == 0) f.even_start[k / 2] = p0;
+      } else {
+        (k % 2 ? f.odd : f.even)(k / 2, q) = p0;
+        (k % 2 ? f.odd_slope : f.even_slope)(k / 2, q) = d0 * 2 / thickness;
+      }
       const double m = static_cast<double>(k) + 2;
       const double p2 = ((2 * m - 1) * t * p1 - (m - 1) * p0) / m;
       const double d2 = ((2 * m - 1) * (p1 + t * d1) - (m - 1) * d0) / m;
       p0 = p1, p1 = p2, d0 = d1, d1 = d2;
     }
   }
-  const auto gram = [&](const MatrixXd& a, const MatrixXd& b) -> MatrixXd {
-    return a * weight.asDiagonal() * b.transpose();
-  };
-  return {gram(odd, odd),  gram(odd1, odd1), gram(even, even), gram(even1, even1),
-          gram(odd, even), gram(odd, even1), gram(odd1, even)};
+  return f;
 }
 
 MatrixXd tensor(const MatrixXd& across, const MatrixXd& through) {
@@ -96,60 +98,92 @@ MatrixXd tensor(const MatrixXd& across, const MatrixXd& through) {
   return all;
 }
 
-// Element ends: the layer along the clamp is as deep as the plate is thick.
-std::vector<double> element_ends(double thickness) {
-  const double layer = std::min(0.5, 1.2 * thickness);
-  std::vector<double> ends{0, 0.5 * (1 - layer), 1 - layer};
-  for (const double part : {0.4, 0.15, 0.05, 0.015}) ends.push_back(1 - part * layer);
-  ends.push_back(1);
-  return ends;
-}
-
 }  // namespace
 
-SectionElements::SectionElements(double thickness, double nu) : lame(2 * nu / (1 - 2 * nu)) {
-  const std::vector<double> ends = element_ends(thickness);
-  const Line even = across_line(ends, false), odd = across_line(ends, true);
-  const Through z = through_thickness(thickness);
-  along_mass = tensor(even.mass, z.odd_mass);
-  shear = tensor(even.stiff, z.odd_mass) + tensor(even.mass, z.odd_stiff);
-  const MatrixXd b_mass = tensor(odd.mass, z.odd_mass), c_mass = tensor(even.mass, z.even_mass);
+// The layer along the clamp is as deep as the plate is thick.
+SectionElements::SectionElements(double thickness, double nu)
+    : SectionElements(thickness, nu, std::min(0.5, 1.2 * thickness)) {}
+
+SectionElements::SectionElements(double thickness, double nu, double layer)
+    : across(across_functions(layer)), through(through_functions(thickness)), lame(2 * nu / (1 - 2 * nu)) {
+  const auto y = [this](const MatrixXd& a, const MatrixXd& b) -> MatrixXd {
+    return a * across.weight.asDiagonal() * b.transpose();
+  };
+  const auto z = [this](const MatrixXd& a, const MatrixXd& b) -> MatrixXd {
+    return a * through.weight.asDiagonal() * b.transpose();
+  };
+  const LineFunctions& c = across;
+  const LineFunctions& t = through;
+  const MatrixXd odd_z = z(t.odd, t.odd), even_z = z(t.even, t.even);
+  const MatrixXd even_y = y(c.even, c.even);
+  SectionPencil& p = pencil;
+  p.along_mass = tensor(even_y, odd_z);
+  p.along = (lame + 2) * p.along_mass;
+  p.shear = tensor(y(c.even_slope, c.even_slope), odd_z) + tensor(even_y, z(t.odd_slope, t.odd_slope));
+  const MatrixXd b_mass = tensor(y(c.odd, c.odd), odd_z), c_mass = tensor(even_y, even_z);
   const Eigen::Index nb = b_mass.rows(), nc = c_mass.rows();
-  mass = MatrixXd::Zero(nb + nc, nb + nc);
-  mass.topLeftCorner(nb, nb) = b_mass;
-  mass.bottomRightCorner(nc, nc) = c_mass;
-  plane = MatrixXd::Zero(nb + nc, nb + nc);
-  plane.topLeftCorner(nb, nb) = (lame + 2) * tensor(odd.stiff, z.odd_mass) + tensor(odd.mass, z.odd_stiff);
-  plane.bottomRightCorner(nc, nc) =
-      (lame + 2) * tensor(even.mass, z.even_stiff) + tensor(even.stiff, z.even_mass);
-  // lame (b_y, c_z) + (b_z, c_y); rows b, without the even functions' first in y.
-  const MatrixXd slope_value = even.cross.transpose().bottomRows(odd.mass.rows());
-  const MatrixXd value_slope = even.cross.bottomRows(odd.mass.rows());
-  const MatrixXd bc = lame * tensor(slope_value, z.odd_even_slope) + tensor(value_slope, z.odd_slope_even);
-  plane.topRightCorner(nb, nc) = bc;
-  plane.bottomLeftCorner(nc, nb) = bc.transpose();
+  p.mass = MatrixXd::Zero(nb + nc, nb + nc);
+  p.mass.topLeftCorner(nb, nb) = b_mass;
+  p.mass.bottomRightCorner(nc, nc) = c_mass;
+  p.cross = p.mass;
+  p.plane.resize(nb + nc, nb + nc);
+  p.plane.topLeftCorner(nb, nb) = (lame + 2) * tensor(y(c.odd_slope, c.odd_slope), odd_z) +
+                                  tensor(y(c.odd, c.odd), z(t.odd_slope, t.odd_slope));
+  p.plane.bottomRightCorner(nc, nc) = (lame + 2) * tensor(even_y, z(t.even_slope, t.even_slope)) +
+                                      tensor(y(c.even_slope, c.even_slope), even_z);
+  // lame (b_y, c_z) + (b_z, c_y)
+  p.plane.topRightCorner(nb, nc) = lame * tensor(y(c.odd_slope, c.even), z(t.odd, t.even_slope)) +
+                                   tensor(y(c.odd, c.even_slope), z(t.odd_slope, t.even));
+  p.plane.bottomLeftCorner(nc, nb) = p.plane.topRightCorner(nb, nc).transpose();
   // lame (A, b_y + c_z) - (A_y, b) - (A_z, c)
-  coupling.resize(along_mass.rows(), nb + nc);
-  coupling.leftCols(nb) =
-      tensor(MatrixXd(without_first_column(lame * even.cross - even.cross.transpose())), z.odd_mass);
-  coupling.rightCols(nc) = tensor(even.mass, MatrixXd(lame * z.odd_even_slope - z.odd_slope_even));
+  p.coupling.resize(p.along_mass.rows(), nb + nc);
+  p.coupling.leftCols(nb) = tensor(lame * y(c.even, c.odd_slope) - y(c.even_slope, c.odd), odd_z);
+  p.coupling.rightCols(nc) = tensor(even_y, lame * z(t.odd, t.even_slope) - z(t.odd_slope, t.even));
+  // (A_y, eta b_eta) + (A_z, eta c_eta)
+  p.stretching.resize(p.along_mass.rows(), nb + nc);
+  const auto stretched = [&c](const MatrixXd& slope) -> MatrixXd { return slope * c.at.asDiagonal(); };
+  p.stretching.leftCols(nb) = tensor(y(c.even_slope, stretched(c.odd_slope)), odd_z);
+  p.stretching.rightCols(nc) = tensor(y(c.even, stretched(c.even_slope)), z(t.odd_slope, t.even));
 }
 
-SectionCutOff section_cut_off(const SectionElements& section) {
-  const Eigen::LLT<MatrixXd> solver(section.plane);
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(section.plane.rows());
-  x.tail(section.along_mass.rows()).setOnes();
+Eigen::VectorXd SectionElements::thickening(const Eigen::VectorXd& along) const {
+  // c alone, without its mean over the thickness, which is deflection: the functions of z but the first.
+  const Eigen::Index nb = across.odd.rows() * through.odd.rows(), nz = through.even.rows();
+  const MatrixXd load =
+      lame * tensor(across.even * across.weight.asDiagonal() * across.even.transpose(),
+                    through.even_slope * through.weight.asDiagonal() * through.odd.transpose());
+  const Eigen::VectorXd force = -load * along;
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < force.size(); ++i) {
+    if (i % nz != 0) kept.push_back(i);
+  }
+  const MatrixXd stiffness = pencil.plane.bottomRightCorner(force.size(), force.size());
+  const Eigen::VectorXd c = MatrixXd(stiffness(kept, kept)).llt().solve(Eigen::VectorXd(force(kept)));
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(nb + force.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) all[nb + kept[i]] = c[static_cast<Eigen::Index>(i)];
+  return all;
+}
+
+SectionCutOff section_cut_off(const SectionPencil& pencil) {
+  const Eigen::LLT<MatrixXd> solver(pencil.plane);
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(pencil.plane.rows());
   double omega2 = 0;
   for (int i = 0; i < 60; ++i) {
-    x /= std::sqrt(x.dot(section.mass * x));
-    const Eigen::VectorXd next = solver.solve(section.mass * x);
-    const double now = 1 / x.dot(section.mass * next);
+    x /= std::sqrt(x.dot(pencil.mass * x));
+    const Eigen::VectorXd next = solver.solve(pencil.mass * x);
+    const double now = 1 / x.dot(pencil.mass * next);
     x = next;
     const bool settled = std::abs(now - omega2) <= 1e-14 * now;
     omega2 = now;
     if (settled && i > 8) break;
   }
-  return {std::sqrt(omega2), x};
+  return {std::sqrt(omega2), x / std::sqrt(x.dot(pencil.mass * x))};
+}
+
+SectionShapes section_shapes_of(const SectionPencil& p) {
+  const SectionCutOff at = section_cut_off(p);
+  const Eigen::PartialPivLU<MatrixXd> along(p.shear - at.omega * at.omega * p.along_mass);
+  return {at.shape, along.solve(-p.coupling * at.shape), along.solve(-p.stretching * at.shape)};
 }
 
 }  // namespace turnpoint::physics

@@ -4,25 +4,52 @@
 
 namespace turnpoint::physics {
 
-// Unit half-width, density and shear modulus; u = (i k A, b, c). Functions: products of polynomials, by
-// elements in y that are finer towards the clamp, where the stress at the free face's corner is singular.
-// A and b are odd in z, c even; b is odd in y, A and c even; all vanish at y = 1.
-struct SectionElements {
-  SectionElements(double thickness_per_half_width, double poisson);
-
-  Eigen::Index size() const { return along_mass.rows(); }
-  // The equations of A, then those of (b, c), for exp(-i k x), k^2 = L:
-  //   (shear + (lame + 2) L along_mass - omega^2 along_mass) A + coupling (b, c) = 0
-  //   (plane + L mass - omega^2 mass) (b, c) + L coupling^T A = 0
-  Eigen::MatrixXd shear, along_mass, coupling, plane, mass;
-  double lame;  // lambda / G
+// The waves exp(-i k x) of a uniform strip, k^2 = L, moving by i k A along x and by B in the cross-section:
+//   (shear + L along - omega^2 along_mass) A + coupling B = 0
+//   (plane + L cross - omega^2 mass) B + L coupling^T A = 0
+// `stretching` couples A with the motion eta dB/deta, which a taper adds to d/dx of B (y = eta W(x)).
+struct SectionPencil {
+  Eigen::MatrixXd shear, along, along_mass, coupling, plane, cross, mass, stretching;
 };
 
-// The cut-off's omega and its shape (b, c), by inverse iteration.
+// The lowest cut-off, L = 0, and its B, by inverse iteration.
 struct SectionCutOff {
   double omega;
   Eigen::VectorXd shape;
 };
-SectionCutOff section_cut_off(const SectionElements& section);
+SectionCutOff section_cut_off(const SectionPencil& pencil);
+
+// The motion at the cut-off: B; A, which follows it in proportion to its derivative along x; and the A that
+// follows its stretching, without which a thin section would be too stiff: its normals could not stay normal
+// to a surface that narrows. One column each.
+struct SectionShapes {
+  Eigen::VectorXd cross, along, stretched;
+};
+SectionShapes section_shapes_of(const SectionPencil& pencil);
+
+// Functions of one coordinate at quadrature points: a row a function, a column a point.
+struct LineFunctions {
+  Eigen::MatrixXd even, even_slope, odd, odd_slope;
+  Eigen::VectorXd at, weight;
+  Eigen::VectorXd even_start;  // the even functions at 0
+};
+
+// Unit half-width, density and shear modulus; displacements (i k A, b, c), B = (b, c). Functions: products of
+// polynomials, by elements in y that are finer towards the clamp, where the stress at the free face's corner
+// is singular. A and b are odd in z, c even; b is odd in y, A and c even; all vanish at y = 1. Ordered by y,
+// then z.
+struct SectionElements {
+  // `layer`: depth of the finer elements; sections with the same layer have the same functions of y.
+  SectionElements(double thickness_per_half_width, double poisson, double layer);
+  SectionElements(double thickness_per_half_width, double poisson);
+
+  // How the section thickens, as B, where it is stretched by A: without it bending along x would be too
+  // stiff.
+  Eigen::VectorXd thickening(const Eigen::VectorXd& along) const;
+
+  LineFunctions across, through;
+  SectionPencil pencil;
+  double lame;  // lambda / G
+};
 
 }  // namespace turnpoint::physics

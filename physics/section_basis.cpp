@@ -1,0 +1,291 @@
+#include "physics/section_basis.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "physics/dispersion.hpp"
+#include "physics/section_elements.hpp"
+#include "physics/transverse_basis.hpp"
+
+namespace turnpoint::physics {
+namespace {
+
+using SectionMatrix = SectionBasis::Matrix;
+
+// Strain and motion of functions at quadrature points: one matrix a component, a row a function.
+using Components = std::vector<SectionMatrix>;
+
+SectionMatrix weighted_gram(const Components& a, const SectionMatrix& law, const Components& b,
+                            const Eigen::VectorXd& weight) {
+  SectionMatrix sum = SectionMatrix::Zero(a.front().rows(), b.front().rows());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = 0; j < b.size(); ++j) {
+      const double part = law(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+      if (part != 0) sum += part * a[i] * weight.asDiagonal() * b[j].transpose();
+    }
+  }
+  return sum;
+}
+
+SectionBasis integrate_section(const std::array<Components, 4>& strain, const SectionMatrix& law,
+                               const Components& motion, const SectionMatrix& inertia,
+                               const Eigen::VectorXd& weight) {
+  SectionBasis basis;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) basis.stiff[i][j] = weighted_gram(strain[i], law, strain[j], weight);
+  }
+  basis.mass = weighted_gram(motion, inertia, motion, weight);
+  return basis;
+}
+
+// (1 - t^2) P_n(t) sqrt(2n + 1), n = first, first + 2, ..., and derivatives, at t = 0 and the nodes of the
+// rule.
+void bubbles(int count, int first, const Quadrature& rule, SectionMatrix& value, SectionMatrix& slope,
+             Eigen::VectorXd& start) {
+  const auto nodes = static_cast<Eigen::Index>(rule.x.size());
+  value.resize(count, nodes);
+  slope.resize(count, nodes);
+  start.resize(count);
+  for (Eigen::Index q = 0; q <= nodes; ++q) {
+    const double t = q == nodes ? 0 : rule.x[static_cast<std::size_t>(q)];
+    double p0 = 1, p1 = t, d0 = 0, d1 = 1;
+    for (int k = 0; k < first + 2 * count; ++k) {
+      const int i = (k - first) / 2;
+      if (k >= first && (k - first) % 2 == 0) {
+        const double scale = std::sqrt(2 * k + 1.0);
+        if (q == nodes) {
+          start[i] = scale * p0;
+        } else {
+          value(i, q) = scale * (1 - t * t) * p0;
+          slope(i, q) = scale * ((1 - t * t) * d0 - 2 * t * p0);
+        }
+      }
+      const double m = k + 2;
+      const double p2 = ((2 * m - 1) * t * p1 - (m - 1) * p0) / m;
+      const double d2 = ((2 * m - 1) * (p1 + t * d1) - (m - 1) * d0) / m;
+      p0 = p1, p1 = p2, d0 = d1, d1 = d2;
+    }
+  }
+}
+
+SectionMatrix stacked(const SectionMatrix& a, const SectionMatrix& b, const SectionMatrix& c) {
+  SectionMatrix all(a.rows() + b.rows() + c.rows(), a.cols());
+  all << a, b, c;
+  return all;
+}
+
+// Functions in the order beta_x, beta_y, w.
+SectionBasis mindlin_section(const MindlinPlate& plate, int each) {
+  const Quadrature rule = gauss_legendre(2 * each + 6);
+  const auto nodes = static_cast<Eigen::Index>(rule.x.size());
+  const Eigen::Map<const Eigen::VectorXd> eta(rule.x.data(), nodes), weight(rule.w.data(), nodes);
+  SectionMatrix even, even1, odd, odd1;
+  Eigen::VectorXd even_start, odd_start;
+  bubbles(each, 0, rule, even, even1, even_start);
+  bubbles(each, 1, rule, odd, odd1, odd_start);
+  const SectionMatrix none = SectionMatrix::Zero(each, nodes);
+  const Components motion{stacked(even, none, none), stacked(none, odd, none), stacked(none, none, even)};
+  const Components slope{stacked(even1, none, none), stacked(none, odd1, none), stacked(none, none, even1)};
+  Components stretched;
+  for (const SectionMatrix& one : slope) stretched.push_back(one * eta.asDiagonal());
+  const SectionMatrix zero = SectionMatrix::Zero(3 * each, nodes);
+  // kappa_xx, kappa_yy, kappa_xy, gamma_x, gamma_y
+  const auto by_x = [&](const Components& u) -> Components { return {u[0], zero, u[1], u[2], zero}; };
+  const Components by_y{zero, slope[1], slope[0], zero, slope[2]};
+  const Components local{zero, zero, zero, motion[0], motion[1]};
+  SectionMatrix law = SectionMatrix::Zero(5, 5);
+  const double d = plate.stiffness_N_m;
+  law(0, 0) = law(1, 1) = d;
+  law(0, 1) = law(1, 0) = d - 2 * plate.twist_N_m;  // nu D
+  law(2, 2) = plate.twist_N_m;
+  law(3, 3) = law(4, 4) = plate.shear_N_per_m;
+  SectionMatrix inertia = SectionMatrix::Zero(3, 3);
+  inertia.diagonal() << plate.rotary_inertia_kg, plate.rotary_inertia_kg, plate.mass_kg_per_m2;
+  SectionBasis basis =
+      integrate_section({by_x(motion), by_x(stretched), by_y, local}, law, motion, inertia, weight);
+  basis.centre = Eigen::VectorXd::Zero(3 * each);
+  basis.centre.tail(each) = even_start;
+  return basis;
+}
+
+SectionPencil mindlin_pencil(const SectionBasis& b, double half_width, Eigen::Index each) {
+  using B = SectionBasis;
+  const Eigen::Index rest = b.count() - each;
+  // Strain of a uniform strip without the derivative along x, Y/W + Z.
+  const SectionMatrix still = b.stiff[B::across][B::across] / (half_width * half_width) +
+                              (b.stiff[B::across][B::local] + b.stiff[B::local][B::across]) / half_width +
+                              b.stiff[B::local][B::local];
+  const SectionMatrix mixed = b.stiff[B::along][B::across] / half_width + b.stiff[B::along][B::local];
+  SectionPencil p;
+  p.shear = still.topLeftCorner(each, each);
+  p.along = b.stiff[B::along][B::along].topLeftCorner(each, each);
+  p.along_mass = b.mass.topLeftCorner(each, each);
+  p.coupling = mixed.topRightCorner(each, rest) - mixed.bottomLeftCorner(rest, each).transpose();
+  p.stretching = (b.stiff[B::across][B::stretch] / half_width + b.stiff[B::local][B::stretch])
+                     .topRightCorner(each, rest);
+  p.plane = still.bottomRightCorner(rest, rest);
+  p.cross = b.stiff[B::along][B::along].bottomRightCorner(rest, rest);
+  p.mass = b.mass.bottomRightCorner(rest, rest);
+  return p;
+}
+
+// The half-widths whose cut-off shapes make the functions of `mode`: the drive edge's, which it is driven
+// with; the tone's turning point, where they are exact; and a narrower one. Between them the parts of a shape
+// that grow differently as the strip narrows (deflection, rotation, thickening) find their proportions.
+std::array<double, 3> shape_widths(const Surface& surface, double f) {
+  const double drive = half_width_m(surface, 0);
+  const double turning = std::min(Dispersion(surface).cut_off_half_width_m(f), 0.85 * drive);
+  return {drive, turning, 0.75 * turning};
+}
+
+// Columns cross, along, stretched of one half-width, of the size of `cross`, which moves the centre line
+// by 1.
+SectionMatrix columns(const SectionShapes& shapes, double centre) {
+  const Eigen::Index na = shapes.along.size(), nb = shapes.cross.size();
+  SectionMatrix all = SectionMatrix::Zero(na + nb, 3);
+  const double size = shapes.cross.norm() / centre;
+  all.col(0).tail(nb) = shapes.cross / centre;
+  all.col(1).head(na) = shapes.along * (size / shapes.along.norm());
+  all.col(2).head(na) = shapes.stretched * (size / shapes.stretched.norm());
+  return all;
+}
+
+SectionMatrix mindlin_columns(const SectionBasis& full, double half_width, Eigen::Index each) {
+  const SectionShapes shapes = section_shapes_of(mindlin_pencil(full, half_width, each));
+  return columns(shapes, shapes.cross.dot(full.centre.tail(full.count() - each)));
+}
+
+SectionBasis mindlin_shapes(const Surface& surface, double f) {
+  constexpr int each = 12;
+  const SectionBasis full = mindlin_section(MindlinPlate(surface), each);
+  SectionMatrix shapes(full.count(), 9);
+  Eigen::Index at = 0;
+  for (const double w : shape_widths(surface, f)) {
+    shapes.middleCols(at, 3) = mindlin_columns(full, w, each);
+    at += 3;
+  }
+  SectionBasis basis;
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) basis.stiff[i][j] = shapes.transpose() * full.stiff[i][j] * shapes;
+  }
+  basis.mass = shapes.transpose() * full.mass * shapes;
+  basis.centre = shapes.transpose() * full.centre;
+  basis.drive = Eigen::VectorXd::Unit(shapes.cols(), 0);
+  return basis;
+}
+
+// One component of displacement and its derivatives at all quadrature points; a row a shape.
+struct Displacement {
+  SectionMatrix value, by_eta, by_z;
+};
+
+Displacement displacement(const SectionMatrix& coefficients, const LineFunctions& across, bool odd_across,
+                          const LineFunctions& through, bool odd_through) {
+  const SectionMatrix& y = odd_across ? across.odd : across.even;
+  const SectionMatrix& y1 = odd_across ? across.odd_slope : across.even_slope;
+  const SectionMatrix& z = odd_through ? through.odd : through.even;
+  const SectionMatrix& z1 = odd_through ? through.odd_slope : through.even_slope;
+  const Eigen::Index points = y.cols() * z.cols();
+  Displacement all{SectionMatrix(coefficients.cols(), points), SectionMatrix(coefficients.cols(), points),
+                   SectionMatrix(coefficients.cols(), points)};
+  for (Eigen::Index i = 0; i < coefficients.cols(); ++i) {
+    const Eigen::VectorXd column = coefficients.col(i);
+    const Eigen::Map<const SectionMatrix> c(column.data(), z.rows(), y.rows());  // by y, then z
+    const auto at = [&](const SectionMatrix& of_z, const SectionMatrix& of_y) -> Eigen::RowVectorXd {
+      const SectionMatrix grid = of_z.transpose() * c * of_y;
+      return Eigen::Map<const Eigen::RowVectorXd>(grid.data(), points);
+    };
+    all.value.row(i) = at(z, y);
+    all.by_eta.row(i) = at(z, y1);
+    all.by_z.row(i) = at(z1, y);
+  }
+  return all;
+}
+
+SectionMatrix stacked_rows(const std::vector<SectionMatrix>& parts) {
+  SectionMatrix all(0, parts.front().cols());
+  for (const SectionMatrix& one : parts) {
+    all.conservativeResize(all.rows() + one.rows(), Eigen::NoChange);
+    all.bottomRows(one.rows()) = one;
+  }
+  return all;
+}
+
+SectionBasis elastic_shapes(const Surface& surface, double f) {
+  const auto widths = shape_widths(surface, f);
+  const double layer = std::min(0.5, 1.2 * surface.thickness_m / widths[1]);
+  const double speed2 = *surface.modulus_Pa / (2 * (1 + surface.poisson) * surface.density_kg_m3);
+  std::array<std::vector<SectionMatrix>, 9> parts;  // values, by eta, by z, of each displacement
+  Eigen::VectorXd weight, eta, centres(0);
+  double lame = 0;
+  for (std::size_t i = 0; i < widths.size(); ++i) {
+    const SectionElements section(surface.thickness_m / widths[i], surface.poisson, layer);
+    const LineFunctions &y = section.across, &z = section.through;
+    const Eigen::Index na = y.even.rows() * z.odd.rows(), nb = y.odd.rows() * z.odd.rows();
+    const Eigen::Index nc = y.even.rows() * z.even.rows();
+    Eigen::VectorXd centre(nc);
+    for (Eigen::Index j = 0; j < y.even.rows(); ++j)
+      centre.segment(j * z.even.rows(), z.even.rows()) = y.even_start[j] * z.even_start;
+    const SectionShapes found = section_shapes_of(section.pencil);
+    SectionMatrix shapes = columns(found, found.cross.tail(nc).dot(centre));
+    if (i == 1) {
+      const Eigen::VectorXd thickening = section.thickening(shapes.col(1).head(na));
+      shapes.conservativeResize(Eigen::NoChange, 4);
+      shapes.col(3).head(na).setZero();
+      shapes.col(3).tail(nb + nc) = thickening * (shapes.col(0).norm() / thickening.norm());
+    }
+    const std::array<Displacement, 3> u{displacement(shapes.topRows(na), y, false, z, true),
+                                        displacement(shapes.middleRows(na, nb), y, true, z, true),
+                                        displacement(shapes.bottomRows(nc), y, false, z, false)};
+    for (std::size_t c = 0; c < 3; ++c) {
+      parts[c].push_back(u[c].value);
+      parts[3 + c].push_back(u[c].by_eta);
+      parts[6 + c].push_back(u[c].by_z / widths[i]);
+    }
+    const Eigen::VectorXd deflection = shapes.bottomRows(nc).transpose() * centre;
+    centres.conservativeResize(centres.size() + deflection.size());
+    centres.tail(deflection.size()) = deflection;
+    lame = section.lame;
+    if (i > 0) continue;  // the same points for all
+    weight.resize(y.at.size() * z.at.size());
+    eta.resize(weight.size());
+    for (Eigen::Index j = 0; j < y.at.size(); ++j) {
+      weight.segment(j * z.at.size(), z.at.size()) = y.weight[j] * z.weight;
+      eta.segment(j * z.at.size(), z.at.size()).setConstant(y.at[j]);
+    }
+  }
+  std::array<SectionMatrix, 9> u;
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] = stacked_rows(parts[i]);
+  const SectionMatrix zero = SectionMatrix::Zero(u[0].rows(), u[0].cols());
+  const auto stretched = [&](const SectionMatrix& slope) -> SectionMatrix {
+    return slope * eta.asDiagonal();
+  };
+  // xx, yy, zz, yz, xz, xy; over the shear modulus
+  const Components by_x{u[0], zero, zero, zero, u[2], u[1]};
+  const Components stretch{stretched(u[3]), zero, zero, zero, stretched(u[5]), stretched(u[4])};
+  const Components by_y{zero, u[4], zero, u[5], zero, u[3]};
+  const Components local{zero, zero, u[8], u[7], u[6], zero};
+  SectionMatrix law = SectionMatrix::Identity(6, 6);
+  law.topLeftCorner(3, 3).setConstant(lame);
+  law.topLeftCorner(3, 3).diagonal().setConstant(lame + 2);
+  SectionBasis basis = integrate_section({by_x, stretch, by_y, local}, law, {u[0], u[1], u[2]},
+                                         SectionMatrix::Identity(3, 3) / speed2, weight);
+  basis.centre = centres;
+  basis.drive = Eigen::VectorXd::Unit(centres.size(), 0);
+  return basis;
+}
+
+}  // namespace
+
+SectionBasis mindlin_polynomials(const Surface& surface, int each) {
+  SectionBasis basis = mindlin_section(MindlinPlate(surface), each);
+  basis.drive = mindlin_columns(basis, half_width_m(surface, 0), each).col(0);
+  return basis;
+}
+
+SectionBasis section_shapes(const Surface& surface, double f) {
+  return surface.theory == PlateTheory::elastic ? elastic_shapes(surface, f) : mindlin_shapes(surface, f);
+}
+
+}  // namespace turnpoint::physics

@@ -1,0 +1,89 @@
+#include <cmath>
+#include <limits>
+
+#include "physics/boundary_map.hpp"
+#include "physics/centre_line.hpp"
+#include "physics/dispersion.hpp"
+#include "physics/field.hpp"
+#include "physics/surface.hpp"
+#include "tests/physics/csv_table.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::physics;
+using turnpoint::physics_test::oracle;
+
+namespace {
+
+Surface plate_of(PlateTheory theory, double quality_factor) {
+  Surface s = aluminium_plate();
+  s.theory = theory;
+  s.quality_factor = quality_factor > 0 ? quality_factor : std::numeric_limits<double>::infinity();
+  return s;
+}
+
+// Largest difference of |v|, with the last maximum at one, from a row's profile at 0, 10, ... mm.
+double profile_miss(const CentreLine& line, const std::vector<std::string>& row) {
+  const double ln_peak = line.value(line.last_peak_m().value()).ln_magnitude();
+  double worst = 0, largest = 1;
+  for (std::size_t i = 5; i < row.size(); ++i) {
+    const double theirs = std::stod(row[i]);
+    const double ours = std::exp(line.value(0.01 * static_cast<double>(i - 5)).ln_magnitude() - ln_peak);
+    worst = std::max(worst, std::abs(ours - theirs));
+    largest = std::max(largest, theirs);
+  }
+  return worst / largest;
+}
+
+}  // namespace
+
+TEST_CASE("mode and modes of a Mindlin taper match its two-dimensional finite elements", "[physics]") {
+  int compared = 0;
+  double thin = 0;
+  for (const auto& row : oracle("mindlin_taper.csv")) {
+    const double f = std::stod(row[0]), q = std::stod(row[1]);
+    const Surface s = plate_of(PlateTheory::mindlin, q);
+    for (const Model model : {Model::mode, Model::modes}) {
+      const auto line = make_centre_line(s, f, model);
+      const double within = model == Model::mode ? 0.02e-3 : 0.001e-3;
+      CAPTURE(f, q, name(model));
+      CHECK(std::abs(line->last_peak_m().value() - std::stod(row[2])) < within);
+      CHECK(std::abs(line->level_m(0.5).value() - std::stod(row[3])) < within);
+      CHECK(std::abs(line->level_m(0.1).value() - std::stod(row[4])) < within);
+      CHECK(profile_miss(*line, row) < (model == Model::mode ? 0.05 : 5e-4));
+    }
+    const auto kirchhoff = make_centre_line(plate_of(PlateTheory::kirchhoff, q), f, Model::mode);
+    thin = std::max(thin, std::abs(kirchhoff->level_m(0.5).value() - std::stod(row[3])));
+    ++compared;
+  }
+  CHECK(compared == 6);
+  CHECK(thin > 0.01);  // negative control: a thin plate's boundary is elsewhere
+}
+
+TEST_CASE("the fields of the thick theories become Kirchhoff's for a thin plate", "[physics]") {
+  for (const auto theory : {PlateTheory::mindlin, PlateTheory::elastic}) {
+    // 0.1 mm: the cut-off moves by 0.03 mm; a section too stiff in bending moves the edges by several.
+    Surface s = plate_of(PlateTheory::kirchhoff, 60);
+    s.thickness_m = 1e-4;
+    const double f = 2e3;
+    const auto thin = make_centre_line(s, f, Model::mode);
+    s.theory = theory;
+    const auto thick = make_centre_line(s, f, Model::mode);
+    CAPTURE(name(theory));
+    CHECK(std::abs(*thick->last_peak_m() - *thin->last_peak_m()) < 0.05e-3);
+    CHECK(std::abs(*thick->level_m(0.5) - *thin->level_m(0.5)) < 0.05e-3);
+    CHECK(std::abs(*thick->level_m(0.1) - *thin->level_m(0.1)) < 0.06e-3);
+  }
+}
+
+TEST_CASE("a thick plate's tail is continued beyond its elements, without NaN", "[physics]") {
+  Surface s = plate_of(PlateTheory::mindlin, 60);
+  s.taper = LinearTaper{0.03, 0.1};  // to the apex
+  const auto line = make_centre_line(s, 30e3, Model::mode);
+  double last = line->value(0.24).ln_magnitude();
+  for (const double x : {0.26, 0.28, 0.29, 0.299}) {
+    const double ln = line->value(x).ln_magnitude();
+    CHECK(std::isfinite(ln));
+    CHECK(ln < last);
+    last = ln;
+  }
+}
