@@ -11,6 +11,7 @@
 #include "physics/edge_table.hpp"
 #include "physics/field.hpp"
 #include "physics/map_bounds.hpp"
+#include "physics/plate_theory.hpp"
 
 namespace turnpoint::physics {
 
@@ -198,6 +199,7 @@ MapAnswer BoundaryMap::at_frequency(double f) const {
   const auto above = s.position(f + step), below = s.position(f - step);
   const double span = (above ? step : 0) + (below ? step : 0);
   answer.m_per_Hz = (above.value_or(*answer.boundary_m) - below.value_or(*answer.boundary_m)) / span;
+  answer.shear_shift_m = shear_shift_m(s.surface, f);
   const MapBounds bounds = map_bounds(s.surface, s.options, f, *answer.boundary_m);
   answer.error_bound_m = bounds.error_m() + s.table.error_m;
   answer.uncertainty_m = bounds.uncertainty_m;

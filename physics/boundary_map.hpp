@@ -43,6 +43,8 @@ struct MapAnswer {
   double error_bound_m = 0;
   double uncertainty_m = 0;
   double m_per_Hz = 0;
+  // How far the next better plate theory would move it, not part of `error_bound_m`; see plate_theory.hpp.
+  std::optional<double> shear_shift_m;
   std::string reason;
   std::vector<Warning> warnings;
 };

@@ -22,6 +22,7 @@ int deepest(const MapOptions& options) { return options.edge.kind == Edge::Kind:
 // and asking for more would tabulate their rounding.
 double tolerance_m(const Dispersion& dispersion, const MapOptions& options) {
   if (options.edge.kind == Edge::Kind::friction) return 2e-6;
+  if (dispersion.theory != PlateTheory::kirchhoff) return 2e-6;
   return dispersion.clamped_bending() ? 3e-7 : 1e-11;
 }
 
@@ -78,7 +79,8 @@ class Builder {
   // The end of existence between a frequency with the edge and one without.
   double limit(double with, double without) const {
     // A plate's solutions are dear, and the last step need not be found: the edge is tabulated up to it.
-    const double enough = dispersion_.clamped_bending() ? 1e-9 : 1e-14;
+    const bool thick = dispersion_.theory != PlateTheory::kirchhoff;
+    const double enough = thick ? 1e-6 : dispersion_.clamped_bending() ? 1e-9 : 1e-14;
     return bisect(
                {with, without}, [this](double f) { return ratio(f).has_value(); },
                [enough](const Bracket& b) { return b.width() <= enough * b.above; }, 60)
@@ -150,7 +152,8 @@ bool scale_free(const Surface& surface, const MapOptions& options) {
   if (options.edge.kind == Edge::Kind::friction) return false;
   const auto apex = Taper(surface).apex_m();
   const Dispersion dispersion(surface);
-  const bool scales = !dispersion.clamped_bending() || dispersion.tension_N_per_m == 0;
+  const bool thin = dispersion.theory == PlateTheory::kirchhoff;  // a thickness is a length of its own
+  const bool scales = thin && (!dispersion.clamped_bending() || dispersion.tension_N_per_m == 0);
   return apex && *apex <= surface.length_m * (1 + 1e-9) && scales;
 }
 

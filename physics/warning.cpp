@@ -6,12 +6,14 @@
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
+#include "physics/plate_theory.hpp"
 
 namespace turnpoint::physics {
 namespace {
 
 constexpr double finger_width_m = 14e-3;
 constexpr double high_gain = 10;
+constexpr double noticeable_shift_m = 1e-3;
 constexpr double finger_impedance_Ns_per_m = 55;  // a published magnitude; see finger.hpp
 
 // Impedance of a strip for a point force: of two travelling waves of the first mode for a membrane, of an
@@ -72,6 +74,15 @@ std::vector<Warning> tone_warnings(const Surface& s, std::span<const Tone> tones
              << " % to the restoring force, but is not modelled";
         add(list, "bending-off", bend);
       }
+    }
+    const double shift = s.theory == PlateTheory::kirchhoff ? shear_shift_m(s, f).value_or(0) : 0;
+    if (std::abs(shift) > noticeable_shift_m) {
+      std::ostringstream thick;
+      thick.precision(3);
+      thick << f / 1e3
+            << " kHz: the plate is thick: shear, which plate theory kirchhoff leaves out, would move "
+            << "the boundary by " << shift * 1e3 << " mm";
+      add(list, "thick-plate", thick);
     }
     if (f <= cut_off_frequency_Hz(s, half_width_m(s, 0))) {
       text << ": no smooth zone, below the drive edge's cut-off";

@@ -87,3 +87,28 @@ TEST_CASE("a thick plate's tail is continued beyond its elements, without NaN", 
     last = ln;
   }
 }
+
+TEST_CASE("maps of thick plates put an edge where their own field has it, and know both ways", "[physics]") {
+  for (const auto theory : {PlateTheory::mindlin, PlateTheory::elastic}) {
+    const Surface s = plate_of(theory, 60);
+    CAPTURE(name(theory));
+    MapOptions options;
+    const BoundaryMap turning(s, options);
+    CHECK(turning.boundary_m(45e3).value() == Approx(turning_point_m(s, 45e3).value()).margin(1e-9));
+    CHECK(turning.frequency_Hz(0.2).value() ==
+          Approx(cut_off_frequency_Hz(s, half_width_m(s, 0.2))).epsilon(1e-9));
+    options.edge = Edge::percent(0.5);
+    options.band = {{25e3, 45e3}};
+    const BoundaryMap map(s, options);
+    for (const double f : {26e3, 33e3, 44e3}) {
+      const double field = make_centre_line(s, f, Model::mode)->level_m(0.5).value();
+      const MapAnswer answer = map.at_frequency(f);
+      CHECK(std::abs(answer.boundary_m.value() - field) < 3e-6);
+      CHECK(map.frequency_Hz(field).value() == Approx(f).margin(1));
+      CHECK(answer.shear_shift_m.has_value());
+    }
+    const auto solved = solve_frequency_Hz(s, options, 0.15);
+    REQUIRE(solved);
+    CHECK(std::abs(make_centre_line(s, *solved, Model::mode)->level_m(0.5).value() - 0.15) < 1e-6);
+  }
+}

@@ -5,7 +5,9 @@
 #include "physics/dispersion.hpp"
 #include "physics/elastic_section.hpp"
 #include "physics/mindlin_plate.hpp"
+#include "physics/plate_theory.hpp"
 #include "physics/surface.hpp"
+#include "physics/warning.hpp"
 #include "tests/physics/csv_table.hpp"
 #include "tests/support/catch.hpp"
 
@@ -152,4 +154,51 @@ TEST_CASE("a thick theory is refused where it does not hold", "[physics]") {
   CHECK_THROWS_AS(validate(s), std::invalid_argument);
   CHECK(parse_plate_theory("elastic") == PlateTheory::elastic);
   CHECK_THROWS_AS(parse_plate_theory("thick"), std::invalid_argument);
+}
+
+TEST_CASE("the shift by shear is Kirchhoff's distance from elasticity, and the theory follows the tolerance",
+          "[physics]") {
+  // 10.3 and 14.7 mm by plane-strain finite elements of this plate.
+  Surface s = aluminium_plate();
+  const auto to_elastic = [&](double f) {
+    s.theory = PlateTheory::mindlin;
+    const double rest = shear_shift_m(s, f).value();
+    s.theory = PlateTheory::kirchhoff;
+    return shear_shift_m(s, f).value() + rest;
+  };
+  CHECK(to_elastic(22.4e3) == Approx(10.3e-3).margin(0.15e-3));
+  CHECK(to_elastic(45e3) == Approx(14.7e-3).margin(0.15e-3));
+  s.theory = PlateTheory::mindlin;
+  CHECK(std::abs(shear_shift_m(s, 22.4e3).value()) < 0.4e-3);
+  s.theory = PlateTheory::elastic;
+  CHECK(shear_shift_m(s, 30e3).value() == 0);
+  CHECK_FALSE(shear_shift_m(seed_brass(), 30e3));
+
+  s.theory = PlateTheory::kirchhoff;
+  const std::vector<double> band{22.4e3, 45e3};
+  CHECK(choose_theory(s, band, 20e-3).theory == PlateTheory::kirchhoff);
+  CHECK(choose_theory(s, band, 1e-3).theory == PlateTheory::mindlin);
+  CHECK(choose_theory(s, band, 0.1e-3).theory == PlateTheory::elastic);
+  CHECK(choose_theory(s, band, {}).theory == PlateTheory::elastic);
+  CHECK(choose_theory(s, band, 1e-3).shift_m == Approx(14.7e-3).margin(0.15e-3));
+  s.thickness_m = 0.05e-3;
+  CHECK(choose_theory(s, {{1e3}}, 1e-3).theory == PlateTheory::kirchhoff);
+  CHECK(choose_theory(seed_brass(), band, 1e-6).theory == PlateTheory::kirchhoff);
+}
+
+TEST_CASE("a Kirchhoff plate warns how far shear would move its boundary", "[physics]") {
+  const auto warned = [](const Surface& s, double f) {
+    const Tone tone{f, 1e-6, 0};
+    for (const Warning& one : tone_warnings(s, {&tone, 1})) {
+      if (one.code == "thick-plate") return one.text;
+    }
+    return std::string();
+  };
+  Surface s = aluminium_plate();
+  CHECK(warned(s, 45e3).find("14.9 mm") != std::string::npos);
+  s.theory = PlateTheory::mindlin;
+  CHECK(warned(s, 45e3).empty());
+  s = aluminium_plate();
+  s.thickness_m = 0.1e-3;
+  CHECK(warned(s, 2.25e3).empty());
 }
