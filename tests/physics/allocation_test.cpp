@@ -1,4 +1,4 @@
-// Counts the allocations for a model's profile: there must be none per point.
+// Counts the memory allocations while a model's profile is evaluated: there must be none per point.
 #include <cstdlib>
 #include <new>
 
@@ -58,7 +58,7 @@ TEST_CASE("a look-up in a map allocates nothing", "[physics]") {
   }
   CHECK(allocations == before);
   CHECK(sum > 0);
-  // Negative control: the counter counts.
+  // Negative control: the counter counts an allocation.
   const auto one = std::make_unique<double>(sum);
   CHECK(allocations == before + 1);
 }

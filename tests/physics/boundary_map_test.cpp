@@ -69,7 +69,7 @@ TEST_CASE("boundary to frequency and back closes to 1e-9 mm for every edge and t
   for (const Surface& s : surfaces()) {
     for (const char* name : {"turning", "peak", "p70", "p50", "p25", "p10"}) {
       if (s.edges == Edges::clamped && std::string(name) != "p50")
-        continue;  // building its tables takes longest
+        continue;  // for a clamped plate test only p50, because its tables take long to build
       const BoundaryMap map(s, edge(name));
       int found = 0;
       for (double x = 0.003; x < s.length_m; x += 0.0071) {
@@ -91,7 +91,7 @@ TEST_CASE("the table behind a map agrees with the profile it stands for", "[phys
   for (const double f : {9.1e3, 17.3e3, 29.9e3, 61e3}) {
     const auto line = make_centre_line(s, f, Model::mode);
     CHECK(std::abs(map.boundary_m(f).value() - line->level_m(0.25).value()) < 1e-9);
-    // negative control: a wrong level would be detected
+    // negative control: the boundary of another level would be detected
     CHECK(std::abs(map.boundary_m(f).value() - line->level_m(0.27).value()) > 1e-5);
   }
 }
@@ -114,10 +114,11 @@ TEST_CASE("a map follows the lossy mode, and states model error and uncertainty 
   const MapAnswer answer = BoundaryMap(s, edge("p50")).at_frequency(20e3);
   const double lossy = make_centre_line(s, 20e3, Model::modes)->level_m(0.5).value();
   CHECK(std::abs(lossy - answer.boundary_m.value()) < answer.error_bound_m + 1e-8);
-  // Without loss the edge would lie far outside that bound.
+  // The edge of the same surface without loss lies far outside the stated bound.
   const double lossless = BoundaryMap(seed_brass(), edge("p50")).boundary_m(20e3).value();
   CHECK(std::abs(lossy - lossless) > 2 * answer.error_bound_m + 5e-5);
-  // The distance from the apex is proportional to the wave speed: 2 % of tension is 1 % of that distance.
+  // The distance from the apex is proportional to the wave speed: a change of 2 % in tension moves the
+  // boundary by 1 % of that distance.
   CHECK(answer.uncertainty_m == Approx(0.01 * (0.3 - *answer.boundary_m)).epsilon(1e-3));
   s.sd = {};
   CHECK(BoundaryMap(s, edge("p50")).at_frequency(20e3).uncertainty_m == 0);
@@ -149,7 +150,8 @@ TEST_CASE("the stated bound holds the two-dimensional field's edge on curved tap
       const auto truth = make_centre_line(s, *f, Model::modes)->level_m(0.5);
       REQUIRE(truth);
       CAPTURE(x, *f, *truth, answer.error_bound_m);
-      CHECK(std::abs(*truth - x) <= answer.error_bound_m + 1e-8);  // what the truth itself is good for
+      // `truth` itself has an error of up to 1e-8 m
+      CHECK(std::abs(*truth - x) <= answer.error_bound_m + 1e-8);
       CHECK(answer.error_bound_m < 3e-3);
     }
   }
@@ -166,7 +168,7 @@ TEST_CASE("one frequency solved for alone is the map's", "[physics]") {
         const auto f = solve_frequency_Hz(surface, options, x);
         CAPTURE(edge, x);
         REQUIRE(f);
-        // The table of a friction edge is refined to 2 um, that of a plate to 0.3 um.
+        // The table of a friction edge is accurate to 2 um, that of a plate to 0.3 um.
         CHECK(std::abs(map.boundary_m(*f).value() - x) < 3e-6);
       }
     }

@@ -80,14 +80,15 @@ TEST_CASE("nothing is ever infinite or undefined, from a strip to a steep wedge,
           s.length_m = d > 0 ? std::min(3.0, 0.03 / d) : 3.0;
           CAPTURE(d, f, q, name(model));
           std::vector<double> x = linspace_points(s, 37);
-          if (const auto x0 = turning_point_m(s, f)) x.push_back(*x0);  // exactly at the turning point
+          // also test exactly at the turning point
+          if (const auto x0 = turning_point_m(s, f)) x.push_back(*x0);
           const Tone tone{f, 1, 0};
           try {
             for (const Normalise normalise : {Normalise::drive, Normalise::peak}) {
               const Field field = evaluate(s, {&tone, 1}, x, model, normalise);
               CHECK(finite(field));
             }
-          } catch (const std::domain_error& error) {  // a model without an answer must say so
+          } catch (const std::domain_error& error) {  // a model that cannot be used here must say so
             CHECK((model == Model::airy || model == Model::uniform));
           }
         }

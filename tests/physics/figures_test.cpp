@@ -40,8 +40,8 @@ TEST_CASE("the corrected mode differs from equation 11 by the flux, not by the p
     seed_first = std::max(seed_first, std::abs(seed[i]));
     mode_first = std::max(mode_first, std::abs(mode[i]));
   }
-  // sqrt(W0/W) is 1.7 between the drive edge and the last maximum, so eq. 11 is larger by that factor at the
-  // drive edge.
+  // Relative to the last maximum, eq. 11 is larger at the drive edge than the mode, by the factor sqrt(W0/W)
+  // = 1.7.
   CHECK(seed_first / mode_first > 1.4);
   CHECK(seed_first / mode_first < 1.9);
 }

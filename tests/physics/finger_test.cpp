@@ -38,7 +38,8 @@ TEST_CASE("the unloaded response is the mode's field", "[physics]") {
 
 TEST_CASE("on a lossy uniform strip the response to a force is that of two waves travelling away",
           "[physics]") {
-  // With enough loss the ends do not matter: G = 1 / (2 i kx N W), and the strip offers 2 N W |kx| / omega.
+  // If waves decay before they reach the ends, G = 1 / (2 i kx N W), and the strip's impedance is 2 N W |kx|
+  // / omega.
   Surface s = foil();
   s.taper = LinearTaper{0.02, 0};
   s.length_m = 10;
@@ -64,8 +65,9 @@ TEST_CASE("a finger on the seed's foil takes most of the amplitude and moves the
 
 TEST_CASE("on a lossy uniform clamped strip the response to a force is that of its own four waves",
           "[physics]") {
-  // Kantorovich's equation with constant coefficients, m4 f_xxxx + 2 m2 f_xx + (m0 - k^4 m4) f = F/D delta:
-  // two waves leave the force on each side, with slopes that cancel there and third derivatives that jump.
+  // Solves Kantorovich's equation with constant coefficients, m4 f_xxxx + 2 m2 f_xx + (m0 - k^4 m4) f = F/D
+  // delta: on each side two waves leave the force; at the force the slope is 0 and the third derivative
+  // jumps.
   Surface s = aluminium_plate();
   const double f = 30e3, w = 0.012, b = 2.365020372431352;
   s.taper = LinearTaper{w, 0};
@@ -98,7 +100,7 @@ TEST_CASE("on a lossy uniform clamped strip the response to a force is that of i
   const std::complex<double> g =
       (1.0 / r2 - 1.0 / r1) / (2.0 * (r1 * r1 - r2 * r2)) / (m4 * bending_stiffness_N_m(s).value());
   const double expected = 1 / std::abs(2 * M_PI * f * g);
-  // The element's polynomials smooth the jump under the force.
+  // The polynomials of the elements smooth the jump of the third derivative under the force.
   CHECK(finger_load(s, f, {1.5}, Finger{})[0].strip_impedance_Ns_per_m == Approx(expected).epsilon(1e-3));
 }
 

@@ -1,7 +1,7 @@
-# Installs the library to a fresh prefix, then builds and runs the example against it as an outside project
+# Installs the library in an empty folder, then builds and runs the example against it as an outside project
 # would.
-#   cmake -D BUILD=<build tree> -D SOURCE=<source tree> -D WORK=<scratch folder>
-#         -D GENERATOR=<that of the build tree> -P install_test.cmake
+#   cmake -D BUILD=<build folder> -D SOURCE=<source folder> -D WORK=<scratch folder>
+#         -D GENERATOR=<generator of the build folder> -P install_test.cmake
 function(step)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT result EQUAL 0)

@@ -10,8 +10,8 @@
 using namespace turnpoint::physics;
 
 TEST_CASE("modes, driven by an exact wedge mode along the straight edge, is that mode", "[physics][oracle]") {
-  // Rows: slope, frequency, then J_nu(k r) cos(nu theta) along the drive edge as even Chebyshev values, then
-  // at points of the centre line (make_wedge.py).
+  // Rows of the table of make_wedge.py: slope, frequency, then J_nu(k r) cos(nu theta) along the drive edge
+  // as even Chebyshev values, then at points of the centre line.
   for (const auto& row : turnpoint::physics_test::oracle("wedge.csv")) {
     Surface s = seed_brass();
     const double d = std::stod(row[0]), f = std::stod(row[1]);
@@ -25,7 +25,8 @@ TEST_CASE("modes, driven by an exact wedge mode along the straight edge, is that
     for (const int spare : {1, 2, 3}) {
       ModalResolution resolution;
       resolution.spare_functions = spare;
-      resolution.drive = [&](double eta) {  // barycentric interpolation at Chebyshev points of eta^2
+      // The drive's profile, by barycentric interpolation at Chebyshev points of eta^2.
+      resolution.drive = [&](double eta) {
         double top = 0, bottom = 0;
         for (int i = 0; i < edge_points; ++i) {
           const double angle = M_PI * (i + 0.5) / edge_points;
@@ -80,7 +81,8 @@ TEST_CASE("refining modes changes a curved taper's field by less than 1e-4", "[p
 }
 
 TEST_CASE("the plate's element matrix is the integral of two mapped Laplacians", "[physics]") {
-  // (X Y) with X a basis function of the element and Y a transverse one, differentiated directly in x and y.
+  // The reference differentiates X(x) Y(y) directly in x and y, with X a basis function of the element and Y
+  // a transverse one.
   Surface s = aluminium_plate();
   s.taper = ExponentialTaper{0.014, 0.05};
   s.length_m = 0.1;
@@ -103,7 +105,7 @@ TEST_CASE("the plate's element matrix is the integral of two mapped Laplacians",
     return factor * along.at(2 * (x - element.x0) / element.h - 1).value[static_cast<std::size_t>(a)] * u * p;
   };
   const auto laplacian = [&](int a, int i, double x, double y) {
-    const double h = 2e-5;  // eighth-order differences
+    const double h = 2e-5;  // step of the eighth-order finite differences
     constexpr double c[] = {-205.0 / 72, 8.0 / 5, -1.0 / 5, 8.0 / 315, -1.0 / 560};
     double sum = 2 * c[0] * value(a, i, x, y);
     for (int n = 1; n <= 4; ++n) {
@@ -129,7 +131,7 @@ TEST_CASE("the plate's element matrix is the integral of two mapped Laplacians",
 }
 
 TEST_CASE("a clamped strip carries waves of the clamped dispersion's length", "[physics]") {
-  // q1 tan(q1 W) + q2 tanh(q2 W) = 0, q1^2 = b^2 - kx^2, q2^2 = b^2 + kx^2.
+  // Dispersion of a clamped strip: q1 tan(q1 W) + q2 tanh(q2 W) = 0, q1^2 = b^2 - kx^2, q2^2 = b^2 + kx^2.
   Surface s = aluminium_plate();
   s.taper = LinearTaper{0.014, 0};
   s.quality_factor = std::numeric_limits<double>::infinity();
@@ -138,14 +140,14 @@ TEST_CASE("a clamped strip carries waves of the clamped dispersion's length", "[
   for (int i = 0; i < 100; ++i) {
     const double kx = 0.5 * (low + high);
     const double q1 = std::sqrt(b * b - kx * kx), q2 = std::sqrt(b * b + kx * kx);
-    // multiplied by cos: positive while q1 W is below the root, that is, for large kx
+    // the dispersion relation multiplied by cos(q1 W); positive if kx is too large
     (q1 * std::sin(q1 * w) + q2 * std::tanh(q2 * w) * std::cos(q1 * w) > 0 ? high : low) = kx;
   }
   const auto line = make_modal_line(s, f, Losses::left_out, {});
   double first = 0, last = 0;
   int crossings = 0;
   double before = line->value(0.1).mantissa.real();
-  for (double x = 0.1; x < 0.2; x += 1e-5) {  // away from the near fields at the ends
+  for (double x = 0.1; x < 0.2; x += 1e-5) {  // leave out the near fields at both ends
     const double now = line->value(x).mantissa.real();
     if (now * before < 0) {
       const double at = x - 1e-5 * now / (now - before);
@@ -177,7 +179,7 @@ TEST_CASE("a tensioned clamped plate is a membrane that is narrower by its bound
   Surface plate = seed_brass();
   plate.quality_factor = 60;
   Surface membrane = plate;
-  const double layer = 0.25e-3;  // sqrt(D/N)
+  const double layer = 0.25e-3;  // width of the boundary layer, sqrt(D/N)
   plate.modulus_Pa = 1e9;
   plate.modulus_Pa = 1e9 * layer * layer * line_tension_N_per_m(plate) / bending_stiffness_N_m(plate).value();
   plate.edges = Edges::clamped;
@@ -218,7 +220,7 @@ TEST_CASE("modes of curved tapers, membrane and clamped plate, match collocation
     s.taper = ExponentialTaper{number(1), number(2)};
     s.length_m = number(3);
     s.quality_factor = number(5);
-    REQUIRE(number(48) < 1e-5);  // the table itself has converged
+    REQUIRE(number(48) < 1e-5);  // the table's own convergence error
     for (const Model model : {Model::mode, Model::modes}) {
       const auto line = make_centre_line(s, number(4), model);
       const Scaled unit = line->value(0);
@@ -232,7 +234,7 @@ TEST_CASE("modes of curved tapers, membrane and clamped plate, match collocation
       }
       CAPTURE(row[0], row[2], name(model), worst / most);
       if (model == Model::modes) CHECK(worst < 1e-4 * most);
-      // negative control: one-mode models differ measurably
+      // negative control: the one-mode model differs measurably
       if (model == Model::mode) CHECK(worst > 1e-4 * most);
     }
   }

@@ -30,7 +30,7 @@ Case parse(const std::vector<std::string>& row) {
   c.model = parse_model(row[1]);
   c.surface = seed_brass();
   c.surface.density_kg_m3 = 1000;
-  c.surface.tension_Pa = 640e6;  // c = 800 m/s exactly
+  c.surface.tension_Pa = 640e6;  // this makes c exactly 800 m/s
   if (row[0] == "linear") {
     c.surface.taper = LinearTaper{number(3), number(2)};
   } else {
@@ -69,13 +69,13 @@ TEST_CASE("seed and mode match exact solutions at every extreme of taper, loss a
     for (std::size_t i = 0; i < x.size(); ++i) {
       CAPTURE(x[i], c.points[i].ln, ln[i]);
       REQUIRE(std::isfinite(ln[i]));
-      // Error relative to the local envelope, because at a node of the standing wave a relative error is
-      // meaningless.
+      // The error is taken relative to the local envelope, because at a node of the standing wave the value
+      // itself is 0.
       const Scaled here = line->value(x[i]);
       const double envelope = std::hypot(1.0, std::abs(line->slope(x[i]).mantissa / here.mantissa) / k);
       const double arg = std::arg(here.mantissa / v0.mantissa);
       const auto miss = std::polar(std::exp(ln[i] - c.points[i].ln), arg) - std::polar(1.0, c.points[i].arg);
-      // A position has a rounding error, which the local decay turns into an error of the value.
+      // The position has a rounding error; where the field decays, that causes an error of the value.
       const double scale = allowed * envelope + 4 * eps * c.surface.length_m * k * envelope;
       worst = std::max(worst, std::abs(miss) / scale);
       CHECK(std::abs(miss) <= scale);
@@ -83,12 +83,12 @@ TEST_CASE("seed and mode match exact solutions at every extreme of taper, loss a
     }
   }
   CHECK(worst_evanescent < 1e-10);
-  CHECK(worst > 1e-4);  // the comparison is not vacuous
+  CHECK(worst > 1e-4);  // the errors are large enough to be measured
 }
 
 TEST_CASE("the exact solutions tell the two equations apart", "[physics][oracle]") {
   // Negative control: eq. 11 differs from the table of the corrected equation by far more than any tolerance
-  // here.
+  // of these tests.
   const Case c = parse(oracle("one_mode.csv")[401]);
   REQUIRE(c.model == Model::mode);
   const auto line = make_centre_line(c.surface, c.frequency_Hz, Model::seed);

@@ -14,7 +14,7 @@ using namespace turnpoint::physics;
 
 namespace {
 
-// SplitMix64, so that the random scenes are the same on every machine.
+// The SplitMix64 random generator, so that the random scenes are the same on every machine.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : state_(seed) {}
@@ -64,7 +64,8 @@ struct TrueError {
   double amplitude = 0, boundary_m = 0, level_dB = 0;
 };
 
-// The true error of a model against the two-dimensional field, for the quantities that a RungEstimate bounds.
+// The true error of a model against the two-dimensional field, in the quantities for which a RungEstimate
+// states bounds.
 std::optional<TrueError> true_error(const Surface& s, Model model, const CentreLine& truth,
                                     Normalise normalise) {
   const auto line = make_centre_line(s, frequency_Hz, model);
@@ -100,7 +101,7 @@ PlanRequest request_for(Normalise normalise) {
   return request;
 }
 
-/// TURNPOINT_SCENES=5000 makes a long run with that many scenes.
+/// Number of random scenes; TURNPOINT_SCENES=5000 makes a long run with that many.
 int scenes(int usual) {
   const char* const asked = std::getenv("TURNPOINT_SCENES");
   return asked ? std::stoi(asked) : usual;
@@ -132,7 +133,8 @@ TEST_CASE("the true error of every rung lies inside its bound on a thousand rand
                           error->boundary_m <= bound.boundary_bound_m &&
                           error->level_dB <= bound.level_bound_dB;
       violated += inside ? 0 : 1;
-      // The 1998 models are bounded by sampling, which can miss a narrow feature.
+      // The bounds of the 1998 models come from sampling, which can miss a narrow feature, so only `mode`
+      // must always keep its bound.
       if (model == Model::mode) CHECK(inside);
     }
   }
@@ -191,7 +193,7 @@ TEST_CASE("the second mode's resonances on lossless brass lie inside the mode's 
     CHECK(error / most <= estimate(brass, request, Model::mode).amplitude_bound);
     worst = std::max(worst, error / most);
   }
-  CHECK(worst > 0.4);  // the bound is tested on a large error
+  CHECK(worst > 0.4);  // large errors were among those tested
 }
 
 TEST_CASE("the planner's choice is inside the tolerance, and the next cheaper rung mostly is not",
@@ -212,7 +214,7 @@ TEST_CASE("the planner's choice is inside the tolerance, and the next cheaper ru
     const auto truth = make_centre_line(s, frequency_Hz, Model::modes);
     const auto error = true_error(s, choice.model, *truth, Normalise::peak);
     met += !error || error->amplitude <= *request.tolerance.amplitude ? 1 : 0;
-    // The cheaper models that were rejected.
+    // The smallest true error of the cheaper models, which were rejected.
     double best = std::numeric_limits<double>::infinity();
     for (const RungEstimate& rung : choice.considered) {
       if (rung.cost_s >= choice.bound.cost_s || !rung.usable) continue;

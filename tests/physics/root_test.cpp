@@ -37,7 +37,7 @@ TEST_CASE("Newton's steps find a root to rounding, inside the bracket", "[root]"
   };
   const auto close = [](double next, double x) { return std::abs(next - x) <= 1e-16; };
   CHECK(newton({0, 1}, 0.5, tangent, close) == Approx(0.73908513321516064).epsilon(1e-15));
-  // atan's steps from 3 leave any bracket: halves come first.
+  // Newton's steps for atan diverge from 3 and leave every bracket, so the bracket must be halved first.
   const auto leaves = [](double x) {
     CHECK((x > -4 && x < 5));
     return Tangent{std::atan(x), x - std::atan(x) * (1 + x * x)};
@@ -58,7 +58,7 @@ TEST_CASE("a point of value 0 ends Newton's steps there, and a tangent without a
 }
 
 TEST_CASE("false position needs no more steps where it creeps", "[root]") {
-  // f = x^9 - .5 on [0, 2]: without help false position moves its left end only.
+  // With f = x^9 - .5 on [0, 2], plain false position moves only its left end.
   for (const bool halve_values : {false, true}) {
     int calls = 0;
     const auto f = [&calls](double x) { return ++calls, std::pow(x, 9) - 0.5; };
@@ -75,7 +75,8 @@ TEST_CASE("false position works on falling functions and stops at what is enough
   CHECK(std::abs(1 - x * x) <= 1e-6);
   CHECK(calls < 12);
   const auto wide = [](const Chord& c) { return c.width() < 4; };
-  CHECK(false_position({0, 1, 3, -8}, f, {8, true}, 0, wide) == 1.5);  // the middle: nothing was to do
+  // the bracket is narrow enough at once, so its middle is returned
+  CHECK(false_position({0, 1, 3, -8}, f, {8, true}, 0, wide) == 1.5);
 }
 
 TEST_CASE("false position takes a value that is not a number as not above 0, and ends", "[root]") {

@@ -33,17 +33,17 @@ TEST_CASE("a clamped cut-off solves its equation to rounding, and has the plate'
       const double k = wavenumber_per_m(s, f);
       const double k2 = std::sqrt(k * k + line_tension_N_per_m(s) / stiffness);
       CAPTURE(tension, w, k * w);
-      // k sin(k W) + k2 tanh(k2 W) cos(k W), relative to its terms
+      // The dispersion k sin(k W) + k2 tanh(k2 W) cos(k W) must be 0, relative to its terms.
       CHECK(std::abs(k * std::sin(k * w) + k2 * std::tanh(k2 * w) * std::cos(k * w)) < 1e-12 * (k + k2));
       CHECK(cut_off_half_width_m(s, f) == Approx(w).epsilon(1e-12));
     }
   }
-  // For small D the effective half-width is smaller by sqrt(D/N).
+  // For small bending stiffness D, the effective half-width is smaller by the boundary layer sqrt(D/N).
   s.tension_Pa = 1e12;
   const double layer = std::sqrt(stiffness / line_tension_N_per_m(s));
   const double k = wavenumber_per_m(s, cut_off_frequency_Hz(s, 0.014));
   CHECK(pi / (2 * k) == Approx(0.014 - layer).epsilon(1e-5));
-  // Negative control: the test detects the layer.
+  // Negative control: without the boundary layer the check above would fail.
   CHECK(std::abs(pi / (2 * k) - 0.014) > 0.5 * layer);
 }
 
@@ -51,7 +51,7 @@ TEST_CASE("bending is modelled where it moves a cut-off, and can be forced", "[p
   Surface s = seed_brass();
   s.modulus_Pa = 100e9;
   s.poisson = 0.34;
-  CHECK_FALSE(bending_modelled(s));  // 0.1 % at the narrow end
+  CHECK_FALSE(bending_modelled(s));  // bending moves the cut-off by only 0.1 % at the narrow end
   s.tension_Pa = 100e6;
   CHECK(bending_modelled(s));
   s.bending = Bending::off;

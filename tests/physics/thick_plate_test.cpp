@@ -16,7 +16,7 @@ using turnpoint::physics_test::oracle;
 
 namespace {
 
-// A clamped plate of unit shear modulus and density, so that lengths and omega are those of the table.
+// A clamped plate with shear modulus 1 and density 1, so that lengths and omega have the units of the table.
 Surface unit_plate(double thickness, double poisson, PlateTheory theory) {
   Surface s = aluminium_plate();
   s.density_kg_m3 = 1;
@@ -37,7 +37,7 @@ TEST_CASE("the elastic section's cut-off matches plane-strain finite elements", 
     if (row[0] != "cut") continue;
     const double nu = number(row[1]), t = number(row[2]), omega = number(row[3]);
     CAPTURE(nu, t);
-    // The corner's singularity is what is left, and grows with Poisson's ratio.
+    // The remaining error comes from the singularity at the clamp's corner, which grows with Poisson's ratio.
     CHECK(elastic_cut_off(t, nu) == Approx(omega).epsilon(nu <= 0.33 && t <= 0.4 ? 2e-4 : 8e-4));
     const auto& table = ElasticCutOff::of(nu);
     CHECK(table.value(t) == Approx(elastic_cut_off(t, nu)).epsilon(2e-6));
@@ -45,7 +45,7 @@ TEST_CASE("the elastic section's cut-off matches plane-strain finite elements", 
     ++compared;
   }
   CHECK(compared == 30);
-  CHECK(&ElasticCutOff::of(0.33) == &ElasticCutOff::of(0.33));  // made once
+  CHECK(&ElasticCutOff::of(0.33) == &ElasticCutOff::of(0.33));  // each table is made only once
 }
 
 TEST_CASE("Mindlin's cut-off half-width is within 0.2 % of plane strain for h/W to 0.4", "[physics]") {
@@ -65,7 +65,7 @@ TEST_CASE("Mindlin's cut-off half-width is within 0.2 % of plane strain for h/W 
     const Dispersion thin(unit_plate(t, nu, PlateTheory::kirchhoff));
     kirchhoff = std::max(kirchhoff, thin.cut_off_half_width_m(f) - 1);
   }
-  // Negative controls: the usual 5/6, and a thin plate.
+  // Negative controls: the usual shear factor 5/6, and the theory of thin plates.
   CHECK(five_sixths > 8e-3);
   CHECK(kirchhoff > 0.05);
 }
@@ -92,7 +92,7 @@ TEST_CASE("thick theories become Kirchhoff's for thin plates, and invert to roun
       CHECK(thick.cut_off_half_width_m(thick.cut_off_frequency_Hz(w)) == Approx(w).epsilon(1e-12));
       CHECK(thick.frequency_Hz(thick.wavenumber_per_m(1e3 / w)) == Approx(1e3 / w).epsilon(1e-12));
     }
-    // The difference falls with the thickness.
+    // The difference from thin-plate theory falls with the thickness.
     double last = 1;
     for (const double h : {1e-3, 1e-4, 1e-5}) {
       s.thickness_m = h;
@@ -100,7 +100,7 @@ TEST_CASE("thick theories become Kirchhoff's for thin plates, and invert to roun
       const double thin = cut_off_frequency_Hz(s, 7e-3);
       s.theory = theory;
       const double difference = std::abs(cut_off_frequency_Hz(s, 7e-3) / thin - 1);
-      CHECK(difference < 0.2 * last + 5e-5);  // the table's own error
+      CHECK(difference < 0.2 * last + 5e-5);  // 5e-5 is the table's own error
       last = difference;
     }
     CHECK(last < 1e-4);
@@ -121,7 +121,7 @@ TEST_CASE("waves along a clamped strip match other finite elements and collocati
       }
       ++waves;
     }
-    if (row[0] == "mindlin" && number(row[6]) == 0) {  // two real squares
+    if (row[0] == "mindlin" && number(row[6]) == 0) {  // both squares of the wavenumber are real
       const double kappa = number(row[2]), f = number(row[4]) / (2 * std::numbers::pi);
       MindlinPlate plate(unit_plate(number(row[3]), number(row[1]), PlateTheory::mindlin));
       plate.shear_N_per_m *= kappa / shear_factor(number(row[1]));
@@ -130,7 +130,8 @@ TEST_CASE("waves along a clamped strip match other finite elements and collocati
         const double at = plate.characteristic(f, 1, theirs);
         const double slope = (plate.characteristic(f, 1, theirs + step) - at) / step;
         CAPTURE(row[1], row[3], row[4], theirs);
-        CHECK(std::abs(at / slope) < 1e-6 * (1 + std::abs(theirs)));  // a Newton step to our root
+        // a Newton step to our root must be tiny
+        CHECK(std::abs(at / slope) < 1e-6 * (1 + std::abs(theirs)));
         CHECK(std::abs(plate.characteristic(f, 1, theirs + 0.1) / slope) > 0.05);
       }
       ++waves;

@@ -11,7 +11,7 @@
 using namespace turnpoint::physics;
 
 TEST_CASE("non-negative least squares meets its optimality conditions", "[physics]") {
-  // Deterministic, correlated columns.
+  // A matrix with correlated columns, the same in every run.
   const std::size_t rows = 60, columns = 12;
   std::vector<double> a, b;
   for (std::size_t j = 0; j < columns; ++j) {
@@ -32,8 +32,8 @@ TEST_CASE("non-negative least squares meets its optimality conditions", "[physic
     if (fit.x[j] > 0) CHECK(std::abs(gradient) < 1e-9);
     active += fit.x[j] == 0 ? 1 : 0;
   }
-  CHECK(active > 0);                          // the constraint is active in some cases
-  CHECK(active < static_cast<int>(columns));  // but not for all columns
+  CHECK(active > 0);                          // some values are held at 0 by the constraint
+  CHECK(active < static_cast<int>(columns));  // but not all
 }
 
 TEST_CASE("profiles are reachable as far as physics lets them be", "[physics]") {
@@ -78,7 +78,7 @@ TEST_CASE("a zone has the friction asked for inside and ends at the boundary ask
         CHECK(design.tones[i].frequency_Hz <= request.band.high_Hz);
         if (i > 0) CHECK(design.tones[i - 1].frequency_Hz - design.tones[i].frequency_Hz >= 999);
       }
-      // Evaluates the tones on the surface independently of the design.
+      // Evaluates the tones on the surface with separate code, not the design's.
       const auto x = linspace_points(s, 1201);
       const Field field = evaluate(s, design.tones, x, Model::mode, Normalise::none);
       std::vector<double> mu;
@@ -94,7 +94,7 @@ TEST_CASE("a zone has the friction asked for inside and ends at the boundary ask
       CHECK(mean / count == Approx(0.6).margin(2e-3));
       ZoneRequest single = request;
       single.tones = 1;
-      // further tones fill the nodes of the first
+      // with several tones, the nodes of one are filled by the others
       CHECK(design.residual < 0.75 * design_zone(s, friction, single).residual);
     }
   }
@@ -108,10 +108,10 @@ TEST_CASE("zones that cannot be are refused with what is allowed", "[physics]") 
   request.friction = 0.05;
   CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), std::domain_error);
   request.friction = 0.6;
-  request.boundary_m = 0.28;  // needs more than 45 kHz
+  request.boundary_m = 0.28;  // such a boundary needs more than 45 kHz
   CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), std::domain_error);
   request.boundary_m = 0.16;
-  request.edge = Edge::friction(0.5);  // below the zone's own friction
+  request.edge = Edge::friction(0.5);  // an edge at lower friction than the zone's
   CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), std::domain_error);
   request.edge = Edge::turning();
   request.from_m = 0.2;

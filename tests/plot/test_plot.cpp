@@ -60,7 +60,8 @@ TEST_CASE("Axes without a range, or a log axis from 0, are refused", "[plot]") {
   CHECK_THROWS_AS(ticks({"", 0, 1, AxisScale::log10}), std::invalid_argument);
   CHECK_THROWS_AS(ticks({"", 0, NAN, AxisScale::linear}), std::invalid_argument);
   CHECK_THROWS_AS(ticks({"", 0.5, 0.5 + 1e-15, AxisScale::linear}), std::invalid_argument);
-  CHECK(ticks(fitted("", {0.54, 0.54 + 2e-16})).size() < 12);  // means of equal times differ by rounding
+  // means of equal response times differ only by rounding
+  CHECK(ticks(fitted("", {0.54, 0.54 + 2e-16})).size() < 12);
   const auto lonely = fitted("", {3}), empty = fitted("", {}), wide = fitted("", {0, NAN, 10}, 0.1);
   CHECK(lonely.low < 3);
   CHECK(lonely.high > 3);

@@ -8,7 +8,8 @@ using namespace turnpoint::plot;
 
 namespace {
 
-/// Only labels of rules have this text size; grid and axes are drawn in these colours.
+/// In a rendered picture, only labels of rules have this text size, and only grid and axes have these
+/// colours.
 constexpr double kLabelSize = 11;
 const std::vector<std::string> kGridAndAxes{"#e6e6e6", "#222222"};
 
@@ -18,8 +19,8 @@ int labels_on(const std::string& svg) {
       std::count_if(all.begin(), all.end(), [](const auto& text) { return text.size_px == kLabelSize; }));
 }
 
-/// Finds a rule's label that overlaps a curve, a marker, a bar, a rule, other words or the picture's edge; ""
-/// if there is none.
+/// Finds a rule's label that overlaps a curve, marker, bar, rule, other words or the picture's edge; "" if
+/// there is none.
 std::string crossed(const std::string& svg, double width, double height) {
   const auto texts = svg_geometry::texts(svg);
   const auto ink = svg_geometry::ink(svg, kGridAndAxes);
@@ -155,7 +156,7 @@ TEST_CASE("Panels of one figure keep one height, also where only one of them has
   REQUIRE(together.size() == 2);
   CHECK(together[0] == together[1]);
   CHECK(crossed(render(figure), 860, 200).empty());
-  // Without the first chart, the second one has its label in the data and is higher.
+  // Negative control: alone, the second chart has its label among the data and is higher.
   CHECK(heights(render(with(flat, 430, 200)))[0] > together[1]);
 }
 

@@ -122,7 +122,7 @@ TEST_CASE("adjustment starts from every level equally often, and again where not
   spec.name = "settings";
   spec.level = "offset_mm";
   spec.kind = Kind::adjustment;
-  CHECK(validate(spec).size() == 1);  // there is no start level
+  CHECK(validate(spec).size() == 1);  // the start levels are missing
   spec.values = {-20, 20};
   spec.repeats = 3;
   const auto procedure = make_procedure(spec, {}, {});

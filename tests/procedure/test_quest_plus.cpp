@@ -52,7 +52,8 @@ TEST_CASE("information has the same best stimulus as expected entropy, computed 
 
 TEST_CASE("grids whose steps do not agree give the same information as ones that share distances",
           "[procedure]") {
-  // Every stimulus has distances of its own on the second grid; the numbers may differ by rounding alone.
+  // On the second grid no two stimuli have the same distances from the thresholds. The results may differ
+  // only by rounding.
   auto shared = watson_1(), apart = watson_1();
   shared.slope.values = apart.slope.values = {1, 2.5, 4};
   shared.lapse.values = apart.lapse.values = {0.01, 0.03};
@@ -112,9 +113,9 @@ TEST_CASE("psi-marginal learns about what is kept and sums over the nuisance", "
   with.nuisance = {"lapse"};
   Posterior all(spec), kept(with);
   const auto a = all.information(), b = kept.information();
-  // With less knowledge, no answer can be more informative.
+  // With the lapse rate as a nuisance parameter, no answer can be more informative.
   for (std::size_t i = 0; i < a.size(); ++i) CHECK(b[i] <= a[i] + 1e-12);
-  // The estimate must find an observer with threshold 10 mm and slope 2.
+  // The estimate must find the threshold of 10 mm and the slope of 2 of the simulated observer.
   const auto procedure = make_procedure(with, {}, {});
   turnpoint::random::Draws draws({3, turnpoint::random::Stream::observer, 0, 0, 0});
   while (const auto proposal = procedure->next()) {

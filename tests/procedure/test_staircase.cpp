@@ -28,7 +28,7 @@ TEST_CASE("2-down-1-up with an initial 1-down rule steps and reverses as Levitt 
 }
 
 TEST_CASE("a staircase averages the reversals that the protocol chose, and says which", "[procedure]") {
-  auto spec = two_down_one_up();  // reversals at 8, 10, 9, 11
+  auto spec = two_down_one_up();  // the answers below give reversals at 8, 10, 9, 11
   const auto estimate = [&spec](int discard) {
     spec.discard_reversals = discard;
     return trace(spec, {}, "11101110011").estimates;
@@ -37,7 +37,7 @@ TEST_CASE("a staircase averages the reversals that the protocol chose, and says 
   CHECK(estimate(0).at("threshold").basis == "reversals 1 to 4 of 4");
   CHECK(estimate(2).at("threshold").mean == 10);
   CHECK(estimate(2).at("threshold").basis == "reversals 3 to 4 of 4");
-  // three are left, an odd number, so the first of them is dropped
+  // Three reversals remain, an odd number, so the first of them is dropped.
   CHECK(estimate(1).at("threshold").mean == 10);
   CHECK(estimate(1).at("threshold").basis == "reversals 3 to 4 of 4");
   CHECK(estimate(3).empty());
@@ -59,7 +59,7 @@ TEST_CASE("a weighted staircase balances at its target", "[procedure]") {
   spec.step_down = {4, 2, 1};
   spec.target = 0.75;
   spec.stop.trials = 40;
-  // The step up is three times the step down: one wrong answer undoes three right ones.
+  // The step up is three times the step down, so one wrong answer cancels three right ones.
   CHECK(trace(spec, {}, "1110").levels == std::vector<double>{20, 16, 12, 8});
   CHECK(*trace(spec, {}, "1110").next == Approx(14));
 }

@@ -21,7 +21,7 @@ Spec approximation(double start, double step, double target) {
   return spec;
 }
 
-/// The recursion as it stands in the paper, with the whole list of answers at hand.
+/// The recursion as the paper defines it, computed from the whole list of answers.
 std::vector<double> reference(const std::vector<int>& answers, double start, double c, double phi,
                               double low = -1e9, double high = 1e9) {
   std::vector<double> x{start};
@@ -39,7 +39,7 @@ double logistic(double x) { return 1 / (1 + std::exp(-x)); }
 }  // namespace
 
 TEST_CASE("accelerated stochastic approximation: a sequence worked out by hand", "[procedure]") {
-  // c = 8, phi = .75: after a 1 down by c / k * .25, after a 0 up by c / k * .75, with k as in the last row.
+  // c = 8, phi = .75: after a 1 the level falls by c / k * .25, after a 0 it rises by c / k * .75.
   //  answers        1   1   0   0   1     0     0
   //  changes so far 0   0   1   1   2     3     3
   //  k              1   2   3   3   4     5     5
@@ -56,7 +56,8 @@ TEST_CASE("accelerated stochastic approximation: a sequence worked out by hand",
   CHECK_FALSE(estimate.sd.has_value());
   CHECK(estimate.basis == "the level after 7 answers with 3 reversals");
   CHECK(trace(approximation(10, 8, 0.75), {}, "111").estimates.empty());
-  // A change at the second answer does not shorten its step, c / 2 * .75; it does that of the third, c / 3.
+  // A change of answer at the second trial does not shorten the second step, c / 2 * .75, but the third, c /
+  // 3 * .75.
   CHECK(trace(approximation(10, 8, 0.75), {}, "100").levels == std::vector<double>{10, 8, 11});
   CHECK(*trace(approximation(10, 8, 0.75), {}, "100").next == Approx(13).epsilon(1e-15));
 }
@@ -126,7 +127,7 @@ TEST_CASE("an unanswered trial of an accelerated stochastic approximation brings
   procedure->record(Answer::none);
   CHECK(procedure->next()->level == 8);
   procedure->record(Answer::one);
-  CHECK(procedure->next()->level == 7);  // the second answer's step, c / 2
+  CHECK(procedure->next()->level == 7);  // this is the second answer, so its step is c / 2
 }
 
 TEST_CASE("an accelerated stochastic approximation that cannot run is refused with its key", "[procedure]") {

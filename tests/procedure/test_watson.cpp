@@ -4,7 +4,7 @@
 
 using namespace turnpoint::procedure;
 
-// Levels and answers of the runs published with Watson (2017).
+// The levels and answers of the example runs published with Watson (2017).
 
 TEST_CASE("Watson's run over threshold and slope comes out trial by trial", "[procedure]") {
   auto spec = watson_1();

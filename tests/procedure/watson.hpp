@@ -3,7 +3,7 @@
 
 #include "station/procedure/spec.hpp"
 
-/// from, from + step, ... up to and including `to`.
+/// The values from, from + step, ... up to and including `to`.
 inline std::vector<double> range(double from, double to, double step) {
   std::vector<double> values;
   for (int i = 0; from + i * step <= to + 1e-9; ++i) values.push_back(from + i * step);

@@ -11,7 +11,7 @@ namespace turnpoint::tests {
 
 namespace {
 
-// Adds `zzzzzz = 1` to each table, whether it has a header or braces.
+// Adds `zzzzzz = 1` to each table of a protocol, both to tables with a header and to those in braces.
 std::string with_unknown_keys(const std::string& source) {
   std::istringstream lines(source);
   std::string result;

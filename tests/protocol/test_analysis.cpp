@@ -3,7 +3,7 @@
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
-// The [analysis] table of a protocol file: every accepted value has an effect.
+// Tests the [analysis] table of a protocol file: every accepted value must have an effect.
 
 using namespace turnpoint;
 
@@ -13,7 +13,7 @@ std::string source_of(const std::string& name) {
   return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
 }
 
-/// The shipped file with a different [analysis].
+/// A shipped protocol with another [analysis] table.
 std::string with_analysis(const std::string& name, const std::string& analysis) {
   auto source = source_of(name);
   if (const auto at = source.find("[analysis]"); at != std::string::npos)

@@ -20,7 +20,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(text.find(from), from.size(), to);
 }
 
-/// The shipped speed-accuracy protocol as a yes/no task on one side of zero.
+/// The shipped speed-accuracy protocol, changed to a yes/no task with changes of one sign.
 protocol::Protocol yes_no() {
   auto text = replaced(source_of("speed-accuracy"), "range = [-0.4, 0.4]", "range = [0.0, 0.4]");
   text = replaced(text, "correct = { smoother = \"change < 0\", rougher = \"change > 0\" }",
@@ -55,11 +55,11 @@ TEST_CASE("the middle of a protocol's levels is known for every procedure", "[pr
   const auto middle = [](const protocol::Protocol& protocol) {
     return protocol::middle_level(protocol, protocol.procedures.front().level);
   };
-  CHECK(middle(shipped("friction-staircase")) == Approx(-18.5));  // limits -34 and -3 dB
+  CHECK(middle(shipped("friction-staircase")) == Approx(-18.5));  // the middle of the limits -34 and -3 dB
   CHECK(middle(shipped("friction-2ifc")) == Approx(-16.5));
   CHECK(middle(shipped("boundary-adaptive")) == Approx(12).margin(0.5));
   CHECK(middle(shipped("boundary-constant")) == Approx(12));
-  CHECK(middle(shipped("demo")) == Approx(18));  // zero does not count as a magnitude
+  CHECK(middle(shipped("demo")) == Approx(18));  // a level of zero is not a magnitude
   CHECK(middle(shipped("two-spots-oddity")) == Approx(std::sqrt(80.0)));
   CHECK(middle(yes_no()) == Approx(0.1));
 }

@@ -1,5 +1,6 @@
-// Every file of tests/protocol/bad contains one mistake (or a few). A line that must be reported ends in `#!
-// part of the message`. A message about the file as a whole is given in the first line as `#!! part`.
+// Each file of tests/protocol/bad contains one mistake (or a few). A line with a mistake that must be
+// reported ends in `#! part of the message`. Messages about the file as a whole are given in its first line
+// as `#!! part`.
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -40,7 +41,8 @@ std::vector<text::Problem> problems_of(const std::string& source) {
   }
 }
 
-// Differences between reported and expected problems: missed lines, and unexpected reports.
+// The differences between reported and expected problems: expected ones that were not reported, and
+// unexpected ones that were.
 std::string misreported(const std::string& source) {
   const auto expected = expected_lines(source);
   const auto problems = problems_of(source);

@@ -1,5 +1,5 @@
-// protocols/README.md is the manual: it must mention every key that the reader knows, and its examples must
-// be valid.
+// protocols/README.md is the manual of protocol files: it must mention every key that the reader knows, and
+// its examples must be valid.
 #include <cctype>
 #include <set>
 #include <sstream>
@@ -33,7 +33,7 @@ std::vector<std::string> snippets() {
   return all;
 }
 
-// All words that the manual's running text puts in backticks.
+// All words in backticks in the manual's text, without its examples.
 std::set<std::string> words_in_backticks() {
   std::istringstream lines(system::read_file(readme_path));
   std::set<std::string> words;
@@ -63,7 +63,7 @@ std::vector<text::Problem> problems_of(const std::string& source) {
   }
 }
 
-// An example may lack what only a whole file contains. Any other problem is a mistake of the manual.
+// An example may lack what only a complete file contains. Any other problem is a mistake in the manual.
 bool lacks_the_rest(const text::Problem& problem) {
   for (const auto* part :
        {"the file needs", "the file has no", "unknown factor", "unknown scene", "unknown procedure",
@@ -95,7 +95,7 @@ TEST_CASE("the manual documents every key that the reader knows", "[protocol]") 
   const auto documented = words_in_backticks();
   auto known = tests::known_keys();
   for (const auto* factor : {"contrast_dB", "offset_mm", "spread_mm", "mark_mm", "change", "instruction"})
-    known.erase(factor);  // [[block]] catch uses names of factors as keys
+    known.erase(factor);  // not keys, but names of factors, which [[block]] catch uses like keys
   CHECK(known.size() > 80);
   for (const auto& key : known) {
     INFO(key);

@@ -50,8 +50,8 @@ TEST_CASE("every shipped protocol can be run, without a warning, on a rig like t
   check_shipped(quick_rig());
 }
 
-// Run this test by name: maps of a clamped plate are computed from its two-dimensional field, which takes
-// seconds for each.
+// This test is excluded by default: run it by name. It takes seconds per protocol, because the maps of a
+// clamped plate are computed from its two-dimensional field.
 TEST_CASE("every shipped protocol can be run on the simulated rig, without a warning", "[.slow]") {
   check_shipped(simulated());
 }

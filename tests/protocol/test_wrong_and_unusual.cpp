@@ -1,5 +1,5 @@
-// The corpus in tests/protocol/corpus: wrong protocols with the line that must be reported, and unusual ones
-// that are correct. Its README explains the form.
+// Tests the files in tests/protocol/corpus: wrong protocols with the line that must be reported, and unusual
+// but correct ones. README.md there explains their form.
 #include <filesystem>
 #include <set>
 #include <sstream>
@@ -49,7 +49,7 @@ std::vector<Case> cases_in(const fs::path& path) {
 
 struct Edited {
   std::string source;
-  std::set<int> must, may, note;  ///< lines
+  std::set<int> must, may, note;  ///< lines that must, may or should be reported
 };
 
 Edited edited(const Case& wanted) {
@@ -79,7 +79,7 @@ const rig::Rig& quick() {
   return rig;
 }
 
-/// The problems of the file, or, if there are none, those found by a check on a rig.
+/// The problems of the file or, if there are none, those found by a survey on a rig.
 std::vector<text::Problem> said_of(const std::string& source) {
   try {
     auto survey = protocol::survey(protocol::parse(source, "p.toml"), quick());

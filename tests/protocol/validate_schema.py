@@ -36,7 +36,8 @@ rig_schema = check("deploy/rigs/rig.schema.json", rigs)
 if len(protocols) < 10 or not rigs:
     faults.append("too few files were found")
 
-# A schema must find unknown keys, unknown words and wrong types. (It cannot follow names or arithmetic.)
+# The schema must reject unknown keys, unknown words and wrong types. It cannot check names that refer to
+# others, or arithmetic.
 for name in ["key-unknown", "id-number", "seed-negative", "task-kind", "task-device", "block-feedback", "resume-word",
              "scene-rove-negative", "timing-iti-missing", "factor-no-values", "table-unknown"]:
     if not errors(schema, (root / f"tests/protocol/bad/{name}.toml").read_text()):

@@ -36,7 +36,7 @@ TEST_CASE("uniform, below and normal have the moments of their distributions", "
     sum += u, squares += u * u, normal_sum += z, normal_squares += z * z;
     ++counts[draws.below(7)];
   }
-  // Tolerances are five standard errors.
+  // The tolerances are five standard errors.
   CHECK(sum / n == Approx(0.5).margin(5 * 0.2887 / std::sqrt(n)));
   CHECK(squares / n == Approx(1.0 / 3).margin(5 * 0.298 / std::sqrt(n)));
   CHECK(normal_sum / n == Approx(0).margin(5 / std::sqrt(n)));

@@ -9,7 +9,7 @@
 #include "station/text/toml.hpp"
 #include "tests/support/catch.hpp"
 
-// Tests the way from a protocol file and its rows to a report.
+// Tests how a protocol file and its stored rows become a report.
 
 using namespace turnpoint;
 
@@ -39,7 +39,7 @@ nlohmann::json report_of(const report::SessionData& data) {
   return nlohmann::json::parse(report::to_json(report::summarise(data)));
 }
 
-/// A change of friction that is present in half of the trials; `sign` -1 makes it a decrease.
+/// A yes/no protocol with a change of friction in half of the trials; `sign` -1 makes the change a decrease.
 std::string yes_no(const std::string& analysis, int sign = 1, int repeats = 40) {
   auto source = shipped("speed-accuracy");
   source.erase(source.find("[[sequence]]"));
@@ -91,7 +91,7 @@ TEST_CASE("the order of conditions is the file's, whatever block came first", "[
   const auto began = [](int index) {
     return data_of(shipped("speed-accuracy"), "sim", index).trials.back().instruction;
   };
-  CHECK(began(0) != began(1));  // the order is counterbalanced
+  CHECK(began(0) != began(1));  // the two sessions begin with different conditions
   for (const auto& report : {first, second}) {
     REQUIRE(report["instructions"].size() == 2);
     CHECK(report["instructions"][0]["instruction"] == "speed");
@@ -110,7 +110,7 @@ TEST_CASE("by that names another factor takes the instructions together", "[repo
 }
 
 TEST_CASE("yes/no is analysed as yes/no", "[report]") {
-  // d' grows in proportion to the change, with 1.349 at .1; 15 % false alarms.
+  // d' is proportional to the change, with 1.349 at a change of .1; the rate of false alarms is 15 %.
   const auto* observer = "sim:threshold=0.1,lapse=0,criterion=1.036";
   for (const int sign : {1, -1}) {
     const auto data = data_of(yes_no("", sign, 120), observer);
@@ -184,7 +184,7 @@ TEST_CASE("a report has the ids of answers, and the reversals that a staircase a
   const auto html = report::to_html(report::summarise(data));
   CHECK(html.find("reversals 5 to 10 of 10") != std::string::npos);
   CHECK(html.find("Threshold (dB)") != std::string::npos);
-  CHECK(html.find("BIS") == std::string::npos);  // a single condition has no BIS
+  CHECK(html.find("BIS") == std::string::npos);  // the balanced integration score needs two conditions
   const auto demo =
       data_of(replaced(shipped("demo"), "[\"en\", \"de\", \"ja\"]", "[\"en\", \"de\", \"ja\"]"));
   CHECK(demo.choices == std::vector<std::string>{"left", "right"});

@@ -81,7 +81,7 @@ void check_equal(const records::TrialRow& a, const records::TrialRow& b) {
   CHECK(a.response == b.response);
   CHECK(a.outcome == b.outcome);
   REQUIRE(a.response_time_s.has_value() == b.response_time_s.has_value());
-  // a tolerance of one frame
+  // The times may differ by one frame.
   if (a.response_time_s) CHECK(*a.response_time_s == Approx(*b.response_time_s).margin(1e-5));
   CHECK(a.state_hash == b.state_hash);
   REQUIRE(a.tones.size() == b.tones.size());
@@ -105,7 +105,7 @@ TEST_CASE("sessions killed at random moments and gone on with equal the unbroken
   const auto expected = trials_of(whole, store::list_sessions(whole).front().session_id);
   REQUIRE(!expected.empty());
   std::mt19937 random(3);
-  // Spread over the whole length of a session, so that kills hit its beginning, its trials and its ending.
+  // Kills at any moment of a session, so that its beginning, its trials and its ending are all hit.
   std::uniform_int_distribution<useconds_t> moment(0, static_cast<useconds_t>(1.2 * whole_us.count()));
   int kills = 0, finished = 0, resumed = 0;
   while (kills < kills_wanted() || finished == 0) {

@@ -24,7 +24,7 @@ std::string replaced(std::string where, const std::string& from, const std::stri
   return where.replace(at, from.size(), to);
 }
 
-// The problems of a rig file in which `from` was replaced, one per line.
+// The problems of the simulated rig's file after `from` was replaced with `to`, one per line.
 std::string problems(const std::string& from, const std::string& to) {
   try {
     rig::parse(replaced(source(), from, to), "r.toml");
@@ -66,7 +66,7 @@ TEST_CASE("every default that stood in for a key is named with its value", "[rig
   CHECK(has("output.bits = 24"));
   CHECK(has("output.period_frames = 384"));
   CHECK(has("output.converter_delay_ms = 0"));
-  CHECK_FALSE(has("limits.duty = 0.8"));  // given in the file, so not a default
+  CHECK_FALSE(has("limits.duty = 0.8"));  // the file sets this value, so it is not a default
 }
 
 TEST_CASE("the converter's delay is read in ms, and a negative one is refused", "[rig]") {
@@ -88,7 +88,8 @@ TEST_CASE("all mistakes of a rig file come at once, each with its line", "[rig]"
     FAIL("the file has three mistakes");
   } catch (const text::BadInput& error) {
     const std::string all = error.what();
-    CHECK(error.problems().size() == 4);  // the misspelt key is unknown, and the right one is missing
+    // the misspelt key causes two problems: it is unknown, and the right key is missing
+    CHECK(error.problems().size() == 4);
     CHECK(contains(all,
                    "r.toml:12:1: unknown key \"thicknes_mm\" in [surface]; did you mean \"thickness_mm\"?"));
     CHECK(contains(all, "[surface] needs the key \"thickness_mm\""));

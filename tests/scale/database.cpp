@@ -18,7 +18,7 @@ using namespace turnpoint::store;
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kMidday_ns = 1'709'204'400 * kSecond_ns;  // 29 February 2024
+constexpr std::int64_t kMidday_ns = 1'709'204'400 * kSecond_ns;  // noon on 29 February 2024
 
 std::string content(const std::string& path) {
   std::ifstream file(std::string(TURNPOINT_SOURCE_DIR) + "/" + path, std::ios::binary);
@@ -72,7 +72,7 @@ ToneRow tone_of(int trial, int index) {
   return tone;
 }
 
-/// Higher levels have more right answers, with a few wrong ones at every level.
+/// A trial whose answer is more often right at higher levels, with a few wrong ones at every level.
 TrialRow trial_of(int session, int trial) {
   TrialRow row;
   row.trial_index = row.trial_in_block = trial;
@@ -103,7 +103,7 @@ TrialRow trial_of(int session, int trial) {
   return row;
 }
 
-/// Writes the rows of a session that begin() has made, in one transaction.
+/// Writes the rows of a session that begin() has created, in one transaction.
 void fill(Database& database, const std::string& id, int session, int trials) {
   Transaction transaction(database);
   RowWriter rows(database);

@@ -1,6 +1,6 @@
-// scale make FILE SESSIONS TRIALS [STATION]: a large database (database.hpp).
-// scale begin FILE: begins a session and ends it. scale start-page FILE: what the start page asks the
-// database.
+// scale make FILE SESSIONS TRIALS [STATION]: makes a large database (database.hpp).
+// scale begin FILE: begins a session and ends it at once.
+// scale start-page FILE: makes the database queries of the start page.
 #include <cstdio>
 #include <cstdlib>
 #include <exception>

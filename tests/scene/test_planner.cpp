@@ -13,7 +13,7 @@ namespace {
 
 rig::Rig simulated() { return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml"); }
 
-/// The scene "edge" of the protocol demo.toml, without its rove.
+/// The scene "edge" of protocols/demo.toml with its boundary at this place, without roving.
 Scene edge_at(double boundary_m, const char* edge) {
   Scene scene;
   scene.name = "edge";
@@ -32,7 +32,7 @@ physics::MapOptions options_of(const Scene& scene, const rig::Rig& rig) {
   return options;
 }
 
-/// Where the two-dimensional field of a frequency has its edge.
+/// The position of the edge in the two-dimensional field of a frequency.
 double edge_of_field_m(const physics::Surface& surface, const physics::MapOptions& options, double f) {
   const auto line = physics::make_centre_line(surface, f, physics::Model::modes);
   return physics::edge_position_m(surface, f, *line, options).value();
@@ -84,7 +84,7 @@ TEST_CASE("a zone's bound is that of the first mode, by which it is designed", "
   const double miss_m = std::abs(line->level_m(0.5).value() - 0.160);
   CAPTURE(1e3 * miss_m, 1e3 * plan.error_bound_m);
   CHECK(miss_m <= plan.error_bound_m);
-  CHECK(miss_m > 1e-6);  // the field does not agree with the first mode exactly
+  CHECK(miss_m > 1e-6);  // negative control: field and first mode do not agree exactly
 }
 
 TEST_CASE("a tone's level is that of the chosen model, whatever the rove", "[scene]") {

@@ -1,4 +1,4 @@
-// A room for live sessions in real time: the participant, the protocol, and simulated lines.
+// Everything that live sessions in real time need: the person in the room, the protocol, and simulated lines.
 #pragma once
 #include <algorithm>
 #include <functional>
@@ -61,7 +61,7 @@ procedures = ["levels"]
 )";
 }
 
-/// The person in the room. Gets each page on the session's thread, and may push inputs and move lines.
+/// The person in the room. show() gets each page on the session's thread, and may push inputs and move lines.
 struct Room : session::Display {
   session::Inputs inputs;
   std::shared_ptr<lines::SimulatedLines> lines = std::make_shared<lines::SimulatedLines>(SharedLines::count);
@@ -84,7 +84,7 @@ struct Room : session::Display {
     reacts(page);
   }
 
-  /// A cooperative participant, and an operator who clears every fault.
+  /// Acts like a cooperative participant, and an operator who clears every fault.
   void cooperate(const session::Page& page) {
     if (page.kind == PageKind::instructions || page.kind == PageKind::paused) push(InputKind::next);
     if (page.kind == PageKind::stimulus) press(0);

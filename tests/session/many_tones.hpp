@@ -1,6 +1,6 @@
 // A protocol whose two intervals take different times to prepare: one has one tone, the other twenty. The
-// bound on the masking noise's peak is above full scale, so each burst has to be rendered before it may be
-// played.
+// bound on the peak of the masking noise is above full scale, so the station must render each burst to find
+// its real peak.
 #pragma once
 #include <fstream>
 #include <iterator>
@@ -66,7 +66,7 @@ inline std::string rig_text() {
   return std::string(std::istreambuf_iterator<char>(file), {}) + "\n[noise]\nchannel = 2\nrms = 0.15\n";
 }
 
-/// The bound alone would have led to a refusal.
+/// Returns true if the burst passed only because its peak was rendered; its bound is above full scale.
 inline bool peak_was_rendered(const drive::PreparedBurst& burst) {
   const auto limit = drive::SynthLimits{}.peak;
   return drive::peak_bound(burst)[2] > limit && burst.peak[2] <= limit;

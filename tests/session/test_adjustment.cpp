@@ -38,7 +38,7 @@ struct Folder {
   ~Folder() { fs::remove_all(path); }
 };
 
-/// Records the pages with a slider; simulates a crash after a number of pages.
+/// Records the pages with a slider, and simulates a crash after a number of pages.
 struct Pages : session::Display {
   int left = std::numeric_limits<int>::max();
   std::vector<session::Page> sliders;
@@ -104,7 +104,7 @@ TEST_CASE("settings come from their file into rows, with what the surface did", 
     CHECK(std::fabs(*trial.level) == 20);
     CHECK(setting != *trial.level);
     CHECK_FALSE(trial.correct);
-    // The last boundary felt is the mark plus the setting, within the protocol's tolerance.
+    // The stored boundary is the mark plus the setting, within the protocol's tolerance.
     CHECK(*trial.boundary_mm == Approx(std::get<double>(trial.factors.at("mark_mm")) + setting).margin(0.5));
     REQUIRE(trial.tones.size() == 2);
     CHECK(trial.tones[0].scene_index == 0);
@@ -163,7 +163,7 @@ struct KeptStream : FaultyStream {
   std::vector<drive::ToneSet>& glides;
 };
 
-/// A tone, as played or as shown to the operator.
+/// A tone as it was played, or as the operator's page shows it.
 struct Tone {
   double frequency_Hz = 0, full_scale = 0;
 };
@@ -199,7 +199,8 @@ struct Operator : session::Monitor {
   }
   void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override {}
 
-  /// After ten seconds the test fails; the limit is not a measurement.
+  /// Waits for a new state of the live view, for at most ten seconds. The limit only ends the test; it
+  /// measures nothing.
   void look(const std::function<void()>& tell) {
     std::unique_lock lock(mutex);
     const auto before = told;
@@ -217,7 +218,7 @@ struct Operator : session::Monitor {
   std::condition_variable changed;
   desk::LiveState newest;
   int told = 0;
-  desk::LiveView view;  // The last member, because its thread writes to the others.
+  desk::LiveView view;  // This must be the last member, because its thread writes to the others.
 };
 
 }  // namespace

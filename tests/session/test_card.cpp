@@ -16,8 +16,8 @@
 #include "tests/support/temporary_folder.hpp"
 
 // Tests what a session schedules, with the station's real stream and output on a sound card in memory: when
-// intervals are really played (as the marker on the second channel shows), and whole sessions on the card's
-// clock.
+// intervals are really played (a marker on the second channel shows their onset), and whole sessions on the
+// card's clock.
 
 using namespace turnpoint;
 using drive::fake_pcm;
@@ -48,7 +48,7 @@ void steps(drive::DeviceStream& stream, int count) {
   for (int k = 0; k < count; ++k) stream.step();
 }
 
-/// The times (in frames of the card) at which a marker's pulse was played.
+/// The frames of the card at which a pulse of the marker was played.
 std::vector<std::int64_t> pulses() {
   std::vector<std::int64_t> found;
   const auto& heard = fake_pcm().heard;
@@ -57,7 +57,7 @@ std::vector<std::int64_t> pulses() {
   return found;
 }
 
-/// The next trial of a protocol, planned and checked as in a session.
+/// The next trial of a protocol, planned and checked as a session does.
 struct Trial {
   Trial(const rig::Rig& rig, const protocol::Protocol& protocol)
       : director(protocol, 0, 3), plans(rig, protocol, 3), spec(*director.next()) {}
@@ -157,7 +157,7 @@ TEST_CASE("on a converter that is gone nothing is scheduled, and silence is no e
   fake_pcm().fail(drive::FakePcm::State::gone);
   fake_pcm().present = false;
   steps(stream, 3);
-  // The stimulus is recorded up to now, because the time of the silence is after the onset.
+  // The time of silence is after the onset, so the trial's record includes the stimulus up to now.
   const auto now_ns = fake_pcm().now_ns();
   const auto silent_ns = session::ramp_down(stream, presented, now_ns);
   CHECK(silent_ns > onset.time_ns);
@@ -175,7 +175,7 @@ using terms::FaultKind;
 
 constexpr std::int64_t kRate_Hz = 192000;
 
-/// A real stream that is stepped whenever the session polls it, so that a session takes as long as the card
+/// A real stream that advances whenever the session polls it, so that a session takes as long as the card
 /// plays.
 struct SteppedStream : drive::DeviceStream {
   SteppedStream(const drive::StreamConfig& config, const bool& holds, const std::function<void()>& then)
@@ -201,7 +201,7 @@ struct SteppedStream : drive::DeviceStream {
   std::deque<drive::Event> held;
 };
 
-/// The guard's rules without a thread, on the card's clock.
+/// An amplifier with the guard's rules on the card's clock, without a thread of its own.
 struct RuledAmplifier : drive::Amplifier {
   using Answer = std::optional<lines::Guard::Refusal>;
   static Refusal refusal(const Answer& why) {
@@ -224,13 +224,13 @@ struct RuledAmplifier : drive::Amplifier {
   lines::Guard guard;
 };
 
-/// A live session of two trials on the card. The participant answers 0.3 s after an onset.
+/// Runs a live session of two trials on the card. The participant answers 0.3 s after an onset.
 struct CardSession {
   TemporaryFolder folder;
   session::Setup setup = live_room::live_setup(folder / "a.sqlite", "touch");
   live_room::Room room;
   bool holding = false;
-  bool first_answered = true;  ///< whether the first stimulus is answered, as the others are
+  bool first_answered = true;  ///< whether the participant answers the first stimulus
   double repair_s = 0;         ///< time that the operator takes to clear a fault
   std::vector<std::pair<std::int64_t, std::function<void()>>> agenda;
   std::function<void(const session::Page&)> reacts = [](const auto&) {};
@@ -303,18 +303,20 @@ TEST_CASE("of a converter that is lost amid a stimulus, what was played until th
   CHECK(trials[0].outcome == terms::Outcome::fault);
   const auto stimuli = live_room::events_of(card.setup.database, card.summary, "stimulus");
   REQUIRE(stimuli.size() == 3);
-  // The recorded stimulation in frames, from the onset on, and what the card really played in that time.
+  // Compares the recorded stimulation, in frames from the onset, with what the card really played in that
+  // time.
   const auto onset = (stimuli[0].time_ns - 1'000'000'000) * kRate_Hz / 1'000'000'000;
   const auto booked = std::stod(stimuli[0].value) * static_cast<double>(kRate_Hz);
   const auto& heard = fake_pcm().heard;
   const auto end = heard.begin() + static_cast<std::ptrdiff_t>(lost_at);
   const auto sounds = [](std::int32_t sample) { return sample != 0; };
   const auto first = std::find_if(heard.begin(), end, sounds) - heard.begin();
-  CHECK(std::abs(first - onset) <= 4);  // the ramp begins with zeros
+  CHECK(std::abs(first - onset) <= 4);  // the first samples of the ramp are 0
   const auto played = static_cast<double>(lost_at - onset);
   CHECK(std::any_of(end - 20, end, sounds));
-  CHECK(std::abs(booked - played) <= 384);  // the converter's position is read once per period
-  // One page before the first arming, and one for the single cause, however long the repair takes.
+  CHECK(std::abs(booked - played) <= 384);  // the station reads the converter's position once per period
+  // There is one page before the first arming, and further pages only for this fault, however long the repair
+  // takes.
   REQUIRE(card.faults.size() >= 2);
   CHECK(card.faults.front() == FaultKind::disarmed);
   CHECK(std::count(card.faults.begin() + 1, card.faults.end(), FaultKind::converter_gone) ==
@@ -345,7 +347,7 @@ TEST_CASE("a trial is void a second after a converter should have said that it w
 TEST_CASE("a converter that does not say where it is gets no stimulus", "[session][card][fault]") {
   CardSession card;
   card.reacts = [&](const session::Page& page) {
-    // the restart makes a new relation between frames and time
+    // After the restart the station needs new positions of the card, which it does not get.
     if (page.kind == PageKind::instructions) fake_pcm().fail(drive::FakePcm::State::xrun);
     if (page.kind == PageKind::instructions) fake_pcm().stamps = false;
     if (page.kind == PageKind::fault) fake_pcm().stamps = true;
@@ -367,7 +369,8 @@ TEST_CASE("what is reported late of a repeated trial says nothing about the next
       card.room.push(InputKind::repeat);
     }
     if (page.kind == PageKind::cue && card.room.stimuli == 1) card.holding = false;
-    // The converter never reports that the second one was played.
+    // From the second stimulus on, the card no longer reports its position, so that what was played stays
+    // unknown.
     if (page.kind == PageKind::stimulus && card.room.stimuli == 2) fake_pcm().stamps = false;
     if (page.kind == PageKind::fault) fake_pcm().stamps = true;
   };

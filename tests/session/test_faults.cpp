@@ -1,6 +1,7 @@
-// Every cause that can switch the amplifier off, produced at its source and followed to the page that
-// explains it. The trial must be void, the line must be low before the page is shown, and once the operator
-// has cleared the fault the trial is repeated. Touch panel and disk are tested in tests/ui/tst_faults.qml.
+// Each fault that can switch the amplifier off is caused where it arises, and followed to the page that
+// explains it. The trial must be void, the line must be low before the page is shown, and the trial must be
+// repeated once the operator has cleared the fault. Faults of touch panel and disk are tested in
+// tests/ui/tst_faults.qml.
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
@@ -20,7 +21,7 @@ using terms::FaultKind;
 
 namespace {
 
-/// Lines whose enable output is broken when the test says so.
+/// Lines whose enable output stops working when the test says so.
 struct BrokenLines : SharedLines {
   BrokenLines(const std::shared_ptr<lines::SimulatedLines>& shared, std::atomic<bool>& broken_)
       : SharedLines(shared), broken(broken_) {}
@@ -39,7 +40,7 @@ struct Mishap {
   std::atomic<std::int64_t> slept_ns{0};
   std::atomic<bool> enable_broken{false};
   std::atomic<bool> audio_lives{true};
-  bool chip_gone = false;  ///< the chip is gone, so that nobody can read its levels
+  bool chip_gone = false;  ///< true if the fault removes the GPIO chip, so that its levels cannot be read
   std::function<void()> strikes, operator_repairs = [] {};
   std::vector<session::Page> faults;
   std::unique_ptr<std::jthread> audio;
@@ -66,7 +67,8 @@ struct Mishap {
   }
 
   void react(const session::Page& page) {
-    if (page.kind == PageKind::end) audio.reset();  // the object that it reports to ends with the session
+    // stop reporting, because the amplifier ends with the session
+    if (page.kind == PageKind::end) audio.reset();
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return strikes();
     if (page.kind == PageKind::fault && room.stimuli == 1) {
       faults.push_back(page);
@@ -76,7 +78,7 @@ struct Mishap {
     room.cooperate(page);
   }
 
-  /// Runs a session. Returns the page that explained the fault.
+  /// Runs a session and returns the page that explained the fault.
   session::Page runs(session::Devices with) {
     room.reacts = [this](const auto& page) { react(page); };
     const auto summary = session::run(setup, &room, room.inputs, std::move(with));
@@ -95,7 +97,8 @@ struct Mishap {
   session::Page runs() { return runs(devices()); }
 };
 
-/// Waits until the guard has acted. After ten seconds the test fails; the limit is not a measurement.
+/// Waits until the guard has switched off, for at most ten seconds. The limit only ends the test; it measures
+/// nothing.
 void until_low(const Room& room) {
   const auto end_ns = system::monotonic_ns() + 10'000'000'000;
   while (room.lines->level(SharedLines::enable) && system::monotonic_ns() < end_ns) std::this_thread::yield();
@@ -146,7 +149,7 @@ TEST_CASE("a silent audio thread has its page", "[session][live][fault][threads]
   Mishap mishap;
   auto devices = mishap.devices();
   devices.open_stream = [](drive::StreamConfig config) {
-    config.amplifier = nullptr;  // the test reports that the audio thread is alive
+    config.amplifier = nullptr;  // instead of the stream, the test reports that the audio thread is alive
     return drive::open_realtime(config);
   };
   mishap.audio = std::make_unique<std::jthread>(
@@ -163,7 +166,7 @@ TEST_CASE("a silent audio thread has its page", "[session][live][fault][threads]
 
 TEST_CASE("a session that hangs has its page", "[session][live][fault][threads]") {
   Mishap mishap;
-  mishap.strikes = [&] { until_low(mishap.room); };  // on the session's own thread
+  mishap.strikes = [&] { until_low(mishap.room); };  // blocks the session's own thread
   CHECK(mishap.runs().fault == FaultKind::session_silent);
 }
 
@@ -220,7 +223,7 @@ TEST_CASE("an amplifier that nobody has armed has its page", "[session][live][fa
   mishap.room.reacts = [&](const auto& page) { mishap.react(page); };
   const auto summary = session::run(mishap.setup, &mishap.room, mishap.room.inputs, mishap.devices());
   CHECK(summary.status == records::SessionStatus::completed);
-  CHECK(mishap.room.pages.front().fault == FaultKind::disarmed);  // before the first arming
+  CHECK(mishap.room.pages.front().fault == FaultKind::disarmed);  // the first page, before the first arming
   REQUIRE_FALSE(mishap.faults.empty());
   CHECK(mishap.faults.front().fault == FaultKind::disarmed);
 }

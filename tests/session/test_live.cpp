@@ -11,9 +11,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Live sessions in real time: a person with buttons, the operator, the guard on simulated lines, and
-// alsa-lib's null device (allowed as a plug-in) or no device at all. Assertions about the amplifier read the
-// line's log.
+// Runs live sessions in real time with a person at buttons, an operator, and the guard on simulated lines.
+// The sound output is alsa-lib's null device (allowed as a plug-in) or no device at all. Checks of the
+// amplifier read the log of its line.
 
 using namespace turnpoint;
 using namespace turnpoint::live_room;
@@ -26,7 +26,7 @@ TEST_CASE("a live session goes from the operator's arming to answers by buttons,
   room.reacts = [&room](const auto& page) { room.cooperate(page); };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());
   CHECK(summary.status == records::SessionStatus::completed);
-  CHECK(room.pages.front().kind == PageKind::fault);  // there is no page before the operator has armed
+  CHECK(room.pages.front().kind == PageKind::fault);  // the first page asks the operator to arm
   CHECK(room.pages.front().amplifier == "disarmed");
   CHECK(room.heartbeats() > 20);
   const auto trials = trials_of(setup.database, summary);
@@ -36,7 +36,7 @@ TEST_CASE("a live session goes from the operator's arming to answers by buttons,
     CHECK(trial.outcome == terms::Outcome::answered);
     CHECK(trial.clock_slope_ns_per_frame.has_value());
   }
-  // The amplifier is enabled once for each trial, in silence before its stimulus, and switched off
+  // The amplifier must be enabled once for each trial, in silence before its stimulus, and be switched off
   // afterwards.
   const auto enables = room.enables();
   REQUIRE(enables.size() == 4);
@@ -49,7 +49,7 @@ TEST_CASE("a live session goes from the operator's arming to answers by buttons,
                off_ns =
                    on_ns + static_cast<std::int64_t>(1e9 * std::strtod(stimuli[k].value.c_str(), nullptr));
     CHECK(enables[2 * k].level == 1);
-    // `presented` is durable before the amplifier is enabled, however slow the disk
+    // However slow the disk is, `presented` is stored durably before the amplifier is enabled.
     CHECK(enables[2 * k].time_ns > presented[k].time_ns);
     CHECK(enables[2 * k].time_ns < on_ns - 20'000'000);
     CHECK(enables[2 * k + 1].level == 0);
@@ -66,7 +66,7 @@ TEST_CASE("without the operator's arming the amplifier is never enabled", "[sess
   Room room;
   room.reacts = [&room](const auto& page) {
     if (page.kind != PageKind::fault) return;
-    room.push(InputKind::next);  // a participant who is impatient
+    room.push(InputKind::next);  // an impatient participant taps "Next"
     room.press(0);
     room.push(InputKind::stop);
   };
@@ -77,7 +77,7 @@ TEST_CASE("without the operator's arming the amplifier is never enabled", "[sess
   const auto& end = room.pages.back();
   CHECK(end.kind == PageKind::end);
   CHECK(end.trials_done == 0);
-  CHECK(end.trials_total == 2);  // the total of the session, not the number of trials done
+  CHECK(end.trials_total == 2);  // the number of planned trials, not of finished ones
 }
 
 TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the trial and presents it again",
@@ -93,7 +93,7 @@ TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the
     }
     if (page.kind == PageKind::fault && page.fault == session::FaultKind::stop_pressed &&
         room.lines->level(SharedLines::stop)) {
-      // too early: the stop is still pressed
+      // First try to arm while the stop is still pressed: this must be refused.
       if (page.detail.find("refused") == std::string::npos) return room.push(InputKind::arm);
       room.lines->set(SharedLines::stop, false, system::monotonic_ns());
     }
@@ -113,7 +113,7 @@ TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the
   CHECK(enables[1].time_ns >= pressed_ns);
   const auto arms = events_of(setup.database, summary, "arm");
   REQUIRE(arms.size() >= 3);
-  CHECK(arms[1].value.find("refused") == 0);  // the stop was still pressed
+  CHECK(arms[1].value.find("refused") == 0);  // refused, because the stop was still pressed
   CHECK(arms.back().value == "armed");
   CHECK(enables[2].time_ns > arms.back().time_ns);
 }
@@ -151,12 +151,12 @@ TEST_CASE("faults on a fault's page are mended with it, not one after another", 
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.push(InputKind::fault);
     if (page.kind == PageKind::fault && room.stimuli == 1 && !std::exchange(pressed, true)) {
-      CHECK(page.amplifier.empty());  // still armed: the page offers Continue
+      CHECK(page.amplifier.empty());  // this fault does not disarm, so the page offers only Continue
       return room.lines->set(SharedLines::stop, true, system::monotonic_ns());
     }
     if (page.kind == PageKind::fault && pressed && room.lines->level(SharedLines::stop)) {
       room.lines->set(SharedLines::stop, false, system::monotonic_ns());
-      room.push(InputKind::fault);  // a third fault, before anybody has armed
+      room.push(InputKind::fault);  // a third fault before anybody has armed
     }
     room.cooperate(page);
   };
@@ -177,7 +177,7 @@ TEST_CASE("who goes on before the buttons are back is told what is missing", "[s
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return buttons->remove();
     if (page.kind == PageKind::fault && page.fault == session::FaultKind::lines_gone && ++told == 3) {
-      CHECK(page.amplifier.empty());  // nothing to arm: the amplifier is on lines that were not lost
+      CHECK(page.amplifier.empty());  // the amplifier's lines are on another chip, so it stays armed
       buttons->put_back();
     }
     if (page.kind == PageKind::stimulus) {
@@ -256,19 +256,20 @@ TEST_CASE("the interval between trials stretches to keep the duty, and the log s
           "[session][live]") {
   const TemporaryFolder folder;
   auto setup = live_setup(folder / "a.sqlite");
-  setup.rig.limits.duty = 0.04;  // 2.4 s in any minute: one stimulus of 2 s fits, a second one does not
+  setup.rig.limits.duty = 0.04;  // 2.4 s per minute: enough for one stimulus of 2 s, not for two
   Room room;
   room.reacts = [&](const auto& page) {
-    if (page.kind == PageKind::stimulus) return;  // explores until the end and answers afterwards
+    if (page.kind == PageKind::stimulus) return;  // explore until the end, and answer afterwards
     if (page.kind == PageKind::response) return room.press(1);
     if (page.kind == PageKind::interval && room.stimuli == 1) return room.push(InputKind::stop);
     room.cooperate(page);
   };
   const auto first = session::run(setup, &room, room.inputs, room.devices());
   CHECK(first.trials == 1);
-  // The same participant starts a new session at once. The database remembers the exposure.
+  // The same participant starts a new session at once. The exposure of the first session must count, because
+  // it is in the database.
   Room again;
-  std::jthread stops;  // declared after the room, so that it ends before it
+  std::jthread stops;  // Declared after the room, so that the thread ends before the room is destroyed.
   again.reacts = [&](const auto& page) {
     if (page.kind == PageKind::instructions) {
       again.push(InputKind::next);
@@ -333,6 +334,6 @@ TEST_CASE("what a session is allowed to resample nowhere plays through alsa-lib'
   const auto summary = session::run(setup, nullptr, inputs);
   CHECK(summary.status == records::SessionStatus::completed);
   CHECK(summary.answered == 2);
-  setup.rig.output.uri = "alsa:rated";  // negative control: a resampler behind the same permission
+  setup.rig.output.uri = "alsa:rated";  // negative control: the same permission does not allow a resampler
   CHECK_THROWS(session::run(setup, nullptr, inputs));
 }

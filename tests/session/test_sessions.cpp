@@ -54,7 +54,7 @@ std::vector<records::TrialRow> trials_of(const std::string& database, const std:
   return all;
 }
 
-/// Counts its notifications.
+/// Records the level of each trial that begins or ends.
 struct Watch : session::Monitor {
   std::vector<std::optional<double>> announced, ended;
   void trial_begins(const trial::TrialSpec& spec, const protocol::Block&,
@@ -66,7 +66,7 @@ struct Watch : session::Monitor {
   }
 };
 
-/// Simulates a crash: throws after a number of pages.
+/// Simulates a crash by throwing after a number of pages.
 struct Cut : session::Display {
   int pages;
   explicit Cut(int n) : pages(n) {}
@@ -223,7 +223,7 @@ TEST_CASE("a log that belongs to another protocol text is not continued", "[sess
 }
 
 TEST_CASE("a log whose factors were combined in another way is not continued", "[session]") {
-  // The levels of a balanced factor in another order: the same staircase, other marks.
+  // With the levels of a balanced factor in another order, the staircase is the same but the marks are not.
   const Folder folder;
   Cut cut(60);
   session::Inputs inputs;
@@ -289,7 +289,7 @@ TEST_CASE("the response device's latency and the consent form are stored, and no
   const auto a = trials_of(folder / "a.sqlite", summary.session_id);
   const auto b = trials_of(folder / "b.sqlite", plain.session_id);
   CHECK(a.front().response_offset_s == 0.0625);
-  // A latency measured for the kernel's time stamps does not apply to others.
+  // A latency measured for the kernel's time stamps does not apply to other time stamps.
   setup.response_offset_quality = "kernel";
   setup.database = folder / "c.sqlite";
   const auto other = session::run(setup, nullptr, inputs);

@@ -14,7 +14,7 @@ TEST_CASE("the screen's card is the first that has a connector", "[setup]") {
   listed("card0");
   listed("renderD128");
   listed("version");
-  CHECK(setup::screen_card(folder / "") == "");  // cards without a screen
+  CHECK(setup::screen_card(folder / "") == "");  // these cards have no connector for a screen
   listed("card10");
   listed("card10-HDMI-A-1");
   CHECK(setup::screen_card(folder / "") == "/dev/dri/card10");
@@ -24,5 +24,6 @@ TEST_CASE("the screen's card is the first that has a connector", "[setup]") {
   CHECK(setup::screen_card(folder / "") == "/dev/dri/card2");
   std::ofstream(folder / "card2-DSI-1/status") << "disconnected\n";
   std::ofstream(folder / "card10-HDMI-A-1/status") << "connected\n";
-  CHECK(setup::screen_card(folder / "") == "/dev/dri/card10");  // the only card with a screen
+  // card10 is the only card with a connected screen
+  CHECK(setup::screen_card(folder / "") == "/dev/dri/card10");
 }

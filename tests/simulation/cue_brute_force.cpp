@@ -21,12 +21,12 @@ namespace {
 using protocol::TaskKind;
 using trial::TrialSpec;
 
-// Half of the watched trials are used to choose the rule, the others to measure its accuracy.
+// Half of the simulated trials are used to choose the rule, the other half to measure its accuracy.
 constexpr int watched_trials = 50'000, most_watched_sessions = 20'000;
 constexpr std::size_t own_sessions = 400;
 constexpr double own_trials = 25'000;
 
-/// The eight cues of one interval, for its last and for its first scene.
+/// The values of the eight cues in one interval, for its last and for its first scene.
 struct Numbers {
   std::vector<double> last, first;
 };
@@ -40,7 +40,7 @@ struct Seen {
   int correct = 0;
 };
 
-/// Results of an observer in one session: its right answers, and those that each key alone would have had.
+/// Counts in one session: the observer's right answers, and the right answers of always pressing each key.
 struct Count {
   double trials = 0, right = 0;
   std::array<double, 3> keys{};
@@ -87,8 +87,8 @@ class World {
   std::map<std::string, std::map<protocol::Factors, std::optional<scene::Cues>>> known_;
 };
 
-/// A rule that returns the answers. -1 means that several answers look the same, so the observer guesses
-/// among them.
+/// A rule that returns the observer's answers. A result of -1 means that several answers look the same, so
+/// the observer guesses among them.
 using Strategy = std::function<std::vector<int>(const std::vector<double>&)>;
 
 double seen_number(const Numbers& numbers, std::size_t cue, int feature) {
@@ -102,7 +102,8 @@ std::vector<double> seen_numbers(const std::vector<Numbers>& intervals, std::siz
   return x;
 }
 
-/// Number of trials that look the same: the key has the cue of each interval and the right answer.
+/// Counts trials that look the same: the key is the cue's value in each interval, together with the right
+/// answer.
 using Shown = std::map<std::pair<std::vector<double>, int>, double>;
 
 Shown shown(const std::vector<Seen>& seen, std::size_t cue, int feature) {
@@ -133,7 +134,7 @@ Strategy band(double lowest, double highest, int inside, bool distance) {
   };
 }
 
-// Cuts between different values, at most 80, and one at either end.
+// Criteria for the cue: at most 80 places between values that differ, and one below and one above all values.
 std::vector<double> cuts_of(const Shown& shown, double grain, bool distance) {
   std::vector<double> values, between;
   for (const auto& [trial, count] : shown) values.push_back(banded(trial.first, distance));
@@ -151,10 +152,10 @@ std::vector<double> cuts_of(const Shown& shown, double grain, bool distance) {
   return cuts;
 }
 
-// Tries every pair of cuts, with both possible answers inside.
+// Tries every pair of criteria, with each of the two answers between them.
 Strategy best_cuts(const Shown& shown, double grain, bool distance) {
   const auto cuts = cuts_of(shown, grain, distance);
-  // Number of trials of each answer below each cut.
+  // Number of trials below each criterion for which each answer is right.
   std::vector<std::array<double, 2>> below(cuts.size(), {0, 0});
   for (std::size_t c = 0; c < cuts.size(); ++c)
     for (const auto& [trial, count] : shown)
@@ -239,8 +240,8 @@ bool follows_right_answers(const protocol::Protocol& protocol) {
   return follows_answers(protocol.procedures.front()) && protocol.procedures.front().tracks.empty();
 }
 
-/// Collects what an observer can see in whole sessions. A level that depends on the answers is replaced by a
-/// random one that its procedure can present.
+/// Collects what an observer can perceive in whole sessions. A level that would depend on the answers is
+/// replaced by a random one that its procedure can present.
 std::vector<Seen> watch(const protocol::Protocol& protocol, World& world) {
   std::vector<Seen> seen;
   std::mt19937 random(1);
@@ -268,7 +269,8 @@ struct OwnSessions {
   double gain = 0, error = 0;
 };
 
-/// The observer does whole sessions alone. Returns by how much its accuracy exceeds guessing or a single key.
+/// Simulates whole sessions in which the observer gives all answers. Returns by how much its accuracy exceeds
+/// that of guessing or of a single key.
 OwnSessions do_sessions(const protocol::Protocol& protocol, World& world, std::size_t cue, int feature,
                         const Strategy& strategy) {
   std::vector<Count> each;

@@ -18,7 +18,7 @@ class Maker {
     single_ = task_ == "single-interval";
     two_scenes_ = single_ && chance(0.25);
     if (two_scenes_) use("an interval of two scenes");
-    marks_ = below(3);  // 0: the level is the only factor
+    marks_ = below(3);  // number of marks; 0 means that the level is the only factor
     if (marks_ > 0) use("a drawn factor");
     return header() + factors() + scenes() + task() + procedures() + blocks();
   }
@@ -45,7 +45,7 @@ class Maker {
     return text;
   }
 
-  // The target differs from the standard in place, in strength, or in both.
+  // Writes scenes in which the target differs from the standard in place, in strength, or in both.
   std::string scenes() {
     const std::string mark = marks_ > 0 ? "mark_mm" : "155";
     standard_moves_ = marks_ > 0 && chance(0.5);
@@ -166,7 +166,7 @@ class Maker {
              "[[sequence]]\nname = \"main\"\ndesign = \"latin-square\"\nover = \"mark_mm\"\nblock = { " +
              block + " }\n";
     }
-    // The same keys, one per line.
+    // Writes the same keys with one per line.
     std::string lines = "[[block]]\nname = \"main\"\n";
     int depth = 0;
     for (std::size_t i = 0; i < block.size(); ++i) {

@@ -16,7 +16,8 @@ TEST_CASE("check's estimate is a rehearsed session and the time that people need
       simulation::rehearse(protocol, 0, 0, simulation::rehearser(observer::Observer(observer::Parameters{})));
   REQUIRE(check.simulated_sessions == 1);
   CHECK(check.trials.median == rehearsal.trials);
-  // Two intervals in each trial leave nothing to explore: only instructions and breaks come on top.
+  // With two intervals per trial nobody explores, so only instructions and breaks are added to the trials'
+  // time.
   const auto order = protocol::block_order(protocol, 0);
   double beside_s = 0;
   for (const auto& [start, trials] : rehearsal.blocks) {

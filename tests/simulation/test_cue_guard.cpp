@@ -86,7 +86,7 @@ TEST_CASE(
     "random protocols",
     "[cues]") {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  constexpr int count = 8;  // the release build tests all of them; this build only watches the memory
+  constexpr int count = 8;  // the release build tests all protocols; with a sanitizer a few are enough
 #else
   constexpr int count = 200;
 #endif
@@ -226,7 +226,7 @@ TEST_CASE("practice is kept apart: its levels neither count nor take those of th
     INFO(one.cue);
     CHECK(report(other, one.cue).accuracy == Approx(one.accuracy).epsilon(0).margin(1e-12));
   }
-  // As in this file, practice runs the main procedure.
+  // In this file the practice block runs the main block's procedure, which must still count.
   CHECK(accuracy(source("speed-accuracy.toml"), "amplitude at the wide end") > 0.9);
 }
 
@@ -235,12 +235,13 @@ TEST_CASE("trials are weighted by how often they come, catch trials too", "[cues
       replaced(source("boundary-constant.toml"), "values = [-28.0, -16.0, -8.0, -3.0, 3.0, 8.0, 16.0, 28.0]",
                "values = [-3.0, 3.0, 8.0, 16.0]");
   CHECK(accuracy(text, "always the same key") == Approx(0.75));
-  // The left answer is right in all catch trials.
+  // In all catch trials "left" is the right answer.
   const std::string block = "procedures = [\"levels\"]";
   const auto caught = replaced(text, block, block + "\ncatch = { rate = 0.5, offset_mm = -28.0 }");
-  // Half of all trials are catch trials: P(right) = 0.5 x 0.75.
+  // Half of all trials are catch trials, so "right" is correct in 0.5 x 0.75 of all trials, "left" in the
+  // others.
   CHECK(accuracy(caught, "always the same key") == Approx(0.625));
-  // The session ends after 12 of 40 trials, and chance decides which ones.
+  // The session ends after 12 of its 40 trials; which ones these are is random.
   const auto cut = replaced(text, block, block + "\ntrials = 12");
   CHECK(accuracy(cut, "always the same key") == Approx(0.75));
 }
@@ -255,7 +256,7 @@ TEST_CASE("of a list that is not shuffled and cut short only the first levels co
 
 namespace {
 
-/// Roving changes loudness and amplitude more than all but the largest levels do.
+/// A staircase with roving that changes loudness and amplitude more than most levels do.
 std::string roved_staircase(int trials) {
   auto text = replaced(pair_text, "kind = \"constant-stimuli\"", "kind = \"up-down\"");
   text = replaced(text, "values = [4.0, 8.0, 16.0]\nrepeats = 8",
@@ -276,10 +277,10 @@ TEST_CASE("a cue that helps only with the easiest levels is found in sessions th
   const auto guard = guard_of(roved_staircase(60));
   const auto& amplitude = report(guard, "amplitude at the wide end");
   REQUIRE(amplitude.whole_sessions);
-  // The staircase converges on 71 %.
+  // The staircase converges on the level with 71 % right answers.
   CHECK(amplitude.whole_sessions->accuracy == Approx(0.72).margin(0.03));
   CHECK(amplitude.accuracy >= amplitude.whole_sessions->accuracy);
-  // Duration is uninformative at every level, so the guard need not simulate sessions.
+  // Duration is the same at every level, so the guard need not simulate sessions for it.
   CHECK(report(guard, "duration").accuracy == Approx(0.5));
   CHECK(report(guard, "duration").whole_sessions->error == 0);
 }
@@ -296,13 +297,13 @@ TEST_CASE("easy practice adds nothing to what a cue reaches in sessions that it 
     REQUIRE(own);
     return own->accuracy;
   };
-  // If they were counted, sixty trials in which the cue is always right would raise 0.72 to 0.86.
+  // Sixty practice trials, in which the cue is always right, would raise 0.72 to 0.86 if they were counted.
   CHECK(reached(practised) == Approx(reached(roved_staircase(60))).margin(0.03));
 }
 
 TEST_CASE("what a rule reaches is counted on other draws than those that chose it", "[cues]") {
-  // Roving hides the amplitude, which does not depend on the level. The best of many bands only fits random
-  // draws.
+  // Roving hides the amplitude, which does not depend on the level. The best of many rules fits only the
+  // random draws from which it was chosen.
   std::map<std::string, int> features;
   const auto guard = guard_of(tests::random_protocol(20076, features));
   const auto& amplitude = report(guard, "amplitude at the wide end");
@@ -310,7 +311,7 @@ TEST_CASE("what a rule reaches is counted on other draws than those that chose i
 }
 
 TEST_CASE("two cues share their sessions only if they agree on every level that came up", "[cues]") {
-  // The amplitude does not tell 154.6 mm from 158 mm; the strip's width does. No grid of levels has an 8.
+  // The amplitude cannot distinguish 154.6 mm from 158 mm, but the strip's width can.
   std::map<std::string, int> features;
   const auto guard = guard_of(replaced(tests::random_protocol(31103, features), "\"155\"", "\"154.6\""));
   REQUIRE(report(guard, "strip width").whole_sessions);

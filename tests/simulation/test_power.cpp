@@ -53,7 +53,7 @@ TEST_CASE("a staircase's truth is where its rule balances, a posterior's where i
           "[power]") {
   const auto stairs =
       simulation::power(shipped("friction-staircase"), options("sim:threshold=-16,lapse=0", 2));
-  // Three-down-one-up converges on 79.37 %; the observer reaches 75 % at -16 dB.
+  // A three-down-one-up staircase converges on 79.37 %; the observer reaches 75 % at -16 dB.
   const auto truth = *find(stairs, "procedure a", "threshold").truth;
   observer::Question question;
   question.level = truth, question.decibel = true, question.correct = 0, question.deadline_s = 3;
@@ -67,13 +67,13 @@ TEST_CASE("a staircase's truth is where its rule balances, a posterior's where i
 TEST_CASE("truths are the values that the observer was made with, never estimates", "[power]") {
   const auto power = simulation::power(shipped("speed-accuracy"), options("sim:threshold=0.15", 6, 6));
   const auto& right = find(power, "accuracy - speed", "proportion correct");
-  CHECK(right.mean > 0);  // being fast costs accuracy
+  CHECK(right.mean > 0);  // fast answers are less often right
   CHECK(find(power, "accuracy - speed", "median response time").mean > 0);
   REQUIRE((right.truth && right.coverage && right.interval_width));
   CHECK(right.coverage->trials == static_cast<int>(right.estimates.size()));
   CHECK(std::fabs(*right.bias) < 2 * *right.interval_width);
-  // With a deadline of 0.8 s the bound is the root of 0.35 times the 0.3 s that residual and travel leave;
-  // EZ's a is 0.2 times that.
+  // With a deadline of 0.8 s, residual and travel leave 0.3 s for the decision, so the bound is sqrt(0.35 x
+  // 0.3); EZ's boundary a is 0.2 times the bound.
   const double hurried = std::sqrt(0.35 * 0.3), careful = std::sqrt(0.35 * 1.5);
   CHECK(*find(power, "accuracy - speed", "boundary").truth == Approx(0.2 * (careful - hurried)));
   CHECK(*find(power, "accuracy - speed", "time outside the decision").truth == 0);
@@ -84,7 +84,7 @@ TEST_CASE("truths are the values that the observer was made with, never estimate
   CHECK(other.recoveries.size() == power.recoveries.size());
   for (const auto& recovery : other.recoveries)
     if (recovery.parameter !=
-        "proportion correct")  // this one is of all presented trials, the others leave timeouts out
+        "proportion correct")  // of all presented trials; the other parameters leave out timeouts
       CHECK(recovery.truth == find(power, recovery.source, recovery.parameter).truth);
 }
 

@@ -40,7 +40,7 @@ def solve(kind, w0, l, length, f, q, nx, ny):
     x, dx = 0.5 * length * (1 + tx), dx * 2 / length
     w = w0 * np.exp(-x / l)
     ix, ie = np.eye(nx + 1), np.eye(ny + 1)
-    # v_x at constant y: d/dx - eta W'/W d/deta, applied twice; W'/W = -1/l.
+    # The derivative v_x at constant y is d/dx - eta W'/W d/deta, with W'/W = -1/l. It is applied twice.
     first = np.kron(dx, ie) + np.kron(ix, np.diag(eta) @ de) / l
     lap = first @ first + np.kron(np.diag(1 / w**2), de @ de)
     on = lambda i, j: i * (ny + 1) + j
@@ -61,7 +61,8 @@ def solve(kind, w0, l, length, f, q, nx, ny):
     for i in range(nx + 1):
         for j in range(ny + 1):
             row = on(i, j)
-            side, end, drive = j in (0, ny), i == 0, i == nx  # tx decreases: index 0 is x = length
+            # the points run from the end to the drive: index 0 is x = length
+            side, end, drive = j in (0, ny), i == 0, i == nx
             if side or end or drive:
                 a[row] = 0
                 a[row, row] = 1

@@ -55,13 +55,13 @@ def exponential(model, l, w0, k):
 
 
 def row(taper, model, slope, w0, length, f, q, x0):
-    # The program reads doubles, so use exactly these values.
+    # The C++ test reads doubles, so compute with exactly those values.
     slope, w0, length, f = (mpf(float(value)) for value in (slope, w0, length, f))
     k = wavenumber(f, q)
     v = linear(model, slope, w0, length, k) if taper == "linear" else exponential(model, slope, w0, k)
     fractions = [x0 * mpf("0.31"), x0 * mpf("0.83"), x0]
     fractions += [x0 + (length - x0) * t for t in (mpf("0.2"), mpf("0.6"), mpf("0.97"))]
-    if taper == "exponential":  # the end of the surface affects the solution close to it
+    if taper == "exponential":  # stay away from the surface's end, which affects the solution there
         fractions[5] = x0 + (length - x0) * mpf("0.75")
     unit = v(mpf(0))
     cells = [taper, model] + [repr(float(value)) for value in (slope, w0, length, f, q)]
@@ -74,7 +74,7 @@ def row(taper, model, slope, w0, length, f, q, x0):
 
 
 def main():
-    # slope: ratios of the drive edge's half-width to the cut-off half-width
+    # For each slope, the ratios of the drive edge's half-width to the cut-off half-width.
     tapers = {
         "0.001": ("1.05", "1.3", "2.5"), "0.003": ("1.1", "2"), "0.01": ("1.1", "1.8", "5"),
         "0.02": ("1.2", "3"), "0.05": ("1.15", "2", "6"), "0.1": ("1.2", "2", "3.5", "8"),
@@ -92,7 +92,8 @@ def main():
                         apex = w0 / mpf(d)
                         row("linear", model, mpf(d), w0, apex, f, q, (w0 - wc) / mpf(d))
     for d, ratio, end in (("0.1", "2", "0.9"), ("0.1", "3", "0.55"), ("0.05", "2", "0.52"), ("0.2", "3", "0.3")):
-        # `end`: length over apex; below 1 - 1/ratio the surface ends inside the oscillatory zone
+        # `end` is the surface's length divided by the apex's distance; below 1 - 1/ratio the surface ends
+        # where the mode still oscillates.
         for q in qualities:
             for model in ("seed", "mode"):
                 wc = C / (4 * mpf("22400"))

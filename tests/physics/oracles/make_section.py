@@ -20,7 +20,8 @@ from skfem.helpers import grad
 
 
 def mesh(t, ny=6, nz=3, layers=7):
-    # graded to the corner of the clamp and the free face by factors of 0.25; t = h/W, z in [0, t/2]
+    # The mesh is finer by factors of g towards the corner of clamp and free face. t = h/W, and z is in [0,
+    # t/2].
     g = 0.3
     y = np.unique(np.r_[np.linspace(0, 1 - min(0.5, t), ny + 1), 1 - min(0.5, t) * g ** np.arange(layers), 1])
     z = np.unique(np.r_[np.linspace(0, t / 4, nz), t / 2 - t / 4 * g ** np.arange(layers), t / 2])
@@ -40,7 +41,7 @@ def matrices(t, p, **kw):
 def free(m, b, which):
     fixed = [b.get_dofs(lambda x: np.isclose(x[0], 1)).all()]
     if which in ("x", "y"): fixed.append(b.get_dofs(lambda x: np.isclose(x[1], 0)).all())  # odd in z
-    if which == "y": fixed.append(b.get_dofs(lambda x: np.isclose(x[0], 0)).all())         # odd in y
+    if which == "y": fixed.append(b.get_dofs(lambda x: np.isclose(x[0], 0)).all())         # odd in y, too
     return np.setdiff1d(np.arange(b.N), np.concatenate(fixed))
 
 def plane(t, nu, p=5, **kw):
@@ -53,7 +54,7 @@ def plane(t, nu, p=5, **kw):
                  [cut(lam * d[1, 0] + d[0, 1], Fz, Fy), cut((lam + 2) * d[1, 1] + d[0, 0], Fz, Fz)]]).tocsc()
     MM = sp.block_diag([cut(M, Fy, Fy), cut(M, Fz, Fz)]).tocsc()
     MA = cut(M, Fx, Fx).tocsc(); KA = cut(d[0, 0] + d[1, 1], Fx, Fx).tocsc()
-    # C: lam (A, div(b, c)) - (grad A . (b, c))
+    # The matrix C belongs to the form lam (A, div(b, c)) - (grad A . (b, c)).
     C = sp.bmat([[cut(lam * d[0] - d[0].T, Fx, Fy), cut(lam * d[1] - d[1].T, Fx, Fz)]]).tocsc()
     return K, MM, MA, KA, C, lam
 
@@ -87,7 +88,8 @@ def mindlin_waves2(t, nu, kappa, omega, n=36):
     dd, s, j = t**3 / (6 * (1 - nu)), kappa * t, t**3 / 12
     half = dd / 2
     o2 = omega**2
-    # k^0, k^1, k^2 parts; rows w, beta_x, beta_y; beta_x = i a keeps them real
+    # a0, a1 and a2 multiply k^0, k^1 and k^2. Rows: w, beta_x, beta_y; writing beta_x = i a makes the
+    # matrices real.
     a0 = np.block([[s * d2 + t * o2 * i, z, s * d],
                    [z, half * (1 - nu) * d2 - s * i + j * o2 * i, z],
                    [-s * d, z, dd * d2 - s * i + j * o2 * i]])
@@ -125,7 +127,7 @@ if __name__ == "__main__":
             waves = sorted(waves, key=lambda v: (-v.real, -v.imag))
             row("wave", nu, t, part * at, *[x for v in waves for x in (v.real, v.imag)])
     for nu, kappa, t in ((0.33, 5 / 6, 0.1), (0.33, 0.9, 0.25), (0.2, 0.87, 0.4)):
-        at = 2.3650203724313520**2 * t / np.sqrt(6 * (1 - nu))  # a thin strip's cut-off
+        at = 2.3650203724313520**2 * t / np.sqrt(6 * (1 - nu))  # cut-off of a thin strip
         for part in (1.3, 1.0, 0.9, 0.7, 0.5):
             waves = sorted(symmetric(mindlin_waves2(t, nu, kappa, part * at))[:2], key=lambda v: (-v.real, -v.imag))
             row("mindlin", nu, kappa, t, part * at, *[x for v in waves for x in (v.real, v.imag)])
