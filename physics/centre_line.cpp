@@ -15,7 +15,8 @@ namespace {
 
 using std::numbers::pi;
 
-// The centre line of the models `seed` and `mode`: integrates their equation step by step along the strip.
+// The centre line of the models `seed` and `mode`: integrates the model's equation step by step along the
+// strip.
 class MarchedLine final : public CentreLine {
  public:
   MarchedLine(const Taper& taper, const MarchEquation& equation) : march_(taper, equation) {}
@@ -71,7 +72,7 @@ MarchEquation best_equation(const Surface& surface, double frequency_Hz, Losses 
   MarchEquation equation = march_equation(surface, frequency_Hz, Model::mode, losses);
   const auto* taper = std::get_if<LinearTaper>(&surface.taper);
   if (taper == nullptr || !(taper->slope > 0) || Dispersion(surface).clamped_bending()) return equation;
-  // J_nu(k s) solves the marched equation with B/d^2 + C + 1/4 = nu^2 and v = g W^-1/2.
+  // J_nu(k s) solves the marched equation if B/d^2 + C + 1/4 = nu^2 and v = g W^-1/2.
   const double nu = pi / (2 * std::atan(taper->slope));
   const double m = pi / (2 * taper->slope);
   equation.c = (nu - m) * (nu + m) - 0.25;

@@ -12,10 +12,10 @@ namespace {
 
 using std::numbers::pi;
 constexpr double longest_period_s = 0.05;
-constexpr std::size_t most_descended =
-    12;  // with more tones than this, Schroeder's phases are used as they are
+constexpr std::size_t most_descended = 12;  // with more tones than this, Schroeder's phases are not improved
 
-// Period of the envelope: 1 over the greatest common divisor of the frequency differences, in whole hertz.
+// Period of the envelope: 1 divided by the greatest common divisor of the frequency differences, in whole
+// hertz.
 double beat_period_s(std::span<const Tone> tones) {
   long divisor = 0;
   for (const Tone& tone : tones) {
@@ -25,7 +25,7 @@ double beat_period_s(std::span<const Tone> tones) {
                       : std::min(longest_period_s, 1.0 / static_cast<double>(divisor));
 }
 
-// The indices of the tones, sorted by frequency.
+// The indices of the tones, ordered by frequency.
 std::vector<std::size_t> by_frequency(std::span<const Tone> tones) {
   std::vector<std::size_t> order(tones.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -127,7 +127,7 @@ double crest_factor(std::span<const Tone> tones) {
   for (std::size_t i = 1; i + 1 < count; ++i) {
     const double y = std::abs(wave[i]);
     if (y < 0.98 * peak) continue;
-    // The maximum of a parabola through three samples.
+    // The maximum of a parabola through the sample and its two neighbours.
     const double sign = wave[i] < 0 ? -1 : 1;
     const double a = sign * wave[i - 1], c = sign * wave[i + 1];
     const double bend = a - 2 * y + c;
@@ -146,8 +146,8 @@ std::vector<Product> audible_products(std::span<const Tone> tones, double below_
     for (std::size_t j = 0; j < tones.size(); ++j) {
       if (i < j) add(tones[i].frequency_Hz - tones[j].frequency_Hz, 2);
       for (std::size_t k = 0; k < tones.size(); ++k) {
-        // The products f_i + f_j - f_k; i = j gives 2 f_i - f_k. If k is i or j, the result is one of the
-        // tones.
+        // The products f_i + f_j - f_k; i = j gives 2 f_i - f_k. With k = i or k = j the result would be one
+        // of the tones.
         if (i <= j && k != i && k != j)
           add(tones[i].frequency_Hz + tones[j].frequency_Hz - tones[k].frequency_Hz, 3);
       }

@@ -1,5 +1,5 @@
 #pragma once
-// Polynomials along one element, t in [-1, 1]: continuous (membrane) or with continuous slope (plate).
+// Polynomials along one element, t in [-1, 1]: continuous for a membrane, with continuous slope for a plate.
 #include <array>
 #include <cstddef>
 
@@ -11,13 +11,14 @@ struct BasisValues {
   std::array<double, largest_degree + 1> value{}, first{}, second{};
 };
 
-// Ordered: left vertex (value, and slope), bubbles, right vertex. `per_vertex` is 1 or 2.
+// Order of the functions: left vertex (value and slope), bubbles, right vertex. `per_vertex` is 1 or 2.
 struct ElementBasis {
   int degree;
   int per_vertex;
   int count() const { return degree + 1; }
   int bubbles() const { return count() - 2 * per_vertex; }
-  // Values and derivatives with respect to t. Vertex slopes are with respect to t too.
+  // Values and derivatives with respect to t. The functions for vertex slopes have unit slope with respect to
+  // t, too.
   BasisValues at(double t) const;
 };
 

@@ -13,8 +13,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// The surface mirrored, x' = end_m - x, so that the drive edge is its far end. The solver makes the field
-// vanish at the far end, and so gives the solution that vanishes at the drive edge.
+// The mirrored surface, x' = end_m - x, whose far end is the drive edge. The solver makes the field vanish at
+// the far end, so on this surface it finds the solution that vanishes at the drive edge.
 Surface reversed(const Surface& surface, double end_m) {
   Surface back = surface;
   back.length_m = end_m;
@@ -60,7 +60,8 @@ class Loaded {
   }
 
  private:
-  // N (W f')' + ... = -F delta: f = -F f1(x<) f2(x>) / (N W (f1 f2' - f1' f2)).
+  // The response f to a point force F solves N (W f')' + ... = -F delta: f = -F f1(x<) f2(x>) / (N W (f1 f2'
+  // - f1' f2)).
   std::complex<double> green(double x) const {
     if (x <= 0 || x >= surface_.length_m) return 0;
     const std::complex<double> g2 = tip_.value(x).mantissa, d2 = tip_.slope(x).mantissa;
@@ -91,7 +92,7 @@ void check(const Surface& surface) {
   }
 }
 
-// The field of a clamped plate's one-shape mode, and its response to a point force.
+// Computes the field of a clamped plate's one-shape mode, and its response to a point force.
 std::vector<FingerLoad> plate_loads(const Surface& surface, double f, const std::vector<double>& x_m,
                                     const Finger& finger) {
   const auto line = make_centre_line(surface, f, Model::mode);
@@ -111,7 +112,8 @@ std::vector<FingerLoad> plate_loads(const Surface& surface, double f, const std:
   return all;
 }
 
-// Position of the edge of |value| on an ascending grid: the last maximum, or the given level beyond it.
+// Position of the edge of |value| on an ascending grid: the last maximum, or the point beyond it with the
+// given level.
 std::optional<double> feature(const std::vector<double>& x, const std::vector<double>& value,
                               const Edge& edge) {
   std::size_t peak = x.size() - 1;
@@ -142,7 +144,8 @@ std::vector<FingerLoad> finger_load(const Surface& surface, double f, const std:
     end = std::max(end, x);
   }
   if (Dispersion(surface).clamped_bending()) return plate_loads(surface, f, x_m, finger);
-  // At the apex the solution from the drive is singular. Just before it the displacement is zero in any case.
+  // At the apex the solution from the drive edge is singular. Stop just before it, where the displacement is
+  // zero in any case.
   if (const auto apex = Taper(surface).apex_m()) end = std::min(end, *apex * (1 - 1e-6));
   const Loaded loaded(surface, f, std::max(end, 1e-3 * surface.length_m), finger);
   std::vector<FingerLoad> all;

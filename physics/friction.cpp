@@ -10,14 +10,14 @@
 namespace turnpoint::physics {
 namespace {
 
-// If the skin contacts carry less than this share, only the floor remains.
+// If the skin contacts carry less than this share of the load, friction is at its floor.
 constexpr double smallest_share = 0.02;
-// Steps of the table of first guesses: from one of them, two Newton steps reach rounding accuracy.
+// Number of steps in the table of start values. From such a value, two Newton steps reach rounding accuracy.
 constexpr int start_steps = 256;
 
 // The excursion e that causes an overpressure q, from (1 + q)^2 = (1 + 3 e^2/2)/(1 - e^2).
 double excursion(double overpressure) {
-  const double r = overpressure * (2 + overpressure);  // (1 + q)^2 - 1 without cancellation
+  const double r = overpressure * (2 + overpressure);  // equals (1 + q)^2 - 1, without cancellation
   return std::sqrt(r / (2.5 + r));
 }
 
@@ -33,24 +33,25 @@ std::optional<double> without_floor(double friction, double floor) {
   return std::min(1.0, std::pow(share4, 0.25));
 }
 
-// The displacement at which skin contacts carry `share` of the load, in closed form: the share determines the
-// gap, the rest of the load is the film's pressure, and the pressure determines the excursion.
+// The displacement at which the skin contacts carry `share` of the load, in closed form: the share determines
+// the gap; the film carries the rest of the load, which determines its pressure; and the pressure determines
+// the excursion.
 double displacement_for_share(const LoadSharing& m, double share) {
   if (share >= 1) return 0;
   const double gap = m.rest_gap_m - m.decay_length_m * std::log(share);
   return gap * excursion(m.pressure_Pa * (1 - share) / m.ambient_Pa);
 }
 
-// The share at a displacement. The film's overpressure has to carry the part of the load that the contacts do
-// not carry, 1 - share. The difference of both rises with L = ln(share), so Newton steps within a bracket
-// find the root.
+// The share that the contacts carry at a displacement. The film must carry the rest, 1 - share. The
+// difference between the film's overpressure and this rest rises with L = ln(share), so Newton steps within a
+// bracket find its root.
 double share_at(const LoadSharing& m, double displacement_m, double ln_guess) {
   const double lowest = std::log(smallest_share);
   const auto tangent = [&](double x) {
     const double share = std::exp(x);
     const double gap = m.rest_gap_m - m.decay_length_m * x;
     const double e = displacement_m / gap;
-    if (e >= 1) return Tangent{1, x};  // beyond the gap: half way
+    if (e >= 1) return Tangent{1, x};  // more than the gap allows: halve the bracket instead
     const double r = 2.5 * e * e / ((1 - e) * (1 + e));
     const double root = std::sqrt(1 + r);
     const double miss = m.ambient_Pa / m.pressure_Pa * r / (1 + root) - (1 - share);
@@ -74,7 +75,7 @@ void require(bool holds, const char* quantity, double value, const char* allowed
 
 double squeeze_film_overpressure(double e) {
   require(e >= 0 && e < 1, "squeeze film excursion", e, "0 to below 1");
-  // sqrt(r) - 1 with r - 1 = 2.5 e^2/(1 - e^2), in a form without cancellation at small e.
+  // The overpressure sqrt(r) - 1 with r - 1 = 2.5 e^2/(1 - e^2), in a form without cancellation at small e.
   const double r = 2.5 * e * e / (1 - e * e);
   return r / (1 + std::sqrt(1 + r));
 }

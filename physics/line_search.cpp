@@ -8,7 +8,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// d ln|v| / dx times |v|^2, with v divided by its local scale.
+// |v|^2 times d ln|v| / dx, with v divided by its local scale: positive where |v| rises with x.
 double rise(const CentreLine& line, double x) {
   const Scaled v = line.value(x), slope = line.slope(x);
   return (std::conj(v.mantissa) * slope.mantissa).real();

@@ -1,5 +1,5 @@
 #pragma once
-// The ladder of models, cheapest first.
+// The models, from the cheapest to the most exact.
 #include <array>
 #include <string_view>
 
@@ -17,7 +17,7 @@ enum class Model { edge, airy, seed, uniform, mode, modes };
 inline constexpr std::array all_models{Model::edge,    Model::airy, Model::seed,
                                        Model::uniform, Model::mode, Model::modes};
 
-// "edge" ... "modes". `parse_model` throws std::invalid_argument listing the names.
+// The names "edge" ... "modes". `parse_model` throws std::invalid_argument listing them.
 std::string_view name(Model model);
 Model parse_model(std::string_view text);
 

@@ -19,8 +19,8 @@ struct Cubic {
   }
 };
 
-// A continuous, once differentiable, monotone function through strictly monotone points. Outside the points
-// the end cubics continue. Throws std::invalid_argument for fewer than two points or unsorted x.
+// A monotone function with continuous slope through strictly monotone points. Outside the points the end
+// cubics continue. Throws std::invalid_argument for fewer than two points or unsorted x.
 class MonotoneCubic {
  public:
   MonotoneCubic() = default;
@@ -30,7 +30,8 @@ class MonotoneCubic {
   double slope(double x) const { return piece(x).slope(x); }
   const Cubic& piece(double x) const;
   const std::vector<Cubic>& pieces() const { return pieces_; }
-  // The x with value y, for strictly monotone points and y inside their range (to rounding).
+  // The x at which the function has the value y. The points must be strictly monotone, and y inside their
+  // range (to rounding).
   double inverse(double y) const;
 
  private:

@@ -46,7 +46,7 @@ class Solver {
  private:
   std::span<const double> column(std::size_t j) const { return columns_.subspan(j * rows_, rows_); }
 
-  // The column outside the passive set that lowers the residual fastest; size() if none does.
+  // The column outside the passive set that reduces the residual fastest; size() if no column reduces it.
   std::size_t steepest(double tolerance) {
     std::size_t best = x_.size();
     double most = tolerance;

@@ -1,4 +1,4 @@
-// Tones for a wanted profile of amplitude.
+// Finds tones for a desired profile of amplitude.
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -12,11 +12,10 @@ namespace turnpoint::physics {
 namespace {
 
 constexpr double reachable_residual = 0.25;
-constexpr double fit_tolerance =
-    1e-4;  // stop when another tone improves the residual by less than this share
+constexpr double fit_tolerance = 1e-4;  // stop if another tone reduces the residual by less than this share
 
-// Squared amplitudes at the target's points, scaled to a last maximum of one. `drive_gain` is |v(0)| at that
-// scale.
+// A tone's squared amplitudes at the target's points, relative to its last maximum. `drive_gain` is |v(0)|
+// relative to that maximum.
 bool shape(const Surface& surface, double f, std::span<const double> x, std::vector<double>& columns,
            double& drive_gain) {
   const auto line = make_centre_line(surface, f, Model::mode);

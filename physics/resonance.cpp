@@ -1,4 +1,5 @@
-// Resonances: the zeros of the lossless mode's displacement at the drive edge.
+// Finds resonances: the frequencies at which the displacement at the drive edge, of the mode without loss, is
+// zero.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,7 +14,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Pruefer phase of the lossless mode at the drive edge. It is continuous, rises with frequency, and is a
+// Pruefer phase of the mode without loss at the drive edge. It is continuous, rises with frequency, and is a
 // multiple of pi exactly at the resonances.
 class Phase {
  public:
@@ -23,7 +24,7 @@ class Phase {
     const TaylorMarch march(taper_, march_equation(surface_, frequency_Hz, Model::mode, Losses::left_out));
     const double v = march.value(0).mantissa.real();
     const double rising = -march.slope(0).mantissa.real() / wavenumber_per_m(surface_, frequency_Hz);
-    // The solution is positive at the tip. Each zero on the way adds pi and changes the sign.
+    // The solution is positive at the tip. Each zero between tip and drive edge adds pi and changes the sign.
     const int zeros = march.zeros();
     const double sign = zeros % 2 == 0 ? 1 : -1;
     return pi * zeros + std::acos(std::clamp(sign * rising / std::hypot(v, rising), -1.0, 1.0));
@@ -34,14 +35,14 @@ class Phase {
   Taper taper_;
 };
 
-// The frequency within the bracket at which the phase is `target`.
+// Returns the frequency within the bracket at which the phase is `target`.
 double solve(const Phase& phase, double target, const Chord& chord) {
   return false_position(
       chord, [&](double f) { return phase(f) - target; }, {4}, 1e-12,
       [](const Chord& c) { return c.width() <= 1e-13 * c.right; });
 }
 
-// Resonance number n (1, 2, ...), found by moving away from a frequency whose phase is known.
+// The frequency of resonance number n (1, 2, ...), searched from a frequency whose phase is known.
 std::optional<double> resonance(const Phase& phase, int n, double from_Hz, double at_from) {
   const double target = n * pi;
   double a = from_Hz, fa = at_from - target;
@@ -60,7 +61,7 @@ std::optional<double> resonance(const Phase& phase, int n, double from_Hz, doubl
   return std::nullopt;
 }
 
-// v(0) divided by the last maximum, by the lossless mode of a clamped plate. It has a sign, and is zero at a
+// v(0) divided by the last maximum, for the mode of a clamped plate without loss: it changes its sign at a
 // resonance.
 std::optional<double> plate_response(const Surface& surface, double f) {
   const auto line = make_centre_line(surface, f, Model::mode, Losses::left_out);
@@ -71,15 +72,15 @@ std::optional<double> plate_response(const Surface& surface, double f) {
          std::exp(std::min(300.0, drive.ln_scale - top.ln_scale));
 }
 
-// About a fifth of the distance between two resonances, which differ by half a wave between drive edge and
-// turning point.
+// About a fifth of the distance between two resonances. Neighbouring resonances differ by half a wave between
+// drive edge and turning point.
 double plate_step_Hz(const Surface& surface, double f) {
   const double reach = turning_point_m(surface, f).value_or(surface.length_m);
   return 0.5 * f * pi / (wavenumber_per_m(surface, f) * std::max(reach, 0.05 * surface.length_m));
 }
 
-// Finds the zero between two frequencies whose responses have opposite signs. Near the zero the response
-// behaves roughly like a cosine of amplitude 1 with many periods, so the relative error of the frequency is
+// Finds the resonance between two frequencies whose responses have opposite signs. Near a resonance the
+// response is roughly a cosine of amplitude 1 with many periods, so the relative error of the frequency is
 // smaller than the magnitude of the response.
 double plate_zero(const Surface& surface, const Chord& chord) {
   return false_position(
@@ -87,7 +88,7 @@ double plate_zero(const Surface& surface, const Chord& chord) {
       [](const Chord& c) { return c.width() <= 1e-9 * c.right; });
 }
 
-// Moves in steps of frequency and reports each zero on the way.
+// Moves in steps of frequency and reports each resonance that it passes.
 struct PlateWalk {
   double f;
   std::optional<double> response;
@@ -106,8 +107,8 @@ std::optional<double> nearest_plate_resonance(const Surface& surface, double f) 
   const double step = plate_step_Hz(surface, f);
   PlateWalk up{f, plate_response(surface, f)}, down = up;
   std::optional<double> above, below;
-  // Both sides take turns. The zero found first may be the farther one, so the other side takes the same
-  // step.
+  // Both directions take turns. The resonance found first may be the farther one, so the other direction
+  // takes the same step.
   for (int i = 0; i < 10 && !above && !below; ++i) {
     above = up.step(surface, step);
     below = down.step(surface, -step);

@@ -1,5 +1,5 @@
-// Roots of a function between two points at which its sign differs: by halves, by Newton's steps, by false
-// position. Headers only, without allocation.
+// Finds roots of a function between two points at which its sign differs: by halving, by Newton's steps, or
+// by false position. Only headers, without allocation.
 #pragma once
 
 #include <algorithm>
@@ -7,23 +7,23 @@
 
 namespace turnpoint::physics {
 
-// An interval by the sign of the function at its ends; `above` may be the left end or the right one. A point
-// of value 0 counts as not above.
+// An interval whose ends have different signs of the function: it is above 0 at `above` (which may be the
+// left or the right end), and 0 or below at the other end.
 struct Bracket {
   double above;      // f > 0
   double not_above;  // f <= 0
 
   double middle() const { return 0.5 * (above + not_above); }
   double width() const { return std::abs(above - not_above); }
-  // Strictly between the ends; false for a NaN.
+  // Whether x is strictly between the ends; false for a NaN.
   bool inside(double x) const { return x > std::min(above, not_above) && x < std::max(above, not_above); }
   void replace(bool is_above, double x) { (is_above ? above : not_above) = x; }
 };
 
-// All searches end where no number is left between the ends, and after `most` steps, which bounds the work
-// where the root is at 0 or rounding keeps steps from becoming small.
+// Each search below also ends if there is no number left between the ends, or after `most` steps. This bounds
+// the work if the root is at 0 or rounding keeps steps from becoming small.
 
-// Halves the bracket until done(bracket). For a function of which the sign alone is known.
+// Halves the bracket until done(bracket). For functions of which only the sign is known.
 template <typename IsAbove, typename Done>
 Bracket bisect(Bracket bracket, IsAbove&& is_above, Done&& done, int most = 200) {
   for (int i = 0; i < most && !done(bracket); ++i) {
@@ -34,20 +34,20 @@ Bracket bisect(Bracket bracket, IsAbove&& is_above, Done&& done, int most = 200)
   return bracket;
 }
 
-// The same until no number is left.
+// Halves the bracket until no number is left between its ends.
 template <typename IsAbove>
 Bracket bisect(Bracket bracket, IsAbove&& is_above) {
   return bisect(bracket, is_above, [](const Bracket&) { return false; });
 }
 
-// The input of a Newton step: the function's value at x, and where its tangent there meets 0 (anywhere
-// outside the bracket, or NaN, if it does not).
+// The input of a Newton step: the function's value at x, and the point where its tangent there is 0. If the
+// tangent has no such point, the result may be NaN or any number outside the bracket.
 struct Tangent {
   double f, meets_0;
 };
 
-// Newton's steps from x; one that would leave the bracket goes to its middle instead. Ends at a point of
-// value 0, or at the point to which the last step led if that was close(point, x) to where it began.
+// Takes Newton's steps from x; a step that would leave the bracket goes to its middle instead. Ends at a
+// point where the function is 0, or after a step from x to `point` for which close(point, x) is true.
 template <typename Function, typename Close>
 double newton(Bracket bracket, double x, Function&& tangent, Close&& close, int most = 200) {
   for (int i = 0; i < most; ++i) {
@@ -70,14 +70,15 @@ struct Chord {
   double meets_0() const { return left + (right - left) * f_left / (f_left - f_right); }
 };
 
-// How to keep false position from converging slowly from one end only.
+// What false position does if it converges slowly because one end never moves.
 struct Creeping {
-  int halve_every;            // each so many-th step goes to the middle
-  bool halve_values = false;  // Illinois: an end that stays a second time counts half its value
+  int halve_every;            // after every this many steps, one goes to the middle
+  bool halve_values = false;  // Illinois method: if an end stays a second time, its value is halved
 };
 
-// False position, until the function's size is at most `enough`, done(chord), or no number is left between
-// the ends. The point found last; at the end of a chord, its middle.
+// Searches by false position until |function| is at most `enough`, done(chord) is true, or no number is left
+// between the ends. Returns the point whose value is at most `enough`, otherwise the middle of the last
+// chord.
 template <typename Function, typename Done>
 double false_position(Chord chord, Function&& f, Creeping creeping, double enough, Done&& done,
                       int most = 100) {

@@ -15,24 +15,27 @@
 
 namespace turnpoint::physics {
 
-// How the two sloping sides are held: simply supported (v = 0, no moment) or clamped (v = 0, no slope). A
-// membrane without bending stiffness knows no difference.
+// How the two sloping sides are held: simply supported (v = 0, no moment) or clamped (v = 0, no slope). For a
+// membrane without bending stiffness there is no difference.
 enum class Edges { supported, clamped };
 
-// Whether bending stiffness enters: `automatic` models it where it moves a cut-off by more than about half a
-// percent anywhere in the usable 90 % of the surface (see bending_modelled), and always without tension.
+// Whether bending stiffness is included. `automatic` includes it if it moves a cut-off by more than about
+// half a percent anywhere in the usable 90 % of the surface (see bending_modelled), and always if there is no
+// tension.
 enum class Bending { automatic, on, off };
 
-// The theory of a clamped plate. Against the elastic cross-section, Kirchhoff's cut-off half-width is 3 to 6
-// % too large for a 2 mm aluminium plate at 22 to 45 kHz, Mindlin's within 0.2 % (h/W to 0.4, Poisson's ratio
-// 0 to 0.4).
+// The theory of a clamped plate. Compared with the elastic cross-section, Kirchhoff's cut-off half-width is 3
+// to 6 % too large for a 2 mm aluminium plate at 22 to 45 kHz; Mindlin's is within 0.2 % (h/W to 0.4,
+// Poisson's ratio 0 to 0.4).
 enum class PlateTheory {
-  kirchhoff,  // thin plate: D lap^2 v = rho h omega^2 v, with tension if there is any
-  mindlin,    // shear and rotary inertia, shear factor by Poisson's ratio (mindlin_plate.hpp)
-  elastic     // three-dimensional elasticity of the cross-section (elastic_section.hpp)
+  kirchhoff,  // thin plate: D lap^2 v = rho h omega^2 v, and tension if there is any
+  // includes shear and rotary inertia; the shear factor depends on Poisson's ratio (mindlin_plate.hpp)
+  mindlin,
+  elastic  // three-dimensional elasticity of the cross-section (elastic_section.hpp)
 };
 
-// "kirchhoff", "mindlin", "elastic". `parse_plate_theory` throws std::invalid_argument listing the names.
+// The names "kirchhoff", "mindlin", "elastic". `parse_plate_theory` throws std::invalid_argument listing
+// them.
 std::string_view name(PlateTheory theory);
 PlateTheory parse_plate_theory(std::string_view text);
 
@@ -53,45 +56,46 @@ struct TaperPoint {
   double half_width_m;
 };
 
-// Measured half-widths, joined by monotone cubics (Fritsch & Carlson 1980; one continuous derivative). The
-// first point lies at x = 0, the last at or beyond the surface's length; half-widths fall strictly.
+// Measured half-widths, joined by monotone cubics (Fritsch & Carlson 1980; with continuous slope). The first
+// point must be at x = 0, the last at or beyond the surface's length; half-widths must fall strictly.
 struct TabulatedTaper {
   std::vector<TaperPoint> points;
 };
 
 using TaperForm = std::variant<LinearTaper, ExponentialTaper, TabulatedTaper>;
 
-// Standard deviations of the surface's parameters (one sigma; zero: exact). They give the uncertainty of a
-// boundary, which is kept separate from the error of a model.
+// Standard deviations of the surface's parameters; zero means that a parameter is exact. They determine the
+// uncertainty of a boundary, which is kept separate from the error of a model.
 struct ParameterSd {
   double density_kg_m3 = 0;
   double tension_Pa = 0;
   double thickness_m = 0;
   double modulus_Pa = 0;
   double half_width_m = 0;
-  double slope = 0;           // of a linear taper
-  double decay_length_m = 0;  // of an exponential one
+  double slope = 0;           // of a linear taper's slope
+  double decay_length_m = 0;  // of an exponential taper's decay length
 };
 
-// The shape of the driven edge's displacement across y at x = 0 (unit at the centre line).
+// The shape of the driven edge's displacement across y at x = 0; it is 1 at the centre line.
 enum class DriveShape {
-  cosine,  // cos(pi y / 2W): the first transverse mode, the seed's assumption
-  piston   // 1: a stiff bar; it excites the higher transverse modes
+  cosine,  // cos(pi y / 2W), the shape of the first transverse mode, which the 1998 paper assumes
+  piston   // 1 everywhere: a stiff bar, which also excites the higher transverse modes
 };
 
 struct Surface {
   double density_kg_m3 = 0;
-  double tension_Pa = 0;  // a stress; 0: a plate
+  double tension_Pa = 0;  // tension as a stress; 0 means a plate
   double thickness_m = 0;
-  double length_m = 0;        // drive edge to clamped end
-  double quality_factor = 0;  // infinity: lossless
+  double length_m = 0;        // from the drive edge to the clamped end
+  double quality_factor = 0;  // infinity means no loss
   TaperForm taper = LinearTaper{0, 0};
   Edges edges = Edges::supported;
   Bending bending = Bending::automatic;
   DriveShape drive = DriveShape::cosine;
   std::optional<double> modulus_Pa;  // Young's modulus; required when bending is modelled
   double poisson = 0.33;
-  PlateTheory theory = PlateTheory::kirchhoff;  // others: clamped plates without tension only
+  // mindlin and elastic: only for clamped plates without tension
+  PlateTheory theory = PlateTheory::kirchhoff;
   std::optional<double> yield_strength_Pa;
   ParameterSd sd;
 };
@@ -101,29 +105,33 @@ struct Material {
   double density_kg_m3;
   double modulus_Pa;
   double poisson;
-  double yield_strength_Pa;  // of a strong commercial temper (handbook value, 10 % or so)
+  // yield strength of a strong commercial temper (handbook value, accurate to about 10 %)
+  double yield_strength_Pa;
 };
 
-// Looks up a named material; empty if unknown.
+// Returns the material with this name; empty if it is unknown.
 std::optional<Material> find_material(std::string_view name);
 
-// Throws std::invalid_argument naming the first quantity outside its physical range and what is allowed.
+// Throws std::invalid_argument if a quantity is outside its physical range; the message names the first such
+// quantity and what is allowed.
 void validate(const Surface& surface);
 
-// Half-width (m) and its first derivative at x in [0, length_m]. For many points build a Taper (taper.hpp).
+// Half-width (m) and its first derivative at x in [0, length_m]. For many points, make a Taper (taper.hpp).
 double half_width_m(const Surface& surface, double x_m);
 
-// D = E h^3 / 12 (1 - nu^2) in N m, none without a modulus; N = T h in N/m; c = sqrt(T / rho) in m/s.
+// Bending stiffness D = E h^3 / 12 (1 - nu^2) in N m (empty without a modulus), line tension N = T h in N/m,
+// wave speed c = sqrt(T / rho) in m/s.
 std::optional<double> bending_stiffness_N_m(const Surface& surface);
 double line_tension_N_per_m(const Surface& surface);
 double wave_speed_m_s(const Surface& surface);
 
-// Whether bending enters the equations for this surface, by its `bending` setting. A plate without a modulus,
-// or with bending off, is refused by `validate`.
+// Whether bending enters the equations for this surface, according to its `bending` setting. validate()
+// refuses a plate without a modulus or with bending off.
 bool bending_modelled(const Surface& surface);
 
-// The seed's brass membrane (30 mm half-width, slope 0.1, 5.12 GPa; lossless) and the aluminium plate of the
-// simulated rig (clamped, 14 mm, slope 0.03, 2 mm thick, Q = 60): reference surfaces for tests and examples.
+// Reference surfaces for tests and examples: the 1998 paper's brass membrane (30 mm half-width, slope 0.1,
+// 5.12 GPa; no loss), and the aluminium plate of the simulated rig (clamped, 14 mm, slope 0.03, 2 mm thick, Q
+// = 60).
 Surface seed_brass();
 Surface aluminium_plate();
 

@@ -1,5 +1,5 @@
 #pragma once
-// The taper as a function, with the derived quantities that the solvers need.
+// The taper as a function, with derived quantities for the solvers.
 #include <optional>
 #include <vector>
 
@@ -8,21 +8,22 @@
 
 namespace turnpoint::physics {
 
-// W(x) of a surface on [0, length_m]. Immutable; const functions are thread-safe.
+// The half-width W(x) of a surface on [0, length_m]. Immutable; const functions are thread-safe.
 class Taper {
  public:
   explicit Taper(const Surface& surface);
 
   double half_width_m(double x_m) const;
-  double slope(double x_m) const;  // dW/dx, negative
+  double slope(double x_m) const;  // the derivative dW/dx, which is negative
   // Position at which the half-width is W; empty if outside [0, length_m].
   std::optional<double> position_m(double half_width_m) const;
-  // The same for a linear or exponential taper continued beyond the surface; empty outside a table.
+  // The same position, but linear and exponential tapers are continued beyond the surface; empty outside a
+  // table.
   std::optional<double> position_continued_m(double half_width_m) const;
   double length_m() const { return length_m_; }
-  // Where the sides meet, for a linear taper.
+  // Position where the sides of a linear taper meet; empty for other tapers.
   std::optional<double> apex_m() const;
-  // Largest x < x_m at which a derivative of W jumps; 0 when there is none.
+  // Largest x < x_m at which a derivative of W jumps; 0 if there is none.
   double previous_knot_m(double x_m) const;
   const TaperForm& form() const { return form_; }
   const MonotoneCubic& table() const { return table_; }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-// Where compiler and C library support it, the function is compiled for several instruction sets.
+// If compiler and C library support it, the function is compiled for several instruction sets.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define TURNPOINT_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
@@ -19,7 +19,7 @@ constexpr std::size_t lanes = 16;
 
 }  // namespace
 
-// The last, incomplete group is padded, because a scalar loop for the rest would be slower.
+// Pads the last, incomplete group of points, because a scalar loop for these points would be slower.
 TURNPOINT_CLONES
 void horner_real(const TaylorStep& step, const double* x, std::size_t n, double* re) {
   const double inverse = 1 / step.scale;
@@ -90,15 +90,15 @@ bool half_log_square(const double* re, const double* im, std::size_t n, double o
   // the exponent bits.
   constexpr double ln2 = 0.693147180559945309417232121458;
   constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcdULL;
-  constexpr std::uint64_t small = 0x03d0000000000000ULL;  // about 1e-289
+  constexpr std::uint64_t small = 0x03d0000000000000ULL;  // the bits of about 1e-289
   std::uint64_t any_small = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const double square = re[i] * re[i] + im[i] * im[i];
     any_small |= (std::bit_cast<std::uint64_t>(square) - small) >> 63;
     const std::uint64_t bits = std::bit_cast<std::uint64_t>(square) - sqrt_half;
-    // Makes the exponent a double without an integer conversion, for which few instruction sets have a vector
-    // form.
-    const std::uint64_t biased = (bits + 0x7ff0000000000000ULL) >> 52;  // e + 2047, a small positive number
+    // Converts the exponent to a double without an integer conversion, which few instruction sets can do on
+    // vectors.
+    const std::uint64_t biased = (bits + 0x7ff0000000000000ULL) >> 52;
     const double e = std::bit_cast<double>(biased | 0x4330000000000000ULL) - (4503599627370496.0 + 2047.0);
     const std::uint64_t mantissa_bits = (bits & 0x000fffffffffffffULL) + sqrt_half;
     const double m = std::bit_cast<double>(mantissa_bits);

@@ -13,12 +13,12 @@
 namespace turnpoint::physics {
 namespace {
 
-// Samples per step when looking for extrema and zeros. A step covers at most about 4 radians.
+// Number of samples per step when searching for extrema and zeros. A step covers at most about 4 radians.
 constexpr int samples = 16;
 
 struct Local {
   std::complex<double> g;
-  std::complex<double> dg;  // dg/dx
+  std::complex<double> dg;  // the derivative dg/dx
 };
 
 Local at(const TaylorStep& step, double x) {
@@ -44,7 +44,7 @@ double Scaled::ln_magnitude() const {
 struct TaylorMarch::State {
   Taper taper;
   MarchEquation equation;
-  std::optional<ApexSeries> apex;  // covers x > apex->inner_m()
+  std::optional<ApexSeries> apex;  // the solution for x > apex->inner_m()
   std::vector<TaylorStep> steps;   // from the tip to x = 0
 
   void march(TaylorState from);
@@ -88,14 +88,14 @@ Local TaylorMarch::State::local(double x, double& ln_scale) const {
   return {state.g, state.dg};
 }
 
-// Half of d|v|^2/dx, times W^(2 power). Positive where |v| rises with x.
+// Half of d|v|^2/dx times W^(2 power): positive where |v| rises with x.
 double TaylorMarch::State::rise(const Local& g, double x) const {
   const double bend =
       equation.w_power == 0 ? 0 : equation.w_power * std::norm(g.g) * taper.slope(x) / taper.half_width_m(x);
   return (std::conj(g.g) * g.dg).real() - bend;
 }
 
-// The outermost maximum of |v| within a step.
+// Position of the outermost maximum of |v| within a step.
 std::optional<double> TaylorMarch::State::peak_in(const TaylorStep& step) const {
   double outer = step.x_start;
   double f_outer = rise(at(step, outer), outer);
@@ -175,7 +175,7 @@ std::optional<double> TaylorMarch::level_m(double level) const {
     inner = outer;
     outer = state_->taper.length_m();
   }
-  // Seen from the tip, the target lies in the first step whose inner end is above it.
+  // |v| rises from the tip, so the level is reached in the first step at whose inner end |v| is above it.
   for (const TaylorStep& step : state_->steps) {
     const double end = step.x_start - step.length;
     if (end <= inner) break;
@@ -216,14 +216,14 @@ int TaylorMarch::zeros() const {
 
 namespace {
 
-// Consecutive points within one step, not more than the scratch arrays hold.
+// Largest number of consecutive points that are evaluated together, which is the size of the scratch arrays.
 constexpr std::size_t batch = 256;
 
 struct Scratch {
   std::array<double, batch> re, im;
 };
 
-// Number of points from `first` on that lie within the step, at most a batch.
+// Number of points from `first` on that lie within the step, at most `batch`.
 std::size_t run_length(std::span<const double> x, std::size_t first, const TaylorStep& step, double end) {
   const double inner = step.x_start - step.length;
   const double outer = std::min(step.x_start, std::nextafter(end, 0));
@@ -235,7 +235,7 @@ std::size_t run_length(std::span<const double> x, std::size_t first, const Taylo
 
 }  // namespace
 
-// v = g W^-power for consecutive points within one step.
+// Computes v = g W^-power for consecutive points within one step.
 void TaylorMarch::State::run(const TaylorStep& step, std::span<const double> x, double* re,
                              double* im) const {
   if (equation.a.imag() != 0) {
@@ -267,7 +267,8 @@ void TaylorMarch::evaluate(std::span<const double> x, std::complex<double> phase
   for (std::size_t i = 0; i < x.size();) {
     if (step == nullptr || !(x[i] > step->x_start - step->length && x[i] <= step->x_start))
       step = s.step_at(x[i]);
-    if (step == nullptr || x[i] >= end) {  // here the series of the apex applies; at the end itself v is zero
+    // the point lies in the apex series, or is the end itself, where v is zero
+    if (step == nullptr || x[i] >= end) {
       const Scaled one = value(x[i]);
       ln_amplitude[i] = one.mantissa == 0.0 ? ln_zero : one.ln_magnitude() - ln_reference;
       v[i] = one.mantissa * turn * std::exp(std::min(one.ln_scale - ln_reference, 700.0));
@@ -282,7 +283,7 @@ void TaylorMarch::evaluate(std::span<const double> x, std::complex<double> phase
     const std::complex<double> factor = turn * std::exp(std::min(ln_step, 700.0));
     rotate(re, im, n, factor.real(), factor.imag(), reinterpret_cast<double*>(&v[i]));
     if (!half_log_square(re, im, n, ln_step, &ln_amplitude[i])) {
-      for (std::size_t j = 0; j < n; ++j) {  // v is zero, apart from rounding
+      for (std::size_t j = 0; j < n; ++j) {  // v is zero here, apart from rounding
         const double magnitude = std::hypot(re[j], im[j]);
         ln_amplitude[i + j] = magnitude > 0 ? std::log(magnitude) + ln_step : ln_zero;
       }

@@ -19,19 +19,19 @@ namespace turnpoint::physics {
 
 struct MarchEquation {
   std::complex<double> a;  // 1/m^2
-  double b = 0;            // of 1/W^2
-  double c = 0;            // of W'^2/W^2
-  double w_power = 0;      // displacement v = g W^-w_power
+  double b = 0;            // factor of 1/W^2
+  double c = 0;            // factor of W'^2/W^2
+  double w_power = 0;      // exponent in the displacement v = g W^-w_power
 };
 
-// g, or v, with its size split off: the value is `mantissa` exp(ln_scale).
+// A value of g or v in two parts: it is `mantissa` exp(ln_scale).
 struct Scaled {
   std::complex<double> mantissa;
   double ln_scale = 0;
-  double ln_magnitude() const;  // ln|value|, ln_zero when it is exactly zero
+  double ln_magnitude() const;  // ln|value|; ln_zero if the value is exactly zero
 };
 
-// One solution of the equation, normalised arbitrarily. Immutable once built; const functions are
+// One solution of the equation, with an arbitrary constant factor. Immutable; const functions are
 // thread-safe.
 class TaylorMarch {
  public:
@@ -40,23 +40,23 @@ class TaylorMarch {
   TaylorMarch(TaylorMarch&&) noexcept;
   TaylorMarch& operator=(TaylorMarch&&) noexcept;
 
-  // v and dv/dx at one point of [0, length_m].
+  // The displacement v and its derivative dv/dx at one point of [0, length_m].
   Scaled value(double x_m) const;
   Scaled slope(double x_m) const;
 
-  // v times exp(-ln_reference) / phase_reference at many points, and ln|v| - ln_reference. `x_m` ascending is
-  // fastest; any order is right. v is 0 where it underflows; the logarithm is right there too.
+  // Computes v exp(-ln_reference) / phase_reference at many points, and ln|v| - ln_reference. Any order of
+  // `x_m` is allowed; ascending is fastest. Where v underflows it is 0, but the logarithm is still correct.
   void evaluate(std::span<const double> x_m, std::complex<double> phase_reference, double ln_reference,
                 std::span<std::complex<double>> v, std::span<double> ln_amplitude) const;
 
-  // Outermost maximum of |v| inside the surface; empty if |v| rises all the way to the drive edge, or if the
-  // maximum would be beyond it.
+  // Position of the outermost maximum of |v| on the surface; empty if |v| rises all the way to the drive
+  // edge, so that the maximum would lie beyond it.
   std::optional<double> last_peak_m() const;
-  // Outermost point at which |v| is `level` of its last maximum, 0 < level < 1; empty if there is none.
+  // Outermost point at which |v| is `level` times its last maximum, 0 < level < 1; empty if there is none.
   std::optional<double> level_m(double level) const;
-  // Zeros of a real solution strictly between the drive edge and the tip.
+  // Number of zeros of a real solution strictly between the drive edge and the tip.
   int zeros() const;
-  // Number of Taylor steps, to which the cost is proportional.
+  // Number of Taylor steps; the cost is proportional to it.
   int steps() const;
 
  private:

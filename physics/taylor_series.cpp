@@ -8,7 +8,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// The terms that are left out are smaller than this, relative to the first two.
+// Terms that are left out are smaller than exp of this, relative to the first two terms.
 constexpr double ln_truncation = -39.8;  // 5e-18
 
 // 1/((n + 1)(n + 2))
@@ -18,12 +18,12 @@ constexpr auto inverse_products = [] {
   return table;
 }();
 
-// The length over which the series is accurate to rounding, estimated from its last three terms, because one
-// or two of them may vanish by symmetry.
+// The length over which the series is accurate to rounding. It is estimated from the last three terms,
+// because one or two of them may vanish by symmetry.
 double exact_length(const TaylorStep& step) {
   const double size =
       std::max({std::abs(step.re[0]), std::abs(step.im[0]), std::abs(step.re[1]), std::abs(step.im[1])});
-  double ln_ratio = std::numbers::ln2 * 2;  // no step is longer than four trial scales
+  double ln_ratio = std::numbers::ln2 * 2;  // limits a step to four trial scales
   for (int n = taylor_order - 2; n <= taylor_order; ++n) {
     const double term = std::max(std::abs(step.re[n]), std::abs(step.im[n]));
     if (term > 0) ln_ratio = std::min(ln_ratio, (std::log(size / term) + ln_truncation) / n);
@@ -64,7 +64,7 @@ double SeriesMaker::trial_scale(double x) const {
   return std::min({scale, 3 / k, 4 * taper_.length_m()});
 }
 
-// s^2 g'' + (A s^2 - mu'^2) g = 0 with s = s0 (1 + e tau): a five-term recurrence.
+// Taylor series for s^2 g'' + (A s^2 - mu'^2) g = 0 with s = s0 (1 + e tau), by a five-term recurrence.
 template <bool lossy>
 void SeriesMaker::linear(double x, TaylorStep& step) const {
   const double slope = std::get<LinearTaper>(taper_.form()).slope;
@@ -80,7 +80,7 @@ void SeriesMaker::linear(double x, TaylorStep& step) const {
     const double same = e * e * n * (n - 1.0) - strength + ar;
     const double next = 2 * e * (n + 1.0) * n;
     const double factor = -inverse_products[static_cast<std::size_t>(n)];
-    // A s^2 g, where s^2 = s0^2 (1 + 2 e tau + e^2 tau^2); its n-th term is in `same`.
+    // The term A s^2 g with s^2 = s0^2 (1 + 2 e tau + e^2 tau^2); its n-th coefficient is in `same`.
     const double before_re = n >= 2 ? 2 * e * re[n - 1] + e * e * re[n - 2] : n == 1 ? 2 * e * re[0] : 0;
     double sum_re = next * re[n + 1] + same * re[n] + ar * before_re;
     if constexpr (lossy) {
@@ -92,7 +92,7 @@ void SeriesMaker::linear(double x, TaylorStep& step) const {
   }
 }
 
-// Taylor coefficients of p - A in tau, which are real. Returns how many of them are needed.
+// Computes the Taylor coefficients of p - A in tau, which are real. Returns how many of them are needed.
 int SeriesMaker::potential_series(double x, double knot, double scale,
                                   std::array<double, taylor_order>& q) const {
   q.fill(0);
@@ -110,7 +110,8 @@ int SeriesMaker::potential_series(double x, double knot, double scale,
     q[0] -= equation_.c / (l * l);
     return count;
   }
-  // For a cubic half-width W(tau), 1/W^2 has a recurrence; it is multiplied by the quartic B + C W'^2.
+  // If the half-width W(tau) is a cubic, 1/W^2 has a recurrence; it is then multiplied by the quartic B + C
+  // W'^2.
   std::array<double, 4> w{taper_.half_width_m(x), 0, 0, 0};
   if (std::holds_alternative<TabulatedTaper>(taper_.form())) {
     const Cubic& p = taper_.table().piece(0.5 * (knot + x));
@@ -184,7 +185,8 @@ void SeriesMaker::fill(const TaylorState& from, TaylorStep& step) const {
     convolved(from.x, knot, step);
   }
   step.length = exact_length(step);
-  // End exactly on the knot. If rounding put the inner end just above it, another, tiny step would follow.
+  // End exactly on the knot: if rounding put the inner end just outside of it, another, tiny step would
+  // follow.
   if (step.length > (from.x - knot) * (1 - 1e-9)) step.length = from.x - knot;
 }
 
@@ -193,8 +195,8 @@ ApexSeries::ApexSeries(const Taper& taper, const MarchEquation& equation)
       slope_(std::get<LinearTaper>(taper.form()).slope),
       a_(equation.a) {
   mu_ = std::sqrt(equation.b / (slope_ * slope_) + equation.c + 0.25);
-  // Steps cost less per point than this series, so it is used near the tip only, unless a high order would
-  // need many steps.
+  // A point costs more by this series than by a step. Use the series only near the tip, unless the order is
+  // so high that many steps would be needed there.
   const double share = 1 / (1 + 9 * std::min(1.0, 20 / mu_));
   const double reach = share * std::min(2 * std::sqrt(mu_ + 1), mu_) / std::sqrt(std::abs(equation.a));
   inner_m_ = std::max(0.0, half_width_m_ / slope_ - reach);
@@ -212,7 +214,7 @@ TaylorState ApexSeries::at(double x) const {
     if (std::abs(term) * j < 1e-18 * std::abs(sum)) break;
   }
   const double power = mu_ + 0.5;
-  // Relative to the inner end, which keeps the logarithm small.
+  // Distances are relative to the inner end of the series, which keeps the logarithm small.
   const double s1 = half_width_m_ / slope_ - inner_m_;
   return {x, sum, -(power * sum + derivative) / s, power * std::log(s / s1), 0};
 }

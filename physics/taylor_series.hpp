@@ -1,5 +1,5 @@
 #pragma once
-// Local series of the marched equation: at a regular point and at the apex of a linear taper.
+// Local series of the marched equation, at a regular point and at the apex of a linear taper.
 #include <array>
 #include <complex>
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace turnpoint::physics {
 
-// g and dg/dx at a point, times 2^exponent exp(ln_base). The exponent is a count, so that thousands of steps
-// add no rounding to it.
+// g and dg/dx at a point; both are to be multiplied by 2^exponent exp(ln_base). The exponent is an integer,
+// so that thousands of steps add no rounding error to it.
 struct TaylorState {
   double x = 0;
   std::complex<double> g;
@@ -19,12 +19,12 @@ struct TaylorState {
   double ln_base = 0;
   long exponent = 0;
   double ln_scale() const;
-  // Takes a power of two out of (g, dg scale) into the exponent.
+  // Moves a power of two from (g, dg scale) into the exponent.
   void normalise(double scale);
 };
 
-// Makes the Taylor polynomial of the solution through a state, and the length over which it is exact to
-// rounding.
+// Makes the Taylor polynomial of the solution through a state, and computes the length over which it is
+// accurate to rounding.
 class SeriesMaker {
  public:
   SeriesMaker(const Taper& taper, const MarchEquation& equation);

@@ -1,10 +1,10 @@
 #pragma once
-// A pure tone of the drive edge.
+// A pure tone that drives the edge of the surface.
 
 namespace turnpoint::physics {
 
-// Displacement of the drive edge's centre, amplitude_m cos(2 pi frequency_Hz t + phase_rad), before any gain
-// of the surface. amplitude_m is a peak value.
+// The displacement of the drive edge's centre is amplitude_m cos(2 pi frequency_Hz t + phase_rad), before any
+// gain of the surface. amplitude_m is a peak value.
 struct Tone {
   double frequency_Hz = 0;
   double amplitude_m = 1;

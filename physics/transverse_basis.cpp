@@ -37,7 +37,8 @@ Quadrature make_gauss_legendre(int n) {
 }  // namespace
 
 Quadrature gauss_legendre(int n) {
-  // Each quadrature rule is made once, because making one takes almost as long as a solution at 1000 points.
+  // Rules with up to `kept` nodes are made only once, because making one takes almost as long as a solution
+  // at 1000 points.
   constexpr int kept = 40;
   static const std::vector<Quadrature> rules = [] {
     std::vector<Quadrature> list;
@@ -58,7 +59,7 @@ TransverseBasis TransverseBasis::polynomials(int count, int power) {
   // The last column is the centre, eta = 0. It is evaluated with the others and then separated.
   for (Eigen::Index q = 0; q <= nodes; ++q) {
     const double t = q == nodes ? 0 : basis.rule_.x[static_cast<std::size_t>(q)];
-    // Bubble functions and Legendre polynomials with two derivatives each, by recurrence.
+    // Computes bubble functions and Legendre polynomials with two derivatives each, by recurrence.
     const double u = 1 - t * t;
     const double b = power == 1 ? u : u * u;
     const double b1 = power == 1 ? -2 * t : -4 * t * u;
@@ -75,7 +76,7 @@ TransverseBasis TransverseBasis::polynomials(int count, int power) {
           basis.second_(k / 2, q) = scale * (b2 * p0 + 2 * b1 * d0 + b * s0);
         }
       }
-      // P_(k+2) = ((2k + 3) t P_(k+1) - (k + 1) P_k) / (k + 2), differentiated once and twice.
+      // The recurrence P_(k+2) = ((2k + 3) t P_(k+1) - (k + 1) P_k) / (k + 2), differentiated once and twice.
       const double n = k + 2;
       const double p2 = ((2 * n - 1) * t * p1 - (n - 1) * p0) / n;
       const double d2 = ((2 * n - 1) * (p1 + t * d1) - (n - 1) * d0) / n;

@@ -1,5 +1,6 @@
 #pragma once
-// Functions of eta = y / W(x) for the two-dimensional field, and the integrals that its weak form needs.
+// Functions of eta = y / W(x) for the two-dimensional field, and the integrals that the field's weak form
+// needs.
 #include <Eigen/Dense>
 #include <array>
 #include <functional>
@@ -13,31 +14,32 @@ struct Quadrature {
 };
 Quadrature gauss_legendre(int n);
 
-// Even functions that vanish at eta = 1: (1 - eta^2)^m P_2j(eta), m = 1 for membranes, 2 where the slope
-// vanishes too, or one given shape. Integrals over [0, 1].
+// Even functions of eta that vanish at eta = 1: (1 - eta^2)^m P_2j(eta) with m = 1 for membranes and m = 2 if
+// the slope must vanish, too; or one given shape. Integrals are over [0, 1].
 class TransverseBasis {
  public:
   using Matrix = Eigen::MatrixXd;
 
   static TransverseBasis polynomials(int count, int power);
-  // One function: the clamped cut-off's shape cos(b eta) / cos b - cosh(g eta) / cosh g.
+  // A basis of one function, the shape of a clamped strip at its cut-off: cos(b eta) / cos b - cosh(g eta) /
+  // cosh g.
   static TransverseBasis clamped_shape(double b, double g);
 
   int count() const { return static_cast<int>(centre.size()); }
-  // Coefficients of the least-squares fit to a shape.
+  // Coefficients of the basis functions in a least-squares fit to this shape.
   Eigen::VectorXd project(const std::function<double(double)>& shape) const;
 
   Matrix mass;                                // Y_i Y_j
-  Matrix stretch;                             // Y_i eta Y_j'
-  Matrix shear;                               // eta^2 Y_i' Y_j'
+  Matrix stretch;                             // integrals of Y_i eta Y_j'
+  Matrix shear;                               // integrals of eta^2 Y_i' Y_j'
   Matrix stiff;                               // Y_i' Y_j'
-  std::array<std::array<Matrix, 4>, 4> bend;  // of (Y, eta Y', eta^2 Y'', Y'')
+  std::array<std::array<Matrix, 4>, 4> bend;  // integrals of all products of (Y, eta Y', eta^2 Y'', Y'')
   Eigen::VectorXd centre;                     // Y_i(0)
 
  private:
   void integrate();
   Quadrature rule_;
-  Matrix value_, first_, second_;  // row per function, column per node
+  Matrix value_, first_, second_;  // at the quadrature nodes: one row per function, one column per node
 };
 
 }  // namespace turnpoint::physics

@@ -22,7 +22,7 @@ constexpr std::array<double, 8> weights{0.0506142681451881, 0.1111905172266872, 
                                         0.1813418916891810, 0.1813418916891810, 0.1568533229389436,
                                         0.1111905172266872, 0.0506142681451881};
 
-// At a point: the phase integral from the turning point, positive on both sides, and p.
+// Values at a point: the phase integral from the turning point, which is positive on both sides, and p.
 struct PhaseIntegral {
   double integral;
   double p;
@@ -32,7 +32,7 @@ class UniformLine final : public CentreLine {
  public:
   UniformLine(const Surface& surface, double f);
   Scaled value(double x) const override;
-  // A central difference of the logarithm; its error in position is far below the model's own.
+  // By a central difference of the logarithm, whose error in position is far below the model's own error.
   Scaled slope(double x) const override;
   std::optional<double> last_peak_m() const override {
     return turning_m_ < 0 ? std::nullopt : find_last_peak(*this, std::min(turning_m_, length_m_), 0.25 / k_);
@@ -54,8 +54,9 @@ class UniformLine final : public CentreLine {
   MarchEquation equation_;
   double k_, length_m_;
   double turning_m_ = 0;
-  double steepness_ = 0;  // -dp/dx there
-  // Cumulative integrals towards drive and tip, at equal steps of u = sqrt(distance from the turning point).
+  double steepness_ = 0;  // -dp/dx at the turning point
+  // Cumulative integrals towards the drive edge and towards the tip, at equal steps of u = sqrt(distance from
+  // the turning point).
   std::array<std::vector<double>, 2> running_;
   double panel_ = 0;
 };
@@ -65,7 +66,8 @@ UniformLine::UniformLine(const Surface& surface, double f)
       equation_(march_equation(surface, f, Model::mode, Losses::left_out)),
       k_(wavenumber_per_m(surface, f)),
       length_m_(surface.length_m) {
-  if (taper_.apex_m()) equation_.c += 0.25;  // Langer's correction at the apex
+  // the 1/4 of Langer's correction, which makes the solution right at the apex
+  if (taper_.apex_m()) equation_.c += 0.25;
   find_turning();
   if (!taper_.apex_m()) tabulate();
 }
@@ -96,7 +98,7 @@ void UniformLine::find_turning() {
   steepness_ = (potential(turning_m_ - step) - potential(turning_m_ + step)) / (2 * step);
 }
 
-// The integral over one step of u, with sqrt|p| dx = sqrt|p| 2 u du.
+// Sums the phase integrals over steps of u, with sqrt|p| dx = sqrt|p| 2 u du.
 void UniformLine::tabulate() {
   panel_ = std::sqrt(length_m_) / 64;
   for (int side = 0; side < 2; ++side) {
@@ -144,7 +146,7 @@ Scaled UniformLine::value(double x) const {
   if (!(w > 0)) return {0, 0};
   const double k0 = std::cbrt(steepness_);
   const double distance = k0 * (x - turning_m_);
-  double zeta = -distance;               // Ai(-zeta)
+  double zeta = -distance;               // the argument of Ai is -zeta
   double amplitude = 1 / std::sqrt(k0);  // the limit of (zeta/p)^(1/4) at the turning point
   if (std::abs(distance) > 1e-4) {
     const PhaseIntegral here = phase(x);

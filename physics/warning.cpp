@@ -14,10 +14,10 @@ namespace {
 constexpr double finger_width_m = 14e-3;
 constexpr double high_gain = 10;
 constexpr double noticeable_shift_m = 1e-3;
-constexpr double finger_impedance_Ns_per_m = 55;  // a published magnitude; see finger.hpp
+constexpr double finger_impedance_Ns_per_m = 55;  // magnitude from a publication; see finger.hpp
 
-// Impedance of a strip for a point force: of two travelling waves of the first mode for a membrane, of an
-// infinite plate (Cremer & Heckl) for a plate.
+// Impedance of a strip against a point force: for a membrane that of two travelling waves of the first mode,
+// for a plate that of an infinite plate (Cremer & Heckl).
 double strip_impedance_Ns_per_m(const Surface& s, double half_width) {
   const double mass = s.density_kg_m3 * s.thickness_m;
   const double membrane = s.tension_Pa > 0 ? 2 * line_tension_N_per_m(s) * half_width / wave_speed_m_s(s) : 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Warnings that a plan, a map or a field should show once.
+// Warnings that a plan, a map or a field should show, each only once.
 #include <span>
 #include <string>
 #include <vector>
@@ -17,7 +17,7 @@ struct Warning {
   std::string text;
 };
 
-// Tension above the material's yield strength; bending that matters while it is off.
+// Warns of a tension above the material's yield strength, and of bending that matters but is off.
 std::vector<Warning> surface_warnings(const Surface& surface);
 
 // A tone below this frequency may be audible: the lower edge of the third-octave band centred on 25 kHz.

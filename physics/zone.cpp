@@ -16,7 +16,7 @@ namespace {
 
 [[noreturn]] void unreachable(const std::ostringstream& text) { throw std::domain_error(text.str()); }
 
-// First guess of the highest frequency: its turning point is where the zone has to end.
+// A first guess of the highest tone's frequency: the one that has its turning point where the zone must end.
 double first_guess(const Surface& surface, const ZoneRequest& request) {
   return cut_off_frequency_Hz(surface, std::max(1e-6, half_width_m(surface, request.boundary_m)));
 }
@@ -85,7 +85,8 @@ void require_band(const ZoneProfile& profile, const ZoneRequest& r) {
 
 ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request) {
   check(surface, friction, request);
-  // Start with one tone. This shows roughly where the highest tone has to be, before the others are chosen.
+  // Design with a single tone first. This shows roughly where the highest tone must be, before the others are
+  // chosen.
   ZoneRequest single = request;
   single.tones = 1;
   ZoneProfile alone(surface, friction, single, first_guess(surface, request));

@@ -18,7 +18,7 @@ namespace {
 constexpr double grid_step_m = 0.5e-3;
 constexpr int candidates_per_spacing = 3;
 constexpr int most_candidates = 40;
-// A tone is kept if it reduces the unevenness of the zone by at least this factor.
+// A tone is kept only if it multiplies the unevenness of the zone by this factor or less.
 constexpr double worthwhile = 0.97;
 
 double interpolate_crossing(double x0, double x1, double y0, double y1, double level) {
@@ -55,7 +55,7 @@ ToneShape ZoneProfile::shape(double f) const {
   return one;
 }
 
-// Weights >= 0 for which the sum of squares in the zone is closest to one.
+// The weights (0 or more) of the shapes for which the sum of squares in the zone is closest to one.
 std::vector<double> ZoneProfile::fit(const std::vector<const ToneShape*>& shapes, double& residual) const {
   std::vector<double> columns, wanted;
   for (const ToneShape* one : shapes) {
@@ -80,7 +80,7 @@ void ZoneProfile::choose_tones(double highest_Hz) {
   for (double f = highest_Hz - request_.band.spacing_Hz; f >= request_.band.low_Hz; f -= step) {
     try {
       candidates.push_back(shape(f));
-    } catch (const std::domain_error&) {  // a tone without a last maximum is of no use
+    } catch (const std::domain_error&) {  // a tone without a last maximum cannot be used
       break;
     }
   }
@@ -111,7 +111,7 @@ void ZoneProfile::choose_tones(double highest_Hz) {
     for (const ToneShape& one : shapes_) all.push_back(&one);
     weights_ = fit(all, best);
   }
-  // In descending order of frequency, without the tones that have no weight.
+  // The tones in descending order of frequency, without those of weight 0.
   for (std::size_t i = shapes_.size(); i-- > 1;) {
     if (weights_[i] > 0) continue;
     shapes_.erase(shapes_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -130,7 +130,8 @@ void ZoneProfile::shift_to(double highest_Hz) {
   shapes_.front() = shape(highest_Hz);
   for (std::size_t i = 1; i < shapes_.size();) {
     const double f = std::max(request_.band.low_Hz, shapes_[i].frequency_Hz + by);
-    if (shapes_[i - 1].frequency_Hz - f < 0.999 * request_.band.spacing_Hz) {  // at the end of the band
+    // the next tone would be outside the band
+    if (shapes_[i - 1].frequency_Hz - f < 0.999 * request_.band.spacing_Hz) {
       shapes_.erase(shapes_.begin() + static_cast<std::ptrdiff_t>(i));
       weights_.erase(weights_.begin() + static_cast<std::ptrdiff_t>(i));
       continue;
@@ -165,8 +166,8 @@ double ZoneProfile::zone_mean(const std::vector<double>& values) const {
   return sum / std::max(1, count);
 }
 
-// The weight of each point's friction in the zone's mean of fingertip averages. That mean is linear in the
-// friction: each average is an integral of straight pieces, and each piece adds to the weights of its two
+// The weight of each point's friction in the mean of fingertip averages over the zone. This mean is linear in
+// the friction: each average is an integral of straight pieces, and each piece adds to the weights of its two
 // ends.
 std::vector<double> ZoneProfile::mean_weights() const {
   std::vector<double> weight(x_.size(), 0.0);
@@ -205,8 +206,8 @@ void ZoneProfile::scale_to_friction() {
     }
     return mean - request_.friction;
   };
-  // Mean friction falls as the level rises. Starting from the previous level, widen a bracket on a
-  // logarithmic scale; then use false position.
+  // Mean friction falls as the level rises. Starting from the previous level, widens a bracket on a
+  // logarithmic scale, then uses false position.
   double low = std::log(scale_), high = low;
   double f_low = miss(low), f_high = f_low;
   double step = scaled_before_ ? 0.01 : 0.3;

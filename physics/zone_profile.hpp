@@ -7,27 +7,28 @@
 
 namespace turnpoint::physics {
 
-// Squared amplitude of one tone on a grid with its last maximum set to one, and the drive that this requires.
+// Squared amplitude of one tone on a grid, relative to its last maximum, and the drive that this requires.
 struct ToneShape {
   double frequency_Hz = 0;
-  double drive_gain = 1;  // |v(0)| at unit last maximum
+  double drive_gain = 1;  // |v(0)| if the last maximum is 1
   std::vector<double> square;
 };
 
 class ZoneProfile {
  public:
-  // Chooses offsets below `highest_Hz` for up to request.tones tones and their relative weights, by
-  // non-negative least squares towards uniform squared amplitude in the zone.
+  // Chooses up to request.tones tones at and below `highest_Hz` and their relative weights, by non-negative
+  // least squares towards a uniform squared amplitude in the zone.
   ZoneProfile(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request,
               double highest_Hz);
 
   double highest_Hz() const { return shapes_.front().frequency_Hz; }
-  // Moves all tones by one frequency difference, lower ones not beyond the band, and recomputes their shapes.
+  // Shifts all tones by the same frequency difference, but lower ones not out of the band, and recomputes
+  // their shapes.
   void shift_to(double highest_Hz);
-  // Sets the overall level so that mean friction over the zone has the desired value; throws
+  // Sets the overall level so that the mean friction in the zone has the desired value. Throws
   // std::domain_error.
   void scale_to_friction();
-  // The profile's own edge; empty if it has none.
+  // Position of the edge in the zone's own profile; empty if there is none.
   std::optional<double> edge_m() const;
   double edge_slope_m_per_Hz() const;
   std::vector<Tone> tones() const;
@@ -48,10 +49,10 @@ class ZoneProfile {
   const ZoneRequest& request_;
   std::vector<double> x_;
   std::vector<ToneShape> shapes_;
-  std::vector<double> weights_;          // of squared amplitudes
-  std::vector<double> weights_of_mean_;  // of each point's friction in the zone's mean
-  double scale_ = 1e-12;                 // m^2 per unit of the weighted sum
-  bool scaled_before_ = false;           // the next scale is close to this one
+  std::vector<double> weights_;          // weight of each tone's squared amplitude
+  std::vector<double> weights_of_mean_;  // weight of each point's friction in the zone's mean
+  double scale_ = 1e-12;                 // squared displacement (m^2) for a weighted sum of 1
+  bool scaled_before_ = false;           // true once a scale was found, from which the next search starts
 };
 
 }  // namespace turnpoint::physics
