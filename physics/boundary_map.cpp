@@ -15,9 +15,9 @@
 
 namespace turnpoint::physics {
 
-// A feature's half-width over the cut-off half-width of its frequency: one number on a linear taper that runs
-// to its apex (every feature of it scales with the distance from the apex), a slowly varying table
-// elsewhere.
+// The half-width at a feature divided by the cut-off half-width of the feature's frequency. This ratio is
+// constant on a linear taper that runs to its apex, because every feature scales with the distance from the
+// apex; on other tapers it is a table that varies slowly.
 struct BoundaryMap::State {
   Surface surface;
   MapOptions options;
@@ -46,7 +46,7 @@ std::optional<double> BoundaryMap::State::frequency(double x) const noexcept {
   if (!(x >= 0 && x <= surface.length_m)) return std::nullopt;
   const double w = taper.half_width_m(x);
   if (!(w > 0)) return std::nullopt;
-  // Solves cut_off(w / ratio(f)) = f by secants from the turning point's frequency.
+  // Solves cut_off(w / ratio(f)) = f by the secant method, from the turning point's frequency.
   const auto next = [&](double f) {
     return dispersion.cut_off_frequency_Hz(
         w / table.ratio(std::clamp(f, table.low_Hz, table.high_Hz)).value_or(1));
@@ -107,8 +107,8 @@ std::optional<double> first_mode_frequency_Hz(const Surface& surface, const MapO
   const Taper taper(surface);
   const Dispersion dispersion(surface);
   const double w = taper.half_width_m(x);
-  // As a map does: the edge's half-width over the cut-off's varies slowly, so that fixed-point steps are good
-  // and secants on them better.
+  // As in a map, the ratio of the edge's half-width to the cut-off's varies slowly, so that fixed-point steps
+  // converge well, and secant steps better.
   double miss_m = 0;
   const auto next = [&](double f) -> std::optional<double> {
     const auto at = edge_at(surface, options, f, Model::edge);
@@ -132,8 +132,8 @@ std::optional<double> first_mode_frequency_Hz(const Surface& surface, const MapO
   return std::nullopt;
 }
 
-// Newton steps with the slope of the first mode, whose solutions are cheap. They leave about a hundredth of
-// each miss, so the last step need not be checked by another solution.
+// Takes Newton steps with the slope of the first mode, whose solutions are cheap. Each step leaves about a
+// hundredth of the error, so the last step need not be checked by another solution.
 std::optional<double> field_frequency_Hz(const Surface& surface, const MapOptions& options, double x,
                                          double f) {
   constexpr double last_step_m = 2e-5;

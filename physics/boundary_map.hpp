@@ -1,5 +1,5 @@
 #pragma once
-// Boundary <-> frequency, for every definition of the boundary.
+// Converts a boundary to a frequency and back, for every definition of the boundary.
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace turnpoint::physics {
 
-// What a friction edge requires in addition to the surface.
+// What a friction edge needs in addition to the surface.
 struct FrictionContext {
   FrictionMap friction;
   double displacement_m = 1e-6;  // peak amplitude at the last maximum
@@ -22,19 +22,20 @@ struct FrictionContext {
 
 struct MapOptions {
   Edge edge = Edge::turning();
-  std::optional<Model> model;               // none: cheapest whose bound is inside `tolerance_m`
-  std::optional<double> tolerance_m;        // none: the most exact position there is (`edge` where closed)
+  std::optional<Model> model;  // empty: the cheapest model whose bound is within `tolerance_m`
+  // empty: the most exact position available (`edge` if it has a closed form)
+  std::optional<double> tolerance_m;
   std::optional<FrictionContext> friction;  // required for a friction edge
-  // Frequencies for which a table is made. Empty: all that the surface can present.
+  // The frequencies for which a table is made; if empty, all frequencies that the surface can present.
   struct Band {
     double low_Hz, high_Hz;
   };
   std::optional<Band> band = {};
 };
 
-// One answer; the optionals are none when there is no such boundary, and `reason` says why (otherwise why
-// this model). `error_bound_m`: what the drive edge's higher modes and the model's equation may move;
-// `uncertainty_m`: one standard deviation from the surface's `sd`.
+// One answer. If there is no such boundary, its values are empty and `reason` says why; otherwise `reason`
+// says why this model was used. `error_bound_m` bounds the effect of the drive edge's higher modes and of the
+// model's equation; `uncertainty_m` is one standard deviation, computed from the surface's `sd`.
 struct MapAnswer {
   std::optional<double> boundary_m;
   std::optional<double> frequency_Hz;
@@ -49,9 +50,9 @@ struct MapAnswer {
   std::vector<Warning> warnings;
 };
 
-// The map of one surface and one edge, by its first transverse mode with loss. Building it takes microseconds
-// where it is closed, else milliseconds (a table is made and validated); the two look-ups take well under a
-// microsecond, allocate nothing and may be called from any thread.
+// The map of one surface and one edge, according to its first transverse mode with loss. Building it takes
+// microseconds if it has a closed form, else milliseconds, because a table is made and validated. The two
+// look-ups take well under a microsecond, allocate nothing and may be called from any thread.
 class BoundaryMap {
  public:
   BoundaryMap(const Surface& surface, const MapOptions& options);
@@ -59,11 +60,12 @@ class BoundaryMap {
   BoundaryMap(BoundaryMap&&) noexcept;
   BoundaryMap& operator=(BoundaryMap&&) noexcept;
 
-  // Position for a frequency, and frequency for a position; empty outside what the surface can present.
+  // The position for a frequency, and the frequency for a position; empty outside what the surface can
+  // present.
   std::optional<double> boundary_m(double frequency_Hz) const noexcept;
   std::optional<double> frequency_Hz(double boundary_m) const noexcept;
 
-  // The same with bounds, reason and warnings.
+  // The same, with bounds, reason and warnings.
   MapAnswer at_frequency(double frequency_Hz) const;
   MapAnswer at_boundary(double boundary_m) const;
 
@@ -74,10 +76,10 @@ class BoundaryMap {
   std::unique_ptr<const State> state_;
 };
 
-// The frequency that puts the edge at a position, without a table: to a nanometre by the first transverse
-// mode, or, if options.model is `modes`, to 0.1 um by the two-dimensional field. It needs only a few
-// solutions, which is cheaper than a map that would be used once; fewer from `near_Hz`, the frequency of the
-// first mode. Empty if the search finds none; a map may still find one.
+// Finds the frequency that puts the edge at a position, without a table: to a nanometre by the first
+// transverse mode or, if options.model is `modes`, to 0.1 um by the two-dimensional field. This needs only a
+// few solutions, so it is cheaper than making a map that is used once; still fewer if `near_Hz`, the
+// frequency according to the first mode, is given. Empty if the search finds none; a map may still find one.
 std::optional<double> solve_frequency_Hz(const Surface& surface, const MapOptions& options, double boundary_m,
                                          std::optional<double> near_Hz = {});
 

@@ -1,13 +1,13 @@
 #pragma once
-// Wavenumbers and local cut-offs: how tension, bending and the held sides enter.
+// Wavenumbers and local cut-offs, as they depend on tension, bending and the support of the sides.
 #include "physics/elastic_section.hpp"
 #include "physics/mindlin_plate.hpp"
 #include "physics/surface.hpp"
 
 namespace turnpoint::physics {
 
-// The dispersion of one surface, ready for repeated use: plain numbers, no allocation, no exceptions for
-// arguments above zero. The free functions below are the same with checks.
+// The dispersion of one surface, prepared for repeated use: plain numbers, no allocation, no exceptions for
+// arguments above zero. The free functions below do the same and check their arguments.
 struct Dispersion {
   explicit Dispersion(const Surface& surface);
 
@@ -24,10 +24,10 @@ struct Dispersion {
   double cut_off_half_width_m(double frequency_Hz) const noexcept;
   bool clamped_bending() const noexcept { return bending && clamped; }
 
-  double stiffness_N_m = 0;    // D; 0 where bending is not modelled
+  double stiffness_N_m = 0;    // bending stiffness D; 0 if bending is not modelled
   double tension_N_per_m = 0;  // N
-  double mass_kg_per_m2 = 0;   // rho h
-  double speed_m_s = 0;        // c, of the membrane
+  double mass_kg_per_m2 = 0;   // mass per area, rho h
+  double speed_m_s = 0;        // wave speed c of the membrane
   bool bending = false;
   bool clamped = false;
   PlateTheory theory = PlateTheory::kirchhoff;
@@ -39,7 +39,7 @@ struct Dispersion {
   double thickness_m_ = 0;
 };
 
-// Throw std::invalid_argument for arguments that are not finite and above zero.
+// These functions throw std::invalid_argument for arguments that are not finite and above zero.
 double wavenumber_per_m(const Surface& surface, double frequency_Hz);
 double frequency_for_wavenumber_Hz(const Surface& surface, double wavenumber_per_m);
 double cut_off_frequency_Hz(const Surface& surface, double half_width_m);

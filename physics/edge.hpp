@@ -1,5 +1,5 @@
 #pragma once
-// Definitions of "the boundary" of a smooth zone.
+// Definitions of the boundary of a smooth zone.
 #include <string>
 #include <string_view>
 
@@ -22,8 +22,8 @@ struct Edge {
   bool operator==(const Edge&) const = default;
 };
 
-// "turning", "peak", "p70" (two digits, 01 ... 99), "friction=0.7". Throws std::invalid_argument naming what
-// is allowed; `format` is its inverse.
+// Reads "turning", "peak", "p70" (two digits, 01 ... 99) or "friction=0.7". Throws std::invalid_argument,
+// which names what is allowed. `format` writes the same text.
 Edge parse_edge(std::string_view text);
 std::string format(const Edge& edge);
 

@@ -10,7 +10,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// Five-point Gauss-Legendre rule on [-1, 1].
+// The five-point Gauss-Legendre rule on [-1, 1].
 constexpr std::array kNodes{-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831,
                             0.9061798459386640};
 constexpr std::array kWeights{0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
@@ -48,10 +48,11 @@ std::optional<double> friction_edge_m(double length_m, const CentreLine& line, c
     }
     return sum;
   };
-  // From the tip towards the last maximum friction falls from 1, so the first crossing is the outermost one.
+  // From the tip towards the last maximum, friction falls from 1, so the first crossing that is found is the
+  // outermost one.
   const double step = std::min(context.fingertip_m / 8, length_m / 100) + 1e-9 * length_m;
-  // Where the amplitude is below 1e-4 of the maximum, and a fingertip further, every friction map is close
-  // to 1.
+  // Every friction map is close to 1 where the amplitude is below 1e-4 of the maximum and a fingertip's width
+  // further out, so start there.
   const double quiet = line.level_m(1e-4).value_or(length_m) + context.fingertip_m;
   double outer = std::min(length_m, quiet), f_outer = mean(outer) - level;
   if (f_outer <= 0) return std::nullopt;

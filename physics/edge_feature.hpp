@@ -1,5 +1,5 @@
 #pragma once
-// Where one edge lies for one frequency, found on a solved profile.
+// Finds the position of one edge at one frequency on a solved profile.
 #include <optional>
 
 #include "physics/boundary_map.hpp"
@@ -7,13 +7,15 @@
 
 namespace turnpoint::physics {
 
-// Which first transverse mode a boundary map follows.
+// Which equation for the first transverse mode a boundary map uses.
 enum class Wave {
-  exact,  // two-dimensional mode of a linear taper (a wedge, J_nu(k r), nu = pi / 2 atan d); elsewhere `mode`
-  as_modelled  // the model's own equation
+  // the two-dimensional mode of a linear taper (a wedge: J_nu(k r), nu = pi / 2 atan d); on other tapers
+  // `mode`
+  exact,
+  as_modelled  // the chosen model's own equation
 };
 
-// The lossless (or lossy) centre line that positions are read from.
+// The centre line, with or without loss, on which positions are found.
 std::unique_ptr<CentreLine> make_feature_line(const Surface& surface, double frequency_Hz, Model model,
                                               Wave wave, Losses losses);
 
@@ -21,7 +23,7 @@ std::unique_ptr<CentreLine> make_feature_line(const Surface& surface, double fre
 std::optional<double> edge_position_m(const Surface& surface, double frequency_Hz, const CentreLine& line,
                                       const MapOptions& options);
 
-// Outermost point at which friction, averaged over the fingertip, crosses `level`, for a centre line scaled
+// Outermost point at which friction, averaged over the fingertip, crosses `level`. The centre line is scaled
 // to context.displacement_m at its last maximum.
 std::optional<double> friction_edge_m(double length_m, const CentreLine& line, const FrictionContext& context,
                                       double level);

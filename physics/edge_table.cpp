@@ -15,11 +15,12 @@ namespace {
 
 using Piece = EdgeTable::Piece;
 constexpr int degree = EdgeTable::degree;
-// Most halvings of the frequency range; positions found by integrals and searches are dear.
+// How often a range of frequencies may be halved; fewer for edges whose positions are found by integrals and
+// searches, which take long.
 int deepest(const MapOptions& options) { return options.edge.kind == Edge::Kind::friction ? 5 : 9; }
 
-// What a table's pieces are refined to. Elements and fingertip integrals are themselves exact to this only,
-// and asking for more would tabulate their rounding.
+// The error to which the table is refined. Elements and fingertip integrals are themselves only this
+// accurate; asking for more would tabulate their rounding errors.
 double tolerance_m(const Dispersion& dispersion, const MapOptions& options) {
   if (options.edge.kind == Edge::Kind::friction) return 2e-6;
   if (dispersion.theory != PlateTheory::kirchhoff) return 2e-6;
@@ -47,7 +48,7 @@ class Builder {
       const auto wave = model_ == Model::edge || model_ == Model::modes ? Wave::exact : Wave::as_modelled;
       const auto line = make_feature_line(surface_, f, model_, wave, Losses::kept);
       return edge_position_m(surface_, f, *line, options_);
-    } catch (const std::domain_error&) {  // the model has no answer here
+    } catch (const std::domain_error&) {  // the model does not apply at this frequency
       return std::nullopt;
     }
   }
@@ -57,7 +58,7 @@ class Builder {
     return taper_.half_width_m(*x) / dispersion_.cut_off_half_width_m(f);
   }
 
-  // Frequencies whose turning points are spread over the surface, or over the band that matters.
+  // Frequencies whose turning points are spread over the surface, or over the requested band.
   std::vector<double> survey() const {
     std::vector<double> f;
     const int count = options_.band ? 12 : 48;
@@ -76,7 +77,7 @@ class Builder {
     return f;
   }
 
-  // The end of existence between a frequency with the edge and one without.
+  // The frequency at which the edge stops existing, between one with the edge and one without.
   double limit(double with, double without) const {
     // A plate's solutions are dear, and the last step need not be found: the edge is tabulated up to it.
     const bool thick = dispersion_.theory != PlateTheory::kirchhoff;
@@ -124,7 +125,7 @@ class Builder {
     return true;
   }
 
-  // Largest error (m) of a piece at points between its nodes.
+  // Largest error (m) of a piece, at points between its nodes.
   double miss(const Piece& piece) const {
     double worst = 0;
     for (const double t : {-0.98, -0.55, 0.06, 0.6, 0.985}) {
@@ -134,7 +135,7 @@ class Builder {
       const auto w = taper_.position_continued_m(clenshaw(piece, ln_f) * dispersion_.cut_off_half_width_m(f));
       if (!x || !w) return std::numeric_limits<double>::infinity();
       worst = std::max(worst, std::abs(*x - *w));
-      if (worst > 100 * tolerance_m(dispersion_, options_)) return worst;  // halved anyway
+      if (worst > 100 * tolerance_m(dispersion_, options_)) return worst;  // this piece will be halved anyway
     }
     return worst;
   }
@@ -146,7 +147,7 @@ class Builder {
   Dispersion dispersion_;
 };
 
-// Every feature of a linear taper that runs to its apex lies at a fixed k s, whatever the loss.
+// True on a linear taper that runs to its apex: each feature then has a fixed k s, whatever the loss.
 bool scale_free(const Surface& surface, const MapOptions& options) {
   if (options.edge.kind == Edge::Kind::turning) return true;
   if (options.edge.kind == Edge::Kind::friction) return false;
@@ -164,7 +165,7 @@ std::optional<double> EdgeTable::ratio(double f) const noexcept {
   const double ln_f = std::log(f);
   auto piece =
       std::partition_point(pieces.begin(), pieces.end(), [ln_f](const Piece& p) { return p.high < ln_f; });
-  // Rounding of the logarithm at either end of the range.
+  // The logarithm's rounding may put a frequency just outside the range.
   if (piece == pieces.end()) piece = pieces.end() - 1;
   const double slack = 1e-12 * std::abs(ln_f);
   if (ln_f < piece->low - slack || ln_f > piece->high + slack) return std::nullopt;

@@ -1,5 +1,5 @@
 #pragma once
-// The table behind a BoundaryMap: where an edge lies, as a ratio of half-widths against frequency.
+// The table that a BoundaryMap uses: the position of an edge, as a ratio of half-widths, against frequency.
 #include <array>
 #include <optional>
 #include <vector>
@@ -8,24 +8,24 @@
 
 namespace turnpoint::physics {
 
-// ratio(f) = W(edge) / (cut-off half-width at f). One constant when `closed`, else Chebyshev pieces in ln f.
+// ratio(f) = W(edge) / (cut-off half-width at f). A constant if `closed`, otherwise Chebyshev pieces in ln f.
 struct EdgeTable {
   static constexpr int degree = 12;
   struct Piece {
-    double low, high;  // ln f
+    double low, high;  // ends of the piece, in ln f
     std::array<double, degree + 1> coefficient;
   };
-  double low_Hz = 0;   // frequencies at which the edge lies on the surface
-  double high_Hz = 0;  // infinity on a linear taper that runs to its apex
+  double low_Hz = 0;   // lowest frequency at which the edge lies on the surface
+  double high_Hz = 0;  // highest such frequency; infinity on a linear taper that runs to its apex
   double constant = 1;
-  std::vector<Piece> pieces;  // ascending; gaps are frequencies without the edge
-  double error_m = 0;         // largest error seen at check points between the nodes
+  std::vector<Piece> pieces;  // ascending; the edge does not exist at frequencies in gaps between pieces
+  double error_m = 0;         // largest error found at check points between the nodes
   bool closed = true;
 
   std::optional<double> ratio(double frequency_Hz) const noexcept;
 };
 
-// Builds and validates the table; throws std::domain_error when the edge exists at no frequency.
+// Builds and validates the table. Throws std::domain_error if the edge exists at no frequency.
 EdgeTable make_edge_table(const Surface& surface, const MapOptions& options, Model model);
 
 }  // namespace turnpoint::physics

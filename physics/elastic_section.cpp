@@ -14,7 +14,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// k W of a thin clamped strip at its cut-off; tan b + tanh b = 0.
+// k W of a thin clamped strip at its cut-off: the root of tan b + tanh b = 0.
 constexpr double thin_root = 2.3650203724313520;
 
 }  // namespace
@@ -78,7 +78,8 @@ std::vector<std::complex<double>> elastic_wavenumbers2(double t, double poisson,
   by.topLeftCorner(na, na) = s.along;
   by.bottomLeftCorner(nb, na) = s.coupling.transpose();
   by.bottomRightCorner(nb, nb) = s.cross;
-  // fixed v = -L by v, so that the smallest L are the largest -1/L of fixed^-1 by.
+  // The problem is fixed v = -L by v. Solve for the eigenvalues -1/L of fixed^-1 by: the largest of them
+  // belong to the smallest L.
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(fixed.partialPivLu().solve(by)), false);
   std::vector<std::complex<double>> all;
   for (const std::complex<double> one : solver.eigenvalues()) {

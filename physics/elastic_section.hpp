@@ -1,5 +1,5 @@
 #pragma once
-// The cross-section of a clamped strip by three-dimensional elasticity: its cut-off and its waves along x.
+// The cross-section of a clamped strip in three-dimensional elasticity: its cut-off and its waves along x.
 #include <array>
 #include <complex>
 #include <vector>
@@ -12,25 +12,25 @@ namespace turnpoint::physics {
 // (0.15 s or so) and kept; const functions are thread-safe and allocate nothing.
 class ElasticCutOff {
  public:
-  // The table for a Poisson's ratio of 0 to 0.49, valid until the program ends.
+  // The table for a Poisson's ratio from 0 to 0.49. It stays valid until the program ends.
   static const ElasticCutOff& of(double poisson);
 
   explicit ElasticCutOff(double poisson);
-  // omega W / c_s at h/W. Tabulated to h/W = 2; beyond that the last value, which is 4 % above the limit,
-  // pi/2.
+  // omega W / c_s at this h/W. Tabulated up to h/W = 2; beyond that the last value, which is 4 % above the
+  // limit pi/2.
   double value(double thickness_per_half_width) const noexcept;
-  // h/W at which omega h / c_s has a value; the inverse of h/W value(h/W).
+  // The h/W at which omega h / c_s has this value: the inverse of h/W value(h/W).
   double thickness_per_half_width(double omega_h_per_speed) const noexcept;
 
  private:
   static constexpr std::size_t terms = 18;
   static constexpr double largest = 2;
-  std::array<double, terms> coefficient_{};  // Chebyshev, of value over Kirchhoff's
-  double kirchhoff_;                         // of value over h/W, for a thin plate
+  std::array<double, terms> coefficient_{};  // Chebyshev coefficients of the ratio of value to Kirchhoff's
+  double kirchhoff_;                         // value divided by h/W for a thin plate
 };
 
-// omega W / c_s of the section itself, without the table. Against a mesh graded to the corners: within 2e-4
-// for Poisson's ratios to 0.33 and h/W to 0.4, 8e-4 to 0.45 and 0.6.
+// Computes omega W / c_s for the section itself, without the table. Compared with a mesh graded to the
+// corners, the error is within 2e-4 for Poisson's ratios to 0.33 and h/W to 0.4, and 8e-4 to 0.45 and 0.6.
 double elastic_cut_off(double thickness_per_half_width, double poisson);
 
 // Squared wavenumbers along the strip, times W^2, of the waves at omega W / c_s that are symmetric about the

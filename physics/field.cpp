@@ -16,7 +16,7 @@ struct Solved {
   std::unique_ptr<CentreLine> line;
   ToneInfo info;
   Scaled at_drive;
-  Scaled at_peak;  // last maximum, or the drive edge without one
+  Scaled at_peak;  // value at the last maximum, or at the drive edge if there is none
 };
 
 std::string why_no_peak(const Surface& surface, double frequency_Hz) {
@@ -72,7 +72,7 @@ double strongest(std::span<const Tone> tones) {
   return most;
 }
 
-// The complex number that v is divided by, as phase and logarithm.
+// The complex number by which v is divided, as phase and logarithm.
 struct Reference {
   std::complex<double> phase;
   double ln;
@@ -86,7 +86,7 @@ Reference reference(const Solved& s, const Tone& tone, Normalise normalise, doub
   }
   const double weight = normalise == Normalise::none ? tone.amplitude_m : tone.amplitude_m / most;
   const auto phase = unit.mantissa / std::abs(unit.mantissa) * std::polar(1.0, -tone.phase_rad);
-  // A tone of amplitude 0 keeps its shape, at the smallest normal number.
+  // For a tone of amplitude 0 use the smallest normal number, so that its shape can be computed.
   return {phase, unit.ln_magnitude() - (weight > 0 ? std::log(weight) : -700.0)};
 }
 

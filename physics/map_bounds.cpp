@@ -12,7 +12,7 @@
 namespace turnpoint::physics {
 namespace {
 
-constexpr double strong_loss_below = 30;  // quality factor
+constexpr double strong_loss_below = 30;  // quality factor below which loss counts as strong
 
 std::optional<double> position(const Surface& surface, const MapOptions& options, double f, Model model,
                                Wave wave, Losses losses) {
@@ -24,7 +24,8 @@ std::optional<double> position(const Surface& surface, const MapOptions& options
   }
 }
 
-// The surface with one parameter moved by +1 and -1 standard deviation, for every parameter that has one.
+// For every parameter that has a standard deviation, the surfaces with that parameter one standard deviation
+// higher and lower.
 std::vector<std::pair<Surface, Surface>> moved(const Surface& s) {
   std::vector<std::pair<Surface, Surface>> pairs;
   const auto add = [&](double sd, auto apply) {
@@ -56,7 +57,8 @@ std::vector<std::pair<Surface, Surface>> moved(const Surface& s) {
   return pairs;
 }
 
-// Positions on a perturbed linear taper may lie beyond the nominal length: follow the apex.
+// Extends a linear taper to its apex, because positions on a changed surface may lie beyond the nominal
+// length.
 Surface fitted(Surface s) {
   if (const auto* linear = std::get_if<LinearTaper>(&s.taper); linear != nullptr && linear->slope > 0) {
     s.length_m = std::min(s.length_m, linear->half_width_m / linear->slope);
@@ -91,8 +93,9 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
   const auto exact = position(surface, options, f, Model::edge, Wave::exact, Losses::kept);
   bounds.equation_m = exact ? std::abs(*exact - x) : 0.25 * surface.length_m;
   if (bounds.equation_m < 1e-10) bounds.equation_m = 0;
-  // The exact mode of a wedge needs no allowance for its equation; every other taper's best equation does.
-  std::optional<double> drawn_peak_m;  // only strong loss draws it far enough to matter
+  // The mode of a wedge is exact, so its equation has no error; on every other taper the best equation has
+  // one.
+  std::optional<double> drawn_peak_m;
   if (surface.quality_factor < strong_loss_below) {
     MapOptions peak = options;
     peak.edge = Edge::peak();

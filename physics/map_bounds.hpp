@@ -1,5 +1,6 @@
 #pragma once
-// Effects that can move a boundary: the model's equation, the drive edge's higher modes, the parameters.
+// Effects that can move a boundary: the model's equation, the drive edge's higher modes, and uncertain
+// parameters.
 #include <string>
 
 #include "physics/boundary_map.hpp"
@@ -7,9 +8,9 @@
 namespace turnpoint::physics {
 
 struct MapBounds {
-  double equation_m = 0;     // model against the exact (or best) first transverse mode
-  double drive_modes_m = 0;  // higher transverse modes of the drive edge
-  double uncertainty_m = 0;  // one standard deviation from the surface's sd
+  double equation_m = 0;     // error of the model against the exact (or best) first transverse mode
+  double drive_modes_m = 0;  // effect of the drive edge's higher transverse modes
+  double uncertainty_m = 0;  // one standard deviation, computed from the surface's `sd`
   std::string reason;
   double error_m() const { return equation_m + drive_modes_m; }
 };
@@ -17,7 +18,7 @@ struct MapBounds {
 MapBounds map_bounds(const Surface& surface, const MapOptions& options, double frequency_Hz,
                      double boundary_m);
 
-// Why an edge has no position at a frequency.
+// Explains why an edge has no position at a frequency.
 std::string why_no_boundary(const Surface& surface, const MapOptions& options, double frequency_Hz);
 
 }  // namespace turnpoint::physics

@@ -10,7 +10,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// sqrt(s) tan(sqrt(s) w), cos(sqrt(s) w), sqrt(s) sin(sqrt(s) w), also for s below zero.
+// Returns sqrt(s) tan(sqrt(s) w), cos(sqrt(s) w) and sqrt(s) sin(sqrt(s) w), which are real also for s below
+// zero.
 double root_tangent(double s, double w) noexcept {
   if (s > 0) return std::sqrt(s) * std::tan(std::sqrt(s) * w);
   return -std::sqrt(-s) * std::tanh(std::sqrt(-s) * w);
@@ -21,7 +22,7 @@ double root_cosine(double s, double w) noexcept {
 double root_sine(double s, double w) noexcept {
   return s > 0 ? std::sqrt(s) * std::sin(std::sqrt(s) * w) : -std::sqrt(-s) * std::sinh(std::sqrt(-s) * w);
 }
-// tan(sqrt(s) w) / sqrt(s)
+// tan(sqrt(s) w) / sqrt(s), which is real also for s below zero.
 double tangent_over_root(double s, double w) noexcept {
   return std::abs(s) * w * w < 1e-12 ? w : root_tangent(s, w) / s;
 }
@@ -47,7 +48,8 @@ MindlinPlate::Waves MindlinPlate::waves(double f) const noexcept {
   const double larger = half + std::sqrt(half * half - product);
   Waves waves{};
   waves.bending = larger / (d * s);
-  waves.evanescent = m * (j - s) / larger;  // by the product of the roots, which does not cancel
+  // from the product of the roots, because their difference would cancel
+  waves.evanescent = m * (j - s) / larger;
   waves.shear = (j - s) / twist_N_m;
   waves.share_bending = 1 - m / (s * waves.bending);
   waves.share_evanescent = 1 - m / (s * waves.evanescent);
@@ -57,13 +59,13 @@ MindlinPlate::Waves MindlinPlate::waves(double f) const noexcept {
 double MindlinPlate::wavenumber_per_m(double f) const noexcept { return std::sqrt(waves(f).bending); }
 
 double MindlinPlate::frequency_Hz(double k) const noexcept {
-  // (J omega^2 - S - D k^2)(rho h omega^2 - S k^2) = S^2 k^2, the smaller omega^2.
+  // Solves (J omega^2 - S - D k^2)(rho h omega^2 - S k^2) = S^2 k^2 for the smaller omega^2.
   const double d = stiffness_N_m, s = shear_N_per_m, m = mass_kg_per_m2, j = rotary_inertia_kg, k2 = k * k;
   const double half = 0.5 * (j * s * k2 + m * (s + d * k2)), product = j * m * s * d * k2 * k2;
   return std::sqrt(s * d * k2 * k2 / (half + std::sqrt(half * half - product))) / (2 * std::numbers::pi);
 }
 
-// Above 0 below the cut-off, below 0 above it, for pi/2 < k W < pi; k^2 the wave of bending.
+// Positive below the cut-off, negative above it, for pi/2 < k W < pi, where k^2 is that of the bending wave.
 double MindlinPlate::below_cut_off(const Waves& w, double half_width) const noexcept {
   const double k = std::sqrt(w.bending), over = w.share_evanescent / (w.share_bending * k);
   return std::sin(k * half_width) - over * root_tangent(w.evanescent, half_width) * std::cos(k * half_width);

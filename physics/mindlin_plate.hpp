@@ -1,5 +1,5 @@
 #pragma once
-// A clamped strip with shear and rotary inertia.
+// A clamped strip with shear deformation and rotary inertia (Mindlin's theory).
 #include "physics/surface.hpp"
 
 namespace turnpoint::physics {

@@ -5,12 +5,12 @@
 namespace turnpoint::physics {
 namespace {
 
-// Bounds for an element's basis and quadrature, so that these matrices are on the stack.
+// Matrices with a fixed maximum size, so that they are on the stack.
 using Small =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, largest_degree + 4, largest_degree + 4>;
 using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, largest_degree + 4, 1>;
 
-// Second derivative of the half-width; a table's jumps at its knots, where elements end.
+// Second derivative of the half-width. For a tabulated taper it jumps at the knots, where elements end.
 double second_derivative(const Taper& taper, double x) {
   if (const auto* t = std::get_if<ExponentialTaper>(&taper.form())) {
     return taper.half_width_m(x) / (t->decay_length_m * t->decay_length_m);
@@ -67,7 +67,7 @@ ModalAssembler::Form ModalAssembler::single_form(double w, double r, double curv
   const double across = 1 / (w * w), stretch = 2 * r * r - curve;
   const auto& m = single_bend_;
   const double bending = equation_.bending, tension = equation_.tension;
-  const auto with_value = [&](Eigen::Index row) {  // the terms that multiply X
+  const auto with_value = [&](Eigen::Index row) {  // the terms that are multiplied by X
     return stretch * m(row, 1) + r * r * m(row, 2) + across * m(row, 3);
   };
   Form f;
@@ -131,7 +131,7 @@ Eigen::MatrixXcd ModalAssembler::matrix(const ModalElement& e) const {
   const int n = along_.count();
   const std::vector<Point> list = points(e);
   const auto rows = static_cast<Eigen::Index>(list.size());
-  // Basis functions at the quadrature points, a row for each point, and the weights of the mapping there.
+  // Basis functions at the quadrature points, one row per point, and the quadrature's weights.
   Small value(rows, n), first(rows, n), second(rows, n);
   Column weight(rows), w(rows), w1(rows), curve(rows);
   for (Eigen::Index q = 0; q < rows; ++q) {
@@ -171,7 +171,7 @@ Eigen::MatrixXcd ModalAssembler::matrix(const ModalElement& e) const {
       for (std::size_t j = 0; j < 4; ++j) bend[i][j] = gram(part[i], weight.cwiseProduct(w), part[j]);
     }
   }
-  // The unknowns in use: the right vertex may have fewer transverse functions.
+  // Indices of the unknowns in use: the right vertex may have fewer transverse functions.
   std::vector<std::pair<int, int>> index;
   for (int a = 0; a < n; ++a) {
     const int functions = a >= n - along_.per_vertex ? e.right : e.left;

@@ -10,7 +10,7 @@
 
 namespace turnpoint::physics {
 
-// bending lap v lap w + tension grad v grad w - inertia v w
+// Factors of the weak form: bending lap v lap w + tension grad v grad w - inertia v w
 struct ModalEquation {
   double bending = 0;
   double tension = 1;
@@ -18,31 +18,32 @@ struct ModalEquation {
   bool plate() const { return bending > 0; }
 };
 
-// One interval of x. `left` and `right` count the transverse functions at its ends (0: held).
+// One interval of x. `left` and `right` are the numbers of transverse functions at its ends; 0 means that the
+// end is held.
 struct ModalElement {
   double x0 = 0, h = 0;
   int left = 0, right = 0;
   double ln_scale = 0;
-  Eigen::MatrixXcd transfer;  // unknowns of bubbles and right vertex per unknown of the left vertex
-  Eigen::VectorXcd centre;    // centre-line coefficient of each basis function, after solving
+  Eigen::MatrixXcd transfer;  // gives the unknowns of bubbles and right vertex from those of the left vertex
+  Eigen::VectorXcd centre;    // each basis function's coefficient at the centre line, after solving
 };
 
 class ModalAssembler {
  public:
   ModalAssembler(const Taper& taper, const TransverseBasis& across, const ElementBasis& along,
                  const ModalEquation& equation, double slope_unit_m);
-  // Dense symmetric matrix of an element, unknowns ordered by basis function, then transverse function.
+  // The symmetric matrix of an element. Unknowns are ordered by basis function, then by transverse function.
   Eigen::MatrixXcd matrix(const ModalElement& element) const;
-  // Factor that turns the vertex slope unknown (dv/dx slope_unit) into a slope in t.
+  // Factor that converts the unknown of a vertex slope (dv/dx slope_unit) to a slope with respect to t.
   double slope_factor(const ModalElement& element) const { return 0.5 * element.h / slope_unit_m_; }
 
  private:
   struct Point {
-    double weight, w, w1, w2;  // of the integral over x; half-width and two derivatives
-    BasisValues basis;         // with respect to x, slope unknowns scaled
+    double weight, w, w1, w2;  // weight in the integral over x; half-width and its two derivatives
+    BasisValues basis;         // derivatives with respect to x, in units of the slope unknowns
   };
   std::vector<Point> points(const ModalElement& element) const;
-  // A symmetric form of (X'', X', X) at one point.
+  // A symmetric quadratic form of (X'', X', X) at one point.
   struct Form {
     double ss, sf, sv, ff, fv, vv;
   };
@@ -56,7 +57,7 @@ class ModalAssembler {
   double slope_unit_m_;
   Quadrature rule_;
   std::vector<BasisValues> table_;
-  Eigen::Matrix4d single_bend_;  // across_.bend of the first function
+  Eigen::Matrix4d single_bend_;  // the integrals across_.bend of the first function
 };
 
 }  // namespace turnpoint::physics

@@ -16,11 +16,11 @@ namespace {
 
 using std::numbers::pi;
 
-// Eliminates from the tip to the drive edge: each element's inner and outer unknowns per unknown of its inner
-// end.
+// Eliminates unknowns from the tip to the drive edge: expresses each element's inner and outer unknowns by
+// those of its inner end.
 void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
                std::vector<ModalElement>& elements) {
-  Eigen::MatrixXcd tail;  // stiffness of everything beyond, seen at the right vertex
+  Eigen::MatrixXcd tail;  // stiffness at the right vertex of everything beyond it
   for (auto e = elements.rbegin(); e != elements.rend(); ++e) {
     Eigen::MatrixXcd k = assembler.matrix(*e);
     if (tail.size() > 0) k.bottomRightCorner(tail.rows(), tail.cols()) += tail;
@@ -31,7 +31,8 @@ void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
   }
 }
 
-// Goes back out from the drive edge, keeping the size apart, and keeps the centre line only.
+// Computes the unknowns from the drive edge outwards, with their size kept separately, and stores only the
+// centre line.
 void substitute(const ModalSetup& s, const ModalAssembler& assembler, const Eigen::VectorXd& drive,
                 std::vector<ModalElement>& elements) {
   Eigen::VectorXcd u = Eigen::VectorXcd::Zero(s.along.per_vertex * elements.front().left);
@@ -63,7 +64,7 @@ void substitute(const ModalSetup& s, const ModalAssembler& assembler, const Eige
   }
 }
 
-// The drive edge's displacement against eta: a piston, or the first transverse mode at its cut-off.
+// The drive edge's displacement as a function of eta: a piston, or the first transverse mode at its cut-off.
 std::function<double(double)> drive_shape(const Surface& surface, const ModalEquation& equation) {
   if (surface.drive == DriveShape::piston) return [](double) { return 1.0; };
   if (!equation.plate()) return [](double eta) { return std::cos(pi / 2 * eta); };
@@ -71,7 +72,7 @@ std::function<double(double)> drive_shape(const Surface& surface, const ModalEqu
   const double w = half_width_m(surface, 0);
   const double b = w * dispersion.wavenumber_per_m(dispersion.cut_off_frequency_Hz(w));
   const double g = std::sqrt(b * b + w * w * equation.tension);
-  const auto cosh_ratio = [g](double eta) {  // cosh(g eta)/cosh g, without overflow
+  const auto cosh_ratio = [g](double eta) {  // cosh(g eta)/cosh g in a form that does not overflow
     return std::exp(g * (eta - 1)) * (1 + std::exp(-2 * g * eta)) / (1 + std::exp(-2 * g));
   };
   const double unit = 1 / std::cos(b) - cosh_ratio(0);
@@ -147,7 +148,7 @@ Scaled ModalLine::at(double x, int derivative) const {
   return {derivative == 0 ? sum : sum * (2 / e->h), e->ln_scale};
 }
 
-// Beyond e^-45 the one-mode decay continues the field from the match point.
+// Beyond e^-45, the field is continued from the match point by the decay of the one-mode equation.
 Scaled ModalLine::beyond(double x, int derivative) const {
   const Scaled here = at(match_m_, 0), unit = tail_.value(match_m_);
   const Scaled there = derivative == 0 ? tail_.value(x) : tail_.slope(x);

@@ -1,5 +1,6 @@
 #pragma once
-// `modes`, and `mode` of a clamped plate: the field as transverse functions times elements along x.
+// The model `modes`, and `mode` of a clamped plate: the field as transverse functions times finite elements
+// along x.
 #include <functional>
 #include <memory>
 
@@ -7,15 +8,17 @@
 
 namespace turnpoint::physics {
 
-// How the field is resolved. The defaults give 1e-5 or better of the two-dimensional field.
+// The resolution of the field. The defaults agree with the exact two-dimensional field to 1e-5 or better.
 struct ModalResolution {
-  int degree = 7;           // of the polynomials along x
-  double radians = 2.5;     // of wavenumber per element
-  int spare_functions = 3;  // transverse functions beyond those that can propagate
-  // Displacement of the drive edge against eta = y/W in [0, 1]; empty: by the surface's `drive`. The field is
-  // that of this displacement, so that an exact field can be driven and compared.
+  int degree = 7;           // degree of the polynomials along x
+  double radians = 2.5;     // phase (wavenumber times length) per element
+  int spare_functions = 3;  // number of transverse functions beyond those that can propagate
+  // Displacement of the drive edge as a function of eta = y/W in [0, 1]; if empty, the surface's `drive` is
+  // used. With the drive displacement of an exactly known field, the solution can be compared with that
+  // field.
   std::function<double(double)> drive;
-  enum class Across { polynomials, cut_off_shape } across = Across::polynomials;  // transverse functions
+  // which transverse functions are used
+  enum class Across { polynomials, cut_off_shape } across = Across::polynomials;
 };
 
 // Galerkin solution of (plate theories mindlin and elastic: see section_basis.hpp; otherwise membrane or

@@ -10,12 +10,12 @@ namespace {
 
 using Matrix = Eigen::MatrixXcd;
 
-// The stiffness seen by the kept unknowns if no force acts on the others (static condensation).
+// The stiffness of the kept unknowns when no force acts on the others (static condensation).
 Matrix condensed(const Matrix& kept, const Matrix& coupling, const Matrix& others) {
   return kept - coupling * others.partialPivLu().solve(coupling.transpose());
 }
 
-// For each element the inverse of its stiffness together with that of everything on both sides of it.
+// For each element, the inverse of the stiffness of the element and of everything on both sides of it.
 // Unknowns that are held, at the drive edge and at the far end, are left out.
 std::vector<Matrix> inverses(const ModalSetup& setup, const ModalAssembler& assembler,
                              const std::vector<ModalElement>& elements) {
@@ -29,7 +29,7 @@ std::vector<Matrix> inverses(const ModalSetup& setup, const ModalAssembler& asse
                                   seen[i].bottomRightCorner(rest, rest));
     seen[i - 1].bottomRightCorner(ends, ends) += tail;
   }
-  Matrix head;  // stiffness of everything before, seen at the left vertex; the drive edge is held
+  Matrix head;  // stiffness at the left vertex of everything before it, with the drive edge held
   for (std::size_t i = 0; i < seen.size(); ++i) {
     Matrix before = own[i];
     if (i == 0) {
@@ -61,7 +61,7 @@ std::vector<std::complex<double>> plate_receptance_m_per_N(const Surface& surfac
   const ModalAssembler assembler(setup.taper, setup.across, setup.along, setup.equation,
                                  setup.taper.half_width_m(0));
   const auto inverse = inverses(setup, assembler, elements);
-  // The elements' matrices are those of half the strip, divided by D.
+  // The elements' matrices describe half of the strip and are divided by D.
   const double unit = 1 / (2 * Dispersion(surface).stiffness_N_m);
   std::vector<std::complex<double>> answer;
   for (const double x : x_m) {

@@ -1,5 +1,5 @@
 #pragma once
-// A clamped plate's answer to a force, by the elements that solve its `mode`.
+// The response of a clamped plate to a force, by the elements that solve its `mode`.
 #include <complex>
 #include <vector>
 

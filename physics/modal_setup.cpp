@@ -11,11 +11,13 @@ namespace turnpoint::physics {
 namespace {
 
 using std::numbers::pi;
-constexpr double ln_domain_end = 70;  // of decay beyond the turning point, where the elements stop
-constexpr double ln_match = 45;       // where the one-mode decay takes over
+// the elements end where the field has decayed by this exponent beyond the turning point
+constexpr double ln_domain_end = 70;
+constexpr double ln_match = 45;  // beyond this exponent the one-mode decay is used
 constexpr double widths_per_element = 1.2;
 
-// Tension makes a boundary layer along clamped sides, of sqrt(D/N), which takes more polynomials.
+// With tension there is a boundary layer of width sqrt(D/N) along clamped sides, which needs more
+// polynomials.
 int spare_functions(const Dispersion& dispersion, double f, const ModalResolution& resolution) {
   if (!dispersion.clamped_bending()) return resolution.spare_functions;
   const double layers =
@@ -48,7 +50,7 @@ ModalSetup make_modal_setup(const Surface& surface, double f, Losses losses,
   const bool plate = dispersion.clamped_bending();
   ModalEquation equation;
   equation.inertia = lossy * lossy;
-  if (plate) {  // scaled by D
+  if (plate) {  // a plate's equation is divided by D
     equation.bending = 1;
     equation.tension = dispersion.tension_N_per_m / dispersion.stiffness_N_m;
     equation.inertia *= lossy * lossy + equation.tension;
@@ -79,7 +81,7 @@ std::vector<ModalElement> make_modal_elements(const ModalSetup& s, const ModalRe
       if (piece.x0 > x * (1 + 1e-12) && piece.x0 < end) end = piece.x0;
     }
     if (x + 1.5 * h > end) h = x + h >= end ? end - x : 0.5 * (end - x);
-    if (!(h > 1e-9 * w0)) break;  // the apex itself
+    if (!(h > 1e-9 * w0)) break;  // this is the apex itself
     const int wanted = static_cast<int>(std::ceil(s.k * w / pi)) + s.spare;
     ModalElement& e = elements.emplace_back();
     e.x0 = x;
@@ -90,7 +92,7 @@ std::vector<ModalElement> make_modal_elements(const ModalSetup& s, const ModalRe
     decay += h * std::sqrt(std::max(0.0, middle * middle - s.k * s.k));
     if (decay > ln_match && match_m == s.taper.length_m()) match_m = x;
   }
-  // Where the elements stop short of an apex, their held end shows in the last few e-foldings.
+  // If the elements end before an apex, their held end affects the last few e-foldings.
   if (x < s.taper.length_m())
     match_m = std::min(match_m, elements[elements.size() - std::min<std::size_t>(8, elements.size())].x0);
   for (std::size_t i = 0; i + 1 < elements.size(); ++i) elements[i].right = elements[i + 1].left;

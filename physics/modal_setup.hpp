@@ -1,5 +1,5 @@
 #pragma once
-// The starting point of a solution by elements: taper, equation, basis and the elements themselves.
+// The preparation of a solution by elements: taper, equation, basis and the elements themselves.
 #include <vector>
 
 #include "physics/modal_elements.hpp"
@@ -14,15 +14,15 @@ struct ModalSetup {
   TransverseBasis across;
   ElementBasis along;
   ModalEquation equation;
-  double turning_m;  // or the length
-  int spare;         // transverse functions beyond those that can propagate
+  double turning_m;  // position of the turning point, or the length if there is none
+  int spare;         // number of transverse functions beyond those that can propagate
 };
 
 ModalSetup make_modal_setup(const Surface& surface, double frequency_Hz, Losses losses,
                             const ModalResolution& resolution);
 
-// Intervals from the drive edge to the end, finer at the drive edge's corners, ending on the taper's knots.
-// match_m: where the one-mode decay takes over.
+// Divides the surface from the drive edge to the end into elements, finer at the drive edge's corners, with
+// ends on the taper's knots. match_m is where the one-mode decay is used from then on.
 std::vector<ModalElement> make_modal_elements(const ModalSetup& setup, const ModalResolution& resolution,
                                               double& match_m);
 

@@ -13,26 +13,29 @@ namespace {
 
 using std::numbers::pi;
 
-// Measured constants; see the header.
-constexpr double coupling = 0.15;           // higher-mode amplitude per slope times width ratio
-constexpr double piston_coupling = 0.55;    // of a stiff bar, at any slope
-constexpr double phase_uncertainty = 0.12;  // of a higher mode's standing wave at the drive edge
-constexpr double curvature_shift = 0.2;     // edge position per W'' W, in cut-off half-widths
-constexpr double slope_shift = 0.1;         // per W'^3
-// Of a clamped plate's one-shape mode: its shape is exact at the cut-off only, so that its phase drifts on
-// the way.
-constexpr double plate_drift = 1.5e-3;  // radians per radian of k x0
+// These constants were measured; see the header.
+constexpr double coupling = 0.15;         // higher-mode amplitude per slope times width ratio
+constexpr double piston_coupling = 0.55;  // higher-mode amplitude for a stiff bar, at any slope
+// unknown phase of a higher mode's standing wave at the drive edge
+constexpr double phase_uncertainty = 0.12;
+constexpr double curvature_shift = 0.2;  // shift of an edge per W'' W, in cut-off half-widths
+constexpr double slope_shift = 0.1;      // shift of an edge per W'^3
+// For a clamped plate's one-shape mode: its shape is exact only at the cut-off, so its phase drifts on the
+// way there.
+constexpr double plate_drift = 1.5e-3;  // phase error in radians per radian of k x0
 constexpr double plate_piston = 0.9;
 constexpr double plate_second_mode =
-    2.3246;                             // cut-off half-width of the second symmetric mode over the first's
-constexpr double plate_shift = 1.2e-3;  // edge position, in cut-off half-widths
-constexpr double plate_slope_shift = 0.15;  // per W'^2
-constexpr double end_shift = 0.15;          // of a clamped end just beyond the turning point, per W'^2
-constexpr double shallow = 6;               // edge shift per share of higher modes, in cut-off half-widths
-constexpr double largest = 2;               // the bound is meaningless beyond this
+    // cut-off half-width of the second symmetric mode divided by the first's
+    2.3246;
+constexpr double plate_shift = 1.2e-3;      // shift of an edge, in cut-off half-widths
+constexpr double plate_slope_shift = 0.15;  // shift of an edge per W'^2
+constexpr double end_shift = 0.15;          // shift by a clamped end just beyond the turning point, per W'^2
+// shift of an edge per share of higher modes, in cut-off half-widths
+constexpr double shallow = 6;
+constexpr double largest = 2;  // a larger bound has no meaning
 
-// Equation of the n-th symmetric transverse mode, n = 1, 2, ...; on a wedge its order is right to the second
-// power of the slope.
+// The equation of the n-th symmetric transverse mode, n = 1, 2, ...; on a wedge its order is exact to the
+// second power of the slope.
 MarchEquation equation(const Surface& surface, double f, int n) {
   const double k = wavenumber_per_m(surface, f);
   const std::complex<double> lossy(1, -0.5 / surface.quality_factor);
@@ -45,7 +48,7 @@ MarchEquation equation(const Surface& surface, double f, int n) {
   return e;
 }
 
-// Largest amplitude of a higher mode on the surface over its amplitude at the drive edge.
+// Largest amplitude of a higher mode on the surface divided by its amplitude at the drive edge.
 double amplification(const Surface& surface, const Taper& taper, double f, int n) {
   const double k = wavenumber_per_m(surface, f);
   const auto turning = taper.position_continued_m((2 * n - 1) * cut_off_half_width_m(surface, f));
@@ -55,12 +58,12 @@ double amplification(const Surface& surface, const Taper& taper, double f, int n
   const double ln_drive = march.value(0).ln_magnitude();
   double most = ln_drive;
   for (int i = 1; i <= 200; ++i) most = std::max(most, march.value(reach * i / 200).ln_magnitude());
-  // Near its resonance the standing wave at the drive edge is known to a phase only.
+  // Near a resonance, the standing wave at the drive edge is known only up to a phase.
   const double standing = std::exp(ln_drive - most);
   return 1 / std::max({standing - phase_uncertainty, loss, 1e-3});
 }
 
-// The same for a clamped plate, whose higher modes are not solved for: bounded by loss alone.
+// The same ratio for a clamped plate, whose higher modes are not solved for: only loss bounds it.
 double plate_amplification(const Surface& surface, const Taper& taper, double f) {
   const auto turning = taper.position_continued_m(plate_second_mode * cut_off_half_width_m(surface, f));
   const double reach = std::clamp(turning.value_or(0), 0.0, taper.length_m());
@@ -119,16 +122,16 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   if (!membrane && ratio > plate_second_mode) modes *= plate_amplification(surface, taper, f);
   bound.higher_modes = std::min(largest, modes);
   bound.shape = std::min(largest, modes + drift + 0.3 * bend + slope_shift * steepest * steepest);
-  const double phase = coupled + bend + 1.5 * drift;  // of the first mode at the drive edge
+  const double phase = coupled + bend + 1.5 * drift;  // phase error of the first mode at the drive edge
   bound.drive = std::min(1e6, bound.shape + 2 * (phase + modes) * conditioning);
-  // A share of the wave at the drive edge may add to the first mode or cancel it.
+  // A part of the wave at the drive edge may add to the first mode or reduce it.
   bound.level_dB = -20 * std::log10(std::max(1e-6, 1 - (phase + modes) * conditioning));
-  // The outermost maximum lies about one Airy length before the turning point; where that is close to the
-  // drive edge it is shallow, and a small share of the higher modes moves it far.
+  // The outermost maximum is about one Airy length before the turning point. If that is close to the drive
+  // edge, the maximum is shallow, and a small share of higher modes moves it far.
   const double airy_length = cut * std::cbrt(2 / (pi * pi * std::max(steepest, 1e-6)));
   const double near = std::max(0.0, std::min(x0 - 1.1 * airy_length, last_peak_m.value_or(x0)));
   const double polluted = shallow * bound.higher_modes * higher_mode_decay(surface, f, near);
-  // A straight clamped end close beyond the turning point cuts the curved wave fronts.
+  // A straight clamped end just beyond the turning point intersects the curved wave fronts.
   const double end = taper.half_width_m(taper.length_m()) > 0.5 * cut ? end_shift * steepest * steepest : 0;
   bound.drive_m = cut * (end + std::min(1.0, polluted));
   bound.equation_m = cut * (curvature_shift * bend + slope_shift * std::pow(steepest, 3));

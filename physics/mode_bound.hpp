@@ -1,31 +1,34 @@
 #pragma once
-// Bound for the difference between the one-mode field and the two-dimensional one, without solving the
-// latter.
+// Bounds the difference between the one-mode field and the two-dimensional field without solving the latter.
 #include <optional>
 
 #include "physics/surface.hpp"
 
 namespace turnpoint::physics {
 
-// All for `mode` (or the exact first mode) against `modes`. Scaling from the wave front's curvature across
-// the straight drive edge, constants measured on random surfaces (tests/physics/planner_test.cpp).
+// Bounds for `mode` (or the exact first mode) compared with `modes`. Their form follows from the wave front's
+// curvature across the straight drive edge; their constants were measured on random surfaces
+// (tests/physics/planner_test.cpp).
 struct ModeBound {
-  double shape = 0;       // of |v| with the last maximum at one, relative to the largest value
-  double drive = 0;       // of |v| with v(0) at one, relative to the largest value
-  double level_dB = 0;    // of the last maximum over the drive edge
-  double equation_m = 0;  // of an edge's position: the one-mode equation of a curved or steep taper
-  double drive_m = 0;     // the same: higher modes of the drive edge, a straight clamped end close by
+  double shape = 0;     // error of |v| if the last maximum is set to one, relative to the largest value
+  double drive = 0;     // error of |v| if v(0) is set to one, relative to the largest value
+  double level_dB = 0;  // error of the ratio of the last maximum to the drive edge
+  // error of an edge's position from the one-mode equation, on a curved or steep taper
+  double equation_m = 0;
+  // error of an edge's position from higher modes of the drive edge and a straight clamped end close by
+  double drive_m = 0;
   double position_m() const { return equation_m + drive_m; }
-  double higher_modes = 0;  // share of `shape` that the drive edge's higher modes make
+  double higher_modes = 0;  // the part of `shape` that the drive edge's higher modes cause
 };
 
-// `conditioning` is that of the first mode's v(0) (CentreLine::drive_conditioning); `last_peak_m` the mode's
-// own last maximum, where it is known: loss draws it towards the drive edge and its higher modes.
+// Computes the bounds. `conditioning` is that of the first mode's v(0) (CentreLine::drive_conditioning);
+// `last_peak_m` is the mode's own last maximum, if known: loss moves it towards the drive edge, where higher
+// modes are stronger.
 ModeBound mode_bound(const Surface& surface, double frequency_Hz, double conditioning,
                      std::optional<double> last_peak_m);
 
-// The same for the displacement of the higher modes at a position, relative to the drive edge's: they fall
-// beyond their own turning points.
+// The displacement of the higher modes at a position divided by that at the drive edge: it falls beyond their
+// own turning points.
 double higher_mode_decay(const Surface& surface, double frequency_Hz, double x_m);
 
 }  // namespace turnpoint::physics

@@ -15,12 +15,13 @@
 namespace turnpoint::physics {
 namespace {
 
-constexpr double probe_margin = 1.9;  // between the probes a difference may be larger than at them
+// allows for differences between the probes that are larger than at the probes
+constexpr double probe_margin = 1.9;
 constexpr int probes = 160;
 constexpr double unknown = 2, unknown_dB = 120;
-constexpr double modes_accuracy = 5e-4;  // of `modes` at its default resolution
+constexpr double modes_accuracy = 5e-4;  // relative error of `modes` at its default resolution
 
-// One rung's profile at the probe points, as logarithms, with its features.
+// The profile of one model at the probe points, as logarithms, with its features.
 struct Probe {
   std::unique_ptr<CentreLine> line;
   std::vector<double> ln;
@@ -49,7 +50,7 @@ Probe probe(const Surface& surface, const PlanRequest& request, double f, Model 
   return p;
 }
 
-// Difference of two rungs in the units of a RungEstimate, seen at the probes.
+// The difference between two models at the probes, in the quantities of a RungEstimate.
 struct Difference {
   double amplitude = 0, level_dB = 0, position_m = 0;
 };
@@ -67,7 +68,8 @@ Difference compare(const Surface& surface, const PlanRequest& request, const Pro
   }
   d.amplitude = probe_margin * worst / most;
   d.level_dB = 8.686 * std::abs((a.ln_peak - a.ln_drive) - (b.ln_peak - b.ln_drive));
-  if (a.peak.has_value() != b.peak.has_value()) {  // normalised differently: nothing can be said
+  // the two are normalised differently, so they cannot be compared
+  if (a.peak.has_value() != b.peak.has_value()) {
     d.amplitude += unknown;
     d.level_dB += unknown_dB;
   }
@@ -77,7 +79,7 @@ Difference compare(const Surface& surface, const PlanRequest& request, const Pro
   return d;
 }
 
-// Evaluation on one 3 GHz core, from `turnpoint-bench physics`.
+// Time for an evaluation on one 3 GHz core, measured by `turnpoint-bench physics`.
 double cost_s(const Surface& surface, double f, Model model, int points) {
   const double kl = wavenumber_per_m(surface, f) * surface.length_m;
   const bool plate = Dispersion(surface).clamped_bending();
@@ -107,7 +109,7 @@ void merge(RungEstimate& all, const RungEstimate& one) {
   if (all.reason.empty()) all.reason = one.reason;
 }
 
-// What every rung is compared with, solved once for a tone.
+// The solution with which every model is compared, computed once per tone.
 struct Reference {
   double f;
   Probe mode;
@@ -157,7 +159,8 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
   e.amplitude_bound = drive ? bound.drive : bound.shape;
   e.level_bound_dB = bound.level_dB;
   e.boundary_bound_m = request.edge.kind == Edge::Kind::turning ? 0 : bound.position_m();
-  if (!reference.mode.peak) {  // the two-dimensional field may have a maximum where the mode has none
+  // The two-dimensional field may have a last maximum although the mode has none.
+  if (!reference.mode.peak) {
     e.amplitude_bound += unknown;
     e.level_bound_dB += unknown_dB;
   }
@@ -180,7 +183,7 @@ RungEstimate estimate_with(const Surface& surface, const PlanRequest& request,
     try {
       merge(all, model == Model::edge ? edge_estimate(surface, request, one)
                                       : profile_estimate(surface, request, one, model));
-    } catch (const std::domain_error& error) {  // the rung has no answer for this surface or tone
+    } catch (const std::domain_error& error) {  // the model does not apply to this surface or tone
       all.usable = false;
       all.reason = error.what();
     }

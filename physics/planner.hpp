@@ -16,8 +16,8 @@ namespace turnpoint::physics {
 // The accuracy that a scene requires. An empty value means no requirement.
 struct Tolerance {
   std::optional<double> boundary_m;
-  std::optional<double> amplitude;  // of |v|, relative to its largest value
-  std::optional<double> level_dB;   // of the last maximum
+  std::optional<double> amplitude;  // error of |v|, relative to its largest value
+  std::optional<double> level_dB;   // error of the level at the last maximum
 };
 
 // The error bounds of a model for a set of tones, before it is evaluated. They are relative to the
@@ -25,22 +25,22 @@ struct Tolerance {
 // plates.
 struct RungEstimate {
   Model model = Model::mode;
-  bool usable = true;           // false: it cannot answer this at all (reason says why)
-  double boundary_bound_m = 0;  // of any edge position
-  double amplitude_bound = 0;   // of |v|, relative to its largest value
-  double level_bound_dB = 0;    // of the last maximum
-  double cost_s = 0;            // on one core of a 3 GHz machine
+  bool usable = true;           // false if the model cannot be used here at all (`reason` says why)
+  double boundary_bound_m = 0;  // error of any edge's position
+  double amplitude_bound = 0;   // error of |v|, relative to its largest value
+  double level_bound_dB = 0;    // error of the level at the last maximum
+  double cost_s = 0;            // time on one core of a 3 GHz machine
   std::string reason;
 };
 
 struct PlanRequest {
   std::vector<Tone> tones;
-  int points = 0;  // 0: positions only
+  int points = 0;  // 0: only positions are needed
   Edge edge = Edge::turning();
   Normalise normalise = Normalise::peak;
   Tolerance tolerance;
-  // The model by which the tones' frequencies were found, if that is not the one to be chosen: the boundary
-  // then has its error, whichever model describes the field.
+  // The model that was used to find the tones' frequencies, if it is not the one to be chosen: the boundary
+  // then has that model's error, whichever model describes the field.
   std::optional<Model> placed_by = {};
 };
 
@@ -48,9 +48,9 @@ RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model 
 
 struct PlanChoice {
   Model model = Model::mode;
-  RungEstimate bound;  // of the chosen rung
-  bool inside = true;  // false: no model meets the tolerance; this one comes closest
-  std::string reason;  // one sentence, with numbers
+  RungEstimate bound;  // error bounds of the chosen model
+  bool inside = true;  // false if no model meets the tolerance; this model comes closest
+  std::string reason;  // why this model was chosen: one sentence with numbers
   std::vector<RungEstimate> considered;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Finite elements over the upper right quarter of a clamped strip's cross-section. Needs Eigen.
+// Finite elements for the upper right quarter of a clamped strip's cross-section. Needs Eigen.
 #include <Eigen/Dense>
 
 namespace turnpoint::physics {

@@ -97,7 +97,7 @@ bool half_log_square(const double* re, const double* im, std::size_t n, double o
     any_small |= (std::bit_cast<std::uint64_t>(square) - small) >> 63;
     const std::uint64_t bits = std::bit_cast<std::uint64_t>(square) - sqrt_half;
     // Converts the exponent to a double without an integer conversion, which few instruction sets can do on
-    // vectors.
+    // vectors. The result is e + 2047, a small positive number.
     const std::uint64_t biased = (bits + 0x7ff0000000000000ULL) >> 52;
     const double e = std::bit_cast<double>(biased | 0x4330000000000000ULL) - (4503599627370496.0 + 2047.0);
     const std::uint64_t mantissa_bits = (bits & 0x000fffffffffffffULL) + sqrt_half;
