@@ -32,7 +32,7 @@ def check_pandas(folder, readme):
         snippet = re.search(r"```python\n(.*?)```", file.read(), re.S).group(1)
     os.chdir(os.path.join(folder, "csv", "two-boundaries"))
     names = {}
-    exec(snippet, names)  # run the documented way to read an export
+    exec(snippet, names)  # Run the example code from the documentation, which shows how to read an export.
     trials, by_level = names["trials"], names["by_level"]
     with open("trials.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -45,7 +45,7 @@ def check_pandas(folder, readme):
     assert trials.response_time.isna().sum() == len(rows) - len(answered) > 0
     sessions = names["pd"].read_csv("sessions.csv", na_values=["n/a"])
     assert sessions.annotations.iloc[1] == "'=a note, with a comma and \"quotes\"", sessions.annotations
-    # Negative control: without na_values the column would be text, and the check above would fail.
+    # Negative control: without na_values the column would be read as text, and the check above would fail.
     with open("trials.csv", encoding="utf-8") as file:
         text = names["pd"].read_csv(io.StringIO(file.read()), keep_default_na=False)
     assert text.response_time.dtype.kind not in "if"
@@ -78,7 +78,7 @@ def check_bids(folder, readme):
         with open(table, encoding="utf-8") as file:
             onsets = [float(row["onset"]) for row in csv.DictReader(file, delimiter="\t")]
         assert onsets == sorted(onsets), table
-    # Negative control: the validator does find a missing file.
+    # Negative control: the validator must find that a required file is missing.
     os.remove(os.path.join(dataset, "dataset_description.json"))
     assert any(issue["severity"] == "error" for issue in issues_of(validator, dataset))
 

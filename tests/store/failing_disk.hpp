@@ -1,9 +1,9 @@
 #pragma once
 #include <cstdint>
 
-/// Makes SQLite write to a disk that fills up. This is a shim over the real file system and the default for
-/// connections opened during its lifetime. Use one at a time; bytes_left() and space_again() may be called
-/// from any thread.
+/// Makes SQLite write to a disk that fills up. While an object exists, connections are opened on it by
+/// default; other operations go to the real file system. Only one object may exist at a time; bytes_left()
+/// and space_again() may be called from any thread.
 class FailingDisk {
  public:
   FailingDisk();
@@ -11,6 +11,6 @@ class FailingDisk {
   FailingDisk& operator=(const FailingDisk&) = delete;
   ~FailingDisk();
 
-  void bytes_left(std::int64_t bytes);  ///< writes beyond this fail with SQLITE_FULL
+  void bytes_left(std::int64_t bytes);  ///< after this many more bytes, writes fail with SQLITE_FULL
   void space_again();
 };

@@ -20,7 +20,7 @@ struct Change {
   bool truncates = false;
 };
 
-/// The durable content of a file, and the writes that are still in the cache.
+/// The durable content of a file, and the writes that are still only in the cache.
 struct Platter {
   std::string durable;
   std::vector<Change> waiting;
@@ -33,7 +33,7 @@ std::map<std::string, Platter> platters;
 std::map<sqlite3_file*, std::string> names;
 std::function<void()> hook;
 LossyDisk::Syncs mode;
-// for all files the same functions write, truncate, sync and close
+// The real methods. The functions for writing, truncating, syncing and closing are the same for all files.
 const sqlite3_io_methods* any_real = nullptr;
 
 void apply(std::string& bytes, const Change& change) {
@@ -127,7 +127,7 @@ void LossyDisk::at_each_operation(std::function<void()> call) { hook = std::move
 void LossyDisk::cut(const std::string& database, const std::string& into, std::uint64_t seed) const {
   std::mt19937_64 random(seed);
   const auto survival =
-      // share of unsynced writes that survive this cut, from none to all
+      // the share of unsynced writes that survive this cut, from none to all
       std::uniform_real_distribution<>(0, 1)(random);
   const auto survives = [&] { return std::uniform_real_distribution<>(0, 1)(random) < survival; };
   for (const auto* suffix : {"", "-wal"}) {

@@ -4,12 +4,12 @@
 #include <memory>
 #include <string>
 
-/// Makes SQLite write to a disk that can lose power. Synced data stay; of everything written since, each
-/// sector may or may not be there. This is a shim over the real file system and the default for connections
-/// opened during its lifetime. Not thread-safe.
+/// Makes SQLite write to a disk that can lose power. Synced data stay; of everything written since then, each
+/// sector may be lost. While an object exists, connections are opened on it by default; other operations go
+/// to the real file system. Not thread-safe.
 class LossyDisk {
  public:
-  enum class Syncs { kept, ignored };  ///< ignored: a disk that reports a sync without doing it
+  enum class Syncs { kept, ignored };  ///< ignored: a bad disk that reports success without syncing
 
   explicit LossyDisk(Syncs syncs);
   LossyDisk(const LossyDisk&) = delete;
@@ -20,8 +20,8 @@ class LossyDisk {
   /// fail.
   void at_each_operation(std::function<void()> call);
 
-  /// Writes the files of `database`, as a power cut at this moment may leave them, into the existing folder
-  /// `into`. `seed` chooses what survives.
+  /// Writes the files of `database` to the existing folder `into` as a power cut at this moment may leave
+  /// them. `seed` chooses which writes survive.
   void cut(const std::string& database, const std::string& into, std::uint64_t seed) const;
 
   /// Forgets this database. No connection to it may be open.

@@ -1,5 +1,5 @@
-// make_sample FOLDER: a database of several sessions in FOLDER/lab.sqlite, exported to FOLDER/csv and
-// FOLDER/bids.
+// make_sample FOLDER: writes a database of several sessions to FOLDER/lab.sqlite and exports it to FOLDER/csv
+// and FOLDER/bids.
 #include <cstdio>
 
 #include "station/store/annotate.hpp"

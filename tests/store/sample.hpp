@@ -130,7 +130,7 @@ inline std::string bytes_of(const std::string& path) {
 /// A connection for the test that bypasses the store's access rules.
 inline Database raw(const std::string& path) { return Database(path, Database::Access::read_write); }
 
-/// The fault and message that `action` throws; fault io and "" if it throws nothing.
+/// The kind and message of the error that `action` throws; ErrorKind io and "" if it throws nothing.
 template <class Action>
 std::pair<ErrorKind, std::string> failure(Action&& action) {
   try {

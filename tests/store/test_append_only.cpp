@@ -92,7 +92,8 @@ TEST_CASE("tables are STRICT: a word where a number belongs is refused", "[store
   CHECK(raw.integer(
             "SELECT count(*) FROM pragma_table_list WHERE schema = 'main' AND type = 'table' AND strict = 0"
             " AND name NOT LIKE 'sqlite_%'") == 0);
-  CHECK(raw.integer("SELECT wr FROM pragma_table_list WHERE name = 'trial'") == 0);  // a rowid table
+  // an ordinary table with row ids
+  CHECK(raw.integer("SELECT wr FROM pragma_table_list WHERE name = 'trial'") == 0);
   CHECK(sample::failure([&] {
           raw.execute("INSERT INTO event SELECT session_id, 99, 1, 'soon', 'touch', '', NULL FROM session");
         }).first == ErrorKind::refused);

@@ -22,7 +22,7 @@ using namespace turnpoint::store;
 
 namespace {
 
-/// All problems that `turnpoint verify` finds: pages, references, and each session's chain.
+/// All problems that `turnpoint verify` finds in pages, references, and each session's chain of checksums.
 std::vector<std::string> problems_of(const std::string& db) {
   Database database(db, Database::Access::read_only);
   std::vector<std::string> problems;
@@ -36,7 +36,7 @@ std::vector<std::string> problems_of(const std::string& db) {
   return problems;
 }
 
-/// A database with a resumed session, one of another participant, and a calibration.
+/// Makes a database with a resumed session, a session of another participant, and a calibration.
 void make(const std::string& db) {
   auto start = sample::start();
   start.calibration_id = std::string(64, 'c');
@@ -50,7 +50,7 @@ void make(const std::string& db) {
   log = SessionLog(std::move(log));
 }
 
-/// Removes all guards of the rows, as somebody with an SQLite shell could do.
+/// Removes the triggers that protect rows, as somebody with an SQLite shell could do.
 Database unguarded(const std::string& db) {
   auto database = sample::raw(db);
   std::vector<std::string> triggers;
@@ -82,15 +82,15 @@ struct Damage {
 
   std::uint64_t below(std::uint64_t n) { return random() % n; }
 
-  /// A condition that only one random row of the table meets.
+  /// An SQL condition that selects one random row of the table.
   std::string some_row(Database& database, const std::string& table, const std::string& key) {
     const auto count = database.integer("SELECT count(*) FROM " + table);
     return "(" + key + ") = (SELECT " + key + " FROM " + table + " ORDER BY " + key + " LIMIT 1 OFFSET " +
            std::to_string(below(static_cast<std::uint64_t>(count))) + ")";
   }
 
-  /// Flips one bit of one stored value. Returns false if that value has none, or if the schema refuses the
-  /// new one.
+  /// Flips one bit of one stored value. Returns false if the value has no bits, or if the schema refuses the
+  /// changed value.
   bool flip(Database& database) {
     const auto& [table, key] = kTables[below(kTables.size())];
     std::vector<std::string> columns;
@@ -100,7 +100,8 @@ struct Damage {
       while (rows.step()) columns.push_back(rows.text(0));
     }
     const auto& column = columns[below(columns.size())];
-    if (column == "trial_id") return false;  // a row number, which merging assigns again
+    // a row number, which is not protected because merging assigns new ones
+    if (column == "trial_id") return false;
     const auto row = some_row(database, table, key);
     Statement value(database, "SELECT " + column + " FROM " + table + " WHERE " + row);
     value.step();
@@ -122,7 +123,8 @@ struct Damage {
     return run(update);
   }
 
-  /// Changes a value in a way that the schema allows, so that only the chain can detect it.
+  /// Changes a value so that the schema still allows it, and only the chain of checksums can detect the
+  /// change.
   bool edit(Database& database) {
     const std::vector<std::string> edits = {
         "UPDATE trial SET level = level + 0.5 WHERE ", "UPDATE trial SET response_time_s = 0.4 WHERE ",
@@ -162,7 +164,8 @@ TEST_CASE("a session's rows are as they were recorded, whatever it went through"
     died.append(sample::answered(0));
     died.presented(1, 1);
   }
-  sample::session(db, 1, sample::start("P03"));  // opening the database marks the session of the dead process
+  // beginning this session marks that of the dead process as interrupted
+  sample::session(db, 1, sample::start("P03"));
   CHECK(list_sessions(db, {"", "P02", ""}).front().status == SessionStatus::interrupted);
   CHECK(problems_of(db).empty());
   const auto other = folder / "b.sqlite";
@@ -190,7 +193,7 @@ TEST_CASE("of 1000 flipped bits, edited rows and missing rows every one is found
     if (!problems_of(damaged).empty()) ++found;
   }
   CHECK(found == 1000);
-  // Negative control: removing the guards alone, without damage, makes no difference.
+  // Negative control: removing only the protecting triggers, without damage, must not be reported.
   std::filesystem::copy_file(db, damaged, std::filesystem::copy_options::overwrite_existing);
   unguarded(damaged);
   CHECK(problems_of(damaged).empty());
@@ -228,7 +231,7 @@ TEST_CASE("verify compares a database with a sessions.csv that was exported befo
   const auto csv = folder / "out/two-boundaries/sessions.csv";
   CHECK(verify(db, {"", csv}).good());
   sample::session(db, 1, sample::start("P04"));
-  CHECK(verify(db, {"", csv}).good());  // later sessions are not in the export
+  CHECK(verify(db, {"", csv}).good());  // the export is valid although it lacks later sessions
   SECTION("rows edited and sealed again") {
     auto database = unguarded(db);
     database.execute("UPDATE trial SET level = 3; DELETE FROM link");
@@ -303,7 +306,7 @@ TEST_CASE("the first encoding of a session never changes", "[store]") {
   const auto db = folder / "a.sqlite";
   sample::session(db, 2);
   auto database = unguarded(db);
-  // Replaces the values that are drawn or read from a clock when a session is made.
+  // Replaces the random values and the clock times of the session by fixed ones.
   database.execute(
       "UPDATE session SET session_id = '00000000-0000-4000-8000-000000000000';"
       "UPDATE trial SET session_id = (SELECT session_id FROM session), recorded_realtime_ns = 5;"

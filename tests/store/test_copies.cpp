@@ -1,5 +1,5 @@
-// Backups, restored files, withdrawn participants: which files belong to which database, and what may be
-// replaced.
+// Tests backups, restored files and withdrawn participants: which files belong to which database, and which
+// may be replaced.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,7 +23,7 @@ SessionStart at_station(const std::string& participant, const std::string& stati
   return start;
 }
 
-/// Makes what a killed session leaves: the file, and a log that contains some of its pages.
+/// Leaves files as a killed session does: the database, and a log (WAL) that contains some of its pages.
 void leave_log(const std::string& db) {
   auto raw = sample::raw(db);
   raw.execute("CREATE TABLE filler (a); INSERT INTO filler SELECT randomblob(9000) FROM event");
@@ -32,7 +32,7 @@ void leave_log(const std::string& db) {
 
 void damage(const std::string& db) { fs::resize_file(db, 6000); }
 
-/// Gives a backup the date of a clock that is years ahead.
+/// Gives a backup the date of a computer whose clock is years ahead.
 void postdate(const std::string& backup) {
   const auto at = backup.rfind("-20");
   REQUIRE(at != std::string::npos);
@@ -73,7 +73,7 @@ TEST_CASE(
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4);
   backup(db, {dir, 9});
-  fs::rename(db, db + ".restored");  // the old file was already moved aside
+  fs::rename(db, db + ".restored");  // as after the first of the two renames of a restore
   CHECK(sample::failure([&] { sample::session(db, 1); }).first == ErrorKind::missing);
   CHECK(restore_backup(db, {dir, ""}).trials == 4);
   CHECK_FALSE(fs::exists(db + ".restored"));
@@ -91,7 +91,8 @@ TEST_CASE("a good database that cannot be opened is not replaced", "[store]") {
     CHECK_THROWS_AS(restore_backup(db, {dir, ""}), StoreError);
     return;
   }
-  // Root can read everything, so a child process of another user owns the folder and may not read the file.
+  // Root can read every file, so the test runs in a child process of another user, who owns the folder but
+  // may not read the file.
   fs::permissions(folder.path, fs::perms::all);
   fs::permissions(dir, fs::perms::all);
   for (const auto& entry : fs::directory_iterator(folder.path))
@@ -164,7 +165,7 @@ TEST_CASE("backups are numbered: a clock that was ahead loses none", "[store]") 
   for (int i = 0; i < 3; ++i) postdate(backup(db, {dir, 3}).path);
   sample::session(db, 2, sample::start("P02"));
   const auto made = backup(db, {dir, 3});
-  CHECK(made.number == 4);  // after 1 to 3
+  CHECK(made.number == 4);  // backups 1 to 3 have later dates, but lower numbers
   CHECK(made.removed.size() == 1);
   CHECK(fs::exists(made.path));
   damage(db);
@@ -291,7 +292,7 @@ TEST_CASE("the same code at two stations is two people until somebody joins them
   CHECK(sample::failure([&] { withdraw(a, {"P01", "", "", ""}); }).first == ErrorKind::refused);
   CHECK(join(a, "P01@a", "P07") == "P01@a");
   CHECK(persons() == std::vector<std::string>{"P01@a", "P01@a", "P01@b"});
-  // Their sessions continue to be numbered, at any station.
+  // The joined person's sessions continue to be numbered, at any station.
   const auto id = sample::session(a, 1, at_station("P01", "a"));
   CHECK(read_session(a, id).session.session_index == 2);
   CHECK(join(a, "P01@a", "P07", Relation::two_people) == "P01@a");
@@ -310,7 +311,7 @@ TEST_CASE("a withdrawal takes one of two people of a code, or one station, or on
   SECTION("one of two people") {
     CHECK(withdraw(a, {"P01@b", "", "", ""}).trials == 3);
     CHECK(list_sessions(a).size() == 2);
-    // nobody has withdrawn at this station
+    // The P01 of station a has not withdrawn, so a new session is allowed.
     CHECK(sample::session(a, 1, at_station("P01", "a")).size() == 36);
     CHECK(sample::failure([&] { sample::session(a, 1, at_station("P01", "b")); }).first ==
           ErrorKind::refused);
@@ -342,5 +343,5 @@ TEST_CASE("participants that BIDS cannot tell apart are kept apart", "[store]") 
   for (const auto& entry : fs::directory_iterator(folder / "one/two-boundaries"))
     subjects += entry.path().filename().string().rfind("sub-", 0) == 0 ? 1 : 0;
   CHECK(subjects == 5);
-  export_data(db, folder / "one", options);  // the same labels again
+  export_data(db, folder / "one", options);  // a second export gives participants the same labels
 }

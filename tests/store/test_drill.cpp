@@ -1,5 +1,5 @@
-// The drill of a restore, the note about the last backup for the start page, and backups that require a
-// separate disk.
+// Tests the trial run of a restore, the note about the last backup for the start page, and backups that
+// require a separate disk.
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The file names without those that SQLite keeps beside a database that has been read.
+/// The names of the files in the folder, except for those that SQLite keeps beside a database while it is
+/// read.
 std::vector<std::string> names_in(const std::string& folder) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder))

@@ -100,7 +100,8 @@ std::string session_of_unlike_values(const std::string& db) {
     trial.tones[3].friction.reset();
     log.presented(1, 4'000'000'001);
     log.event({4'100'000'002, "touch", "0.1 0.2", std::nullopt});
-    log.event({4'050'000'000, "stimulus", "0.75", 1});  // becomes known only after it has ended
+    // the event is logged only after the stimulus has ended, so it is older than the row before
+    log.event({4'050'000'000, "stimulus", "0.75", 1});
     log.append(trial);
     log.finish(SessionStatus::interrupted, "the participant left");
     id = log.session().session_id;
@@ -125,7 +126,7 @@ TEST_CASE("each value of the four tables stands in its column", "[store]") {
     auto text = sample::bytes_of(files[i].path);
     for (auto at = text.find(id); at != std::string::npos; at = text.find(id))
       text.replace(at, id.size(), "ID");
-    // The only value that depends on the random id.
+    // Only this value depends on the session's random id.
     const auto checksum = list_sessions(db).front().checksum;
     if (const auto at = text.find(checksum); at != std::string::npos)
       text.replace(at, checksum.size(), "CHECKSUM");

@@ -19,7 +19,7 @@ void write_bytes(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary) << bytes;
 }
 
-/// Runs `action` in a child process. Its exit status is what the action returns.
+/// Runs `action` in a child process. Returns the value of the action, as the child's exit status.
 int in_child(const std::function<int()>& action) {
   const auto child = ::fork();
   if (child == 0) {
@@ -140,7 +140,7 @@ TEST_CASE("a second station process is told who has the database, and the first 
           SessionLog::begin(folder / "link.sqlite", sample::start("P02"), sample::segment());
         }).first == ErrorKind::busy);
   log.append(sample::answered(0));
-  CHECK(list_sessions(db).size() == 1);  // readers are still allowed
+  CHECK(list_sessions(db).size() == 1);  // reading is still allowed
 }
 
 TEST_CASE("the lock goes with its process, however that ends", "[store]") {
@@ -168,7 +168,8 @@ TEST_CASE("a database that may not be written is refused before the session, and
   std::filesystem::permissions(folder / "data", static_cast<std::filesystem::perms>(0555));
   const auto before = sample::bytes_of(db);
   const int status = in_child([&] {
-    if (::geteuid() == 0 && ::setuid(65534) != 0) return 50;  // root can write anything
+    // drop root's rights, because root may write anything
+    if (::geteuid() == 0 && ::setuid(65534) != 0) return 50;
     const auto [fault, message] =
         sample::failure([&] { SessionLog::begin(db, sample::start(), sample::segment()); });
     if (fault != ErrorKind::read_only || !sample::contains(message, "writable")) return 1;

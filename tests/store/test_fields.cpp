@@ -15,7 +15,7 @@ struct Kept {
   bool nullable = false;
 };
 
-/// The columns of a table in the schema.
+/// The columns of a table, according to the database's schema.
 std::map<std::string, Kept> columns_in_schema(Database& database, const std::string& table) {
   std::map<std::string, Kept> columns;
   Statement rows(database, "SELECT name, type, \"notnull\", pk FROM pragma_table_info(?)");
@@ -24,7 +24,7 @@ std::map<std::string, Kept> columns_in_schema(Database& database, const std::str
   return columns;
 }
 
-/// Differences between a record table and the schema, one per line.
+/// The differences between a record's fields and the schema, one per line.
 template <class Record>
 std::string differences(Database& database, const Table<Record>& table) {
   std::string found;

@@ -42,7 +42,7 @@ struct Toll {
   int kills = 0, acknowledged = 0, lost = 0, damaged = 0, repeated = 0;
 };
 
-/// Kills a writer at a random moment, then checks the database.
+/// Kills a writing process at a random moment, then checks the database.
 void kill_once(const std::string& db, Acknowledge when, std::mt19937& random, Toll& toll) {
   int ends[2];
   REQUIRE(::pipe(ends) == 0);
@@ -56,7 +56,7 @@ void kill_once(const std::string& db, Acknowledge when, std::mt19937& random, To
     }
   }
   ::close(ends[1]);
-  // Half of the writers are killed while they begin, the others after some trials, however slow the machine
+  // Half of the processes are killed while they begin, the others after some trials, however slow the machine
   // is.
   const int wanted = std::uniform_int_distribution<>(-5, 5)(random);
   int last = -1, index = 0;
@@ -68,7 +68,7 @@ void kill_once(const std::string& db, Acknowledge when, std::mt19937& random, To
   ::kill(child, SIGKILL);
   int status = 0;
   ::waitpid(child, &status, 0);
-  REQUIRE(WIFSIGNALED(status));  // it was killed and did not end by itself
+  REQUIRE(WIFSIGNALED(status));  // the process was killed and did not end by itself
   while (::read(ends[0], &index, sizeof index) == sizeof index) {
     last = index;
     ++toll.acknowledged;
@@ -90,7 +90,8 @@ Toll kill_many(int kills, Acknowledge when) {
   Toll toll;
   std::mt19937 random(7);
   for (int round = 0; toll.kills < kills; ++round) {
-    TemporaryFolder folder;  // start with a new database now and then, so that creation is killed too
+    // Start with a new database now and then, so that processes are also killed while they create one.
+    TemporaryFolder folder;
     for (int i = 0; i < 25 && toll.kills < kills; ++i) kill_once(folder / "a.sqlite", when, random, toll);
   }
   return toll;

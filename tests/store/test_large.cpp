@@ -1,4 +1,5 @@
-// The cost of a large database in steps of SQLite's virtual machine, which is the same on every machine.
+// Measures the cost of a large database in steps of SQLite's virtual machine, because these are the same on
+// every machine.
 #include <sqlite3.h>
 
 #include <functional>
@@ -28,7 +29,7 @@ int count_every_connection(sqlite3* connection, const char** /*error*/, const vo
   return SQLITE_OK;
 }
 
-/// Steps of the virtual machine, in hundreds, on all connections that `action` opens.
+/// Steps of SQLite's virtual machine, in hundreds, on all connections that `action` opens.
 std::int64_t steps_of(const std::function<void()>& action) {
   const auto extension = reinterpret_cast<void (*)()>(count_every_connection);
   sqlite3_auto_extension(extension);

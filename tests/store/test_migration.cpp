@@ -9,7 +9,7 @@ using namespace turnpoint::store;
 
 namespace {
 
-/// Makes a database as an older release wrote it, from its dump.
+/// Makes a database as an older release wrote it, from a dump of its content.
 void make_old(const std::string& path, int version) {
   Database database(path, Database::Access::create);
   database.execute("PRAGMA journal_mode = WAL");
@@ -52,7 +52,8 @@ TEST_CASE("an older database is migrated with its rows, and a copy of it is kept
   const auto db = folder / "old.sqlite";
   const int version = GENERATE(range(1, schema_version()));
   make_old(db, version);
-  const auto id = sample::session(db, 2, sample::start("P03"));  // the first write access migrates
+  // opening the database for writing migrates it
+  const auto id = sample::session(db, 2, sample::start("P03"));
   auto migrated = sample::raw(db);
   CHECK(migrated.integer("PRAGMA user_version") == schema_version());
   Database fresh(folder / "fresh.sqlite", Database::Access::create);

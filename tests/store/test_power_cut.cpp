@@ -18,7 +18,8 @@ struct Toll {
   int cuts = 0, lost = 0, damaged = 0;
 };
 
-/// One session of many trials. Power fails at random operations, in every phase of commits and checkpoints.
+/// Writes one session of many trials. Power fails at random operations, in every phase of commits and
+/// checkpoints.
 std::vector<Cut> cut_at_random(const TemporaryFolder& folder, LossyDisk& disk, int trials) {
   const auto db = folder / "a.sqlite";
   std::vector<Cut> cuts;

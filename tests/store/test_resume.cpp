@@ -6,7 +6,7 @@ using namespace turnpoint::store;
 
 namespace {
 
-/// A process that appends `trials` trials of block 0, presents one more, and ends abruptly.
+/// Simulates a process that appends `trials` trials of block 0, presents one more, and ends abruptly.
 std::string broken_session(const std::string& db, int trials, const SessionStart& start = sample::start()) {
   auto log = SessionLog::begin(db, start, sample::segment());
   log.begin_block(sample::block());
@@ -94,7 +94,8 @@ TEST_CASE("the newest interrupted session is found with its age; sessions withou
   CHECK_FALSE(interrupted_session(db));
   const auto first = broken_session(db, 1);
   const auto second = broken_session(db, 3, sample::start("P02"));
-  { SessionLog::begin(db, sample::start("P03"), sample::segment()); }  // no trial
+  // a session without a trial cannot be resumed
+  { SessionLog::begin(db, sample::start("P03"), sample::segment()); }
   const auto found = interrupted_session(db);
   REQUIRE(found);
   CHECK(found->session.session_id == second);

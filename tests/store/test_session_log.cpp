@@ -22,7 +22,7 @@ TEST_CASE("what a session log was told is what stands in the database", "[store]
   const auto& trial = stored.blocks[0].trials[1];
   const auto expected = sample::answered(1);
   CHECK(trial.level == expected.level);
-  CHECK(trial.factors == expected.factors);  // 0.1 + 0.2 to the last bit
+  CHECK(trial.factors == expected.factors);  // one factor is 0.1 + 0.2, which must be kept to the last bit
   CHECK(trial.response == expected.response);
   CHECK(trial.correct == expected.correct);
   CHECK(trial.response_time_s == expected.response_time_s);

@@ -29,7 +29,7 @@ std::string trials_csv(const std::string& db, const std::string& out) {
   return sample::bytes_of(export_data(db, out, {})[0].path);
 }
 
-/// The content of every file in the folder whose name begins with the database's, as one text.
+/// The content of all files in the folder whose names begin with the database's name, as one string.
 std::string all_bytes(const std::string& db) {
   std::string all;
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(db).parent_path()))
@@ -158,7 +158,7 @@ TEST_CASE("a damaged database is set aside and the newest good backup takes its 
   backup(db, {dir, 9});
   sample::session(db, 3, sample::start("P02"));
   const auto newest = backup(db, {dir, 9});
-  // refused because the database is good
+  // A restore is refused while the database is undamaged.
   CHECK(sample::failure([&] { restore_backup(db, {dir, ""}); }).first == ErrorKind::refused);
   auto bytes = sample::bytes_of(db);
   bytes.resize(6000);
@@ -209,7 +209,7 @@ TEST_CASE("what root makes in the station's folder is the station's, and a copy 
   std::filesystem::permissions(db, std::filesystem::perms(0640));
   const auto copy = backup(db, {dir, 9});
   CHECK((status_of(copy.path).st_mode & 0777) == 0640);
-  CHECK(status_of(copy.path).st_uid == 0);  // owner of the folder for backups
+  CHECK(status_of(copy.path).st_uid == 0);  // root, who owns the folder for backups
   std::filesystem::remove(db + ".lock");
   std::filesystem::resize_file(db, 6000);
   restore_backup(db, {dir, ""});
@@ -286,7 +286,7 @@ TEST_CASE("withdraw lists what it removes and leaves no trace in the file, its l
   auto id = sample::session(db, 60, start);
   annotate(db, id, "told us about JKLMNO");
   sample::session(db, 5, sample::start("P02"));
-  CHECK(sample::contains(all_bytes(db), "XQ77ZK"));  // negative control: the search finds existing text
+  CHECK(sample::contains(all_bytes(db), "XQ77ZK"));  // negative control: the search finds text that is there
   const auto old_backup = backup(db, {folder / "backups", 9});
   const auto gone = withdraw(db, {"XQ77ZK", "", "", folder / "backups"});
   REQUIRE(gone.sessions.size() == 1);
@@ -303,7 +303,7 @@ TEST_CASE("withdraw lists what it removes and leaves no trace in the file, its l
   }
   CHECK(list_sessions(db).size() == 1);
   CHECK(sample::raw(db).text("PRAGMA integrity_check") == "ok");
-  CHECK(withdraw(db, {"XQ77ZK", "", "", ""}).sessions.empty());  // repeating it is harmless
+  CHECK(withdraw(db, {"XQ77ZK", "", "", ""}).sessions.empty());  // withdrawing a second time changes nothing
   CHECK(sample::failure([&] { withdraw(db, {"P99", "", "", ""}); }).first == ErrorKind::missing);
   CHECK(sample::failure([&] { sample::session(db, 1, start); }).first == ErrorKind::refused);
 }
@@ -332,7 +332,8 @@ TEST_CASE("what was withdrawn is not brought back by merge, nor are later sessio
   CHECK(report.sessions[2].what == MergedSession::What::added);
   REQUIRE(list_sessions(a).size() == 1);
   CHECK_FALSE(sample::contains(all_bytes(a), "P01"));
-  CHECK(merge(b, a).withdrawn_there.size() == 1);  // station b learns that it still has one
+  // station b still has one withdrawn session, and reports it
+  CHECK(merge(b, a).withdrawn_there.size() == 1);
 }
 
 TEST_CASE("who comes after a withdrawal takes the place that became free", "[store]") {

@@ -86,7 +86,7 @@ void Child::stop_listening() {
   if (output_ >= 0) ::close(std::exchange(output_, -1));
 }
 
-/// Reads one piece of the output. Returns false at its end, or after this time.
+/// Reads one piece of the child's output. Returns false at the end of the output, or after this time.
 bool Child::listen(int patience_ms) {
   if (output_ < 0) return false;
   char text[4096];
@@ -104,7 +104,7 @@ bool Child::says(const std::string& text, int patience_ms) {
 
 bool Child::ends_within(int patience_ms) {
   const auto start = std::chrono::steady_clock::now();
-  // Keep reading the output, so that the child never waits for room in the pipe.
+  // Keep reading the output, because a child whose pipe is full would wait for ever.
   while (listen(std::max(0, patience_ms - ms_since(start))))
     if (ms_since(start) > patience_ms) return false;
   if (!ready(descriptor_, std::max(0, patience_ms - ms_since(start)))) return false;

@@ -2,7 +2,8 @@
 #include <string>
 #include <vector>
 
-/// A program under test in its own process, with its output. It is killed if it still runs at the end.
+/// Runs a program under test in its own process and collects its output. The destructor kills the process if
+/// it still runs.
 class Child {
  public:
   /// Starts the program with `environment` ("NAME=value") added to this process's environment. Throws
@@ -13,20 +14,20 @@ class Child {
   ~Child();
 
   void signal(int number) const;
-  /// Writes a line to its standard input. Throws std::system_error if it has ended.
+  /// Writes a line to the program's standard input. Throws std::system_error if the program has ended.
   void type(const std::string& line) const;
-  /// From now on its output goes to a pipe that nobody reads.
+  /// From now on nobody reads the program's output, so that its pipe fills up.
   void stop_listening();
-  /// Waits until it has printed `text` on standard output or error. Returns false if it ends first, or prints
-  /// nothing for `patience_ms`.
+  /// Waits until the program has printed `text` on standard output or error. Returns false if the program
+  /// ends first, or prints nothing for `patience_ms`.
   bool says(const std::string& text, int patience_ms);
-  /// Returns true if it ends within this time. Its output until then is in said().
+  /// Returns true if the program ends within this time. Its output until then is in said().
   bool ends_within(int patience_ms);
-  /// True if it has installed a handler for the signal (/proc/PID/status).
+  /// Returns true if the program has installed a handler for the signal (according to /proc/PID/status).
   bool handles(int number) const;
 
   const std::string& said() const { return said_; }
-  /// The exit code, or minus the signal that killed it. Valid only after it has ended.
+  /// The exit code, or minus the signal that killed the program. Valid only after it has ended.
   int outcome() const { return outcome_; }
 
  private:

@@ -6,10 +6,10 @@ namespace turnpoint::tests {
 
 struct Decision {
   bool correct = false;
-  double time_s = 0;  ///< includes the non-decision time
+  double time_s = 0;  ///< response time, including the non-decision time
 };
 
-/// One decision of a diffusion with these parameters, for s = 0.1.
+/// Simulates one decision of a diffusion with these parameters and s = 0.1.
 inline Decision sample_decision(const analysis::EzDiffusion& parameters, random::Draws& draws) {
   const double s = analysis::kDiffusionScale;
   const auto passage = observer::first_passage(parameters.drift / s, parameters.boundary / (2 * s), 0, draws);

@@ -62,8 +62,8 @@ FakeEvdev::~FakeEvdev() {
   if (ends_[1] >= 0) ::close(ends_[1]);
 }
 
-// The program that has opened the path then holds a descriptor that cannot be read, and is woken to notice
-// that. dup3() is not used, because a sanitizer would report the exchange as an error of the reader.
+// Afterwards the program that has opened the path holds a descriptor that cannot be read, and is woken to
+// notice that. This does not use dup3(), because a sanitizer would report it as an error of the reader.
 void FakeEvdev::unplug() {
   if (path_.empty() || ends_[1] < 0) return;
   const int unreadable = ::open("/", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -80,7 +80,7 @@ bool FakeEvdev::is(int descriptor) const {
   struct stat mine {
   }, found{};
   if (path_.empty()) return descriptor == ends_[0];
-  // Use the path: a sanitizer would take fstat() of the reader's descriptor for a use of it.
+  // Use stat() with the path, because a sanitizer would report fstat() as a use of the reader's descriptor.
   const auto path = "/proc/self/fd/" + std::to_string(descriptor);
   return ::fstat(ends_[1], &mine) == 0 && ::stat(path.c_str(), &found) == 0 && found.st_dev == mine.st_dev &&
          found.st_ino == mine.st_ino;
@@ -132,7 +132,7 @@ int FakeEvdev::answer(unsigned long request, void* argument) const {
   return 0;
 }
 
-// Requests for other descriptors are passed on to the kernel.
+// Replaces the C library's ioctl(). Requests for other descriptors are passed on to the kernel.
 extern "C" int ioctl(int descriptor, unsigned long request, ...) {
   va_list arguments;
   va_start(arguments, request);

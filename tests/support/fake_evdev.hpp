@@ -5,30 +5,30 @@
 #include <string>
 #include <vector>
 
-/// An input device for one test. libevdev queries its properties and state by ioctl, as it queries the
-/// kernel, and reads the events that the test sends. (The test program's own ioctl() takes precedence over
-/// the library's.)
+/// Simulates an input device. libevdev queries its properties and state by ioctl, as it queries the kernel,
+/// and reads the events that the test sends. (The test program's own ioctl() takes precedence over the
+/// library's.)
 class FakeEvdev {
  public:
-  /// A panel of 800 x 480 with this many slots for fingers; 0: a panel that cannot tell fingers apart.
+  /// A panel of 800 x 480 with this many slots for fingers; with 0 slots it cannot tell fingers apart.
   explicit FakeEvdev(int slot_count);
-  /// The same, for programs that open it by this path.
+  /// The same panel at a path, for programs that open their device by its path.
   FakeEvdev(int slot_count, const std::string& path);
   FakeEvdev(const FakeEvdev&) = delete;
   FakeEvdev& operator=(const FakeEvdev&) = delete;
   ~FakeEvdev();
 
-  /// The caller owns it and must close it. A device with a path has none.
+  /// A descriptor of the device, which the caller owns and must close; a device with a path has none.
   int descriptor() const { return ends_[0]; }
-  /// Removes a device with a path; its reader gets an error.
+  /// Removes a device that has a path; reading it then gives an error.
   void unplug();
   /// Sends an event; time in microseconds.
   void send(long time_us, int type, int code, int value);
 
-  /// The kernel's current state, whether or not events reported it.
+  /// Whether the kernel considers the panel touched now, with or without an event that says so.
   bool touched = false;
-  std::map<int, int> axes;                      ///< value of each axis
-  std::vector<std::map<int, int>> slot_values;  ///< ABS_MT_... of each slot
+  std::map<int, int> axes;                      ///< current value of each axis
+  std::vector<std::map<int, int>> slot_values;  ///< current ABS_MT_... values of each slot
 
   int answer(unsigned long request, void* argument) const;
   bool is(int descriptor) const;

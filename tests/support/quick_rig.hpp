@@ -5,15 +5,15 @@
 #include "station/rig/rig.hpp"
 #include "station/system/read_file.hpp"
 
-/// `text` with the first `from` replaced, which has to be there.
+/// Returns `text` with the first `from` replaced. Throws if `text` does not contain it.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);
   if (at == std::string::npos) throw std::logic_error("not in the text: " + from);
   return text.replace(at, from.size(), to);
 }
 
-/// The simulated rig with simply supported sides and a thicker plate. It has almost the same map, but in
-/// closed form, so that a survey is fast.
+/// The simulated rig's file, changed to simply supported sides and a thicker plate. Its map is nearly the
+/// same but has a closed form, so that a survey is fast.
 inline std::string quick_rig_source() {
   const auto text =
       turnpoint::system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml");

@@ -15,7 +15,7 @@ namespace rnd = turnpoint::random;
 
 constexpr int kKeptOneIn = 5;
 
-using Point = std::array<double, 4>;  // threshold, ln slope, lapse, guess
+using Point = std::array<double, 4>;  // the parameters: threshold, ln slope, lapse, guess
 
 double guess_of(const Prior& prior, const Point& at) { return prior.guess_is_lapse ? at[2] : at[3]; }
 
@@ -26,7 +26,7 @@ double probability(Shape shape, double guess, const Point& at, double x) {
   return guess + (1 - guess - at[2]) * f;
 }
 
-/// For threshold or ln slope, at this fraction of the prior's range.
+/// Log prior density of threshold or ln slope, at this fraction of the parameter's range.
 double log_prior(double at, double falling_share) {
   const double nearest = std::min(at, 1 - at);
   return nearest < falling_share ? std::log(nearest / falling_share) : 0;
@@ -46,7 +46,7 @@ double log_posterior(Shape shape, const std::vector<Level>& data, const Prior& p
   return sum;
 }
 
-/// Bisection on the function itself, which is increasing.
+/// Finds the 75 % level by bisection, because the psychometric function is increasing.
 double level_75(Shape shape, const Prior& prior, const Point& at) {
   const double guess = guess_of(prior, at);
   if (!(guess < 0.75 && 1 - at[2] > 0.75)) return std::nan("");

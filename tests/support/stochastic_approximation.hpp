@@ -5,8 +5,8 @@
 
 #include "station/system/read_file.hpp"
 
-/// The shipped staircase protocol with both of its tracks by accelerated stochastic approximation, of 20
-/// trials each.
+/// The shipped staircase protocol, with both of its staircases replaced by accelerated stochastic
+/// approximation of 20 trials each.
 inline std::string stochastic_approximation() {
   auto source =
       turnpoint::system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-staircase.toml");

@@ -14,7 +14,7 @@ struct Box {
   double left, top, right, bottom;
 };
 
-/// A text that is not rotated, in a box at least as large as the drawn text.
+/// A text that is not rotated, with a box at least as large as the drawn text.
 struct Text {
   std::string words, colour;
   double size_px;
@@ -37,7 +37,7 @@ inline double number(const std::string& element, const std::string& name) {
   return text.empty() ? 0 : std::stod(text);
 }
 
-/// The elements of one kind, each with its attributes (and a text's words).
+/// All elements of one kind, each as its attributes (for a text also its words).
 inline std::vector<std::string> elements(const std::string& svg, const std::string& kind) {
   std::vector<std::string> found;
   const auto start = "<" + kind + " ";
@@ -65,8 +65,8 @@ inline std::vector<Text> texts(const std::string& svg) {
   return found;
 }
 
-/// The area covered by curves, round markers, outlined rectangles and lines (except for some colours: grid,
-/// axes), as small boxes.
+/// The area covered by curves, round markers, outlined rectangles and lines, as small boxes. Lines in the
+/// colours of grid and axes are left out.
 inline std::vector<Box> ink(const std::string& svg, const std::vector<std::string>& not_of_colour) {
   std::vector<Box> boxes;
   const auto stroke = [&](double x0, double y0, double x1, double y1, double half) {

@@ -1,11 +1,11 @@
-// The catalogues of what the station says, one file a language.
+// Tests the catalogues of the station's texts, which have one file per language.
 #include <filesystem>
 #include <regex>
 #include <set>
 #include <stdexcept>
 
-#include "station/terms/fault.hpp"
 #include "station/system/read_file.hpp"
+#include "station/terms/fault.hpp"
 #include "station/texts/texts.hpp"
 #include "tests/support/catch.hpp"
 
@@ -24,7 +24,7 @@ std::multiset<std::string> places_in(const std::string& said) {
   return {std::sregex_token_iterator(said.begin(), said.end(), place), std::sregex_token_iterator()};
 }
 
-/// All quoted words in the station's sources, and those that are given to text().
+/// All quoted words in the station's sources, and the words among them that are given to text().
 struct Quoted {
   std::set<std::string> words, asked_for;
 };
@@ -101,7 +101,7 @@ TEST_CASE("every fault says what happened, what is safe and what to do in each l
       CHECK_FALSE(text.safe.empty());
       CHECK_FALSE(text.to_do.empty());
       if (std::string(language) != "en") CHECK(text.happened != texts::fault_text(kind, "en").happened);
-      CHECK(pages.insert(text.happened).second);  // no two kinds share a page
+      CHECK(pages.insert(text.happened).second);  // each kind of fault has a text of its own
     }
   CHECK(texts::fault_text(terms::FaultKind::amplifier, "fi").safe ==
         texts::fault_text(terms::FaultKind::amplifier, "en").safe);

@@ -18,7 +18,7 @@ TEST_CASE("a device is read report by report, with the kernel's stamps", "[touch
   CHECK(device.next() == News::none);
   fake.send(5'000'001, EV_ABS, ABS_X, 400);
   fake.send(5'000'001, EV_KEY, BTN_TOUCH, 1);
-  CHECK(device.next() == News::none);  // the report is incomplete
+  CHECK(device.next() == News::none);  // SYN_REPORT is missing, so the report is incomplete
   fake.send(5'000'002, EV_SYN, SYN_REPORT, 0);
   fake.send(5'000'003, EV_KEY, BTN_TOUCH, 0);
   fake.send(5'000'003, EV_SYN, SYN_REPORT, 0);
@@ -41,7 +41,7 @@ TEST_CASE("a lift that the kernel dropped is seen once it says that it dropped s
   fake.send(10, EV_SYN, SYN_REPORT, 0);
   REQUIRE(device.next() == News::report);
   REQUIRE(take());
-  fake.axes[ABS_X] = 700;  // lifted, at another place, while events were lost
+  fake.axes[ABS_X] = 700;  // while events are lost, the finger moves and is lifted
   fake.touched = false;
   fake.send(2000, EV_SYN, SYN_DROPPED, 0);
   fake.send(2000, EV_ABS, ABS_X, 650);
@@ -73,8 +73,8 @@ TEST_CASE("after dropped events fingers are in the slots that the kernel says, a
   fake.send(10, EV_SYN, SYN_REPORT, 0);
   REQUIRE(device.next() == News::report);
   CHECK(device.slot(0, ABS_MT_TRACKING_ID) == 5);
-  // While events are lost, that finger is lifted and another comes down in the other slot, which becomes the
-  // current one.
+  // While events are lost, this finger is lifted and another touches in the other slot, which becomes the
+  // current slot.
   fake.slot_values[0][ABS_MT_TRACKING_ID] = -1;
   fake.slot_values[1] = {{ABS_MT_TRACKING_ID, 6}, {ABS_MT_POSITION_X, 720}, {ABS_MT_POSITION_Y, 432}};
   fake.axes[ABS_MT_SLOT] = 1;
@@ -105,7 +105,7 @@ TEST_CASE(
   const std::vector<Finger> none(2);
   decoder.resynchronise(none);
   const std::vector<Finger> held{{std::nullopt, 0, 0}, {6, 720, 432}};
-  decoder.resynchronise(held);  // came down while events were lost
+  decoder.resynchronise(held);  // the finger touched while events were lost
   CHECK(decoder.report(20'000, held).empty());
   CHECK(decoder.report(30'000, none).empty());
   const std::vector<Finger> again{{std::nullopt, 0, 0}, {7, 720, 432}};

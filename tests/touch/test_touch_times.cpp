@@ -20,7 +20,7 @@ constexpr std::int64_t ms = 1'000'000;
 
 TouchDecoder decoder() { return {{0, 799}, {0, 479}}; }
 
-/// After ten seconds the test fails; the limit is not a measurement.
+/// Waits for at most ten seconds. The limit only ends the test; it measures nothing.
 template <typename Condition>
 bool comes(Condition condition) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(10);
@@ -31,7 +31,7 @@ bool comes(Condition condition) {
   return true;
 }
 
-/// A finger comes down on the left, at half the height.
+/// Touches the panel on the left, at half the height.
 void touch(FakeEvdev& panel, long time_us) {
   panel.send(time_us, EV_ABS, ABS_MT_SLOT, 0);
   panel.send(time_us, EV_ABS, ABS_MT_TRACKING_ID, 5);

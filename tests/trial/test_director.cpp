@@ -119,7 +119,7 @@ TEST_CASE("an observer without a threshold of its own gets the protocol's middle
   stair.procedure = protocol.procedures.back().name;
   for (const auto& spec : {*practice, stair}) {
     const auto question = trial::question_of(spec, protocol, 1);
-    CHECK(question.default_threshold == Approx(-18.5));  // limits -34 and -3 dB
+    CHECK(question.default_threshold == Approx(-18.5));  // the middle of the limits -34 and -3 dB
     CHECK(question.decibel);
   }
 }

@@ -42,7 +42,7 @@ bool enters(const std::vector<Action>& actions, Phase phase) {
   return has(actions, ActionKind::enter, static_cast<int>(phase));
 }
 
-/// Starts at 0 and advances the machine to the first frame of the exploration at 500 ms.
+/// Starts at time 0 and advances the machine to the first frame of the exploration at 500 ms.
 Machine exploring(const Timing& plan = exploration()) {
   Machine machine(plan);
   machine.start(0);
@@ -51,7 +51,7 @@ Machine exploring(const Timing& plan = exploration()) {
   return machine;
 }
 
-/// Two intervals from 10 ms on. The first choice is given 300 ms after the end of the second interval.
+/// Presents two intervals from 10 ms on, and gives the first choice 300 ms after the end of the second.
 Machine answered_after_two() {
   Machine machine(two_intervals());
   machine.start(0);
@@ -69,7 +69,7 @@ TEST_CASE("an exploration runs cue, stimulus, answer, interval, and counts from 
   const auto asked = machine.start(0);
   CHECK(enters(asked, Phase::cue));
   CHECK(has(asked, ActionKind::present, 0));
-  CHECK_FALSE(machine.wake_ns());  // unknown before the onset
+  CHECK_FALSE(machine.wake_ns());  // the next time is unknown before the onset
   machine.handle({10 * ms, EventKind::tick, 0});
   CHECK_FALSE(enters(machine.handle({500 * ms, EventKind::onset, 0}), Phase::stimulus));
   CHECK(machine.wake_ns() == 500 * ms);
@@ -155,7 +155,7 @@ TEST_CASE("two intervals are presented in turn and answers open at the end of th
   Machine machine(two_intervals());
   CHECK(has(machine.start(0), ActionKind::present, 0));
   machine.handle({10 * ms, EventKind::onset, 0});
-  machine.handle({2520 * ms, EventKind::onset, 1});  // known exactly from the beginning
+  machine.handle({2520 * ms, EventKind::onset, 1});  // both onsets are reported at the beginning
   machine.handle({500 * ms, EventKind::answer, 0});
   CHECK(enters(machine.handle({1510 * ms, EventKind::tick, 0}), Phase::gap));
   CHECK(machine.wake_ns() == 2520 * ms);
@@ -239,7 +239,7 @@ TEST_CASE("lost frames that are told after the stimulus, or after the answer, vo
     machine.handle({10 * ms, EventKind::onset, 0});
     machine.handle({2510 * ms, EventKind::onset, 1});
     const auto actions = machine.handle({1511 * ms, EventKind::xrun, 1});
-    CHECK(has(actions, ActionKind::silence, 0));  // the second interval is cancelled
+    CHECK(has(actions, ActionKind::silence, 0));  // this cancels the second interval
     CHECK(machine.done());
     CHECK(machine.result().onsets_ns.size() == 1);
     CHECK(machine.result().outcome == Outcome::fault);
@@ -268,7 +268,7 @@ TEST_CASE("a trial ends no sooner than its last frame has been heard", "[trial]"
   auto machine = answered_after_two();
   machine.handle({9000 * ms, EventKind::tick, 0});
   CHECK_FALSE(machine.done());
-  CHECK_FALSE(machine.wake_ns());  // only an event of the drive can make progress
+  CHECK_FALSE(machine.wake_ns());  // it waits for an event of the drive, not for a time
   machine.handle({9010 * ms, EventKind::heard, 1});
   CHECK(machine.done());
   CHECK(machine.result().outcome == Outcome::answered);
@@ -297,7 +297,7 @@ TEST_CASE("stopping after the answer keeps the answer", "[trial]") {
   auto machine = exploring();
   machine.handle({1500 * ms, EventKind::answer, 1});
   machine.handle({1600 * ms, EventKind::abort, 0});
-  CHECK_FALSE(machine.done());  // waits until the stimulus is reported as played without loss
+  CHECK_FALSE(machine.done());  // it waits for the report that the stimulus was played without loss
   machine.handle({1610 * ms, EventKind::heard, 0});
   CHECK(machine.done());
   CHECK(machine.result().outcome == Outcome::answered);
@@ -315,7 +315,7 @@ TEST_CASE("a plan that cannot run is refused with what is wrong", "[trial]") {
 
 namespace {
 
-/// A drive that replies to `present` with onsets, and sometimes reports what was heard.
+/// Simulates a drive that replies to `present` with onsets, and sometimes reports what was heard.
 struct Drive {
   Machine& machine;
   const Timing& plan;
@@ -338,7 +338,8 @@ struct Drive {
   bool silenced = false;
 };
 
-/// The rules that every finished trial obeys, whatever happened in it. Returns the one that is broken.
+/// Checks the rules for every finished trial, whatever happened in it. Returns the rule that is broken; "" if
+/// none is.
 std::string broken_invariant(const Machine& machine, const Timing& plan, const Drive& drive, bool hurt) {
   const auto& result = machine.result();
   if (!machine.done()) return "a trial that does not end";

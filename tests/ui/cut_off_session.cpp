@@ -20,7 +20,8 @@ class Room : public session::Display {
 
   void show(const session::Page& page) override {
     using session::PageKind;
-    if (page.kind == PageKind::fault) push(session::InputKind::arm);  // a live session begins disarmed
+    // a live session begins disarmed, so arm first
+    if (page.kind == PageKind::fault) push(session::InputKind::arm);
     if (page.kind == PageKind::instructions) push(session::InputKind::next);
     if (page.kind == PageKind::rest && page.remaining_s == 0) push(session::InputKind::next);
     if (page.kind != PageKind::stimulus || !page.answers_open) return;
@@ -32,7 +33,7 @@ class Room : public session::Display {
   void push(session::InputKind kind, int value = 0) {
     session::Input input;
     input.time_ns = std::chrono::steady_clock::now().time_since_epoch().count();
-    // late enough that the page can have been read
+    // answers count only after a page has been shown for a while
     if (kind == session::InputKind::answer) input.time_ns += 300'000'000;
     input.kind = kind;
     input.value = value;

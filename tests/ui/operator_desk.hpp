@@ -24,12 +24,13 @@ class OperatorDesk : public QObject {
   OperatorController* operating() { return operating_.get(); }
   LiveModel* live() { return &live_; }
   LatencyController* latency() { return &latency_; }
-  /// "protocol participant language mode" of the session that the operator began; "" before.
+  /// Protocol, participant, language and mode of the session that the operator began, separated by spaces; ""
+  /// before that.
   QString chosen() const { return chosen_; }
 
-  /// Simulates a press of the reference button this long ago.
+  /// Simulates a press of the reference button this many milliseconds ago.
   Q_INVOKABLE void pressed(double ago_ms);
-  /// The accepted latency in milliseconds; 0 before.
+  /// The latency in milliseconds that the operator accepted; 0 before that.
   Q_INVOKABLE double keptLatencyMs() const;
   Q_INVOKABLE void tellLive(const QString& heading);
 

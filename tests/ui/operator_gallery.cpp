@@ -21,7 +21,7 @@ setup::RunRequest request_for(const std::string& protocol, const std::string& da
   return request;
 }
 
-/// Passes on only the first trials, then ends the session.
+/// Passes on the session's first trials to another monitor, then ends the session.
 struct FirstTrials : session::Monitor {
   session::Monitor& to;
   int left;

@@ -6,7 +6,7 @@
 
 namespace turnpoint::ui {
 
-/// What an operator would see of a session that a simulated observer went through, up to its trial `trials`.
+/// What an operator would see after `trials` trials of a session with a simulated observer.
 desk::LiveState live_exhibit(const std::string& protocol, int trials);
 
 /// The report of a whole simulated session of that protocol.

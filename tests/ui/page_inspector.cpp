@@ -16,7 +16,7 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Relative luminance.
+/// Relative luminance of a colour, as WCAG 2.1 defines it.
 double luminance(QRgb colour) {
   const auto linear = [](int channel) {
     const double c = channel / 255.0;
@@ -25,8 +25,8 @@ double luminance(QRgb colour) {
   return 0.2126 * linear(qRed(colour)) + 0.7152 * linear(qGreen(colour)) + 0.0722 * linear(qBlue(colour));
 }
 
-/// Contrast between the darkest and the lightest pixel of an area, that is, between letters and their
-/// background.
+/// Contrast between the darkest and the lightest pixel of an area. In an area with text, these belong to
+/// letters and background.
 double contrast(const QImage& image, const QRect& place) {
   double darkest = 1, lightest = 0;
   for (int y = place.top(); y <= place.bottom(); ++y)
@@ -48,7 +48,7 @@ bool has_ideographs(const QString& word) {
   return std::any_of(word.begin(), word.end(), [](QChar c) { return c.unicode() >= 0x2e80; });
 }
 
-/// The area of the letters, in pixels of the window.
+/// The area that the letters of a text cover, in pixels of the window.
 QRectF letters(const QQuickItem& text) {
   const double width = text.property("contentWidth").toDouble();
   const double height = text.property("contentHeight").toDouble();
@@ -92,7 +92,7 @@ QStringList PageInspector::brokenWords(QQuickItem* page) const {
   each_text(*page, [&](const QQuickItem& text) {
     if (text.property("lineCount").toInt() < 2) return;
     QFont font = text.property("font").value<QFont>();
-    // The size to which the text was shrunk.
+    // The font size to which the text was shrunk to fit.
     font.setPixelSize(text.property("fontInfo").value<QJSValue>().property("pixelSize").toInt());
     const QFontMetricsF metrics(font);
     for (const auto& word : text.property("text").toString().split(QRegularExpression("\\s+")))

@@ -6,7 +6,7 @@
 
 namespace turnpoint::ui {
 
-/// Inspects the rendered pixels, as a participant sees them, and not what a page was asked to draw.
+/// Inspects the pixels that were rendered, as a participant sees them, and not what a page was asked to draw.
 class PageInspector : public QObject {
   Q_OBJECT
 
@@ -24,10 +24,10 @@ class PageInspector : public QObject {
   Q_INVOKABLE QStringList brokenWords(QQuickItem* page) const;
   /// True if anything but the background reaches the left or the right edge of an item.
   Q_INVOKABLE bool reachesEdge(QQuickItem* item) const;
-  /// Number of texts that the other functions inspect.
+  /// Number of texts on the page that the other functions inspect.
   Q_INVOKABLE int texts(QQuickItem* page) const;
 
-  /// The file of a picture that nobody has opened yet. From now on opened() counts how often it is opened.
+  /// Path of a picture that nobody has opened yet. From now on opened() counts how often it is opened.
   Q_INVOKABLE QString picture();
   Q_INVOKABLE int opened();
 

@@ -1,4 +1,4 @@
-// Runs every tst_*.qml of this folder against the real module, without a screen.
+// Runs every tst_*.qml of this folder with the station's real QML module, without a screen.
 #include <QQmlContext>
 #include <QQmlEngine>
 #include <QQmlExtensionPlugin>
@@ -17,7 +17,7 @@ class Setup : public QObject {
   Q_OBJECT
 
  public slots:
-  // Owned by the application, because timers and pending calls must not outlive it.
+  // The application owns these objects, because their timers and pending calls must not outlive it.
   void applicationAvailable() {
     script_ = new turnpoint::ui::ScriptedSession(QCoreApplication::instance());
     desk_ = new turnpoint::ui::OperatorDesk(*script_->bridge(), QCoreApplication::instance());

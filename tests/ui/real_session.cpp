@@ -47,7 +47,7 @@ void RealSession::start(const QString& protocol) {
       failure = error.what();
     }
     QMetaObject::invokeMethod(this, [this, failure, number] {
-      if (number != sessions_) return;  // ignore news of a session that a later one has replaced
+      if (number != sessions_) return;  // this comes from an earlier session, so ignore it
       over_ = true;
       failure_ = failure;
       emit ended();

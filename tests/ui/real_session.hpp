@@ -12,9 +12,9 @@
 
 namespace turnpoint::ui {
 
-/// For tests of whole sessions. Runs real ones (protocol file, physics, drive to null, the amplifier's guard
-/// on simulated lines, SQLite on a disk that may fill up) on their own thread, one after another, each with
-/// its own database in a temporary folder.
+/// Runs real sessions for tests, one after another, each on its own thread with its own database in a
+/// temporary folder. Everything is real: protocol file, physics, drive to the null device, the amplifier's
+/// guard on simulated lines, and SQLite on a disk that may fill up.
 class RealSession : public QObject {
   Q_OBJECT
   Q_PROPERTY(turnpoint::ui::SessionBridge* bridge READ bridge CONSTANT)
@@ -29,8 +29,8 @@ class RealSession : public QObject {
   QString failure() const { return failure_; }
 
   Q_INVOKABLE void start(const QString& protocol);
-  /// Events in the room: the stop in the amplifier's supply, its fault line, the disk, and any other fault of
-  /// the station ("touch_gone", ...), reported as by the device's thread.
+  /// These simulate events in the room: the emergency stop, the amplifier's fault line, a full disk, and any
+  /// other fault of the station ("touch_gone", ...), reported as the device's thread would.
   Q_INVOKABLE void setStop(bool pressed);
   Q_INVOKABLE void setAmplifierFault(bool active);
   Q_INVOKABLE void setDiskFull(bool full);
@@ -38,7 +38,7 @@ class RealSession : public QObject {
   Q_INVOKABLE void loseFrames(int frames) { bridge_.frames_lost(frames); }
   /// The values of one column of the exported trials.csv in the order of its rows, separated by spaces.
   Q_INVOKABLE QString column(const QString& name) const;
-  /// The values of all events of a kind, in the same form.
+  /// The values of all events of a kind, in the same form as column().
   Q_INVOKABLE QString events(const QString& kind) const;
 
  signals:
@@ -46,7 +46,7 @@ class RealSession : public QObject {
 
  private:
   QString database() const { return folder_.filePath("session%1.sqlite").arg(sessions_); }
-  void end();  ///< stops a session that is still running
+  void end();  ///< stops the session if it is still running
 
   QList<QStringList> table(const QString& file) const;
 

@@ -33,7 +33,7 @@ using turnpoint::ui::StartController;
 
 const QStringList kLanguages{"en", "de", "ja"};
 
-/// The panels to render for: their pixels, and the density of a common panel of that size.
+/// The panels to render for: their size in pixels, and the pixel density of a common panel of that size.
 struct Panel {
   QSize size;
   double pixels_per_mm;
@@ -46,7 +46,7 @@ Panel panel_of(const QString& text) {
   return {size, size.width() <= 800 ? 5.2 : size.width() <= 1280 ? 5.9 : 5.6};  // 7", 10.1", 15.6"
 }
 
-/// The station's window on one panel in one language.
+/// Renders the station's window for one panel in one language.
 class Camera {
  public:
   Camera(const QString& out, const Panel& panel, const QString& prefix, const QString& only)
@@ -83,12 +83,13 @@ class Camera {
   void shoot(const turnpoint::session::Page& page, const QString& name) {
     bridge_.show(page);
     QGuiApplication::processEvents();
-    // The numbers that only the operator can open.
+    // The page with numbers that only the operator can open.
     window_->findChild<QQuickItem*>("participantView")->setProperty("counting", name == "end-operator");
     shoot(name);
   }
 
-  /// The keypad for the operator's code, at the start of a locked station and over a participant's page.
+  /// Renders the keypad for the operator's code, at the start of a locked station and over a participant's
+  /// page.
   void shoot_gate() {
     auto* gate = window_->findChild<QQuickItem*>("gate");
     gate->setVisible(true);
@@ -113,7 +114,7 @@ class Camera {
   int count_ = 0;
 };
 
-/// One of the operator's pages alone in a window. These exist only in English.
+/// Renders one of the operator's pages alone in a window. These pages exist only in English.
 class OperatorCamera {
  public:
   OperatorCamera(const QString& out, const Panel& panel, const QString& prefix)

@@ -20,17 +20,17 @@ class ScriptedSession : public QObject {
   SessionBridge* bridge() { return &bridge_; }
   QStringList inputs() const { return inputs_; }
   int touches() const { return touches_; }
-  /// The names of all pages of the gallery.
+  /// The names of all pages in the gallery.
   static QStringList pages();
 
   Q_INVOKABLE void show(const QString& name, const QString& language);
-  /// Shows the same page with this text wherever a text comes from a file or a device.
+  /// Shows the same page with this text in every place where a text comes from a file or a device.
   Q_INVOKABLE void showWith(const QString& name, const QString& text);
   Q_INVOKABLE void forget();
-  /// From now on the kernel's stamp of every touch is this many milliseconds earlier than the toolkit's.
+  /// From now on, the kernel's time stamp of every touch is this many milliseconds earlier than Qt's.
   Q_INVOKABLE void setKernelLead(double ms);
   Q_INVOKABLE void forgetKernel();
-  /// Source of the last answer's time stamp: "kernel" or "toolkit".
+  /// Where the last answer's time stamp comes from: "kernel" or "toolkit".
   Q_INVOKABLE QString quality() const { return quality_; }
   /// Milliseconds since the last answer's time stamp.
   Q_INVOKABLE double answerAgeMs() const;

@@ -88,7 +88,7 @@ void StationRoom::addSecondScreen() {
 void StationRoom::calibrate() {
   std::string sweep = "frequency_Hz,displacement_um,phase_deg\n";
   for (int frequency_Hz = 20000; frequency_Hz <= 50000;
-       frequency_Hz += 500)  // without a resonance of its own
+       frequency_Hz += 500)  // the calibration contains no resonance
     sweep += std::to_string(frequency_Hz) + "," + std::to_string(0.3 + 4e-6 * frequency_Hz) + ",-20\n";
   write(path("sweep.csv"), sweep);
   write(path("friction.csv"), "displacement_um,relative_friction\n0,1\n0.5,0.6\n1,0.4\n2,0.2\n4,0.15\n");

@@ -13,13 +13,13 @@
 
 namespace turnpoint::ui {
 
-/// For tests of the whole program: its own window with the real controllers and sessions behind it, in a
-/// folder with one protocol and the simulated rig. The database is read by way of an export.
+/// Runs the whole program for tests: its own window with real controllers and sessions, in a folder with one
+/// protocol and the simulated rig. Tests read the database by exporting it.
 class StationRoom : public QObject {
   Q_OBJECT
   Q_PROPERTY(QQuickItem* screen READ screen NOTIFY opened)  ///< content of the participant's window
   Q_PROPERTY(QQuickItem* second READ second NOTIFY
-                 opened)  ///< content of the second screen's window; null before it opens
+                 opened)  ///< content of the second screen's window; null before that window opens
   Q_PROPERTY(turnpoint::ui::PageModel* page READ page NOTIFY opened)
   Q_PROPERTY(turnpoint::ui::OperatorController* operating READ operating NOTIFY opened)
   Q_PROPERTY(turnpoint::ui::LatencyController* latency READ latency CONSTANT)
@@ -34,32 +34,33 @@ class StationRoom : public QObject {
   OperatorController* operating() const { return operating_.get(); }
   LatencyController* latency() { return &latency_; }
 
-  /// Starts the program in an empty folder, with this code for the operator.
+  /// Starts the program in an empty folder with this operator's code.
   Q_INVOKABLE void open(const QString& code);
-  /// Changes the title of the folder's protocol.
+  /// Changes the title of the protocol in the folder.
   Q_INVOKABLE void entitle(const QString& title);
   /// Ends the program and starts it again in the same folder.
   Q_INVOKABLE void reopen(const QString& code);
-  /// The same, locked.
+  /// The same, but the station starts locked.
   Q_INVOKABLE void reopenLocked(const QString& code);
   Q_INVOKABLE void close();
   Q_INVOKABLE void addSecondScreen();
 
   /// Writes a calibration of the rig (response, friction, sound level), as `turnpoint calibrate` does.
   Q_INVOKABLE void calibrate();
-  /// Simulates a press of the reference button this long ago. An accepted latency of the panel is written.
+  /// Simulates a press of the reference button this many milliseconds ago. If the operator accepts a latency,
+  /// it is written to the calibration.
   Q_INVOKABLE void pressed(double ago_ms);
   Q_INVOKABLE double keepLatency();
 
-  /// Runs a session of participant T1 on this rig that is killed in its third trial. Returns the exit code,
-  /// -9 for a kill, 0 if it did not end within a minute.
+  /// Runs a session of participant T1 on this rig, which is killed in its third trial. Returns its exit code:
+  /// -9 if it was killed, 0 if it did not end within a minute.
   Q_INVOKABLE int cutOffSession(const QString& mode);
 
-  /// The levels of this protocol's first session in order, from a session without interruption.
+  /// The levels of the first session of this protocol, in order, if nothing interrupts it.
   Q_INVOKABLE QStringList plannedLevels() const;
 
-  /// Starts a separate 60 Hz timer on the pages' thread. stallsSeen() stops it and returns a generous count
-  /// of the refreshes that this thread was late by; nothing else can have delayed a page here.
+  /// lookOn() starts a 60 Hz timer on the pages' thread. stallsSeen() stops it and returns how many refreshes
+  /// this thread was late by, rounded up. A page of this test cannot be delayed by anything else.
   Q_INVOKABLE void lookOn();
   Q_INVOKABLE int stallsSeen();
 

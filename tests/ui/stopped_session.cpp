@@ -26,11 +26,11 @@ void take_part(ui::SessionBridge& bridge) {
   if (page->kind() == Kind::Instructions) return bridge.next();
   if (page->kind() != Kind::Stimulus || !page->answers_open()) return;
   if (page->trials_done() == 1) return void(::raise(SIGTERM));
-  // late enough that the page can have been read
+  // answers count only after a page has been shown for a while
   bridge.answer(1, bridge.now_ns() + 300'000'000);
 }
 
-/// Called once the program's window exists: simulates a person in front of it.
+/// Called once the program's window exists. Simulates a person in front of it.
 void sit_down() {
   for (auto* window : QGuiApplication::topLevelWindows()) {
     auto* bridge = window->property("bridge").value<ui::SessionBridge*>();

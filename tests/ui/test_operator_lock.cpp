@@ -8,10 +8,10 @@ using namespace turnpoint;
 
 namespace {
 
-/// Long enough for a busy machine. If something never comes, the test must still end.
+/// The longest time to wait, enough for a busy machine. A test that waits in vain must still end.
 constexpr std::chrono::seconds kPatience{20};
 
-/// A keypad without its screen, on a clock that the test moves.
+/// The operator's lock without its page, on a clock that the test moves.
 struct Keypad {
   int argc = 1;
   char name[5] = "test";
@@ -39,9 +39,9 @@ struct Keypad {
 TEST_CASE("the operator's lock opens by the code, and is compared off the pages' thread", "[lock]") {
   Keypad keypad;
   keypad.lock.enter("7391");
-  CHECK(keypad.lock.checking());  // the call returned before the code was compared
+  CHECK(keypad.lock.checking());  // enter() returned before the code was compared
   CHECK(keypad.opened == 0);
-  keypad.enter("1234");  // ignored while the code is being compared
+  keypad.enter("1234");  // this code is ignored, because the first is still being compared
   CHECK(keypad.opened == 1);
   CHECK(keypad.refused == 0);
 }
@@ -64,5 +64,5 @@ TEST_CASE("after wrong codes the lock takes not even the right one until its tim
   CHECK(keypad.opened == 1);
   keypad.enter("1111");
   keypad.enter("2222");
-  CHECK(keypad.lock.wait_s() == 0);  // the right code reset the count
+  CHECK(keypad.lock.wait_s() == 0);  // the right code reset the count of wrong ones
 }

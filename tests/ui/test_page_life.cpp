@@ -1,5 +1,5 @@
-// What the screen's hardware and program can do to a session: the amplifier's guard expects reports of the
-// participant's page, and a touch panel can be unplugged.
+// Tests what the screen can do to a session: the amplifier's guard expects reports of the participant's page,
+// and a touch panel can be unplugged.
 #include <QCoreApplication>
 #include <chrono>
 #include <memory>
@@ -24,7 +24,7 @@ struct PilotSession {
   TemporaryFolder folder;
   ui::SessionRunner runner;
 
-  /// On a rig with this touch panel.
+  /// Starts the session on a rig with this touch panel.
   explicit PilotSession(const std::string& touch_uri = "sim:") {
     auto setup = live_room::live_setup(folder / "a.sqlite", "touch");
     auto text = live_room::protocol_text("touch");
@@ -38,8 +38,8 @@ struct PilotSession {
 
   const session::Page& page() { return runner.bridge().page()->page(); }
 
-  /// Runs the event loop until the page is there. After half a minute the test fails; the limit is not a
-  /// measurement.
+  /// Runs the event loop until this kind of page is shown, for at most half a minute. The limit only ends the
+  /// test; it measures nothing.
   bool shows(session::PageKind kind) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (page().kind != kind) {
@@ -56,13 +56,13 @@ struct PilotSession {
 TEST_CASE("a page whose thread hangs switches the amplifier off, and then says so", "[page]") {
   PilotSession session;
   REQUIRE(session.shows(session::PageKind::stimulus));
-  // First run the event loop normally for as long as it will hang afterwards: nothing must happen.
+  // Negative control: while the event loop runs normally for the same time, nothing must happen.
   const auto until = std::chrono::steady_clock::now() + std::chrono::milliseconds(2600);
   while (std::chrono::steady_clock::now() < until) {
     QCoreApplication::processEvents(QEventLoop::AllEvents, 10);
     REQUIRE(session.page().kind == session::PageKind::stimulus);
   }
-  std::this_thread::sleep_for(std::chrono::milliseconds(2600));  // now it hangs
+  std::this_thread::sleep_for(std::chrono::milliseconds(2600));  // now the pages' thread hangs
   REQUIRE(session.shows(session::PageKind::fault));
   CHECK(session.page().fault == terms::FaultKind::page_silent);
   CHECK(session.page().amplifier == "faulted");

@@ -15,7 +15,7 @@ using turnpoint::ui::ServiceWatchdog;
 
 namespace {
 
-/// The service manager's end of the connection: an abstract datagram socket named in NOTIFY_SOCKET.
+/// Plays the service manager: an abstract datagram socket, whose name is in NOTIFY_SOCKET.
 class Manager {
  public:
   Manager() : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0)) {
@@ -33,7 +33,7 @@ class Manager {
     ::close(socket_);
   }
 
-  /// Runs the event loop until a message arrives and returns it; "" after `patience_ms`.
+  /// Runs the event loop until a message arrives and returns it; returns "" after `patience_ms`.
   std::string told(int patience_ms) const {
     char text[64] = {};
     const QDeadlineTimer deadline(patience_ms);
@@ -65,7 +65,7 @@ TEST_CASE("a service manager is told that the station is ready, and then that it
   qputenv("WATCHDOG_USEC", "20000");
   qputenv("WATCHDOG_PID", std::to_string(::getpid()).c_str());
   const ServiceWatchdog watchdog;
-  CHECK(manager.told(0).empty());  // nothing before the event loop runs
+  CHECK(manager.told(0).empty());  // no message before the event loop runs
   CHECK(manager.told(10000) == "READY=1");
   CHECK(manager.told(10000) == "WATCHDOG=1");
   CHECK(manager.told(10000) == "WATCHDOG=1");

@@ -20,10 +20,11 @@ using ui::OperatorController;
 namespace {
 
 const std::string kSource = TURNPOINT_SOURCE_DIR;
-/// Long enough for a busy machine. If something never comes, the test must still end.
+/// The longest time to wait, enough for a busy machine. A test that waits in vain must still end.
 constexpr std::chrono::seconds kPatience{20};
 
-/// Checks that take as long as the test wants, and that do not notice when they are no longer needed.
+/// Simulates checks of protocols that take as long as the test wants, and do not notice when they are no
+/// longer needed.
 class HeldChecks {
  public:
   simulation::Check operator()(const std::string& protocol, const std::stop_token& stop) {
@@ -65,7 +66,7 @@ class HeldChecks {
   bool open_ = false;
 };
 
-/// The start page without its window, with three protocols: two that can be used and one that cannot.
+/// The start page without its window, with three protocols: two can be used, one cannot.
 struct StartPage {
   int argc = 1;
   char name[5] = "test";
@@ -121,7 +122,7 @@ TEST_CASE("choosing another protocol abandons the check that runs, and the page 
   start.page->select(1);
   start.page->select(0);
   start.page->select(1);
-  CHECK(start.checks.ended() == 0);  // it returned although the first check is still running
+  CHECK(start.checks.ended() == 0);  // select() returned although the first check is still running
   CHECK(start.checks.running_is_abandoned());
   const int before = start.events;
   CHECK(start.comes([&] { return start.events >= before + 1000; }));
@@ -132,7 +133,7 @@ TEST_CASE("choosing another protocol abandons the check that runs, and the page 
   REQUIRE(start.comes([&] { return !start.page->checking(); }));
   CHECK(start.shown() == "b.toml");
   CHECK(start.checks.begun() ==
-        std::vector<std::string>{"a.toml", "b.toml"});  // the replaced check never began
+        std::vector<std::string>{"a.toml", "b.toml"});  // the check that was replaced twice never began
 }
 
 TEST_CASE("a check that ends late says nothing about the protocol chosen since", "[start]") {

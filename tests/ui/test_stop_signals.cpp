@@ -13,9 +13,9 @@ using turnpoint::ui::StopSignals;
 
 namespace {
 
-/// Long enough for a busy machine. A request that is ignored would take for ever.
+/// The longest time to wait, enough for a busy machine. A test of an ignored request must still end.
 constexpr int kPatience_ms = 20000;
-/// Limit for the time from the signal to the end of the process. A service manager kills after 5 s.
+/// Longest time allowed from the signal to the end of the process. A service manager kills after 5 s.
 constexpr int kPrompt_ms = 1000;
 
 const std::string kSource = TURNPOINT_SOURCE_DIR;
@@ -36,7 +36,7 @@ struct Loop {
   QCoreApplication application{argc, argv};
 };
 
-/// For the duration of a test, signals have their default action. The test framework installs handlers.
+/// Gives signals their default action during a test, because the test framework installs handlers.
 struct KernelsWay {
   KernelsWay() { set(SIG_DFL, SIG_DFL); }
   ~KernelsWay() { set(terminate, interrupt); }

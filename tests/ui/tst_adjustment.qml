@@ -32,11 +32,12 @@ Item {
         }
         function tap(name) {
             tryVerify(() => find(view, name) !== null, 20000, name)
-            wait(400)                                                // a page accepts taps after it has been shown for a while,
-            tryVerify(() => find(view, name)?.armed, 20000, name)    // however long its first frame took
+            // A page accepts taps only after it has been shown for a while, however long its first frame took.
+            wait(400)
+            tryVerify(() => find(view, name)?.armed, 20000, name)
             mouseClick(find(view, name))
         }
-        /// The position of a value on the slider.
+        /// The position on the slider that belongs to a value.
         function place(slider, value) {
             const knob = slider.knob
             return knob / 2 + (value - page.sliderMin) / (page.sliderMax - page.sliderMin) * (slider.width - knob)
@@ -52,7 +53,7 @@ Item {
             session.start("adjust.toml")
             tap("proceed")
 
-            // Drag with a finger from the current position to -8, then two steps up.
+            // Drag the handle with a finger to -8, then tap "up" twice.
             let slider = adjusting()
             fuzzyCompare(page.slider, -20, 1e-9)
             const touch = touchEvent(stage)
@@ -68,7 +69,7 @@ Item {
 
             tryVerify(() => page.kind !== PageModel.Adjust, 5000)
 
-            // Leave the second one alone until the surface falls silent. A move after that could not be felt.
+            // Do not move the second slider until the surface is silent. A later move could not be felt.
             slider = adjusting()
             fuzzyCompare(page.slider, -20, 1e-9)
             tap("stepDown")

@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// A real session with every fault that can happen in the room.
+// Tests a real session with every fault that can happen in the room.
 Item {
     id: stage
     width: 800
@@ -44,7 +44,7 @@ Item {
             wait(1200)
             mouseRelease(button)
         }
-        /// Continues past the break after two trials, if it comes.
+        /// Waits for the next question, and continues if the break after two trials comes first.
         function untilAsked() {
             tryVerify(() => page.answersOpen && page.kind === PageModel.Stimulus
                             || page.kind === PageModel.Rest && page.remainingSeconds === 0, 20000)
@@ -82,7 +82,8 @@ Item {
             session.setStop(true)
             explained("emergency stop")
             arm()
-            tryVerify(() => page.detail.includes("refused"), 5000)   // the stop is still pressed
+            // arming is refused while the stop is pressed
+            tryVerify(() => page.detail.includes("refused"), 5000)
             session.setStop(false)
             arm()
             tryCompare(page, "kind", PageModel.Paused, 5000)
@@ -103,7 +104,8 @@ Item {
             const before = shown.count
             tap("proceed")
             tryVerify(() => shown.count > before, 5000)
-            explained("disk is full")                                // the disk is still full
+            // the same page again, because the disk is still full
+            explained("disk is full")
             session.setDiskFull(false)
             tap("proceed")
 

@@ -37,7 +37,7 @@ Item {
                 desk.pressed(50)
                 tap()
                 if (k === 0) tryVerify(() => centre() === "#ffffff")
-                wait(410)  // otherwise the edge of one tap could belong to the next
+                wait(410)  // longer than the time within which an edge is matched with a tap
             }
             tryCompare(desk.latency, "pairs", 10)
             compare(inspector.cutTexts(page), [])

@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// Checks every rendered page on a small panel and on a larger one: nothing is faint, nothing cut off, no word
+// Checks every rendered page on a small and on a larger panel: no text may be faint or cut off, and no word
 // broken.
 Item {
     id: stage
@@ -82,7 +82,7 @@ Item {
             const first = findChild(view, "answer0").children[0], second = findChild(view, "answer1").children[0]
             compare(first.font.pixelSize, second.font.pixelSize)
             verify(first.font.pixelSize >= 3.4 * row.panel.mm)
-            // Short texts keep the normal size of answers.
+            // Only short texts have the normal size of answers.
             compare(first.font.pixelSize === Math.round(4 * Math.min(row.panel.width / 80, row.panel.height / 48)), row.tag === "short")
         }
 

@@ -99,7 +99,7 @@ Item {
             verify(says(page.item, "Begin pilot"))
             tap(page.item, "live")
             verify(says(page.item, "Begin LIVE session"))
-            // The simulated rig has no measured friction: a live session is refused, with the reason.
+            // The simulated rig has no measured friction, so a live session must be refused with that reason.
             tap(page.item, "begin")
             tryVerify(() => operating.problems.length > 0, 20000)
             verify(operating.problems[0].includes("--mode live"))

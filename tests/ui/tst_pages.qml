@@ -23,7 +23,8 @@ Item {
         function initTestCase() { script.bridge.watch(stage.Window.window) }
 
         function init() {
-            wait(2 * settleMs)  // two taps too soon after each other count as none, so wait after the previous test
+            // taps that follow each other too fast are ignored, so wait after the previous test
+            wait(2 * settleMs)
             show("between-trials")
             script.forget()
         }
@@ -74,7 +75,8 @@ Item {
             tryCompare(script, "inputs", ["answer 1"])
             verify(script.answerAgeMs() >= settleMs)
             mouseClick(item("answer0"))
-            tryCompare(script, "touches", 1)  // only the second tap: the first became the answer
+            // counts only the second tap, because the first became the answer
+            tryCompare(script, "touches", 1)
             compare(script.inputs, ["answer 1"])
         }
 
@@ -205,7 +207,7 @@ Item {
                 compare(script.inputs, ["next"])
                 return
             }
-            // Only an operator can continue: somebody who touches the screen by accident cannot arm.
+            // Only an operator may arm: somebody who touches the screen by accident must not be able to.
             arming.clear()
             tap("operatorArms")
             compare(arming.count, 1)

@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// Where a text may break into lines.
+// Tests where a text may break into lines.
 Item {
     id: stage
     width: 800
@@ -23,7 +23,7 @@ Item {
         name: "Phrases"
         when: windowShown
 
-        /// The pieces of text between two possible line breaks.
+        /// The pieces of a text between two possible line breaks.
         function pieces(text) {
             const joined = japanese.phrased(text), found = [""]
             for (let i = 0; i < joined.length; ++i) {
@@ -47,8 +47,8 @@ Item {
         }
         function test_a_japanese_text_breaks_where_a_phrase_ends(row) {
             const wanted = row.tag.split("|"), text = wanted.join("")
-            // Two hiragana are no place to break, so a piece may consist of two phrases, but never of half a
-            // phrase.
+            // A line cannot break between two hiragana, so a piece may consist of two phrases, but never of
+            // half a phrase.
             let begun = 0
             const starts = wanted.map(piece => (begun += piece.length) - piece.length)
             begun = 0
@@ -65,12 +65,13 @@ Item {
             shown.width = widthOf("なめらかな部分が印で終わるように、つまみを動かしてく") + 2
             shown.text = text
             compare(shown.lineCount, 2)
-            verify(shown.lines[0] > widthOf("なめらかな部分が印で終わるように、つまみを動か"))  // as it would be without phrases
+            // without phrases, the line breaks inside one
+            verify(shown.lines[0] > widthOf("なめらかな部分が印で終わるように、つまみを動か"))
             shown.text = japanese.phrased(text)
             compare(shown.lineCount, 2)
             fuzzyCompare(shown.lines[0], widthOf("なめらかな部分が印で終わるように、つまみを"), 2)
             shown.width = widthOf("なめらか")
-            verify(shown.contentWidth <= shown.width + 1)  // a phrase that does not fit into a line is broken after all
+            verify(shown.contentWidth <= shown.width + 1)  // a phrase that is longer than a line is broken
         }
 
         function test_words_of_other_languages_and_writings_are_left_alone() {

@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// A scrolling area shows that there is more below its edge, and the current position.
+// Tests that a scrolling area shows its current position, and whether there is more below its edge.
 Item {
     id: stage
     width: 400
@@ -50,7 +50,7 @@ Item {
             fuzzyCompare(cue.y + cue.height, 20 + 260, 0.5)
             verify(cue.x >= place.x + place.width && cue.x + cue.width <= card.width)
         }
-        /// The darkest of some pixels, 0 to 1, around the middle of a symbol at (0, y).
+        /// The darkness (0 to 1) of the darkest pixel near the middle of a symbol at (0, y).
         function darkest(y) {
             const image = grabImage(stage)
             let least = 1

@@ -48,7 +48,8 @@ Item {
             }
         }
 
-        // The answers below do not depend on the levels: each row must contain the answer that was tapped.
+        // The answers given here do not depend on the levels: each row must contain the answer that was
+        // tapped.
         function test_a_whole_session_tapped_through_is_in_the_database() {
             session.bridge.watch(stage.Window.window)
             session.start("short.toml")

@@ -2,8 +2,8 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// The whole program in its own window during a day in the laboratory: operator's page, participant's pages,
-// real sessions and their rows.
+// Tests the whole program in its own window during a day in the laboratory: operator's page, participant's
+// pages, real sessions and their rows.
 Item {
     id: stage
     width: 800
@@ -47,7 +47,7 @@ Item {
         function appears(name, parent = room.screen) {
             tryVerify(() => shown(name, parent), 20000, name)
             wait(60)
-            // A page reacts only once it can have been read.
+            // Wait until the page accepts taps, which it does only after it has been shown for a while.
             tryVerify(() => shown(name, parent) && find(parent, name).armed !== false, 5000, name + " reacts")
             return find(parent, name)
         }
@@ -65,7 +65,8 @@ Item {
             for (const digit of code) tap("digit" + digit)
             const lock = find(room.screen, "gate").lock
             tap("digitOK")
-            tryCompare(lock, "checking", false, 20000)               // another thread compares the code
+            // wait until another thread has compared the code
+            tryCompare(lock, "checking", false, 20000)
         }
         /// Touches an answer on the participant's screen with one finger.
         function answer(choice) {
@@ -91,7 +92,7 @@ Item {
             tap("proceed")
         }
         function ends() { tryCompare(page, "kind", PageModel.End, 20000) }
-        /// Arms like an operator who stands at the participant's screen.
+        /// Arms as an operator at the participant's screen does.
         function arm() {
             tryCompare(page, "awaitsArming", true, 20000)
             tap("operatorArms")
@@ -107,7 +108,7 @@ Item {
                 room.pressed(50)
                 mousePress(field)
                 mouseRelease(field)
-                wait(410)  // otherwise the edge of one tap could belong to the next
+                wait(410)  // longer than the time within which an edge is matched with a tap
             }
             tryCompare(room.latency, "pairs", 10)
             const offset = room.keepLatency()
@@ -122,7 +123,8 @@ Item {
             tap("begin")
             tryVerify(() => operating.problems.length > 0, 20000)
             verify(operating.problems[0].includes("friction is the illustrative curve"), operating.problems[0])
-            tap("pilot")                                             // the reason does not apply to this mode
+            // the illustrative curve is allowed in a pilot session
+            tap("pilot")
             compare(operating.problems, [])
             compare(operating.mayBegin, true)
 
@@ -132,7 +134,7 @@ Item {
             tap("live")
             begin("T7")
 
-            // Nobody has armed: the participant can neither continue nor arm.
+            // Before the operator has armed, the participant can neither continue nor arm.
             tryCompare(page, "kind", PageModel.Fault, 20000)
             compare(page.runMode, "live")
             verify(!shown("proceed") && !shown("holdToArm"))
@@ -175,9 +177,9 @@ Item {
             verify(/^[0-9a-f]{64}$/.test(hashes[0]), hashes[0])
         }
 
-        /// Four trials, the second with the pages' thread blocked for this time: {trial: frames lost}, and in
-        /// `seen` the count of the test's own timer (which may miss a wait that was split between two of its
-        /// beats).
+        /// Runs four trials and blocks the pages' thread for this time in the second. Returns {trial: frames
+        /// lost}, with `seen` for the count of the test's own timer (which may miss a delay that was split
+        /// between two of its ticks).
         function framesLost(blocked_ms) {
             room.open("7391")
             begin("T2")
@@ -203,7 +205,8 @@ Item {
 
         function test_frames_that_are_late_in_a_trial_are_counted_in_its_events() {
             const lost = framesLost(100)
-            verify(lost["1"] >= 4, JSON.stringify(lost))             // 100 ms are six refreshes at 60 Hz, and one may be missed
+            // 100 ms are six refreshes at 60 Hz, of which one or two may not be counted
+            verify(lost["1"] >= 4, JSON.stringify(lost))
             verify(lost.total <= lost.seen + 1, JSON.stringify(lost))
             tap("results")
             type("7391")
@@ -213,7 +216,8 @@ Item {
 
         function test_a_session_whose_pages_are_in_time_counts_no_late_frame() {
             const lost = framesLost(0)
-            verify(lost.total <= lost.seen + 1, JSON.stringify(lost))  // no more than this machine was late by
+            // not more than this machine was late by
+            verify(lost.total <= lost.seen + 1, JSON.stringify(lost))
         }
 
         function test_a_session_that_was_cut_off_goes_on_at_its_very_trial() {
@@ -223,7 +227,8 @@ Item {
             room.reopen("7391")
             tryVerify(() => operating.interrupted.startsWith("T1, short: 2 trials stored"), 20000, operating.interrupted)
             tap("resume")
-            arm()                                                    // as after any start of a live session
+            // a resumed live session must be armed, too
+            arm()
             tap("proceed")
             compare(page.trialsDone, 2)
             compare(page.runMode, "live")
@@ -238,7 +243,7 @@ Item {
             compare(room.column("trials.csv", "response"), ["right", "right", "left", "left"])
             compare(room.column("trials.csv", "run_mode"), ["live", "live", "live", "live"])
             compare(room.column("trials.csv", "level"), room.plannedLevels())
-            // The interrupted trial had been presented, and was presented again.
+            // The interrupted trial was presented before the interruption, and again after it.
             const presented = room.column("events.csv", "trial_index", "kind", "presented")
             compare(presented, ["0", "1", "2", "2", "3"])
             compare(room.column("sessions.csv", "status"), ["completed"])
@@ -260,7 +265,7 @@ Item {
             tap("livePause", room.second)
             tryCompare(page, "kind", PageModel.Paused, 5000)
             verify(!shown("liveView"))
-            tap("livePause", room.second)                            // continues the session
+            tap("livePause", room.second)                            // a second tap continues the session
             tryVerify(() => page.answersOpen, 20000)
             compare(page.trialsDone, 0)
             answer(1)
@@ -280,7 +285,7 @@ Item {
             room.open("7391")
             begin("T4")
             hold("operatorCorner", 300)
-            verify(!shown("gate"))                                   // a tap is not enough
+            verify(!shown("gate"))                                   // a short press does not open the keypad
             hold("operatorCorner", 2300)
             appears("gate")
             type("2469")
@@ -288,7 +293,8 @@ Item {
             verify(shown("gate") && !shown("liveView"))
             tap("gateLeave")
             verify(!shown("gate") && !shown("liveView"))
-            compare(page.kind, PageModel.Instructions)               // the session is not affected
+            // leaving the keypad does not affect the session
+            compare(page.kind, PageModel.Instructions)
             tap("proceed")
             tryVerify(() => page.kind === PageModel.Stimulus, 20000)
             compare(find(room.screen, "operatorCorner").enabled, false)
@@ -297,14 +303,15 @@ Item {
             tryCompare(page, "kind", PageModel.Paused, 5000)
             hold("operatorCorner", 2300)
             type("7391")
-            appears("liveView")                                      // the right code opens it
+            // the right code opens the operator's page
+            appears("liveView")
             tap("liveClose")
             verify(!shown("liveView"))
             tap("end")
             tap("end")
             ends()
 
-            // The pages after the thanks are also for the operator.
+            // The pages after the last page of the session are also for the operator only.
             for (const way of ["results", "close"]) {
                 tap(way)
                 type("1234")
@@ -322,13 +329,15 @@ Item {
             room.reopenLocked("7391")
             appears("gate")
             verify(!shown("operatorPage"))
-            compare(find(room.screen, "gateLeave").enabled, false)   // there is no page to go back to
+            // at the start there is no page to go back to
+            compare(find(room.screen, "gateLeave").enabled, false)
             type("1357")
             verify(shown("gate") && !shown("operatorPage"))
             type("7391")
             appears("operatorPage")
             verify(!shown("gate"))
-            begin("T8")                                              // from then on everything works as usual
+            // after unlocking, a session can begin as usual
+            begin("T8")
             tryCompare(page, "kind", PageModel.Instructions, 20000)
         }
     }

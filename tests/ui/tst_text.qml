@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// Text from a file or a person is shown literally: tags have no effect, and no picture is opened.
+// Tests that text from a file or a person is shown literally: tags have no effect, and no picture is opened.
 Item {
     id: stage
     width: 800

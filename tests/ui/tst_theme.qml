@@ -10,7 +10,7 @@ TestCase {
         Theme {}
     }
 
-    // Relative luminance and contrast as WCAG 2.1 defines them.
+    // Computes relative luminance and contrast as WCAG 2.1 defines them.
     function linear(c) { return c <= 0.04045 ? c / 12.92 : Math.pow((c + 0.055) / 1.055, 2.4) }
     function luminance(c) { return 0.2126 * linear(c.r) + 0.7152 * linear(c.g) + 0.0722 * linear(c.b) }
     function contrast(a, b) {
