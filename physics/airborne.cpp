@@ -14,19 +14,19 @@
 namespace turnpoint::physics {
 namespace {
 
-constexpr int nodes_along = 4,
-              nodes_across = 12;  // Gauss-Legendre nodes of half a wavelength, of the half-width
+// Gauss-Legendre nodes: along the strip per half wavelength, across it per half-width.
+constexpr int nodes_along = 4, nodes_across = 12;
 constexpr double reference_Pa = 20e-6;
 
-// Displacement across the strip over that of its centre, eta = y / W.
+// Displacement across the strip divided by the displacement of its centre, with eta = y / W.
 double transverse_shape(bool clamped_plate, double eta) {
   if (!clamped_plate) return std::cos(0.5 * std::numbers::pi * eta);
-  constexpr double b = 2.36502;  // tan b + tanh b = 0
+  constexpr double b = 2.36502;  // root of tan b + tanh b = 0
   static const double at_edge = std::cos(b) / std::cosh(b);
   return (std::cos(b * eta) - at_edge * std::cosh(b * eta)) / (1 - at_edge);
 }
 
-// A path over the strip at the same distance from its centre line, from one end to the other.
+// Places over the strip, from one end to the other, that all have this distance from the centre line.
 std::vector<Place> places_around(double length_m, double distance_m, double step_m) {
   const double arc = 0.5 * std::numbers::pi * distance_m, whole = length_m + 2 * arc;
   const int steps = static_cast<int>(std::ceil(whole / step_m));
@@ -107,7 +107,8 @@ LoudestSound loudest_sound(const Surface& surface, const Tone& tone, Model model
                                 std::to_string(1e3 * wave_m) + " mm) and " +
                                 std::to_string(1e3 * half_width * half_width / wave_m) + " mm");
   auto sources = sound_sources(surface, tone, model, air);
-  // In the plane y = 0 both halves are equally far away.
+  // All places are in the plane y = 0, which is equally far from both halves of the strip, so one half is
+  // enough.
   std::erase_if(sources, [](const SoundSource& source) { return source.y_m < 0; });
   for (SoundSource& source : sources) source.volume_m3 *= 2;
   const auto places = places_around(surface.length_m, distance_m, std::min(5e-3, 0.5 * wave_m));

@@ -79,7 +79,8 @@ class Builder {
 
   // The frequency at which the edge stops existing, between one with the edge and one without.
   double limit(double with, double without) const {
-    // A plate's solutions are dear, and the last step need not be found: the edge is tabulated up to it.
+    // A plate's solutions take long, and the table covers the edge only up to the limit that was found, so a
+    // rough limit is enough.
     const bool thick = dispersion_.theory != PlateTheory::kirchhoff;
     const double enough = thick ? 1e-6 : dispersion_.clamped_bending() ? 1e-9 : 1e-14;
     return bisect(
@@ -153,7 +154,8 @@ bool scale_free(const Surface& surface, const MapOptions& options) {
   if (options.edge.kind == Edge::Kind::friction) return false;
   const auto apex = Taper(surface).apex_m();
   const Dispersion dispersion(surface);
-  const bool thin = dispersion.theory == PlateTheory::kirchhoff;  // a thickness is a length of its own
+  // a thick plate has a length of its own, its thickness, so its features do not scale
+  const bool thin = dispersion.theory == PlateTheory::kirchhoff;
   const bool scales = thin && (!dispersion.clamped_bending() || dispersion.tension_N_per_m == 0);
   return apex && *apex <= surface.length_m * (1 + 1e-9) && scales;
 }

@@ -6,10 +6,11 @@
 
 namespace turnpoint::physics {
 
-// First symmetric bending cut-off of a strip whose cross-section, |y| < W, |z| < h/2, is held at |y| = W over
-// the whole thickness and free at z = +-h/2 (plane strain in y, z), as omega W / c_s, c_s^2 = G / rho. It
-// depends on h/W and Poisson's ratio alone. A table of finite elements, made once for each Poisson's ratio
-// (0.15 s or so) and kept; const functions are thread-safe and allocate nothing.
+// First symmetric bending cut-off, as omega W / c_s with c_s^2 = G / rho, of a strip whose cross-section |y|
+// < W, |z| < h/2 is held at |y| = W over the whole thickness and free at z = +-h/2 (plane strain in y, z). It
+// depends only on h/W and Poisson's ratio. The values come from a table of finite elements, which is made
+// once for each Poisson's ratio (in about 0.15 s) and kept. Const functions are thread-safe and allocate
+// nothing.
 class ElasticCutOff {
  public:
   // The table for a Poisson's ratio from 0 to 0.49. It stays valid until the program ends.

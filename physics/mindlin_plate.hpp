@@ -4,12 +4,13 @@
 
 namespace turnpoint::physics {
 
-// Mindlin's shear factor by Poisson's ratio: 5/(6 - nu) + 0.12 (nu / (1 - nu))^2.
-// The first term makes the long waves of a free plate agree with the Rayleigh-Lamb equation to the next order
-// in k h (N. Stephen, J. Sound Vib. 202 (1997) 539; J. Hutchinson, J. Appl. Mech. 51 (1984) 898). The second
-// is the clamp's: it holds the contraction across the thickness, nu / (1 - nu) of the bending strain, and so
-// stiffens the last half thickness of the strip. Its constant is fitted to plane-strain finite elements,
-// after which the cut-off half-width is within 0.2 % of them (h/W to 0.4, nu 0 to 0.4; 0.4 % to nu = 0.49).
+// Mindlin's shear factor for a Poisson's ratio: 5/(6 - nu) + 0.12 (nu / (1 - nu))^2. With the first term, the
+// long waves of a free plate agree with the Rayleigh-Lamb equation to the next order in k h (N. Stephen, J.
+// Sound Vib. 202 (1997) 539; J. Hutchinson, J. Appl. Mech. 51 (1984) 898). The second term describes the
+// clamp, which prevents the contraction across the thickness, nu / (1 - nu) of the bending strain, and so
+// stiffens the strip over half a thickness from the clamp. Its constant is fitted to plane-strain finite
+// elements; the cut-off half-width is then within 0.2 % of theirs (h/W to 0.4, nu 0 to 0.4; 0.4 % to nu =
+// 0.49).
 double shear_factor(double poisson);
 
 // S = kappa G h, J = rho h^3 / 12, beta the rotation (in-plane displacement z beta):
@@ -21,9 +22,9 @@ struct MindlinPlate {
   MindlinPlate() = default;
   explicit MindlinPlate(const Surface& surface);
 
-  // Squared wavenumbers (1/m^2) of the free plate: the two of bending, D S k^4 - (D rho h + S J) omega^2 k^2
-  // + (J omega^2 - S) rho h omega^2 = 0, and that of shear in the plane; the last two are below zero for
-  // wavelengths above about three thicknesses. `share` is -beta / grad w of the two.
+  // Squared wavenumbers (1/m^2) of the free plate. Two belong to bending: D S k^4 - (D rho h + S J) omega^2
+  // k^2 + (J omega^2 - S) rho h omega^2 = 0. One belongs to shear in the plane. The last two are below zero
+  // for wavelengths above about three thicknesses. `share` is -beta / grad w of each bending wave.
   struct Waves {
     double bending, evanescent, shear;
     double share_bending, share_evanescent;
@@ -32,19 +33,19 @@ struct MindlinPlate {
 
   double wavenumber_per_m(double frequency_Hz) const noexcept;
   double frequency_Hz(double wavenumber_per_m) const noexcept;
-  // First symmetric cut-off: a1 k1 tan(k1 W) + a2 g2 tanh(g2 W) = 0, pi/2 < k1 W < pi, a the shares, g2^2 the
-  // evanescent wave's.
+  // First symmetric cut-off, where a1 k1 tan(k1 W) + a2 g2 tanh(g2 W) = 0 with pi/2 < k1 W < pi; a1 and a2
+  // are the shares, and g2^2 belongs to the evanescent wave.
   double cut_off_half_width_m(double frequency_Hz) const noexcept;
   double cut_off_frequency_Hz(double half_width_m) const noexcept;
-  // Zero where exp(-i kx x), kx^2 = `along_per_m2`, travels in an infinite strip symmetrically about its
-  // centre line. The strip's whole dispersion; `along_per_m2` may be below zero.
+  // The dispersion of an infinite strip: zero if the wave exp(-i kx x) with kx^2 = `along_per_m2`, symmetric
+  // about the centre line, can travel in it. `along_per_m2` may be below zero.
   double characteristic(double frequency_Hz, double half_width_m, double along_per_m2) const noexcept;
 
   double stiffness_N_m = 0;      // D
   double shear_N_per_m = 0;      // S
-  double mass_kg_per_m2 = 0;     // rho h
+  double mass_kg_per_m2 = 0;     // mass per area, rho h
   double rotary_inertia_kg = 0;  // J
-  double twist_N_m = 0;          // D (1 - nu) / 2
+  double twist_N_m = 0;          // twisting stiffness, D (1 - nu) / 2
 
  private:
   double below_cut_off(const Waves& waves, double half_width_m) const noexcept;

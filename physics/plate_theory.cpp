@@ -35,7 +35,7 @@ TheoryChoice choose_theory(const Surface& surface, std::span<const double> frequ
     choice.reason = "kirchhoff: shear is modelled for clamped plates without tension only";
     return choice;
   }
-  double thin = 0, mindlin = 0;  // largest distances from the elastic section's boundary
+  double thin = 0, mindlin = 0;  // largest distances of these theories' boundaries from the elastic section's
   Surface s = surface;
   for (const double f : frequencies_Hz) {
     s.theory = PlateTheory::kirchhoff;

@@ -13,7 +13,7 @@ namespace {
 
 using SectionMatrix = SectionBasis::Matrix;
 
-// Strain and motion of functions at quadrature points: one matrix a component, a row a function.
+// Strain or motion of functions at quadrature points: one matrix per component, with one row per function.
 using Components = std::vector<SectionMatrix>;
 
 SectionMatrix weighted_gram(const Components& a, const SectionMatrix& law, const Components& b,
@@ -39,8 +39,8 @@ SectionBasis integrate_section(const std::array<Components, 4>& strain, const Se
   return basis;
 }
 
-// (1 - t^2) P_n(t) sqrt(2n + 1), n = first, first + 2, ..., and derivatives, at t = 0 and the nodes of the
-// rule.
+// The functions (1 - t^2) P_n(t) sqrt(2n + 1), n = first, first + 2, ..., and their derivatives, at t = 0 and
+// at the nodes of the rule.
 void bubbles(int count, int first, const Quadrature& rule, SectionMatrix& value, SectionMatrix& slope,
              Eigen::VectorXd& start) {
   const auto nodes = static_cast<Eigen::Index>(rule.x.size());
@@ -75,7 +75,7 @@ SectionMatrix stacked(const SectionMatrix& a, const SectionMatrix& b, const Sect
   return all;
 }
 
-// Functions in the order beta_x, beta_y, w.
+// The section of a Mindlin plate; its functions are in the order beta_x, beta_y, w.
 SectionBasis mindlin_section(const MindlinPlate& plate, int each) {
   const Quadrature rule = gauss_legendre(2 * each + 6);
   const auto nodes = static_cast<Eigen::Index>(rule.x.size());
@@ -90,14 +90,14 @@ SectionBasis mindlin_section(const MindlinPlate& plate, int each) {
   Components stretched;
   for (const SectionMatrix& one : slope) stretched.push_back(one * eta.asDiagonal());
   const SectionMatrix zero = SectionMatrix::Zero(3 * each, nodes);
-  // kappa_xx, kappa_yy, kappa_xy, gamma_x, gamma_y
+  // the strain's components kappa_xx, kappa_yy, kappa_xy, gamma_x, gamma_y
   const auto by_x = [&](const Components& u) -> Components { return {u[0], zero, u[1], u[2], zero}; };
   const Components by_y{zero, slope[1], slope[0], zero, slope[2]};
   const Components local{zero, zero, zero, motion[0], motion[1]};
   SectionMatrix law = SectionMatrix::Zero(5, 5);
   const double d = plate.stiffness_N_m;
   law(0, 0) = law(1, 1) = d;
-  law(0, 1) = law(1, 0) = d - 2 * plate.twist_N_m;  // nu D
+  law(0, 1) = law(1, 0) = d - 2 * plate.twist_N_m;  // this is nu D
   law(2, 2) = plate.twist_N_m;
   law(3, 3) = law(4, 4) = plate.shear_N_per_m;
   SectionMatrix inertia = SectionMatrix::Zero(3, 3);
@@ -112,7 +112,7 @@ SectionBasis mindlin_section(const MindlinPlate& plate, int each) {
 SectionPencil mindlin_pencil(const SectionBasis& b, double half_width, Eigen::Index each) {
   using B = SectionBasis;
   const Eigen::Index rest = b.count() - each;
-  // Strain of a uniform strip without the derivative along x, Y/W + Z.
+  // The strain of a uniform strip, without the derivative along x, is Y/W + Z.
   const SectionMatrix still = b.stiff[B::across][B::across] / (half_width * half_width) +
                               (b.stiff[B::across][B::local] + b.stiff[B::local][B::across]) / half_width +
                               b.stiff[B::local][B::local];
@@ -130,17 +130,18 @@ SectionPencil mindlin_pencil(const SectionBasis& b, double half_width, Eigen::In
   return p;
 }
 
-// The half-widths whose cut-off shapes make the functions of `mode`: the drive edge's, which it is driven
-// with; the tone's turning point, where they are exact; and a narrower one. Between them the parts of a shape
-// that grow differently as the strip narrows (deflection, rotation, thickening) find their proportions.
+// The half-widths whose cut-off shapes are the functions of `mode`: that of the drive edge, whose shape
+// drives the strip; that of the tone's turning point, where the shapes are exact; and a narrower one. With
+// several half-widths the parts of a shape that change differently as the strip narrows (deflection,
+// rotation, thickening) can have any proportions.
 std::array<double, 3> shape_widths(const Surface& surface, double f) {
   const double drive = half_width_m(surface, 0);
   const double turning = std::min(Dispersion(surface).cut_off_half_width_m(f), 0.85 * drive);
   return {drive, turning, 0.75 * turning};
 }
 
-// Columns cross, along, stretched of one half-width, of the size of `cross`, which moves the centre line
-// by 1.
+// The columns cross, along and stretched of one half-width, scaled so that `cross` moves the centre line by
+// 1.
 SectionMatrix columns(const SectionShapes& shapes, double centre) {
   const Eigen::Index na = shapes.along.size(), nb = shapes.cross.size();
   SectionMatrix all = SectionMatrix::Zero(na + nb, 3);
@@ -175,7 +176,7 @@ SectionBasis mindlin_shapes(const Surface& surface, double f) {
   return basis;
 }
 
-// One component of displacement and its derivatives at all quadrature points; a row a shape.
+// One component of displacement and its derivatives at all quadrature points, with one row per shape.
 struct Displacement {
   SectionMatrix value, by_eta, by_z;
 };
@@ -191,7 +192,8 @@ Displacement displacement(const SectionMatrix& coefficients, const LineFunctions
                    SectionMatrix(coefficients.cols(), points)};
   for (Eigen::Index i = 0; i < coefficients.cols(); ++i) {
     const Eigen::VectorXd column = coefficients.col(i);
-    const Eigen::Map<const SectionMatrix> c(column.data(), z.rows(), y.rows());  // by y, then z
+    // coefficients ordered by y, then z
+    const Eigen::Map<const SectionMatrix> c(column.data(), z.rows(), y.rows());
     const auto at = [&](const SectionMatrix& of_z, const SectionMatrix& of_y) -> Eigen::RowVectorXd {
       const SectionMatrix grid = of_z.transpose() * c * of_y;
       return Eigen::Map<const Eigen::RowVectorXd>(grid.data(), points);
@@ -216,7 +218,8 @@ SectionBasis elastic_shapes(const Surface& surface, double f) {
   const auto widths = shape_widths(surface, f);
   const double layer = std::min(0.5, 1.2 * surface.thickness_m / widths[1]);
   const double speed2 = *surface.modulus_Pa / (2 * (1 + surface.poisson) * surface.density_kg_m3);
-  std::array<std::vector<SectionMatrix>, 9> parts;  // values, by eta, by z, of each displacement
+  // for each component of displacement its values, and its derivatives by eta and by z
+  std::array<std::vector<SectionMatrix>, 9> parts;
   Eigen::VectorXd weight, eta, centres(0);
   double lame = 0;
   for (std::size_t i = 0; i < widths.size(); ++i) {
@@ -247,7 +250,7 @@ SectionBasis elastic_shapes(const Surface& surface, double f) {
     centres.conservativeResize(centres.size() + deflection.size());
     centres.tail(deflection.size()) = deflection;
     lame = section.lame;
-    if (i > 0) continue;  // the same points for all
+    if (i > 0) continue;  // the points are the same for all half-widths
     weight.resize(y.at.size() * z.at.size());
     eta.resize(weight.size());
     for (Eigen::Index j = 0; j < y.at.size(); ++j) {
@@ -261,7 +264,7 @@ SectionBasis elastic_shapes(const Surface& surface, double f) {
   const auto stretched = [&](const SectionMatrix& slope) -> SectionMatrix {
     return slope * eta.asDiagonal();
   };
-  // xx, yy, zz, yz, xz, xy; over the shear modulus
+  // the strain's components xx, yy, zz, yz, xz, xy; stiffness is divided by the shear modulus
   const Components by_x{u[0], zero, zero, zero, u[2], u[1]};
   const Components stretch{stretched(u[3]), zero, zero, zero, stretched(u[5]), stretched(u[4])};
   const Components by_y{zero, u[4], zero, u[5], zero, u[3]};

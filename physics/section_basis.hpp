@@ -1,5 +1,5 @@
 #pragma once
-// Functions over the cross-section of a thick clamped strip, in which its motion is expanded. Needs Eigen.
+// Functions over the cross-section of a thick clamped strip, with which its motion is described. Needs Eigen.
 #include <Eigen/Dense>
 #include <array>
 
@@ -7,27 +7,30 @@
 
 namespace turnpoint::physics {
 
-// u(x, y, z) = sum f_i(x) U_i(y / W(x), z), all components of the motion at once: deflection and rotations
-// (Mindlin), displacements (elastic). The strain of a term is f' X + f (-W'/W R + Y/W + Z): X from U by d/dx,
-// R the same from eta dU/deta, Y from dU/deta by d/dy, Z from what has no derivative in x or y. Integrals
-// over eta in [0, 1], SI units, for half the strip.
+// The motion is u(x, y, z) = sum f_i(x) U_i(y / W(x), z), with all its components at once: deflection and
+// rotations (Mindlin) or displacements (elastic). The strain of one term is f' X + f (-W'/W R + Y/W + Z): X
+// comes from the derivative d/dx of U, R in the same way from eta dU/deta, Y from d/dy of U, and Z from parts
+// without a derivative in x or y. Integrals are over eta in [0, 1], in SI units, for half of the strip.
 struct SectionBasis {
   using Matrix = Eigen::MatrixXd;
   enum Part { along, stretch, across, local };  // X, R, Y, Z
-  std::array<std::array<Matrix, 4>, 4> stiff;   // part i of function a with part j of function b
+  // integrals of part i of function a times part j of function b
+  std::array<std::array<Matrix, 4>, 4> stiff;
   Matrix mass;
-  Eigen::VectorXd centre;  // deflection of the centre line
+  Eigen::VectorXd centre;  // deflection of the centre line by each function
   Eigen::VectorXd drive;   // the drive edge's motion, without motion along x: the shape of
                            // its own cut-off
   Eigen::Index count() const { return mass.rows(); }
 };
 
-// Polynomials of eta for deflection and both rotations of Mindlin's plate: its two-dimensional field.
+// Makes polynomials of eta for deflection and both rotations of Mindlin's plate, which describe its
+// two-dimensional field.
 SectionBasis mindlin_polynomials(const Surface& surface, int each);
 
-// The cut-off's shapes at three half-widths: for each the motion in the cross-section, and two for the motion
-// along x that goes with it. It holds both of the strip's branches, propagating and evanescent, and is exact
-// at the turning point to first order in k_x^2. Source: Kantorovich's method.
+// Makes functions from the cut-off's shapes at three half-widths: for each the motion in the cross-section,
+// and two functions for the motion along x that belongs to it. They describe both of the strip's branches,
+// propagating and evanescent, and are exact at the turning point to first order in k_x^2. Source:
+// Kantorovich's method.
 SectionBasis section_shapes(const Surface& surface, double frequency_Hz);
 
 }  // namespace turnpoint::physics

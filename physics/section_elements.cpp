@@ -13,7 +13,7 @@ namespace {
 using Eigen::MatrixXd;
 constexpr Eigen::Index degree_across = 5, degree_through = 11;
 
-// Element ends: finer in a layer along the clamp.
+// The ends of the elements in y, which are finer in a layer along the clamp.
 std::vector<double> element_ends(double layer) {
   std::vector<double> ends{0, 0.5 * (1 - layer), 1 - layer};
   for (const double part : {0.4, 0.15, 0.05, 0.015}) ends.push_back(1 - part * layer);
@@ -21,7 +21,7 @@ std::vector<double> element_ends(double layer) {
   return ends;
 }
 
-// Continuous elements on [0, 1] that vanish at 1; the odd ones at 0 too.
+// Continuous elements on [0, 1] that vanish at 1; the odd ones also vanish at 0.
 LineFunctions across_functions(double layer) {
   const std::vector<double> ends = element_ends(layer);
   const ElementBasis basis{degree_across, 1};
@@ -54,7 +54,7 @@ LineFunctions across_functions(double layer) {
   return f;
 }
 
-// Legendre polynomials of 2z/h on [0, h/2].
+// The Legendre polynomials of 2z/h on [0, h/2].
 LineFunctions through_functions(double thickness) {
   constexpr Eigen::Index n = (degree_through + 1) / 2;
   const Quadrature rule = gauss_legendre(degree_through + 2);
@@ -64,7 +64,7 @@ LineFunctions through_functions(double thickness) {
   f.at.resize(points);
   f.weight.resize(points);
   f.even_start.resize(n);
-  for (Eigen::Index q = 0; q <= points; ++q) {  // the last is z = 0
+  for (Eigen::Index q = 0; q <= points; ++q) {  // the last point is z = 0
     const auto i = static_cast<std::size_t>(q);
     const double t = q < points ? rule.x[i] : 0;
     if (q < points) {
@@ -100,7 +100,7 @@ MatrixXd tensor(const MatrixXd& across, const MatrixXd& through) {
 
 }  // namespace
 
-// The layer along the clamp is as deep as the plate is thick.
+// The layer of finer elements along the clamp is as deep as the plate is thick.
 SectionElements::SectionElements(double thickness, double nu)
     : SectionElements(thickness, nu, std::min(0.5, 1.2 * thickness)) {}
 
@@ -131,15 +131,15 @@ SectionElements::SectionElements(double thickness, double nu, double layer)
                                   tensor(y(c.odd, c.odd), z(t.odd_slope, t.odd_slope));
   p.plane.bottomRightCorner(nc, nc) = (lame + 2) * tensor(even_y, z(t.even_slope, t.even_slope)) +
                                       tensor(y(c.even_slope, c.even_slope), even_z);
-  // lame (b_y, c_z) + (b_z, c_y)
+  // integrals of lame (b_y, c_z) + (b_z, c_y)
   p.plane.topRightCorner(nb, nc) = lame * tensor(y(c.odd_slope, c.even), z(t.odd, t.even_slope)) +
                                    tensor(y(c.odd, c.even_slope), z(t.odd_slope, t.even));
   p.plane.bottomLeftCorner(nc, nb) = p.plane.topRightCorner(nb, nc).transpose();
-  // lame (A, b_y + c_z) - (A_y, b) - (A_z, c)
+  // integrals of lame (A, b_y + c_z) - (A_y, b) - (A_z, c)
   p.coupling.resize(p.along_mass.rows(), nb + nc);
   p.coupling.leftCols(nb) = tensor(lame * y(c.even, c.odd_slope) - y(c.even_slope, c.odd), odd_z);
   p.coupling.rightCols(nc) = tensor(even_y, lame * z(t.odd, t.even_slope) - z(t.odd_slope, t.even));
-  // (A_y, eta b_eta) + (A_z, eta c_eta)
+  // integrals of (A_y, eta b_eta) + (A_z, eta c_eta)
   p.stretching.resize(p.along_mass.rows(), nb + nc);
   const auto stretched = [&c](const MatrixXd& slope) -> MatrixXd { return slope * c.at.asDiagonal(); };
   p.stretching.leftCols(nb) = tensor(y(c.even_slope, stretched(c.odd_slope)), odd_z);
@@ -147,7 +147,8 @@ SectionElements::SectionElements(double thickness, double nu, double layer)
 }
 
 Eigen::VectorXd SectionElements::thickening(const Eigen::VectorXd& along) const {
-  // c alone, without its mean over the thickness, which is deflection: the functions of z but the first.
+  // Use only c, without its mean over the thickness, which is the deflection: leave out the first function of
+  // z.
   const Eigen::Index nb = across.odd.rows() * through.odd.rows(), nz = through.even.rows();
   const MatrixXd load =
       lame * tensor(across.even * across.weight.asDiagonal() * across.even.transpose(),

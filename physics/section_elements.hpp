@@ -4,15 +4,17 @@
 
 namespace turnpoint::physics {
 
-// The waves exp(-i k x) of a uniform strip, k^2 = L, moving by i k A along x and by B in the cross-section:
+// The waves exp(-i k x) of a uniform strip with k^2 = L. Their motion is i k A along x and B in the
+// cross-section:
 //   (shear + L along - omega^2 along_mass) A + coupling B = 0
 //   (plane + L cross - omega^2 mass) B + L coupling^T A = 0
-// `stretching` couples A with the motion eta dB/deta, which a taper adds to d/dx of B (y = eta W(x)).
+// `stretching` couples A with the motion eta dB/deta, which a taper adds to the derivative d/dx of B (y = eta
+// W(x)).
 struct SectionPencil {
   Eigen::MatrixXd shear, along, along_mass, coupling, plane, cross, mass, stretching;
 };
 
-// The lowest cut-off, L = 0, and its B, by inverse iteration.
+// The lowest cut-off (L = 0) and its motion B, found by inverse iteration.
 struct SectionCutOff {
   double omega;
   Eigen::VectorXd shape;
@@ -27,11 +29,11 @@ struct SectionShapes {
 };
 SectionShapes section_shapes_of(const SectionPencil& pencil);
 
-// Functions of one coordinate at quadrature points: a row a function, a column a point.
+// Functions of one coordinate at quadrature points, with one row per function and one column per point.
 struct LineFunctions {
   Eigen::MatrixXd even, even_slope, odd, odd_slope;
   Eigen::VectorXd at, weight;
-  Eigen::VectorXd even_start;  // the even functions at 0
+  Eigen::VectorXd even_start;  // values of the even functions at 0
 };
 
 // Unit half-width, density and shear modulus; displacements (i k A, b, c), B = (b, c). Functions: products of
@@ -39,17 +41,17 @@ struct LineFunctions {
 // is singular. A and b are odd in z, c even; b is odd in y, A and c even; all vanish at y = 1. Ordered by y,
 // then z.
 struct SectionElements {
-  // `layer`: depth of the finer elements; sections with the same layer have the same functions of y.
+  // `layer` is the depth of the finer elements; sections with the same layer have the same functions of y.
   SectionElements(double thickness_per_half_width, double poisson, double layer);
   SectionElements(double thickness_per_half_width, double poisson);
 
-  // How the section thickens, as B, where it is stretched by A: without it bending along x would be too
-  // stiff.
+  // Returns, as a motion B, how the section thickens if it is stretched by A. Without this thickening,
+  // bending along x would be too stiff.
   Eigen::VectorXd thickening(const Eigen::VectorXd& along) const;
 
   LineFunctions across, through;
   SectionPencil pencil;
-  double lame;  // lambda / G
+  double lame;  // Lame's constant divided by the shear modulus, lambda / G
 };
 
 }  // namespace turnpoint::physics
