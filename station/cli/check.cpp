@@ -24,9 +24,6 @@ struct Options {
   int sessions = 21;
 };
 
-// Report a cue if its accuracy exceeds chance by this margin (about what 20 trials can detect).
-constexpr double noticeable = 0.1;
-
 Json problems_json(const std::vector<text::Problem>& problems) {
   Json list = Json::array();
   for (const auto& problem : problems)
@@ -94,7 +91,7 @@ Json to_json(const simulation::Check& check) {
                     {"accuracy", json_number(cue.accuracy)},
                     {"chance", json_number(cue.chance)},
                     {"accuracy_error", json_number(cue.error)},
-                    {"above_chance", cue.accuracy > cue.chance + noticeable}});
+                    {"above_chance", cue.above_chance()}});
   const auto extremes = extremes_of(check.survey);
   const bool planned = !check.survey.sights.empty();
   return {
@@ -138,7 +135,7 @@ void print_cues(std::ostream& out, const simulation::CueGuard& cues) {
   double least = 1, most = 0;
   for (const auto& cue : cues.reports) {
     least = std::min(least, cue.chance), most = std::max(most, cue.chance);
-    if (cue.accuracy <= cue.chance + noticeable) continue;
+    if (!cue.above_chance()) continue;
     named += fmt::format("\n  {}: {} % right{} (chance {} %)", cue.cue, percent(cue.accuracy),
                          cue.error > 0 ? fmt::format(" +- {} %", number(100 * cue.error, 2)) : "",
                          percent(cue.chance));

@@ -52,9 +52,6 @@ Json to_json(const simulation::Recovery& recovery) {
           {"interval_width", json_number(recovery.interval_width)}};
 }
 
-// Report a cue if its accuracy exceeds chance by this margin (about what 20 trials can detect).
-constexpr double noticeable = 0.1;
-
 Json to_json(const std::vector<simulation::CueReport>& cues) {
   Json list = Json::array();
   for (const auto& cue : cues)
@@ -62,7 +59,7 @@ Json to_json(const std::vector<simulation::CueReport>& cues) {
                     {"accuracy", json_number(cue.accuracy)},
                     {"chance", json_number(cue.chance)},
                     {"accuracy_error", json_number(cue.error)},
-                    {"above_chance", cue.accuracy > cue.chance + noticeable}});
+                    {"above_chance", cue.above_chance()}});
   return list;
 }
 
@@ -116,7 +113,7 @@ void print(std::ostream& out, const std::vector<simulation::CueReport>& cues) {
   fmt::print(out, "An observer with one cue alone and the best rule for it:\n");
   for (const auto& cue : cues)
     fmt::print(out, "  {:<30} {:>5} % right (chance {} %){}\n", cue.cue, number(100 * cue.accuracy, 3),
-               number(100 * cue.chance, 3), cue.accuracy > cue.chance + noticeable ? ", above chance" : "");
+               number(100 * cue.chance, 3), cue.above_chance() ? ", above chance" : "");
 }
 
 /// A progress line that rewrites itself; only on a terminal.

@@ -21,10 +21,7 @@ namespace {
 
 using text::number;
 
-/// Report a cue if its accuracy exceeds chance by this margin (about what 20 trials can detect).
-constexpr double kNoticeable = 0.1;
-
-std::string range(const simulation::Spread& spread, double unit) {
+/ std::string range(const simulation::Spread& spread, double unit) {
   const auto shown = [&](double value) { return number(std::round(value / unit * 10) / 10, 4); };
   const auto low = shown(spread.low), median = shown(spread.median), high = shown(spread.high);
   return low == high ? median : median + " (" + low + " to " + high + ")";
@@ -122,7 +119,7 @@ CheckWords words_of(const simulation::Check& check) {
             ", " + range(block.trials, 1) + " trials");
   add_tones(check, words);
   for (const auto& cue : check.cues.reports) {
-    const bool leaks = cue.accuracy > cue.chance + kNoticeable;
+    const bool leaks = cue.above_chance();
     words.cues.push_back({cue.cue,
                           fmt::format("{} % right by it alone (chance {} %)", std::lround(100 * cue.accuracy),
                                       std::lround(100 * cue.chance)),

@@ -26,6 +26,9 @@ struct CueReport {
   /// Set only if levels depend on right answers. Then `accuracy`, `chance` and `error` are either these or
   /// those with every level equally often, whichever has the larger gain over chance.
   std::optional<Reached> whole_sessions = {};
+
+  /// The cue helps: its accuracy exceeds chance by more than about 20 trials can detect.
+  bool above_chance() const { return accuracy > chance + 0.1; }
 };
 
 struct CueGuard {
