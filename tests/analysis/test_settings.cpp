@@ -37,7 +37,7 @@ TEST_CASE("Settings have their mean, scatter and intervals by Student and chi sq
   CHECK_FALSE(all[0].start_slope);  // all settings started from the same slider position
 }
 
-TEST_CASE("Settings that follow where the slider started are said to", "[analysis]") {
+TEST_CASE("Settings that depend on the slider's start position are reported as such", "[analysis]") {
   std::vector<analysis::TrialRecord> pulled, free;
   for (int i = 0; i < 24; ++i) {
     const double start = i % 2 ? 20 : -20, scatter = 3 * std::sin(1.7 * i);

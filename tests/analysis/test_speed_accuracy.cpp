@@ -209,7 +209,7 @@ TEST_CASE("The conditional accuracy function has bins of equal counts", "[analys
   CHECK_THROWS_AS(conditional_accuracy(times, correct, 9), std::invalid_argument);
 }
 
-TEST_CASE("Response times are excluded below a limit and beyond so many MAD", "[analysis]") {
+TEST_CASE("Response times are excluded below a limit and beyond a number of MAD", "[analysis]") {
   const std::vector<double> times{0.02, 0.50, 0.52, 0.55, 0.58, 0.60, 5.0};
   const auto kept = keep_times(times, {0.15, 3.5});
   CHECK(kept == std::vector<bool>{false, true, true, true, true, true, false});

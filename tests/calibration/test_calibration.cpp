@@ -81,7 +81,7 @@ TEST_CASE("a calibration expires, belongs to one rig file, and says so", "[calib
   CHECK_THROWS_AS(days_left(calibration, "2026-02-30"), terms::UsageError);
 }
 
-TEST_CASE("every problem of every file is told at once, with its place", "[calibration]") {
+TEST_CASE("all problems of all files are reported together, each with its place", "[calibration]") {
   Measurements files = measurements();
   files.friction_csv = written("bad_friction.csv", "displacement_um,friction\n0,1\n");
   files.sound_csv = written("bad_sound.csv", "frequency_Hz,level_dB\n20000,loud\n");

@@ -78,7 +78,7 @@ TEST_CASE("a look puts the boundary where the factors say, and the displacement 
   CHECK_FALSE(look.cues.empty());
 }
 
-TEST_CASE("what a rig cannot present is the look's problem, in words", "[preview]") {
+TEST_CASE("what a rig cannot present is reported as a problem of the preview, in words", "[preview]") {
   auto preview = preview_of("demo");
   const auto look = preview.look("edge", factors(preview, {"mark_mm=290"}));
   CHECK_FALSE(look.problem.empty());

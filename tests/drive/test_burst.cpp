@@ -59,7 +59,7 @@ TEST_CASE("tones whose amplitudes exceed full scale pass when their sum of sampl
   CHECK_THROWS_AS(prepare(burst, Format{}), BurstRefused);
 }
 
-TEST_CASE("changes must come in order, inside the burst, and leave tones on their channels",
+TEST_CASE("changes must be in ascending order, inside the burst, and leave tones on their channels",
           "[drive][burst]") {
   Burst burst = one_tone(20000, 0.5);
   burst.change_count = 1;

@@ -32,7 +32,7 @@ double error_frames(DeviceStream& stream) {
 
 }  // namespace
 
-TEST_CASE("before the device has told its position nothing is known of its time", "[drive][clock]") {
+TEST_CASE("before the device has reported its position, its time is unknown", "[drive][clock]") {
   DeviceStream stream(on_fake_card());
   CHECK(stream.clock().pairs == 0);
   CHECK_FALSE(stream.time_of(0));
@@ -58,7 +58,7 @@ TEST_CASE("a restart is never forgotten, however long nobody listened", "[drive]
   CHECK(std::abs(error_frames(stream)) <= 1);
 }
 
-TEST_CASE("while the device is away nothing is known, and the next one's rate is measured for itself",
+TEST_CASE("while the device is missing its time is unknown, and the rate is measured afresh after its return",
           "[drive][clock]") {
   DeviceStream stream(on_fake_card());
   auto& card = fake_pcm();
@@ -92,7 +92,7 @@ TEST_CASE("while the device is away nothing is known, and the next one's rate is
   CHECK(stream.measured_rate()->deviation_ppm > RateCheck::tolerance_ppm);
 }
 
-TEST_CASE("an underrun is told with its first lost frame and the burst that it cost frames",
+TEST_CASE("an underrun is reported with its first lost frame and the burst that lost frames",
           "[drive][gaps]") {
   DeviceStream stream(on_fake_card());
   auto& card = fake_pcm();

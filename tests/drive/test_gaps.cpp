@@ -287,12 +287,13 @@ TEST_CASE(
   CHECK(tally.void_in_doubt < 5);
 }
 
-TEST_CASE("a stall in the middle of a write is found out after it", "[drive][gaps]") {
+TEST_CASE("a stall in the middle of a write is detected after it", "[drive][gaps]") {
   const auto tally = judge(1000, 100'000, {Mishap::stall_in_write, Mishap::stall});
   CHECK(tally.broken > 300);
 }
 
-TEST_CASE("a device that was started anew, or was away, has heard nothing to its end", "[drive][gaps]") {
+TEST_CASE("after a restart or an absence of the device, no burst counts as heard to its end",
+          "[drive][gaps]") {
   const auto tally = judge(1500, 200'000, {Mishap::xrun, Mishap::suspend, Mishap::stall});
   CHECK(tally.broken > 400);
   CHECK(tally.late > 20);

@@ -18,7 +18,7 @@ TEST_CASE("an underrun restarts the device, an interruption does not", "[drive][
   CHECK_FALSE(recovery.lost());
 }
 
-TEST_CASE("a suspended device is resumed, waited for, and started anew whether it could or not",
+TEST_CASE("a suspended device is resumed, waited for, and restarted whether it could resume or not",
           "[drive][recovery]") {
   Recovery recovery;
   CHECK(recovery.transferred({-ESTRPIPE}) == Action::resume);
@@ -73,7 +73,7 @@ TEST_CASE("more than three underruns within a minute are too many", "[drive][rec
   CHECK(limit.exceeded_by(62 * second));
 }
 
-TEST_CASE("a device that really runs at another rate is found out within seconds", "[drive][rate]") {
+TEST_CASE("a device that really runs at another rate is detected within seconds", "[drive][rate]") {
   // The device updates its position only every `tick_s`, so a reported position can be that old.
   const auto measured = [](double real_rate_Hz, double tick_s, double seconds) {
     RateCheck check(192000);

@@ -67,7 +67,7 @@ TEST_CASE("eight tones in double have no spurious product above -200 dB", "[driv
   CHECK(spurious_dB(rendered(burst), burst) < -200);
 }
 
-TEST_CASE("the measurement of spurious products sees one at -160 dB", "[drive][synth]") {
+TEST_CASE("the measurement of spurious products detects one at -160 dB", "[drive][synth]") {
   const Burst burst = eight_tones();
   auto samples = rendered(burst);
   for (std::size_t n = 0; n < samples.size(); ++n)
@@ -206,7 +206,7 @@ TEST_CASE("a stop ramps down and frames that were lost come back ramped", "[driv
   }
 }
 
-TEST_CASE("stops that follow one another go on from the gain that is reached, each of them sooner at its end",
+TEST_CASE("successive stops continue from the current gain, and each can only bring the end forward",
           "[drive][synth]") {
   Synth synth({rate, 1, 24});
   // the magnitude of every sample is 1/2

@@ -94,7 +94,7 @@ TEST_CASE("an exact stretch of the continuous time is allowed, a longer one neve
   CHECK_THROWS_AS(account.earliest_ns(0, {{0.8, 30.9}}), limits::LimitExceeded);
 }
 
-TEST_CASE("sleep and a clock that was set are told apart, and steering is neither", "[session][clock]") {
+TEST_CASE("sleep and a clock that was set are distinguished, and steering is neither", "[session][clock]") {
   system::ClockWatch watch({0, 0, 100 * kSecond_ns});
   auto news = watch.look({kSecond_ns, kSecond_ns, 101 * kSecond_ns + 400'000});
   CHECK_FALSE(news.suspended_s.has_value());

@@ -62,7 +62,7 @@ TEST_CASE("the guard thread drops the enable line on a fault edge and latches it
   CHECK(bench.amplifier->state() == AmplifierState::disarmed);
 }
 
-TEST_CASE("a stop that was pressed before the start is seen, and silence of the audio thread trips",
+TEST_CASE("a stop pressed before the start is noticed, and silence of the audio thread trips",
           "[lines][amplifier][threads]") {
   const auto lines = std::make_shared<SimulatedLines>(SharedLines::count);
   lines->set(SharedLines::stop, true, 0);

@@ -100,7 +100,7 @@ TEST_CASE("interference without end is glitches, and a press after it has its ow
   CHECK(told.back().time_ns == 200'000 * us);
 }
 
-TEST_CASE("a press within the refractory time is told after it, with the kernel's stamp",
+TEST_CASE("a press within the refractory time is reported after that time, with the kernel's stamp",
           "[lines][buttons]") {
   EdgeFilter filter({}, true);
   const auto told = changes(filter, {{1'000'000, false}, {1'030'000, true}}, 1'049'999);

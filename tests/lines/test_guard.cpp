@@ -103,7 +103,7 @@ TEST_CASE("the heartbeat toggles only while both audio and session are alive", "
   }
 }
 
-TEST_CASE("a page that has given a sign of life has to go on doing so", "[lines][guard]") {
+TEST_CASE("a page that has reported once must keep reporting", "[lines][guard]") {
   Guard guard = enabled_guard();
   for (std::int64_t t = 0; t < 5000; t += 10) {
     show_life(guard, t * ms);

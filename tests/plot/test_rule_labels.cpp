@@ -175,7 +175,7 @@ TEST_CASE("Numbers beside an axis stand a line and a half apart, however low the
   }
 }
 
-TEST_CASE("The check of labels sees one that stands on a marker, on a curve, on words", "[plot][labels]") {
+TEST_CASE("The check of labels detects a label on a marker, on a curve, on words", "[plot][labels]") {
   Svg svg;
   svg.begin(200, 100, "Control");
   svg.text({50, 50}, "resonance", kLabelSize, Anchor::start, "#666666", 400, 0);

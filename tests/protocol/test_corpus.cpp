@@ -77,7 +77,7 @@ TEST_CASE("each file of the corpus of mistakes is refused at the line of its mis
   CHECK(files >= 100);
 }
 
-TEST_CASE("the corpus check notices a file whose mistake was mended, and a mistake on another line",
+TEST_CASE("the corpus check notices a file whose mistake was corrected, and a mistake on another line",
           "[protocol]") {
   auto source = system::read_file((folder / "scene-rove-negative.toml").string());
   REQUIRE(misreported(source).empty());

@@ -77,7 +77,7 @@ TEST_CASE("a numeric factor gives one curve a level, two factors one a combinati
   CHECK(report_of(both)["fits"].size() == 4);
 }
 
-TEST_CASE("settings are told apart by the levels of a factor", "[report]") {
+TEST_CASE("settings are grouped by the levels of a factor", "[report]") {
   const auto source = shipped("boundary-adjustment");
   REQUIRE(source.find("mark_mm") != std::string::npos);
   const auto settings = report_of(data_of(source + "\n[analysis]\nby = \"mark_mm\"\n"))["settings"];

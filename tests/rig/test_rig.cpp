@@ -58,7 +58,7 @@ TEST_CASE("the simulated rig loads in SI units", "[rig]") {
   CHECK(rig.sha256 == rig::parse(source(), "elsewhere").sha256);
 }
 
-TEST_CASE("every default that stood in for a key is named with its value", "[rig]") {
+TEST_CASE("every default that was used for a missing key is named with its value", "[rig]") {
   const auto used = rig::load(simulated).defaults_used;
   const auto has = [&](const char* line) { return std::find(used.begin(), used.end(), line) != used.end(); };
   CHECK(has("reproduction = false"));

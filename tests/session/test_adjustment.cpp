@@ -223,7 +223,7 @@ struct Operator : session::Monitor {
 
 }  // namespace
 
-TEST_CASE("while the slider moves, the operator sees the tone that is played", "[session][live]") {
+TEST_CASE("while the slider moves, the operator's page shows the tone that is played", "[session][live]") {
   const TemporaryFolder folder;
   auto setup = live_room::live_setup(folder / "a.sqlite", "touch");
   setup.protocol = protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/ui/adjust.toml");

@@ -106,7 +106,7 @@ void until_low(const Room& room) {
 
 }  // namespace
 
-TEST_CASE("the amplifier's own fault has its page", "[session][live][fault]") {
+TEST_CASE("the amplifier's own fault causes a fault page", "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] { mishap.room.lines->set(SharedLines::fault, true, system::monotonic_ns()); };
   mishap.operator_repairs = [&] {
@@ -117,14 +117,14 @@ TEST_CASE("the amplifier's own fault has its page", "[session][live][fault]") {
   CHECK(page.detail.find("amplifier off after") == 0);
 }
 
-TEST_CASE("the stop has its page", "[session][live][fault]") {
+TEST_CASE("a pressed stop causes a fault page", "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] { mishap.room.lines->set(SharedLines::stop, true, system::monotonic_ns()); };
   mishap.operator_repairs = [&] { mishap.room.lines->set(SharedLines::stop, false, system::monotonic_ns()); };
   CHECK(mishap.runs().fault == FaultKind::stop_pressed);
 }
 
-TEST_CASE("an enable line that does not follow has its page", "[session][live][fault]") {
+TEST_CASE("an enable line that does not follow causes a fault page", "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] { mishap.enable_broken = true; };
   mishap.operator_repairs = [&] { mishap.enable_broken = false; };
@@ -145,7 +145,7 @@ TEST_CASE("lines that are gone have their page", "[session][live][fault]") {
   CHECK(page.detail == "simulated gpio chip: No such device");
 }
 
-TEST_CASE("a silent audio thread has its page", "[session][live][fault][threads]") {
+TEST_CASE("a silent audio thread causes a fault page", "[session][live][fault][threads]") {
   Mishap mishap;
   auto devices = mishap.devices();
   devices.open_stream = [](drive::StreamConfig config) {
@@ -164,13 +164,13 @@ TEST_CASE("a silent audio thread has its page", "[session][live][fault][threads]
   CHECK(mishap.runs(std::move(devices)).fault == FaultKind::audio_silent);
 }
 
-TEST_CASE("a session that hangs has its page", "[session][live][fault][threads]") {
+TEST_CASE("a session that hangs causes a fault page", "[session][live][fault][threads]") {
   Mishap mishap;
   mishap.strikes = [&] { until_low(mishap.room); };  // blocks the session's own thread
   CHECK(mishap.runs().fault == FaultKind::session_silent);
 }
 
-TEST_CASE("a participant's page that hangs has its page", "[session][live][fault]") {
+TEST_CASE("a participant's page that hangs causes a fault page", "[session][live][fault]") {
   Mishap mishap;
   auto& inputs = mishap.room.inputs;
   inputs.page_alive(system::monotonic_ns() + 3'600'000'000'000);
@@ -179,7 +179,7 @@ TEST_CASE("a participant's page that hangs has its page", "[session][live][fault
   CHECK(mishap.runs().fault == FaultKind::page_silent);
 }
 
-TEST_CASE("a suspended machine has its page", "[session][live][fault]") {
+TEST_CASE("a suspended machine causes a fault page", "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] { mishap.slept_ns = 90'000'000'000; };
   const auto page = mishap.runs();
@@ -187,7 +187,7 @@ TEST_CASE("a suspended machine has its page", "[session][live][fault]") {
   CHECK(page.detail == "the machine slept for 90.0 s");
 }
 
-TEST_CASE("a sound device that is lost has its page", "[session][live][fault]") {
+TEST_CASE("the loss of the sound device causes a fault page", "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] { mishap.misfortunes.happen({drive::EventKind::device_lost, 0, 0, 0, -ENODEV}); };
   const auto page = mishap.runs();
@@ -195,7 +195,7 @@ TEST_CASE("a sound device that is lost has its page", "[session][live][fault]") 
   CHECK(page.detail == "No such device");
 }
 
-TEST_CASE("a wrong rate has its page, and nothing can be armed until the device was opened anew",
+TEST_CASE("a wrong rate causes a fault page, and arming is refused until the device was reopened",
           "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] { mishap.misfortunes.happen({drive::EventKind::rate_wrong, 0, 0, 96'000'000, 0}); };
@@ -209,7 +209,7 @@ TEST_CASE("a wrong rate has its page, and nothing can be armed until the device 
   CHECK(mishap.faults[1].detail.find("refused: sound device running at a wrong rate") == 0);
 }
 
-TEST_CASE("clipping has its page", "[session][live][fault]") {
+TEST_CASE("clipping causes a fault page", "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] { mishap.misfortunes.clipped = 384; };
   const auto page = mishap.runs();
@@ -217,7 +217,7 @@ TEST_CASE("clipping has its page", "[session][live][fault]") {
   CHECK(page.detail == "384 samples clipped");
 }
 
-TEST_CASE("an amplifier that nobody has armed has its page", "[session][live][fault]") {
+TEST_CASE("an amplifier that nobody has armed causes a fault page", "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] { mishap.room.push(InputKind::disarm); };
   mishap.room.reacts = [&](const auto& page) { mishap.react(page); };
@@ -228,7 +228,7 @@ TEST_CASE("an amplifier that nobody has armed has its page", "[session][live][fa
   CHECK(mishap.faults.front().fault == FaultKind::disarmed);
 }
 
-TEST_CASE("a stimulus that came too late has its page", "[session][live][fault]") {
+TEST_CASE("a stimulus that came too late causes a fault page", "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] { mishap.misfortunes.happen({drive::EventKind::burst_missed, 1, 0, 0, 0}); };
   mishap.room.reacts = [&](const auto& page) { mishap.react(page); };
@@ -238,7 +238,7 @@ TEST_CASE("a stimulus that came too late has its page", "[session][live][fault]"
   CHECK(mishap.faults.front().fault == FaultKind::stimulus_missed);
 }
 
-TEST_CASE("a limit of the rig has its page; the session ends there, with the reason",
+TEST_CASE("a limit of the rig is shown on a page; the session ends there, with the reason",
           "[session][live][fault]") {
   Mishap mishap;
   mishap.setup.rig.limits.session_minutes = 2.5 / 60;

@@ -143,7 +143,8 @@ TEST_CASE(
   CHECK_FALSE(room.lines->level(SharedLines::enable));
 }
 
-TEST_CASE("faults on a fault's page are mended with it, not one after another", "[session][live]") {
+TEST_CASE("faults that occur on a fault's page are cleared together with it, not one after another",
+          "[session][live]") {
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;

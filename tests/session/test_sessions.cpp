@@ -257,7 +257,7 @@ TEST_CASE("bad requests are refused all at once, and nothing is written", "[sess
   CHECK_FALSE(fs::exists(folder / "a.sqlite"));
 }
 
-TEST_CASE("a monitor is told of every trial before and after, and changes none", "[session]") {
+TEST_CASE("a monitor is notified before and after every trial, and changes none", "[session]") {
   const Folder folder;
   Watch watch;
   session::Inputs inputs;

@@ -117,7 +117,7 @@ std::string session_of_unlike_values(const std::string& db) {
 
 }  // namespace
 
-TEST_CASE("each value of the four tables stands in its column", "[store]") {
+TEST_CASE("each value of the four tables is in its column", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = session_of_unlike_values(db);

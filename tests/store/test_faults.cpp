@@ -123,7 +123,7 @@ TEST_CASE("a damaged database is left as it is, by every command", "[store]") {
   CHECK_FALSE(std::filesystem::exists(folder / "out"));
 }
 
-TEST_CASE("a second station process is told who has the database, and the first goes on", "[store]") {
+TEST_CASE("a second station process learns who has the database, and the first continues", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   auto log = SessionLog::begin(db, sample::start(), sample::segment());

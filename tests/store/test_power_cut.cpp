@@ -76,7 +76,7 @@ TEST_CASE("on a disk that ignores syncs trials are lost or the file is damaged: 
   CHECK(toll.lost + toll.damaged > 0);
 }
 
-TEST_CASE("a session is gone on with after a power cut", "[store]") {
+TEST_CASE("a session is continued after a power cut", "[store]") {
   TemporaryFolder folder;
   std::vector<Cut> cuts;
   {

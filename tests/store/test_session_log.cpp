@@ -4,7 +4,7 @@
 
 using namespace turnpoint::store;
 
-TEST_CASE("what a session log was told is what stands in the database", "[store]") {
+TEST_CASE("the database contains exactly what the session log was given", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 6);
@@ -37,7 +37,7 @@ TEST_CASE("what a session log was told is what stands in the database", "[store]
   CHECK(stored.events[1].kind == "answer");
 }
 
-TEST_CASE("every call is durable when it returns: another connection sees it at once", "[store]") {
+TEST_CASE("every call is durable when it returns: another connection reads it at once", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   auto log = SessionLog::begin(db, sample::start(), sample::segment());

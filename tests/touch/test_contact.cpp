@@ -3,7 +3,7 @@
 
 using namespace turnpoint::touch;
 
-TEST_CASE("a finger that comes, moves and goes is told once a report, with the kernel's time",
+TEST_CASE("touch, movement and lift of a finger are reported once per kernel report, with the kernel's time",
           "[touch][contact]") {
   ContactReader reader({100, 1100});
   CHECK_FALSE(reader.take(1, false, 350));

@@ -31,7 +31,8 @@ TEST_CASE("a device is read report by report, with the kernel's stamps", "[touch
   CHECK(device.next() == News::none);
 }
 
-TEST_CASE("a lift that the kernel dropped is seen once it says that it dropped something", "[touch][evdev]") {
+TEST_CASE("a lift that the kernel dropped is noticed once the kernel reports dropped events",
+          "[touch][evdev]") {
   FakeEvdev fake(0);
   EvdevDevice device(fake.descriptor(), "fake");
   ContactReader contact(device.range(ABS_X));

@@ -112,7 +112,7 @@ TEST_CASE("a touch panel that is not there is an error that names it", "[touch]"
   CHECK_THROWS_AS(TouchReader("/dev/input/event999", [](TouchPanelState) {}), std::system_error);
 }
 
-TEST_CASE("a touch panel that is unplugged is told once, and is read again once it is back",
+TEST_CASE("an unplugged touch panel is reported once, and is read again once it is back",
           "[touch][threads]") {
   const TemporaryFolder folder;
   const auto path = folder / "event-panel";

@@ -193,7 +193,7 @@ TEST_CASE("a change under the finger counts from the change, and an answer befor
   }
 }
 
-TEST_CASE("deciding and reaching are told apart where the finger's contact is known", "[trial]") {
+TEST_CASE("deciding and reaching are separated if the finger's contact is known", "[trial]") {
   auto machine = exploring();
   machine.handle({600 * ms, EventKind::contact, 1});
   machine.handle({1500 * ms, EventKind::contact, 0});
@@ -231,7 +231,7 @@ TEST_CASE("lost frames of silence are counted and void nothing", "[trial]") {
   CHECK(machine.phase() == Phase::stimulus);
 }
 
-TEST_CASE("lost frames that are told after the stimulus, or after the answer, void the trial all the same",
+TEST_CASE("lost frames that are reported after the stimulus, or after the answer, still void the trial",
           "[trial]") {
   SECTION("in the pause that follows") {
     Machine machine(two_intervals());

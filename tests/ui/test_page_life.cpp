@@ -72,7 +72,7 @@ TEST_CASE("a page whose thread hangs switches the amplifier off, and then says s
   CHECK(summary->voided == 1);
 }
 
-TEST_CASE("a touch panel that is unplugged makes the trial void and has its page, and the trial comes again",
+TEST_CASE("an unplugged touch panel makes the trial void and causes a fault page, and the trial is repeated",
           "[page]") {
   const TemporaryFolder devices;
   const auto path = devices / "event-panel";

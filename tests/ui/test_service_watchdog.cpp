@@ -58,8 +58,9 @@ struct Loop {
 
 }  // namespace
 
-TEST_CASE("a service manager is told that the station is ready, and then that it lives, again and again",
-          "[watchdog]") {
+TEST_CASE(
+    "a service manager gets the message that the station is ready, and then regular signs that it is alive",
+    "[watchdog]") {
   const Loop loop;
   const Manager manager;
   qputenv("WATCHDOG_USEC", "20000");

@@ -67,7 +67,7 @@ TEST_CASE("a start that hangs before its event loop ends at once when it is told
   CHECK(child.outcome() == -signal);
 }
 
-TEST_CASE("the station ends promptly whenever in its start it is told to", "[stop]") {
+TEST_CASE("the station ends promptly whenever it gets a signal during its start", "[stop]") {
   const TemporaryFolder folder;
   Child child(station(folder), without_screen(folder));
   const int delay_ms = GENERATE(0, 20, 50, 100, 200, 500);
@@ -92,8 +92,7 @@ TEST_CASE("with its first page on the screen the station ends in order when it i
   CHECK(child.outcome() == 0);
 }
 
-TEST_CASE("a session that is told to stop amid a stimulus is closed in its log, to be gone on with",
-          "[stop]") {
+TEST_CASE("a session stopped during a stimulus is closed in its log, and can be resumed", "[stop]") {
   const TemporaryFolder folder;
   Child child({STOPPED_SESSION, kSource + "/tests/ui/short.toml", kSource + "/deploy/rigs/simulated.toml",
                folder / "db"},

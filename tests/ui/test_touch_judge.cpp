@@ -39,7 +39,7 @@ TEST_CASE("a touch that began before the answers opened never answers", "[touch]
   }
 }
 
-TEST_CASE("the second tap of a double tap is ignored until the answers open anew", "[touch]") {
+TEST_CASE("the second tap of a double tap is ignored until answers are accepted again", "[touch]") {
   TouchJudge judge;
   judge.open();
   judge.down(touch(500 * ms, 0));
