@@ -86,7 +86,8 @@ bool print_table(const Request& request) {
 int main(int argc, char** argv) {
   Request request;
   CLI::App app("How often the report's 95 % intervals of adaptive data hold the true value");
-  app.add_option("--folder", request.folder, "Where sessions are kept; goes on with those there")
+  app.add_option("--folder", request.folder,
+                 "Folder of saved sessions; continues with those that it contains")
       ->capture_default_str();
   app.add_option("--procedure", request.procedures, "Only these")->check(CLI::IsMember(kProcedures));
   app.add_option("--sessions", request.sessions, "Of each cell")

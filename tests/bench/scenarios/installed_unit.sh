@@ -43,7 +43,7 @@ cp /usr/share/turnpoint/rigs/simulated.toml /etc/turnpoint/rig.toml
 runuser -u turnpoint -- turnpoint run /usr/share/turnpoint/protocols/demo.toml --participant P01 --db $db --headless --observer sim
 systemctl start --no-block turnpoint
 dpkg --purge turnpoint | tee purged.txt
-has purged.txt "data in /var/lib/turnpoint are kept" || fail "it does not say that the data are kept"
+has purged.txt "data in /var/lib/turnpoint were kept" || fail "it does not say that the data are kept"
 [ "$(state MainPID)" = 0 ] || fail "purged, and it still runs"
 [ -e $db ] && [ -e /etc/turnpoint/rig.toml ] || fail "purge has removed data that nobody asked to remove"
 ! command -v turnpoint >/dev/null || fail "purged, and turnpoint is still there"
