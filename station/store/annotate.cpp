@@ -25,9 +25,10 @@ void abandon(const std::string& path, const std::string& session_id, const std::
   auto writer = open_writer(path, IfMissing::fail);
   const auto session = session_record(writer.database, session_id);
   if (session.status != SessionStatus::interrupted)
-    throw StoreError(ErrorKind::refused,
-                     fmt::format("database {}: session {} is {}; only an interrupted one is abandoned", path,
-                                 session_id, name(session.status)));
+    throw StoreError(
+        ErrorKind::refused,
+        fmt::format("database {}: session {} is {}; only an interrupted session can be abandoned", path,
+                    session_id, name(session.status)));
   Transaction transaction(writer.database);
   Statement(writer.database,
             "UPDATE session SET status = 'abandoned', status_reason = ? WHERE session_id = ?")

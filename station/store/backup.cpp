@@ -54,16 +54,15 @@ void record(BackupReport& report, const std::string& database, const std::string
   }
 }
 
-/// Reports what the finished file really contains, not what was meant to be written.
+/// Counts what the finished file really contains, which may differ from what was meant to be written.
 void read_back(BackupReport& report, std::int64_t sessions) {
   Database copy(report.path, Database::Access::immutable);
   report.sessions = copy.integer("SELECT count(*) FROM session");
   report.trials = copy.integer("SELECT count(*) FROM trial");
   if (report.sessions < sessions)
-    throw StoreError(
-        ErrorKind::corrupt,
-        fmt::format("backup {}: it holds {} sessions of {}; older backups are untouched; check the disk",
-                    report.path, report.sessions, sessions));
+    throw StoreError(ErrorKind::corrupt, fmt::format("backup {}: the file contains only {} of {} sessions; "
+                                                     "older backups were not changed; check the disk",
+                                                     report.path, report.sessions, sessions));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace turnpoint::store {
 
 enum class Destination {
-  folder,  ///< any folder; created if missing
+  folder,  ///< the folder to write to (any); created if missing
   disk,    ///< a folder on a separate disk, stick or share; refused if none is mounted
 };
 
@@ -57,9 +57,9 @@ struct RestoreOptions {
 struct Restoration {
   std::string from;  ///< the backup that was used
   std::string database_id;
-  std::string quarantined;  ///< where the damaged file is now; "" if there was none
+  std::string quarantined;  ///< where the damaged database was moved to; "" if there was none
   std::int64_t sessions = 0, trials = 0;
-  std::vector<std::string> rejected;  ///< its backups that failed their check
+  std::vector<std::string> rejected;  ///< backups of this database that failed their check
   /// Sessions whose rows differ from what was recorded (see checksum.hpp). They were changed before the
   /// backup was made, so the backup contains the change.
   std::vector<std::string> changed;
@@ -77,7 +77,7 @@ Restoration restore_backup(const std::string& database, const RestoreOptions& op
 struct Drill {
   std::string from;
   std::int64_t number = 0;
-  double age_s = 0;  ///< age according to the time in its name
+  double age_s = 0;  ///< age of the backup, from the time in its file name
   std::int64_t sessions = 0, trials = 0, live_sessions = 0, live_trials = 0;
   std::vector<std::string> problems;  ///< empty if a restore would bring back everything that was recorded
 };

@@ -115,14 +115,14 @@ void require_disk(const std::string& folder, const std::string& database) {
   const auto above = folder_of(folder);
   const auto refuse = [&](const std::string& why) {
     throw StoreError(ErrorKind::missing,
-                     fmt::format("backup to {}: {}; nothing was written; mount the disk of the "
-                                 "backups, or, where a plain folder is meant, say --to folder",
+                     fmt::format("backup to {}: {}; nothing was written; mount the backup disk, or write "
+                                 "--to FOLDER if the backups belong in an ordinary folder",
                                  folder, why));
   };
   const bool mounted = is_mount_point(folder) || is_mount_point(above);
-  if (!mounted) refuse(fmt::format("no disk is mounted there, nor at {}", above));
+  if (!mounted) refuse(fmt::format("no disk is mounted at this folder or at {}", above));
   if (file_system_of(file_exists(folder) ? folder : above) == file_system_of(folder_of(database)))
-    refuse("it is on the disk of the database itself");
+    refuse("this folder is on the same disk as the database");
 }
 
 std::vector<std::string> remove_interrupted_backups(const std::string& folder) {

@@ -11,13 +11,13 @@ namespace turnpoint::store {
 /// A backup found in a folder. Its meta table, not its file name, says which database it is a backup of.
 struct StoredBackup {
   std::string path;
-  std::string database_id;  ///< "" if it cannot be read
+  std::string database_id;  ///< id of the database; "" if the backup cannot be read
   std::string station;      ///< station of one of its sessions; "" if it has no session
   std::string stem;         ///< file name of the database when the backup was made, without folder and ending
   /// increases with each backup made into the folder; 0 for backups of older releases
   std::int64_t number = 0;
-  std::int64_t made_realtime_ns = 0;  ///< time given in its name
-  std::string trouble;  ///< why it could not be read, unless it is known to be damaged; otherwise ""
+  std::int64_t made_realtime_ns = 0;  ///< time given in the file name
+  std::string trouble;  ///< why the backup could not be read; "" if it was read, or is known to be damaged
   bool readable() const { return !database_id.empty(); }
 };
 

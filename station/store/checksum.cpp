@@ -142,8 +142,8 @@ Link link_from(const Statement& row) {
   return link;
 }
 
-/// When a database is opened, sessions of a dead process get a new status without a new link. Only these
-/// exact words are accepted.
+/// Opening a database changes the status of sessions whose process died, without adding a link. This function
+/// accepts only these exact changes of status and reason.
 bool follows(const Link& last, const std::string& status, const std::string& reason) {
   if (status == last.status && reason == last.status_reason) return true;
   const std::string running = name(SessionStatus::running), interrupted = name(SessionStatus::interrupted);
@@ -163,7 +163,7 @@ std::string place(const Link& previous, const Link& link) {
   part("block", previous.last.block, link.last.block);
   part("trial", previous.last.trial, link.last.trial);
   part("event", previous.last.event, link.last.event);
-  if (link.index == 0) rows = "what the session was begun with, " + rows;
+  if (link.index == 0) rows = "the participant, protocol, rig or calibration of the session, " + rows;
   return rows.empty() ? "the session's status" : rows;
 }
 
@@ -181,13 +181,13 @@ Link check_links(Database& database, const std::string& schema, VerifiedSession&
           .first->second;
     };
     if (link.encoding < 1 || link.encoding > kEncoding)
-      verified.problems.push_back(fmt::format("link {} has encoding {}, which this release does not know",
+      verified.problems.push_back(fmt::format("checksum {} has encoding {}, which this release does not know",
                                               link.index, link.encoding));
     else if (link.index != previous.index + 1)
-      verified.problems.push_back(fmt::format("link {} is missing", previous.index + 1));
+      verified.problems.push_back(fmt::format("checksum {} is missing", previous.index + 1));
     else if (checksum_of(encoder(), previous, link) != link.sha256)
       verified.problems.push_back(
-          fmt::format("{} is not as it was recorded (link {})", place(previous, link), link.index));
+          fmt::format("{} differs from what was recorded (checksum {})", place(previous, link), link.index));
     previous = std::move(link);
   }
   return previous;
@@ -259,27 +259,28 @@ VerifiedSession verify_one(Database& database, const std::string& session_id, co
                   schema));
   row.bind(session_id);
   if (!row.step()) {
-    verified.problems.push_back("there is no session of that id");
+    verified.problems.push_back("there is no session with this id");
     return verified;
   }
   verified.participant = row.text(0);
   verified.protocol_id = row.text(1);
   verified.trials = row.integer(4);
   if (enrolled_ids.count(session_id) == 0)
-    verified.problems.push_back("the participant's place in the counterbalancing is not the session's");
+    verified.problems.push_back(
+        "the participant is enrolled with another place in the counterbalancing than this session used");
   const auto last = check_links(database, schema, verified);
   if (verified.links == 0) {
     Statement earlier(database, "SELECT 1 FROM " + schema + ".unsealed WHERE session_id = ?");
     earlier.bind(session_id);
-    if (!earlier.step()) verified.problems.push_back("its checksums are missing");
+    if (!earlier.step()) verified.problems.push_back("the checksums of this session are missing");
     return verified;
   }
   verified.last_sha256 = last.sha256;
   Encoder encoder(database, schema, session_id);
   if (!(encoder.extent() == last.last) || encoder.tone_beyond(last.last.trial))
-    verified.problems.push_back("rows at the end are missing, or were added, since the last link");
+    verified.problems.push_back("rows were added or removed after the last checksum");
   if (!follows(last, row.text(2), row.text(3)))
-    verified.problems.push_back("the status is not as it was recorded");
+    verified.problems.push_back("the session's status differs from what was recorded");
   return verified;
 }
 

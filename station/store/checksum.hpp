@@ -17,10 +17,10 @@ constexpr int kEncoding = 1;
 /// The last row of each table that belongs to a session, given by its key. Tables without rows have a value
 /// below the first key.
 struct Extent {
-  std::int64_t segment = 0;  ///< segment_index, from 1
-  std::int64_t block = -1;   ///< run_order
-  std::int64_t trial = -1;   ///< trial_index; includes the trial's tones
-  std::int64_t event = -1;   ///< event_index
+  std::int64_t segment = 0;  ///< segment_index of the last segment; the first has index 1
+  std::int64_t block = -1;   ///< run_order of the last block
+  std::int64_t trial = -1;   ///< trial_index of the last trial, whose tones are included
+  std::int64_t event = -1;   ///< event_index of the last event
   bool operator==(const Extent&) const = default;
 };
 
@@ -29,11 +29,11 @@ struct Extent {
 /// first link also covers the session's participant, protocol, rig and calibration. Annotations are not
 /// covered, because they are added afterwards.
 struct Link {
-  std::int64_t index = -1;  ///< from 0; -1 is the empty chain
+  std::int64_t index = -1;  ///< position of the link in the chain, from 0; -1 for the empty chain
   std::int64_t encoding = kEncoding;
   Extent last;
   std::string status, status_reason;  ///< status of the session when the link was made
-  std::string sha256;                 ///< hexadecimal; "" for the empty chain
+  std::string sha256;                 ///< checksum in hexadecimal; "" for the empty chain
 };
 
 class Encoder;
@@ -62,7 +62,7 @@ struct VerifiedSession {
   std::string session_id, participant, protocol_id;
   std::int64_t trials = 0, links = 0;
   std::string last_sha256;            ///< "" for a session that an earlier release recorded without a chain
-  std::vector<std::string> problems;  ///< empty if every row is as it was written
+  std::vector<std::string> problems;  ///< differences from what was recorded; empty if there are none
 };
 
 /// Checks every link of a session against its rows, and the rows against the links. `schema` is "main" or the
@@ -71,7 +71,8 @@ struct VerifiedSession {
 VerifiedSession verify_session(Database& database, const std::string& session_id,
                                const std::string& schema = "main");
 
-/// The same for every session. Rows that belong to no session are found by check_pages (whole_file.hpp).
+/// Checks every session as verify_session() does. Rows that belong to no session are found by check_pages
+/// (whole_file.hpp).
 std::vector<VerifiedSession> verify_database(Database& database, const std::string& schema = "main");
 
 /// True if the session's chain contains a link with this checksum.

@@ -9,8 +9,8 @@ namespace turnpoint::store {
 /// Files that contain some of the requested sessions, or that cannot be read and may contain them.
 struct Copies {
   std::vector<std::string> own;  ///< this database's backups, and its copies from before a migration
-  /// Not to be removed without asking: backups of other databases, damaged files that were set aside, and
-  /// files that cannot be read.
+  /// Files that must not be removed without asking: backups of other databases, damaged files that were set
+  /// aside, and files that cannot be read.
   std::vector<std::string> foreign;
 };
 

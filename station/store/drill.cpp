@@ -26,12 +26,14 @@ StoredBackup newest_backup(const std::string& directory, const std::string& path
   for (const auto& backup : stored_backups(directory))
     if (backup.readable() ? backup.database_id == id : backup.stem == stem) newest = backup;
   if (newest.path.empty())
-    throw StoreError(ErrorKind::missing, fmt::format("drill: {} holds no backup of {}", directory, path));
+    throw StoreError(ErrorKind::missing,
+                     fmt::format("drill: folder {} contains no backup of {}", directory, path));
   if (!newest.readable())
-    throw StoreError(ErrorKind::corrupt,
-                     fmt::format("drill: the newest backup, {}, cannot be read: {}; check its disk and make "
-                                 "another backup",
-                                 newest.path, newest.trouble.empty() ? "it is damaged" : newest.trouble));
+    throw StoreError(
+        ErrorKind::corrupt,
+        fmt::format("drill: the newest backup, {}, cannot be read: {}; check its disk and make "
+                    "another backup",
+                    newest.path, newest.trouble.empty() ? "the file is damaged" : newest.trouble));
   return newest;
 }
 
@@ -66,9 +68,9 @@ std::string difference(Database& live, const VerifiedSession& session) {
   Statement withdrawn(live, "SELECT 1 FROM tombstone WHERE session_id = ?");
   Statement there(live, "SELECT 1 FROM session WHERE session_id = ?");
   if (withdrawn.bind(session.session_id).step()) return "";
-  if (!there.bind(session.session_id).step()) return "the database no longer holds it";
+  if (!there.bind(session.session_id).step()) return "the database no longer contains this session";
   if (session.links == 0 || holds_link(live, session.session_id, session.last_sha256)) return "";
-  return "the database has different rows for it";
+  return "the database has different rows for this session";
 }
 
 }  // namespace

@@ -35,15 +35,16 @@ std::string folder_name(const std::string& protocol_id) {
 void check_style(const ExportOptions& options) {
   const auto refuse = [](const std::string& what) { throw terms::UsageError("export: " + what); };
   if (options.decimal != '.' && options.decimal != ',')
-    refuse(fmt::format("decimal mark '{}'; '.' or ',' is allowed", options.decimal));
+    refuse(fmt::format("the decimal mark must be '.' or ',', not '{}'", options.decimal));
   if (std::string(",;\t|").find(options.separator) == std::string::npos)
-    refuse(fmt::format("separator '{}'; ',' ';' '|' or a tab is allowed", options.separator));
+    refuse(fmt::format("the separator must be ',' ';' '|' or a tab, not '{}'", options.separator));
   if (options.separator == options.decimal)
-    refuse(
-        fmt::format("separator and decimal mark are both '{}'; with a decimal comma take the separator ';'",
-                    options.separator));
+    refuse(fmt::format(
+        "the separator and the decimal mark are both '{}'; with a decimal comma, use the separator ';'",
+        options.separator));
   if (options.format == ExportFormat::bids && (options.separator != ',' || options.decimal != '.'))
-    refuse("BIDS tables have tabs and decimal points; --separator and --decimal are for CSV");
+    refuse(
+        "BIDS tables always use tabs and decimal points; --separator and --decimal are allowed for CSV only");
 }
 
 void add_factors(std::vector<std::string>& all, const std::vector<std::string>& more) {
@@ -67,7 +68,7 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
     if (const auto [owner, fresh] = owners.emplace(folder, id); !fresh)
       throw StoreError(ErrorKind::conflict,
                        fmt::format("export: the protocols \"{}\" and \"{}\" would share the folder "
-                                   "{}; export them one by one with --protocol",
+                                   "{}; export one at a time with --protocol",
                                    owner->second, id, folder));
     selection.protocol_id = id;
     selection.folder = (fs::path(directory) / folder).string();
@@ -169,15 +170,16 @@ std::vector<ExportedFile> export_data(const std::string& path, const std::string
   database.execute("BEGIN");
   const auto selections = select(database, directory, options);
   if (selections.empty())
-    throw StoreError(ErrorKind::missing,
-                     fmt::format("export: no session of {} is asked for by these options; "
-                                 "`turnpoint sessions --db {}` lists what there is",
-                                 path, path));
+    throw StoreError(
+        ErrorKind::missing,
+        fmt::format(
+            "export: no session in {} matches these options; `turnpoint sessions --db {}` lists all sessions",
+            path, path));
   std::vector<ExportedFile> files;
   for (const auto& selection : selections) {
     // Until the last file is written, files of an earlier export may exist beside new ones.
     const auto mark = selection.folder + "/EXPORT-INCOMPLETE.txt";
-    write_file(mark, "An export into this folder has not ended. Export again.\n");
+    write_file(mark, "An export into this folder did not finish. Export again.\n");
     if (options.format == ExportFormat::bids)
       export_bids(database, selection, files);
     else

@@ -49,8 +49,8 @@ std::map<std::string, std::string> labels_for(const std::set<std::string>& names
   return labels;
 }
 
-/// A person's sessions are numbered. If two stations have each numbered theirs, the label also contains the
-/// station.
+/// A person's sessions are numbered. If the person has sessions numbered by two stations, the label also
+/// contains the station.
 Labels label_all(const ProtocolSelection& selection) {
   Labels labels;
   std::set<std::string> persons;
@@ -81,11 +81,9 @@ void refuse_leftovers(const std::string& folder, const Labels& labels) {
   for (const auto& entry : fs::directory_iterator(folder, ignored)) {
     const auto name = entry.path().filename().string();
     if (name.rfind("sub-", 0) == 0 && expected.count(name) == 0)
-      throw StoreError(
-          ErrorKind::conflict,
-          fmt::format("export bids: {} holds {}, which is not of this export; remove it or name an "
-                      "empty folder",
-                      folder, name));
+      throw StoreError(ErrorKind::conflict, fmt::format("export bids: {} contains {}, which is not part of "
+                                                        "this export; remove it, or name an empty folder",
+                                                        folder, name));
   }
 }
 

@@ -73,8 +73,8 @@ std::string bids_description(const ProtocolSelection& selection) {
 
 std::string bids_readme(const ProtocolSelection& selection) {
   return fmt::format(
-      "Behavioural data of the protocol {}, exported by Turnpoint. One run is one process "
-      "run of the station: a session that was resumed has several.\n",
+      "Behavioural data of the protocol {}, exported by Turnpoint. Each start of the station program is one "
+      "run: a session that was resumed has several runs.\n",
       selection.protocol_id);
 }
 
@@ -101,17 +101,17 @@ ExportColumns bids_trial_columns(const std::vector<std::string>& factors) {
 
 std::vector<Column> bids_participant_columns() {
   return {{"participant_id", "Label of the participant in this data set", "", ""},
-          {"code", "Participant codes as given at the stations", "", ""},
+          {"code", "Codes that the stations gave to the participant", "", ""},
           {"sessions", "Number of sessions in this data set", "", ""},
           {"station", "Stations at which the sessions were run", "", ""}};
 }
 
 std::vector<Column> bids_event_columns() {
   return {{"onset", "Time of the event, from the start of the run", "s", ""},
-          {"duration", "Length of a stimulus; 0 for every other event, which is a moment", "s", ""},
+          {"duration", "Length of a stimulus; 0 for all other events, which have no duration", "s", ""},
           {"trial_type", "What happened", "", ""},
           {"value", "Detail", "", ""},
-          {"trial_index", "Trial of the session, from 0", "", ""}};
+          {"trial_index", "Index of the trial in the session, from 0", "", ""}};
 }
 
 std::vector<Cell> bids_event_cells(const EventRow& event, std::int64_t origin_ns) {

@@ -44,50 +44,54 @@ ExportColumn session_id() {
 
 ExportColumn participant_id() {
   return {
-      {"participant_id", "Participant: the code, or CODE@STATION where several people have the code", "", ""},
+      {"participant_id", "Code of the participant, or CODE@STATION if several people have this code", "", ""},
       [](const ExportRow& row) { return cell(row.session->person); }};
 }
 
-/// Version 2: onset and duration describe the stimulus, as in BIDS. The zero of the response time and the
-/// length of the trial have their own columns. The participant column names a person.
+/// Version 2 of the columns: onset and duration describe the stimulus, as in BIDS. The zero of the response
+/// time and the length of the trial have their own columns. The participant column names a person.
 ExportColumn columns_version() {
   return {{"columns_version", "Version of this set of columns", "", ""},
           [](const ExportRow&) { return cell(std::string("2")); }};
 }
 
 ExportColumn stimulus_onset() {
-  return {
-      {"onset", "Start of the trial's first stimulus, from the start of the segment; n/a where none began",
-       "s", ""},
-      [](const ExportRow& row) { return row.span ? cell(row.span->onset_s) : Cell{}; }};
+  return {{"onset",
+           "Start of the trial's first stimulus, from the start of the segment; n/a if no stimulus began",
+           "s", ""},
+          [](const ExportRow& row) { return row.span ? cell(row.span->onset_s) : Cell{}; }};
 }
 
 ExportColumn stimulus_duration() {
-  return {{"duration", "From there to the end of the trial's last stimulus", "s", ""},
+  return {{"duration", "Time from the start of the trial's first stimulus to the end of its last stimulus",
+           "s", ""},
           [](const ExportRow& row) { return row.span ? cell(row.span->duration_s) : Cell{}; }};
 }
 
 ExportColumn last_model() {
-  return {{"model", "Model that planned that scene", "", ""}, [](const ExportRow& row) {
+  return {{"model", "Physical model that planned the scene presented last in the trial", "", ""},
+          [](const ExportRow& row) {
             const auto& tones = row.trial->tones;
             return tones.empty() ? Cell{} : cell(tones.back().model);
           }};
 }
 
 ExportColumn event_onset() {
-  return {{"onset", "Time of the event, from the start of the segment; rows are in this order", "s", ""},
-          [](const ExportRow& row) {
-            return cell(static_cast<double>(row.event->time_ns - row.origin_ns) * 1e-9);
-          }};
+  return {
+      {"onset", "Time of the event, from the start of the segment; rows are in order of this time", "s", ""},
+      [](const ExportRow& row) {
+        return cell(static_cast<double>(row.event->time_ns - row.origin_ns) * 1e-9);
+      }};
 }
 
 ExportColumn segments() {
-  return {{"segments", "Process runs; above 1 the session was resumed", "", ""},
+  return {{"segments", "Number of times the program ran this session; more than 1 if the session was resumed",
+           "", ""},
           [](const ExportRow& row) { return cell(row.session->segments); }};
 }
 
 ExportColumn trials() {
-  return {{"trials", "Trials of every type and outcome", "", ""},
+  return {{"trials", "Number of trials, of every type and outcome", "", ""},
           [](const ExportRow& row) { return cell(row.session->trials); }};
 }
 
@@ -100,23 +104,23 @@ ExportColumn annotations() {
 }
 
 ExportColumn checksum() {
-  return {
-      {"checksum",
-       "Last link of the chain of checksums over the session's rows; `turnpoint verify --against` compares "
-       "it with a database",
-       "", ""},
-      [](const ExportRow& row) { return cell(row.session->checksum); }};
+  return {{"checksum",
+           "Last link of the chain of checksums over the session's rows; `turnpoint verify --against` "
+           "compares this checksum with a database",
+           "", ""},
+          [](const ExportRow& row) { return cell(row.session->checksum); }};
 }
 
 ExportColumn factor_value(const std::string& factor, const std::string& name) {
-  return {{name, "Factor of the protocol: its value in this trial", "", ""}, [factor](const ExportRow& row) {
+  return {{name, "Value of this factor of the protocol in the trial", "", ""},
+          [factor](const ExportRow& row) {
             const auto found = row.trial->factors.find(factor);
             if (found == row.trial->factors.end()) return Cell{};
             return std::visit([](const auto& value) { return cell(value); }, found->second);
           }};
 }
 
-/// Programs disagree on how to read two columns with the same name.
+/// Every column needs a name of its own: programs disagree on how to read two columns with the same name.
 void add_factors(ExportColumns& columns, std::ptrdiff_t at, const std::vector<std::string>& factors) {
   const auto fixed = names_of(columns);
   ExportColumns own;

@@ -9,9 +9,10 @@
 
 namespace turnpoint::store {
 
-/// All sessions of one protocol that are exported, and the columns of its factors.
+/// The sessions of one protocol that are to be exported, and the columns of its factors.
 struct ProtocolSelection {
-  std::string protocol_id, folder;  ///< folder: where its files are written; ends without a slash
+  /// folder: where the files of this protocol are written; ends without a slash
+  std::string protocol_id, folder;
   std::vector<std::string> factors;
   std::vector<SessionRecord> sessions;
 };
@@ -20,7 +21,7 @@ struct ProtocolSelection {
 /// folder. Throws StoreError.
 void write_file(const std::string& path, const std::string& bytes);
 
-/// The same for a table of any length, written row by row.
+/// Writes a table of any length row by row, by way of a temporary file.
 class TableFile {
  public:
   TableFile(const std::string& path, const TableStyle& style, const std::vector<std::string>& columns);
@@ -34,7 +35,7 @@ class TableFile {
   system::FileWriter file_;
 };
 
-/// The two formats.
+/// Write the sessions of one protocol as CSV files, or as a BIDS data set.
 void export_csv(Database& database, const ProtocolSelection& selection, const TableStyle& style,
                 std::vector<ExportedFile>& files);
 void export_bids(Database& database, const ProtocolSelection& selection, std::vector<ExportedFile>& files);

@@ -17,7 +17,7 @@ struct Column {
 
 /// The time span of a trial's stimuli, from the start of the first to the end of the last.
 struct StimulusSpan {
-  double onset_s = 0;  ///< relative to the start of the segment
+  double onset_s = 0;  ///< start of the first stimulus, relative to the start of the segment
   double duration_s = 0;
 };
 

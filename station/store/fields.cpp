@@ -136,7 +136,7 @@ Field<SessionRecord> start(const About& about) {
 /// NULL if there is no response time, because a missing time has no quality.
 Field<TrialRow> response_time_quality() {
   auto quality = field<&TrialRow::response_time_quality>({"response_time_quality", "response_time_quality",
-                                                          "Which clock stamped the answer", "",
+                                                          "Clock that gave the time stamp of the answer", "",
                                                           "kernel | toolkit | simulated | n/a"});
   quality.nullable = true;
   quality.bind = [](Statement& s, int i, const TrialRow& row) {
@@ -167,13 +167,15 @@ const Table<BlockStart>& block_table() {
   static const Table<B> table{
       "block",
       {"session_id", "run_order"},
-      {field<&B::block_index>({"block_index", "block_index", "Block in the order run, from 0"}),
-       field<&B::attempt>(
-           {"attempt", "attempt", "Number of earlier attempts at this block; their rows are kept"}),
+      {field<&B::block_index>({"block_index", "block_index",
+                               "Number of the block, from 0, in the order in which blocks are run"}),
+       field<&B::attempt>({"attempt", "attempt",
+                           "Number of earlier attempts at this block (rows of earlier attempts are kept)"}),
        field<&B::name>({"name", "block_name", "Name of the block"}),
-       field<&B::instruction>(
-           {"instruction", "instruction", "Instruction in force", "", "speed | accuracy | ... | n/a"}),
-       field<&B::practice>({"practice", "practice", "1 in a practice block", "", "0 | 1"})}};
+       field<&B::instruction>({"instruction", "instruction",
+                               "Name of the instruction that applies to the block", "",
+                               "speed | accuracy | ... | n/a"}),
+       field<&B::practice>({"practice", "practice", "1 in a practice block, otherwise 0", "", "0 | 1"})}};
   return table;
 }
 
@@ -182,29 +184,36 @@ const Table<TrialRow>& trial_table() {
   static const Table<T> table{
       "trial",
       {"session_id", "block_index", "attempt", "recorded_realtime_ns"},
-      {field<&T::segment_index>(
-           {"segment_index", "segment_id",
-            "Run of the program within the session, from 1; each resume begins another"}),
+      {field<&T::segment_index>({"segment_index", "segment_id",
+                                 "Run of the program within the session, from 1; each time the session is "
+                                 "resumed, another run begins"}),
        field<&T::trial_index>({"trial_index", "trial_index",
-                               "Index of the trial among all that were presented in the session, from 0"}),
+                               "Index of the trial among all trials presented in the session, from 0"}),
        field<&T::trial_in_block>({"trial_in_block"}),
-       field<&T::type>({"trial_type", "trial_type", "Only experimental trials belong to procedures and fits",
-                        "", "experimental | catch | practice | warmup"}),
+       field<&T::type>({"trial_type", "trial_type",
+                        "Type of the trial; only experimental trials are used by procedures and fits", "",
+                        "experimental | catch | practice | warmup"}),
        field<&T::procedure>(
-           {"procedure", "procedure", "Procedure that chose the level; n/a outside procedures"}),
-       field<&T::level>({"level", "level", "Level that was presented", "see level_unit"}),
+           {"procedure", "procedure", "Procedure that chose the level; n/a if no procedure did"}),
+       field<&T::level>({"level", "level", "Stimulus level that was presented", "see level_unit"}),
        field<&T::factors>({"factors"}),
        field<&T::boundary_mm>(
-           {"boundary_mm", "boundary_mm", "Boundary presented last in the trial, from the wide end", "mm"}),
-       field<&T::frequency_Hz>(
-           {"frequency_Hz", "frequency_hz", "First tone of the scene presented last", "Hz"}),
+           {"boundary_mm", "boundary_mm",
+            "Position of the boundary presented last in the trial, measured from the wide end of the surface",
+            "mm"}),
+       field<&T::frequency_Hz>({"frequency_Hz", "frequency_hz",
+                                "Frequency of the first tone of the scene presented last in the trial",
+                                "Hz"}),
        field<&T::amplitude>(
-           {"amplitude", "amplitude", "Predicted displacement of that scene at its last maximum", "um"}),
+           {"amplitude", "amplitude",
+            "Predicted displacement, at its last maximum, of the scene presented last in the trial", "um"}),
        field<&T::correct_response>(
-           {"correct_response", "correct_response", "Right choice; n/a where nothing is right"}),
+           {"correct_response", "correct_response", "Correct choice; n/a if no choice is correct"}),
        field<&T::response>(
-           {"response", "response", "Choice made; in an adjustment the setting, in the unit of the level"}),
-       field<&T::correct>({"correct", "correct", "1 where the choice was right; only for scored answers", "",
+           {"response", "response",
+            "Choice of the participant; in an adjustment task the setting, in the unit of the level"}),
+       field<&T::correct>({"correct", "correct",
+                           "1 if the choice was correct, 0 if not; n/a if the answer is not scored", "",
                            "0 | 1 | n/a"}),
        field<&T::outcome>(
            {"outcome", "outcome",
@@ -212,26 +221,33 @@ const Table<TrialRow>& trial_table() {
             "answered | timeout | anticipation | aborted | fault"}),
        field<&T::onset_ns>({"onset_ns"}),
        field<&T::onset_s>({"onset_s", "response_zero_onset",
-                           "Zero of the response time, from the start of the segment", "s"}),
-       field<&T::duration_s>({"duration_s", "trial_duration", "Of the whole trial", "s"}),
-       field<&T::response_time_s>(
-           {"response_time_s", "response_time", "From response_zero to the answer, raw", "s"}),
-       field<&T::decision_time_s>(
-           {"decision_time_s", "decision_time", "From response_zero to the lift-off of the finger", "s"}),
-       field<&T::movement_time_s>({"movement_time_s", "movement_time", "From lift-off to the answer", "s"}),
-       field<&T::response_zero>({"response_zero", "response_zero", "Where response times count from", "",
+                           "Time from which the response time counts, measured from the start of the segment",
+                           "s"}),
+       field<&T::duration_s>({"duration_s", "trial_duration", "Duration of the whole trial", "s"}),
+       field<&T::response_time_s>({"response_time_s", "response_time",
+                                   "Time from response_zero to the answer, without corrections", "s"}),
+       field<&T::decision_time_s>({"decision_time_s", "decision_time",
+                                   "Time from response_zero to the moment when the finger leaves the surface",
+                                   "s"}),
+       field<&T::movement_time_s>({"movement_time_s", "movement_time",
+                                   "Time from when the finger leaves the surface to the answer", "s"}),
+       field<&T::response_zero>({"response_zero", "response_zero",
+                                 "Event from which response times are measured", "",
                                  "go_cue | change | interval_off | first_contact | lift_off"}),
        response_time_quality(),
-       field<&T::response_offset_s>({"response_offset_s", "response_offset_s",
-                                     "Latency found by calibration; not subtracted from response_time", "s"}),
-       field<&T::deadline_s>({"deadline_s", "deadline", "Time allowed from response_zero", "s"}),
-       field<&T::xruns>({"xruns", "xruns", "Interruptions of the drive signal during the trial"}),
+       field<&T::response_offset_s>(
+           {"response_offset_s", "response_offset_s",
+            "Latency measured by the calibration; it is not subtracted from response_time", "s"}),
+       field<&T::deadline_s>({"deadline_s", "deadline",
+                              "Longest time allowed for the answer, measured from response_zero", "s"}),
+       field<&T::xruns>({"xruns", "xruns", "Number of interruptions of the drive signal during the trial"}),
        field<&T::extra_touches>(
-           {"extra_touches", "extra_touches", "Touches and presses that were not answers"}),
+           {"extra_touches", "extra_touches", "Number of touches and button presses that were not answers"}),
        field<&T::threshold_est>({"threshold_est", "threshold_est",
-                                 "Estimate of the trial's procedure after it", "see level_unit"}),
+                                 "Threshold estimated by the trial's procedure after this trial",
+                                 "see level_unit"}),
        field<&T::threshold_sd>(
-           {"threshold_sd", "threshold_sd", "Standard deviation of that estimate", "see level_unit"}),
+           {"threshold_sd", "threshold_sd", "Standard deviation of threshold_est", "see level_unit"}),
        field<&T::clock_slope_ns_per_frame>({"clock_slope_ns_per_frame"}),
        field<&T::clock_residual_ns>({"clock_residual_ns"}),
        field<&T::state_hash>({"state_hash"})}};
@@ -244,27 +260,35 @@ const Table<ToneRow>& tone_table() {
       "tone",
       {"session_id", "trial_index"},
       {field<&T::interval_index>(
-           {"interval_index", "interval_index", "Interval in the order presented, from 0"}),
-       field<&T::scene_index>({"scene_index", "scene_index", "Scene within the interval's sequence, from 0"}),
-       field<&T::tone_index>({"tone_index", "tone_index", "Tone of the scene, from 0"}),
-       field<&T::scene>({"scene", "scene", "Scene of the protocol"}),
-       field<&T::boundary_mm>(
-           {"boundary_mm", "boundary_mm", "Boundary of the scene, from the wide end", "mm"}),
+           {"interval_index", "interval_index", "Number of the interval in the order presented, from 0"}),
+       field<&T::scene_index>(
+           {"scene_index", "scene_index", "Number of the scene within the interval, from 0"}),
+       field<&T::tone_index>({"tone_index", "tone_index", "Number of the tone within the scene, from 0"}),
+       field<&T::scene>({"scene", "scene", "Name of the scene in the protocol"}),
+       field<&T::boundary_mm>({"boundary_mm", "boundary_mm",
+                               "Position of the scene's boundary, measured from the wide end of the surface",
+                               "mm"}),
        field<&T::frequency_Hz>({"frequency_Hz", "frequency_hz", "Frequency of the tone", "Hz"}),
-       field<&T::amplitude_um>({"amplitude_um", "amplitude_um", "Peak displacement of the drive edge", "um"}),
+       field<&T::amplitude_um>({"amplitude_um", "amplitude_um",
+                                "Peak displacement of the tone at the driven edge of the surface", "um"}),
        field<&T::displacement_um>(
            {"displacement_um", "displacement_um", "Predicted displacement at the tone's last maximum", "um"}),
        field<&T::friction>(
            {"friction", "friction", "Predicted friction of the scene, relative to the still surface"}),
-       field<&T::rove_dB>({"rove_dB", "rove_db", "Roving of the level added to this interval", "dB"}),
-       field<&T::model>({"model", "model", "Model that planned the tone"}),
-       field<&T::error_bound_mm>({"error_bound_mm", "error_bound_mm", "Bound of the model's error", "mm"}),
-       field<&T::uncertainty_mm>(
-           {"uncertainty_mm", "uncertainty_mm", "From the uncertainty of the rig's parameters", "mm"}),
-       field<&T::reason>({"reason", "reason", "Why this model"}),
+       field<&T::rove_dB>(
+           {"rove_dB", "rove_db", "Random change of level (roving) added to this interval", "dB"}),
+       field<&T::model>({"model", "model", "Physical model that planned the tone"}),
+       field<&T::error_bound_mm>({"error_bound_mm", "error_bound_mm",
+                                  "Bound of the model's error in the position of the boundary", "mm"}),
+       field<&T::uncertainty_mm>({"uncertainty_mm", "uncertainty_mm",
+                                  "Uncertainty of the boundary's position that the rig's parameters cause",
+                                  "mm"}),
+       field<&T::reason>({"reason", "reason", "Why this model was chosen"}),
        field<&T::onset_frame>({"onset_frame", "onset_frame",
-                               "First frame at the output, from the start of the segment", "frames"}),
-       field<&T::length_frames>({"length_frames", "length_frames", "Length with both ramps", "frames"})}};
+                               "Output frame at which the tone starts, counted from the start of the segment",
+                               "frames"}),
+       field<&T::length_frames>(
+           {"length_frames", "length_frames", "Length of the tone, including both ramps", "frames"})}};
   return table;
 }
 
@@ -275,12 +299,12 @@ const Table<EventRow>& event_table() {
       {"session_id", "event_index"},
       {field<&E::segment_index>(
            {"segment_index", "segment_id", "Run of the program within the session, from 1"}),
-       field<&E::time_ns>({"time_ns", "time_ns", "The same on the station's monotonic clock", "ns"}),
+       field<&E::time_ns>({"time_ns", "time_ns", "Time of the event on the station's monotonic clock", "ns"}),
        field<&E::kind>(
            {"kind", "kind", "What happened: presented, answer, touch, contact, xrun, fault, aborted, ..."}),
        field<&E::value>({"value", "value", "Detail"}),
        field<&E::trial_index>({"trial_index", "trial_index",
-                               "Index of the trial among all that were presented in the session, from 0"})}};
+                               "Index of the trial among all trials presented in the session, from 0"})}};
   return table;
 }
 
@@ -290,33 +314,36 @@ const Table<SessionRecord>& session_table() {
   static const Table<R> table{
       "session",
       {"session_id", "protocol_key", "rig_key"},
-      {start<&S::participant>({"participant", "participant_code", "Code under which the session was run"}),
-       start<&S::protocol_path>({"protocol_path", "protocol_path", "File it was read from"}),
-       start<&S::rig_path>({"rig_path", "rig_path", "File it was read from"}),
-       start<&S::calibration_id>(
-           {"calibration_id", "calibration_id", "Hash of the calibration in force; n/a on a simulated rig"}),
-       start<&S::run_mode>(
-           {"run_mode", "run_mode", "Whether these are data of a study", "", "live | pilot | simulated"}),
+      {start<&S::participant>(
+           {"participant", "participant_code", "Participant code under which the session was run"}),
+       start<&S::protocol_path>({"protocol_path", "protocol_path", "Path of the protocol file"}),
+       start<&S::rig_path>({"rig_path", "rig_path", "Path of the rig file"}),
+       start<&S::calibration_id>({"calibration_id", "calibration_id",
+                                  "Hash of the calibration that was used; n/a on a simulated rig"}),
+       start<&S::run_mode>({"run_mode", "run_mode", "Kind of session: only live sessions are data of a study",
+                            "", "live | pilot | simulated"}),
        field<&R::session_index>(
-           {"session_index", "session_index", "Session of this participant with this protocol, from 1"}),
+           {"session_index", "session_index",
+            "Number of the session among this participant's sessions with this protocol, from 1"}),
        field<&R::sequence_index>(
            {"sequence_index", "sequence_index", "Participant's place in the counterbalancing, from 0"}),
-       start<&S::seed>({"seed", "seed", "Seed of all random draws of the session"}),
+       start<&S::seed>({"seed", "seed", "Seed of the session's random numbers"}),
        start<&S::language>({"language", "language", "Language shown"}),
-       start<&S::observer>({"observer", "observer", "Simulated observer, if one answered"}),
+       start<&S::observer>({"observer", "observer", "Simulated observer that gave the answers, if any"}),
        start<&S::factor_columns>({"factor_columns"}),
-       start<&S::level_unit>({"level_unit", "level_unit", "Unit of the level"}),
+       start<&S::level_unit>({"level_unit", "level_unit", "Unit of the stimulus level"}),
        start<&S::software_version>({"software_version", "software_version", "Version of the program"}),
        start<&S::columns_version>({"columns_version"}),
-       start<&S::kernel>({"kernel", "kernel", "Kernel of the station"}),
+       start<&S::kernel>({"kernel", "kernel", "Version of the Linux kernel on the station"}),
        start<&S::station_id>({"station_id", "station_id", "Identifier of the station"}),
-       start<&S::realtime_rights>(
-           {"realtime_rights", "realtime_rights", "What the kernel granted to the real-time threads"}),
-       start<&S::started_local>({"started_local", "started", "Local time with zone", "ISO 8601"}),
+       start<&S::realtime_rights>({"realtime_rights", "realtime_rights",
+                                   "Real-time priorities and memory locks that the kernel granted"}),
+       start<&S::started_local>(
+           {"started_local", "started", "Start of the session in local time, with time zone", "ISO 8601"}),
        start<&S::consent_version>({"consent_version", "consent_version", "Version of the consent form"}),
-       field<&R::status>({"status", "status", "How it stands", "",
+       field<&R::status>({"status", "status", "State of the session", "",
                           "running | completed | interrupted | stopped | abandoned"}),
-       field<&R::status_reason>({"status_reason", "status_reason", "Why it ended so"})}};
+       field<&R::status_reason>({"status_reason", "status_reason", "Why the session has this state"})}};
   return table;
 }
 
@@ -326,7 +353,7 @@ const Table<SessionRecord>& protocol_table() {
       "protocol",
       {"protocol_key"},
       {start<&S::protocol_id>({"protocol_id", "protocol_id", "Identifier of the protocol"}),
-       start<&S::protocol_version>({"version", "protocol_version", "Version that the protocol file states"}),
+       start<&S::protocol_version>({"version", "protocol_version", "Version given in the protocol file"}),
        start<&S::protocol_sha256>({"sha256", "protocol_sha256", "Hash of the protocol as it was run"}),
        start<&S::protocol_text>({"text"}), start<&S::protocol_canonical>({"canonical"})}};
   return table;

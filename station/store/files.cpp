@@ -29,14 +29,14 @@ struct stat status_of(int descriptor, const std::string& path) {
   return status;
 }
 
-/// A file that already belongs to somebody keeps its owner.
+/// A file that already belongs to an ordinary user keeps its owner.
 void give_to_owner_of_folder(int descriptor, const std::string& path) {
   if (::geteuid() != 0 || status_of(descriptor, path).st_uid != 0) return;
   struct stat folder {};
   const auto name = folder_of(path);
   if (::stat(name.c_str(), &folder) != 0 || ::fchown(descriptor, folder.st_uid, folder.st_gid) != 0)
     fail_system(kind_of_errno(errno), "owner of " + path, errno,
-                "run this as the user of the folder " + name);
+                "run this command as the user who owns the folder " + name);
 }
 
 }  // namespace
@@ -76,12 +76,13 @@ void read_pieces(const std::string& path, const std::function<void(std::string_v
     take(piece);
     taken += piece.size();
   }
-  if (taken < expected) throw std::system_error(EIO, std::generic_category(), path);  // the system said more
+  // the file is shorter than the size that the system reported
+  if (taken < expected) throw std::system_error(EIO, std::generic_category(), path);
 } catch (const std::system_error& error) {
   const int code = error.code().value();
   if (code == EISDIR || code == EINVAL)
     fail_system(ErrorKind::cannot_open, "read " + path, EINVAL,
-                "it is a folder, a pipe or a device; name a file");
+                "this is a folder, a pipe or a device; name a file");
   fail_system(kind_of_errno(code), "read " + path, code, "check the disk and the permissions");
 }
 
@@ -125,14 +126,16 @@ std::string canonical(const std::string& path) {
 FileDescriptor open_lock(const std::string& path) {
   FileDescriptor lock(::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, 0660));
   if (!lock.is_open() && errno == ELOOP)
-    throw StoreError(ErrorKind::io, "lock file " + path + ": is a link; it was not followed; remove it");
+    throw StoreError(ErrorKind::io,
+                     "lock file " + path + ": the file is a symbolic link and was not used; remove the link");
   if (!lock.is_open())
     fail_system(kind_of_errno(errno), "lock file " + path, errno,
                 "the folder of the database must exist and be writable");
   const auto status = status_of(lock.get(), path);
   if (!S_ISREG(status.st_mode) || status.st_nlink > 1)
-    throw StoreError(ErrorKind::io,
-                     "lock file " + path + ": has a second name; it was left alone; remove it");
+    throw StoreError(
+        ErrorKind::io,
+        "lock file " + path + ": the file has a second name (a hard link) and was not used; remove the file");
   give_to_owner_of_folder(lock.get(), path);
   return lock;
 }
@@ -153,7 +156,7 @@ void permit_as(const std::string& original, const std::string& path) {
   struct stat status {};
   status.st_mode = 0640;  // the station's group may read a new database
   if (!original.empty() && ::stat(original.c_str(), &status) != 0) return;
-  // A disk without Unix permissions uses the same ones for all files.
+  // A disk without Unix permissions gives all files the same ones and answers EPERM.
   if (::chmod(path.c_str(), (status.st_mode & 0666) | 0600) != 0 && errno != EPERM)
     fail_system(kind_of_errno(errno), "permissions of " + path, errno, "check the disk");
 }

@@ -84,8 +84,8 @@ void refuse_conflicts(Database& database, const Part& part) {
     values += fmt::format(", m.{0} IS NOT s.{0}, m.{0}, s.{0}", column);
   }
   if (compared.empty()) return;
-  // Look up the incoming rows by their key here, and not the other way round: the table here may be far
-  // larger.
+  // For each incoming row, look up the row with the same key in this database, and not the other way round:
+  // the table in this database may be far larger.
   Statement rows(
       database,
       fmt::format("SELECT {}{} FROM source.{} s CROSS JOIN main.{} m ON {} WHERE {} AND ({}) LIMIT 1", key,
@@ -95,7 +95,8 @@ void refuse_conflicts(Database& database, const Part& part) {
     if (rows.integer(3 * i + 1) != 0)
       throw StoreError(
           ErrorKind::conflict,
-          fmt::format("merge: table {}, {}: {} is {} here and {} there; nothing was merged; one of the "
+          fmt::format("merge: table {}, {}: {} is {} in this database and {} in the other; nothing was "
+                      "merged; one of the "
                       "two databases was changed by hand, or the session was continued on both stations",
                       part.table, rows.text(0), compared[static_cast<std::size_t>(i)], rows.text(3 * i + 2),
                       rows.text(3 * i + 3)));
@@ -112,8 +113,8 @@ void refuse_shared_places(Database& database) {
   if (rows.step())
     throw StoreError(ErrorKind::conflict,
                      fmt::format("merge: table enrolment: station {} has given place {} of protocol "
-                                 "{} to {} here and to {} there; nothing was merged; two databases "
-                                 "bear the name of one station",
+                                 "{} to {} in this database and to {} in the other; nothing was merged; two "
+                                 "stations use the same name",
                                  rows.text(0), rows.integer(2), rows.text(1), rows.text(3), rows.text(4)));
 }
 
@@ -160,7 +161,7 @@ void refuse_changed(Database& database, const std::string& source) {
       throw StoreError(
           ErrorKind::corrupt,
           fmt::format("merge: {}: session {} of {}: {}; nothing was merged; `turnpoint verify --db {}` "
-                      "lists all that differs; merge a backup of that station instead",
+                      "lists all differences; merge a backup of that station instead",
                       source, session.session_id, session.participant, session.problems.front(), source));
 }
 
@@ -183,10 +184,9 @@ void settle(Database& database, MergedSession& session, std::int64_t trials_befo
   if (session.what == MergedSession::What::unchanged && session.sha256 != before)
     session.what = MergedSession::What::extended;
   if (session.what == MergedSession::What::added && session.sha256 != there)
-    throw StoreError(ErrorKind::corrupt,
-                     fmt::format("merge: session {} does not read back as it was; nothing was merged; "
-                                 "check the disk",
-                                 id));
+    throw StoreError(ErrorKind::corrupt, fmt::format("merge: session {} differs when it is read back after "
+                                                     "the merge; nothing was merged; check the disk",
+                                                     id));
   if (session.what == MergedSession::What::unchanged) return;
   if (session.sha256 == there) take_status(database, id);
   Statement(
@@ -270,7 +270,7 @@ const char* name(MergedSession::What what) {
 MergeReport merge(const std::string& name, const std::string& source) {
   const auto path = canonical(name);
   if (fs::exists(source) && fs::exists(path) && fs::equivalent(source, path))
-    throw StoreError(ErrorKind::refused, fmt::format("merge: {} and {} are one file", path, source));
+    throw StoreError(ErrorKind::refused, fmt::format("merge: {} and {} are the same file", path, source));
   auto writer = open_writer(path, IfMissing::create);
   auto& database = writer.database;
   check_pages(database);

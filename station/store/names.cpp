@@ -12,8 +12,8 @@ template <class Values>
 auto named(const std::string& word, const Values& values) {
   for (const auto value : values)
     if (word == name(value)) return value;
-  throw StoreError(ErrorKind::corrupt,
-                   "the database holds the word \"" + word + "\", which no release has written");
+  throw StoreError(ErrorKind::corrupt, "the database contains the word \"" + word +
+                                           "\", which no release of Turnpoint has ever written");
 }
 
 }  // namespace

@@ -28,9 +28,9 @@ FileState state_of(const std::string& path) {
 void refuse_empty(const std::string& path) {
   throw StoreError(
       ErrorKind::not_a_database,
-      fmt::format("database {}: the file is empty (0 bytes): what was in it is lost, or it never was a "
-                  "database; it was left untouched; restore the newest backup (turnpoint backup --db "
-                  "FILE --dir FOLDER --restore), or remove it to begin a new one",
+      fmt::format("database {}: the file is empty (0 bytes): its contents are lost, or it was never a "
+                  "database; the file was not changed; restore the newest backup (turnpoint backup --db "
+                  "FILE --dir FOLDER --restore), or remove the file to begin a new database",
                   path));
 }
 
@@ -54,12 +54,12 @@ void require_writable(Database& database) {
   throw StoreError(
       ErrorKind::read_only,
       fmt::format("database {}: the file or its disk cannot be written; nothing was changed; make the "
-                  "file and its folder writable, or name a database elsewhere",
+                  "file and its folder writable, or choose a database in another place",
                   database.path()));
 }
 
 /// Some file systems and folders do not allow the shared memory of WAL mode. Only then, and only if there is
-/// no log with data that would be missed, the file is read without it.
+/// no log with data, the file is read without that mode.
 Database open_plain_reader(const std::string& path) {
   try {
     Database database(path, Database::Access::read_only);
@@ -81,8 +81,8 @@ void refuse_second_name(const std::string& path) {
   if (::lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink < 2) return;
   throw StoreError(
       ErrorKind::busy,
-      fmt::format("database {}: the file has a second name (a hard link), by which another station "
-                  "could write it at the same time; it was left untouched; remove the other "
+      fmt::format("database {}: the file has a second name (a hard link), through which another station "
+                  "could write to it at the same time; the file was not changed; remove the other "
                   "name, or copy the file and use the copy",
                   path));
 }
@@ -109,18 +109,17 @@ StationLock::StationLock(const std::string& database) {
   lock_ = open_lock(database + ".lock");
   const auto found = note_in(lock_.get());
   if (::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0)
-    throw StoreError(
-        ErrorKind::busy,
-        fmt::format("database {}: another station process{}{} is writing it; end that one first, or "
-                    "name another database",
-                    database, found.process.empty() ? "" : ", pid ", found.process));
+    throw StoreError(ErrorKind::busy,
+                     fmt::format("database {}: another station process{}{} is writing to it; end that "
+                                 "process first, or name another database",
+                                 database, found.process.empty() ? "" : ", pid ", found.process));
   note(found.database_id);
 }
 
 void StationLock::remember(const std::string& database_id) { note(database_id); }
 
-/// The note only helps somebody who finds the lock taken or the file lost. A full disk must not keep the
-/// station from starting here.
+/// The text in the lock file only helps somebody who finds the lock taken or the database lost. If the disk
+/// is full and it cannot be written, the station must start all the same.
 void StationLock::note(const std::string& database_id) {
   const auto text = fmt::format("{}\n{}{}", ::getpid(), database_id, database_id.empty() ? "" : "\n");
   if (::pwrite(lock_.get(), text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()))

@@ -89,13 +89,13 @@ std::vector<Bearer> only_person(const People& people, const std::string& name, c
     throw StoreError(
         ErrorKind::missing,
         fmt::format("{}: the database has no participant \"{}\"; nothing was changed; `turnpoint "
-                    "sessions` lists those that it has",
+                    "sessions` lists the participants",
                     what, name));
   std::string list;
   for (const auto& person : found) list += (list.empty() ? "" : ", ") + full_name(person.front());
   throw StoreError(ErrorKind::refused,
-                   fmt::format("{}: \"{}\" may be {} people: {}; nothing was changed; name one of them, or "
-                               "`turnpoint join` them if they are one person",
+                   fmt::format("{}: \"{}\" could mean any of {} people: {}; nothing was changed; name one of "
+                               "them, or use `turnpoint join` if they are the same person",
                                what, name, found.size(), list));
 }
 
@@ -115,9 +115,9 @@ std::string join(const std::string& path, const std::string& first, const std::s
   const auto same = people.same_as(a);
   const bool joined = std::find(same.begin(), same.end(), b) != same.end();
   if (a == b)
-    throw StoreError(
-        ErrorKind::refused,
-        fmt::format("join: {} and {} are one code at one station; nothing was changed", first, second));
+    throw StoreError(ErrorKind::refused,
+                     fmt::format("join: {} and {} are the same code at the same station; nothing was changed",
+                                 first, second));
   Transaction transaction(database);
   if (relation == Relation::two_people)
     Statement(database,
@@ -131,7 +131,7 @@ std::string join(const std::string& path, const std::string& first, const std::s
         .run();
   if (relation == Relation::two_people && database.changes() == 0)
     throw StoreError(ErrorKind::missing,
-                     fmt::format("join: nobody has said that {} and {} are one person; nothing was "
+                     fmt::format("join: {} and {} were never joined as one person; nothing was "
                                  "changed",
                                  full_name(a), full_name(b)));
   transaction.commit();

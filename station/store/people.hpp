@@ -34,7 +34,8 @@ class People {
   std::vector<std::vector<Bearer>> named(const std::string& name) const;
 
  private:
-  std::vector<std::vector<Bearer>> persons_;  ///< in each person, the bearer that gives the name comes first
+  /// in each person, the code that the person is named after comes first
+  std::vector<std::vector<Bearer>> persons_;
   std::map<Bearer, std::size_t> person_of_;
   std::map<std::string, int> persons_with_code_;  ///< number of people known by each code
 };

@@ -150,8 +150,8 @@ std::vector<SessionRecord> list_sessions(const std::string& path, const SessionF
 SessionRecord session_record(Database& database, const std::string& session_id) {
   auto session = SessionReader(database, LongTexts::read).read(session_id);
   if (!session)
-    throw StoreError(ErrorKind::missing, "database " + database.path() + ": it has no session \"" +
-                                             session_id + "\"; `turnpoint sessions` lists those that it has");
+    throw StoreError(ErrorKind::missing, "database " + database.path() + ": there is no session \"" +
+                                             session_id + "\"; `turnpoint sessions` lists all sessions");
   return std::move(*session);
 }
 
@@ -180,7 +180,7 @@ StoredSession read_session(const std::string& path, const std::string& session_i
 
 std::optional<Interrupted> interrupted_session(const std::string& path, const std::string& session_id) {
   auto database = open_reader(path);
-  // Order by trial number, which follows the order of storing. The wall clock may have been set since.
+  // Order by trial number, which follows the order of storing. The wall clock may have been changed since.
   Statement newest(
       database,
       "SELECT s.session_id, (SELECT max(trial_id) FROM trial t WHERE t.session_id = s.session_id) AS last"

@@ -29,8 +29,8 @@ void require_lost(const std::string& path) {
     throw;
   }
   throw StoreError(ErrorKind::refused,
-                   fmt::format("restore: database {} is good; nothing was changed; to go back to a "
-                               "backup all the same, move it away first, with {}-wal if there is one",
+                   fmt::format("restore: database {} is intact; nothing was changed; to go back to a backup "
+                               "anyway, first move the database away, and {}-wal too if it exists",
                                path, path));
 }
 
@@ -55,8 +55,8 @@ std::string id_of_lost(const std::string& path) {
           fmt::format("; {} (of station {}, newest {})", backup->database_id, backup->station, backup->path);
   throw StoreError(
       ErrorKind::conflict,
-      fmt::format("restore: nothing tells which database {} was, and the folder holds backups of {}; "
-                  "nothing was changed; name one with --database-id{}",
+      fmt::format("restore: it is not known which database {} was, and the folder contains backups of {} "
+                  "databases; nothing was changed; choose one with --database-id{}",
                   path, told.size(), list));
 }
 
@@ -159,7 +159,7 @@ Restoration restore_backup(const std::string& name, const RestoreOptions& option
     return restoration;
   }
   throw StoreError(ErrorKind::missing,
-                   fmt::format("restore: {} holds no good backup of {} ({} failed their check); "
+                   fmt::format("restore: {} contains no intact backup of {} ({} backups failed their check); "
                                "nothing was changed",
                                options.directory, path, restoration.rejected.size()));
 }

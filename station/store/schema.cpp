@@ -312,15 +312,16 @@ int checked_version(Database& database) {
   const auto version = database.integer("PRAGMA user_version");
   if (application != kApplicationId || version < 1)
     refuse(ErrorKind::not_a_database, database,
-           "is an SQLite file, but not Turnpoint's; nothing was changed; name another file, or one that does "
+           "is an SQLite file, but not a Turnpoint database; nothing was changed; name another file, or one "
+           "that does "
            "not "
            "exist yet");
   if (version > schema_version())
     refuse(ErrorKind::newer_schema, database,
-           fmt::format(
-               "has schema {}, this program knows schemas up to {}; nothing was changed; update Turnpoint "
-               "on this station",
-               version, schema_version()));
+           fmt::format("has schema version {}, but this program knows versions only up to {}; nothing was "
+                       "changed; update Turnpoint "
+                       "on this station",
+                       version, schema_version()));
   return static_cast<int>(version);
 }
 

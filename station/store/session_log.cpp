@@ -31,11 +31,10 @@ void require_space(const std::string& database) {
   if (::statvfs(folder.c_str(), &disk) != 0) return;  // opening the file gives a better message
   const auto free_bytes = static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize;
   if (free_bytes >= kFreeBytesWanted) return;
-  throw StoreError(
-      ErrorKind::disk_full,
-      fmt::format("database {}: {} MiB are free on its disk and a session wants {}; nothing was written; "
-                  "free some space, then begin again",
-                  database, free_bytes >> 20U, kFreeBytesWanted >> 20U));
+  throw StoreError(ErrorKind::disk_full,
+                   fmt::format("database {}: only {} MiB are free on its disk, and a session needs {} MiB; "
+                               "nothing was written; free some space, then begin again",
+                               database, free_bytes >> 20U, kFreeBytesWanted >> 20U));
 }
 
 void refuse(Database& database, ErrorKind kind, const std::string& what) {
@@ -47,10 +46,11 @@ void refuse(Database& database, ErrorKind kind, const std::string& what) {
 int enrol(Database& database, const SessionStart& start) {
   const Bearer bearer{start.station_id, start.participant};
   if (is_withdrawn(database, bearer))
-    throw StoreError(ErrorKind::refused,
-                     fmt::format("database {}: participant {} has withdrawn; the code is not given out "
-                                 "again; take a new one",
-                                 database.path(), start.participant));
+    throw StoreError(
+        ErrorKind::refused,
+        fmt::format(
+            "database {}: participant {} has withdrawn; this code cannot be used again; choose a new code",
+            database.path(), start.participant));
   Statement known(
       database,
       "SELECT sequence_index FROM enrolment WHERE protocol_id = ? AND station_id = ? AND participant = ?");
@@ -199,7 +199,7 @@ SessionLog SessionLog::resume(const std::string& path, const std::string& id, co
   auto stored = read_session(database, id);
   if (stored.session.status != SessionStatus::interrupted)
     refuse(database, ErrorKind::refused,
-           fmt::format("session {} is {}; only an interrupted one can be continued", id,
+           fmt::format("session {} is {}; only an interrupted session can be continued", id,
                        name(stored.session.status)));
   const int index = stored.session.segments + 1;
   impl->place = {id, index, 0, 0};
@@ -214,7 +214,7 @@ SessionLog SessionLog::resume(const std::string& path, const std::string& id, co
   open.bind(id).step();
   if (const auto trial = open.maybe_integer(0))
     impl->events.push_back({segment.monotonic_ns, "aborted",
-                            "presented, but the process ended before the trial did",
+                            "the trial was presented, but the program ended before the trial was over",
                             static_cast<int>(*trial)});
   open.reset();
   Transaction transaction(database);
@@ -243,7 +243,8 @@ void SessionLog::begin_block(const BlockStart& block) {
   const bool exists = known.step();
   if (exists && known.integer(0) == 0)
     refuse(database, ErrorKind::conflict,
-           fmt::format("block {} attempt {} of session {} was begun with another name or instruction",
+           fmt::format("block {} attempt {} of session {} was begun with a different name, instruction or "
+                       "practice setting",
                        block.block_index, block.attempt, id));
   known.reset();
   Transaction transaction(database);
@@ -268,7 +269,8 @@ void SessionLog::presented(int trial_index, std::int64_t time_ns) {
 
 void SessionLog::append(const TrialRow& trial) {
   if (!impl_->in_block)
-    refuse(impl_->writer.database, ErrorKind::refused, "a trial belongs to a block; begin_block comes first");
+    refuse(impl_->writer.database, ErrorKind::refused,
+           "a trial was added outside a block; call begin_block first");
   const auto now = system::realtime_ns();
   Transaction transaction(impl_->writer.database);
   impl_->rows.trial(impl_->place, trial, now);

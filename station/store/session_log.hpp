@@ -56,7 +56,7 @@ class SessionLog {
   /// description must be the same.
   void begin_block(const BlockStart& block);
 
-  /// Committed before a stimulus, so that an interrupted trial leaves a trace.
+  /// Stores at once that a stimulus is about to be presented, so that an interrupted trial leaves a trace.
   void presented(int trial_index, std::int64_t time_ns);
 
   /// Keeps the event in memory until the next commit of a trial or state change.

@@ -37,21 +37,22 @@ ErrorKind kind_of(int code) {
 const char* advice(ErrorKind kind) {
   switch (kind) {
     case ErrorKind::disk_full:
-      return "rows committed before are intact; free some space, then go on (the same trial is kept)";
+      return "rows committed before are intact; free some space, then continue (the current trial is not "
+             "lost)";
     case ErrorKind::read_only:
-      return "make the file and its folder writable, or name a database elsewhere";
+      return "make the file and its folder writable, or choose a database in another place";
     case ErrorKind::corrupt:
-      return "it was left untouched; copy it away for safety and restore the newest good backup "
+      return "the file was not changed; make a copy of it for safety and restore the newest good backup "
              "(turnpoint backup --db FILE --dir FOLDER --restore)";
     case ErrorKind::not_a_database:
       return "name a Turnpoint database, or a file that does not exist yet";
     case ErrorKind::busy:
-      return "another program has it open; end that one first";
+      return "another program has the database open; end that program first";
     case ErrorKind::cannot_open:
       return "check the permissions of the file and of its folder; nothing is known to be wrong with its "
              "content";
     case ErrorKind::refused:
-      return "the row contradicts the rules of the data and was not written";
+      return "the row violates a rule of the database and was not written";
     default:
       return "check the disk; rows committed before are intact";
   }

@@ -50,7 +50,7 @@ class Statement {
       bind_null(index);
   }
 
-  bool step();  ///< true while there is a row
+  bool step();  ///< advances to the next row; false if there is none
   void run();   ///< steps to the end, then resets
   void reset();
 

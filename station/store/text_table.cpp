@@ -10,7 +10,8 @@ namespace turnpoint::store {
 
 namespace {
 
-/// The setting of a slider is stored as text. If it is a number, a spreadsheet cannot take it for a formula.
+/// The setting of a slider is stored as text. A number among these texts needs no protection: a spreadsheet
+/// cannot take it for a formula.
 bool is_number(const std::string& text) {
   double value = 0;
   const auto* end = text.data() + text.size();
@@ -57,7 +58,7 @@ TextTable::TextTable(const TableStyle& style, const std::vector<std::string>& co
 
 void TextTable::row(const std::vector<Cell>& cells) {
   if (cells.size() != columns_)
-    throw std::logic_error("a row of a table has as many cells as it has columns");
+    throw std::logic_error("a table row must have as many cells as the table has columns");
   for (const auto& one : cells) field(std::visit(Formatter{style_}, one));
   end_row();
 }

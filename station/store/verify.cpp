@@ -32,17 +32,18 @@ std::vector<Exported> read_export(const std::string& path) {
     refuse(error.what());
   }
   const auto lines = read_table(bytes);
-  if (lines.empty()) refuse(path + ": it is empty");
+  if (lines.empty()) refuse(path + ": the file is empty");
   const auto column = [&](const char* name) {
     const auto& head = lines.front();
     const auto at = std::find(head.begin(), head.end(), name);
-    return at == head.end() ? refuse(fmt::format("{}: it has no column {}", path, name))
+    return at == head.end() ? refuse(fmt::format("{}: the file has no column {}", path, name))
                             : static_cast<std::size_t>(at - head.begin());
   };
   const auto id = column("session_id"), checksum = column("checksum");
   std::vector<Exported> sessions;
   for (std::size_t i = 1; i < lines.size(); ++i) {
-    if (lines[i].size() != lines.front().size()) refuse(fmt::format("{}: line {} is not whole", path, i + 1));
+    if (lines[i].size() != lines.front().size())
+      refuse(fmt::format("{}: line {} is incomplete", path, i + 1));
     sessions.push_back({lines[i][id], lines[i][checksum]});
   }
   return sessions;
@@ -52,14 +53,15 @@ std::vector<Exported> read_export(const std::string& path) {
 void compare(Database& database, const Exported& exported, Verification& result) {
   if (exported.checksum == "n/a") return;  // the session was recorded by a release without checksums
   if (holds_link(database, exported.session_id, exported.checksum)) return;
-  const auto problem = fmt::format("it does not hold the exported checksum {}", exported.checksum);
+  const auto problem =
+      fmt::format("the session does not contain the exported checksum {}", exported.checksum);
   for (auto& session : result.sessions)
     if (session.session_id == exported.session_id) {
       session.problems.push_back(problem);
       return;
     }
   result.problems.push_back(
-      fmt::format("session {} was exported, and is not in the database", exported.session_id));
+      fmt::format("session {} is in the export but not in the database", exported.session_id));
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ void verify(const std::string& path) {
   for (const auto* suffix : kLogSuffixes)
     if (file_size(path + suffix) > 0)
       throw StoreError(ErrorKind::io,
-                       fmt::format("{}: SQLite left {} of it behind; check the disk", path, suffix));
+                       fmt::format("{}: SQLite left the file's {} behind; check the disk", path, suffix));
   Database copy(path, Database::Access::immutable);
   checked_version(copy);
   check_pages(copy);
@@ -93,8 +93,8 @@ void check_ends(Database& database) {
     const bool needed = std::string_view("session segment block").find(table) != std::string_view::npos;
     if (!row.step() && needed)
       throw StoreError(ErrorKind::corrupt,
-                       fmt::format("database {}: the last trial has lost its {}; it was left "
-                                   "untouched; restore the newest good backup (turnpoint backup "
+                       fmt::format("database {}: the last trial has no {} row any more; the file was not "
+                                   "changed; restore the newest good backup (turnpoint backup "
                                    "--db FILE --dir FOLDER --restore)",
                                    database.path(), table));
   }
@@ -134,7 +134,8 @@ void copy_to_file(Database& from, const std::string& to, const std::string& orig
     copy_database(from, copy);
     // Take the copy out of WAL mode: a single file can be read from any medium.
     if (copy.text("PRAGMA journal_mode = DELETE") != "delete")
-      throw StoreError(ErrorKind::io, "copy " + temporary + ": it cannot leave WAL mode; check the disk");
+      throw StoreError(ErrorKind::io,
+                       "copy " + temporary + ": the copy cannot be taken out of WAL mode; check the disk");
     copy.execute("PRAGMA synchronous = EXTRA");
     if (finish) finish(copy);
   });

@@ -146,10 +146,11 @@ void scrub(Database& database) {
   database.execute("PRAGMA temp_store = MEMORY; VACUUM");
   Statement checkpoint(database, "PRAGMA wal_checkpoint(TRUNCATE)");
   if (!checkpoint.step() || checkpoint.integer(0) != 0)
-    throw StoreError(ErrorKind::busy,
-                     fmt::format("database {}: the rows are deleted, but a reader keeps the log from "
-                                 "being cut; end the other program and withdraw again",
-                                 database.path()));
+    throw StoreError(
+        ErrorKind::busy,
+        fmt::format("database {}: the rows are deleted, but another program is reading the database, so its "
+                    "log could not be emptied; end that program and withdraw again",
+                    database.path()));
 }
 
 void note_copies(Withdrawal& withdrawal, const Copies& copies) {
@@ -191,10 +192,9 @@ Withdrawal withdraw(const std::string& name, const WithdrawOptions& options) {
     note_copies(withdrawal, copies);
     remove_copies(copies, options.backup_directory);
   } catch (const StoreError& error) {
-    throw StoreError(error.kind(),
-                     fmt::format("withdraw: the database no longer holds them, but copies of it may: {}; "
-                                 "then withdraw again",
-                                 error.what()));
+    throw StoreError(error.kind(), fmt::format("withdraw: the sessions were removed from the database, but "
+                                               "copies of it may still contain them: {}; then withdraw again",
+                                               error.what()));
   }
   return withdrawal;
 }

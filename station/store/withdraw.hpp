@@ -22,7 +22,7 @@ struct Withdrawal {
   std::vector<SessionRecord> sessions;
   std::vector<Bearer> bearers;  ///< codes that will not be assigned again
   std::int64_t trials = 0, tones = 0, events = 0, annotations = 0;
-  /// backups, and copies from before a migration, that contained the sessions
+  /// removed copies of the database that contained the sessions: backups, and copies from before a migration
   std::vector<std::string> removed_copies;
   /// files that still contain the sessions or cannot be read; to be removed by hand
   std::vector<std::string> remaining_copies;
@@ -41,7 +41,7 @@ Withdrawal plan_withdrawal(const std::string& database, const WithdrawOptions& o
 /// Throws StoreError like plan_withdrawal(), before anything is deleted.
 Withdrawal withdraw(const std::string& database, const WithdrawOptions& options);
 
-/// True if the code was withdrawn here.
+/// True if this code was withdrawn in this database.
 bool is_withdrawn(Database& database, const Bearer& bearer);
 
 }  // namespace turnpoint::store

@@ -100,7 +100,7 @@ def run(program):
         before = sorted(os.listdir(folder))
         drill = subprocess.run([program, "backup", "--db", database, "--dir", folder, "--drill"], capture_output=True,
                                text=True, check=False)
-        check(drill.stdout + drill.stderr, drill.returncode == 0 and "every row of it is as it was recorded" in drill.stdout)
+        check(drill.stdout + drill.stderr, drill.returncode == 0 and "every row of the backup is as it was recorded" in drill.stdout)
         check("the drill leaves something behind", sorted(os.listdir(folder)) == before)
 
         memory = "/dev/shm"

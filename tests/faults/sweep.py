@@ -387,7 +387,7 @@ class Sweep:
     @staticmethod
     def complete(operation, folder, again):
         """Failed after all was done: to do it again is refused, and what it was to do holds."""
-        return "is good; nothing was changed" in again.stderr
+        return "is intact; nothing was changed" in again.stderr
 
     def run(self, name, choose):
         operation = OPERATIONS[name](self)

@@ -238,13 +238,13 @@ TEST_CASE("verify compares a database with a sessions.csv that was exported befo
     for (const auto& session : list_sessions(database)) Chain(database, session.session_id).add();
     const auto result = verify(db, {"", csv});
     REQUIRE_FALSE(result.good());
-    CHECK(sample::contains(result.sessions[0].problems.at(0), "does not hold the exported checksum"));
+    CHECK(sample::contains(result.sessions[0].problems.at(0), "does not contain the exported checksum"));
   }
   SECTION("another database") {
     sample::session(folder / "b.sqlite", 2);
     const auto result = verify(folder / "b.sqlite", {"", csv});
     REQUIRE(result.problems.size() == 1);
-    CHECK(sample::contains(result.problems[0], "is not in the database"));
+    CHECK(sample::contains(result.problems[0], "but not in the database"));
   }
   SECTION("not a sessions.csv") {
     const auto [fault, message] = sample::failure([&] {
@@ -264,7 +264,7 @@ TEST_CASE("verify compares a database with a sessions.csv that was exported befo
       CHECK(fault == ErrorKind::missing);
       return text;
     };
-    CHECK(sample::contains(message(folder / "empty.csv"), "empty.csv: it is empty"));
+    CHECK(sample::contains(message(folder / "empty.csv"), "empty.csv: the file is empty"));
     CHECK(sample::contains(message(folder / "fifo.csv"), "fifo.csv: not a file but a pipe"));
     CHECK(sample::contains(message(folder / "out"), "out: Is a directory"));
     CHECK(sample::contains(message("/proc/self/mem"), "mem: Input/output error"));

@@ -85,7 +85,7 @@ TEST_CASE("a drill finds a backup that is damaged, changed, or of other data tha
         "DELETE FROM tone; DELETE FROM trial; DELETE FROM session");
     const auto problems = drill_restore(db, dir).problems;
     REQUIRE(problems.size() == 1);
-    CHECK(sample::contains(problems[0], "no longer holds it"));
+    CHECK(sample::contains(problems[0], "no longer contains this session"));
   }
   SECTION("a session was withdrawn since, which is no fault of the backup") {
     backup(db, {dir, 9});
@@ -170,6 +170,6 @@ TEST_CASE("a backup that wants a disk is refused where none is mounted", "[store
     backup(dir + "/b.sqlite", {dir, 9, Destination::disk});
   });
   CHECK(fault == ErrorKind::missing);
-  CHECK(sample::contains(message, "the disk of the database itself"));
+  CHECK(sample::contains(message, "the same disk as the database"));
   fs::remove_all(dir);
 }

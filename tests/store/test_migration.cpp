@@ -100,7 +100,7 @@ TEST_CASE("a database of a newer release is left alone, and the message says to 
   const auto check = [&](auto&& action) {
     const auto [fault, message] = sample::failure(action);
     CHECK(fault == ErrorKind::newer_schema);
-    CHECK(sample::contains(message, "schema 99"));
+    CHECK(sample::contains(message, "schema version 99"));
     CHECK(sample::contains(message, "update Turnpoint"));
   };
   check([&] { sample::session(db, 1); });

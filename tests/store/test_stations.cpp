@@ -105,7 +105,9 @@ TEST_CASE("merge refuses rows that contradict, says which, and merges nothing", 
   SECTION("two databases that bear the name of one station") {
     std::filesystem::remove(a);
     sample::session(a, 1, at_station("P09", "b"));
-    expected = "station b has given place 0 of protocol two-boundaries to P09 here and to P01 there";
+    expected =
+        "station b has given place 0 of protocol two-boundaries to P09 in this database and to P01 in the "
+        "other";
   }
   const auto [fault, message] = sample::failure([&] { merge(a, b); });
   CHECK(fault == ErrorKind::conflict);
@@ -248,7 +250,7 @@ TEST_CASE("a link in the place of the lock is not followed", "[store]") {
   const auto [fault, message] = sample::failure([&] { sample::session(db, 1); });
   CHECK(fault == ErrorKind::io);
   CHECK(sample::contains(message, "a.sqlite.lock"));
-  CHECK(sample::contains(message, "remove it"));
+  CHECK(sample::contains(message, "was not used; remove the"));
   CHECK(sample::bytes_of(target) == "precious");
 }
 
