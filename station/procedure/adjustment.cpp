@@ -47,8 +47,9 @@ extern const Description adjustment{
       read_list(reader, spec);
     },
     [](const Spec& spec, std::vector<Problem>& problems) {
-      if (spec.values.empty()) problems.push_back({"start", "missing", "one or more levels to start from"});
-      if (spec.repeats < 1) problems.push_back({"repeats", "below 1", "a whole number of 1 or more"});
+      if (spec.values.empty())
+        problems.push_back({"start", "missing", "list one or more levels to start from"});
+      if (spec.repeats < 1) problems.push_back({"repeats", "below 1", "write a whole number of 1 or more"});
     },
     [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {
       return std::make_unique<Adjustment>(spec, context, key);

@@ -13,7 +13,7 @@ namespace {
 
 using Levels = std::vector<std::vector<std::size_t>>;
 
-/// No design repeats a value more often, so larger products of levels need not be computed.
+/// Counting of combinations stops at this number, because no design repeats a value more often.
 constexpr std::size_t kMost = 1'000'000;
 
 /// The number of combinations of these factors' levels, up to kMost.
@@ -104,7 +104,7 @@ void ConstantStimuli::break_runs(std::vector<Item>& items, random::Draws& draws)
       std::swap(items[at], items[others[draws.below(others.size())]]);
       continue;
     }
-    // None is left, so move an item of the other kind back from earlier in this repeat.
+    // There is no such item, so move an item with another right answer back from earlier in this repeat.
     for (std::size_t i = at; i-- > at / n * n;) {
       std::swap(items[at], items[i]);
       bool good = true;
@@ -130,8 +130,8 @@ void ConstantStimuli::record(Answer answer) {
     ++recorded_;
     return;
   }
-  // Insert it at a random place among the remaining trials, at least one trial away if possible; after the
-  // last trial, append it.
+  // Insert the trial at a random place among the remaining trials, at least one trial away if possible; after
+  // the last trial, append it.
   random::Draws draws({key_.seed, random::Stream::level_order, key_.block, key_.attempt, 1 + requeued_++});
   const auto left = queue_.size() - position_;
   const auto offset = left == 0 ? 0 : 1 + draws.below(left);
@@ -155,8 +155,8 @@ extern const Description constant_stimuli{
       read_list(reader, spec);
     },
     [](const Spec& spec, std::vector<Problem>& problems) {
-      if (spec.values.empty()) problems.push_back({"values", "missing", "one or more levels"});
-      if (spec.repeats < 1) problems.push_back({"repeats", "below 1", "a whole number of 1 or more"});
+      if (spec.values.empty()) problems.push_back({"values", "missing", "list one or more levels"});
+      if (spec.repeats < 1) problems.push_back({"repeats", "below 1", "write a whole number of 1 or more"});
       if (spec.max_run && *spec.max_run < 1) problems.push_back({"order.max_run", "below 1", "1 or more"});
     },
     [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {

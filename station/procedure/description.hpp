@@ -10,18 +10,20 @@ namespace turnpoint::procedure {
 
 /// How a procedure chooses its levels.
 enum class Choice {
-  listed,     ///< fixed before the session
-  track,      ///< by the answers, one step at a time; the report prints its estimate
-  posterior,  ///< by the answers and an assumed psychometric function, which the report fits again
+  listed,  ///< levels are fixed before the session
+  track,   ///< answers move the level, one step at a time; the report prints the procedure's own estimate
+  /// levels are chosen from the answers and an assumed psychometric function, which the report fits again
+  posterior,
 };
 
 /// Everything that the rest of the station needs to know about a kind of procedure. Each kind defines its own
 /// description, and the table in procedure.cpp lists them.
 struct Description {
   Kind kind;
-  const char* name;  ///< name in a protocol: kind = "up-down"
+  const char* name;  ///< name of the kind in a protocol, such as "up-down"
   Choice choice;
-  /// Reads the kind's own keys; name, kind, level and copy have been read already.
+  /// Reads the keys of this kind from a [[procedure]] table; name, kind, level and copy have been read
+  /// already.
   void (*read)(text::TableReader& reader, Spec& spec);
   /// Adds the problems of a spec, whatever file it came from.
   void (*validate)(const Spec& spec, std::vector<Problem>& problems);

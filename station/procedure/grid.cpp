@@ -21,16 +21,16 @@ std::vector<double> even_steps(TableReader& reader, double from, double to) {
   const double step = reader.number("step", {0, 1e6, Range::Ends::open_low});
   const double intervals = (to - from) / step;
   if (!(intervals <= most_points - 1)) {
-    reader.problem("step", "the grid has " + text::number(intervals + 1) + " points",
+    reader.problem("step", "the grid would have " + text::number(intervals + 1) + " points",
                    "at most " + std::to_string(most_points));
     return {from};
   }
   const double whole = std::round(intervals);
   if (std::fabs(intervals - whole) > 1e-6 || whole < 0)
     reader.problem("to",
-                   "the steps from " + text::number(from) + " by " + text::number(step) + " do not end at " +
-                       text::number(to),
-                   "for example " + text::number(from + std::max(whole, 0.0) * step));
+                   "the steps from " + text::number(from) + " by " + text::number(step) +
+                       " do not end exactly at " + text::number(to),
+                   "a possible end is " + text::number(from + std::max(whole, 0.0) * step));
   std::vector<double> values;
   for (int i = 0; i <= static_cast<int>(whole); ++i) values.push_back(from + i * step);
   return values;
@@ -39,7 +39,7 @@ std::vector<double> even_steps(TableReader& reader, double from, double to) {
 std::vector<double> linear_axis(TableReader& reader) {
   const double from = reader.number("from", {-1e6, 1e6}), to = reader.number("to", {-1e6, 1e6});
   if (reader.has("to") && to < from) {
-    reader.problem("to", "\"to\" is below \"from\"", "at least " + text::number(from));
+    reader.problem("to", "\"to\" is less than \"from\"", "at least " + text::number(from));
     return {from};
   }
   if (!reader.has("count")) return even_steps(reader, from, to);
@@ -54,7 +54,7 @@ std::vector<double> log_axis(TableReader& reader) {
   const double from = reader.number("log_from", positive), to = reader.number("log_to", positive);
   const int count = reader.integer("count", 2, most_points);
   if (reader.has("log_to") && to <= from) {
-    reader.problem("log_to", "\"log_to\" is not above \"log_from\"", "above " + text::number(from));
+    reader.problem("log_to", "\"log_to\" must be greater than \"log_from\"", "above " + text::number(from));
     return {from};
   }
   std::vector<double> values{from};
@@ -79,7 +79,8 @@ Grid read_grid(const text::Value& table, const std::string& name, Axis axis, tex
     grid.values = reader.numbers("values", {-1e6, 1e6});
     for (std::size_t i = 1; i < grid.values.size(); ++i)
       if (grid.values[i] <= grid.values[i - 1]) {
-        reader.problem("values", "\"values\" do not rise", "each above the one before");
+        reader.problem("values", "\"values\" are not in ascending order",
+                       "each value must be greater than the one before");
         break;
       }
   } else if (reader.has("log_from")) {
@@ -87,7 +88,7 @@ Grid read_grid(const text::Value& table, const std::string& name, Axis axis, tex
   } else if (reader.has("from")) {
     grid.values = linear_axis(reader);
   } else {
-    findings.add(table.place, "\"" + name + "\" is no grid", std::string("allowed: ") + forms);
+    findings.add(table.place, "\"" + name + "\" does not describe a grid", std::string("allowed: ") + forms);
     for (const auto* key : {"values", "from", "to", "step", "count", "log_from", "log_to"}) reader.take(key);
   }
   reader.finish();
@@ -98,7 +99,7 @@ Prior read_prior(const text::Value& table, const std::string& name, text::Findin
   Prior prior;
   if (table.kind != text::Value::Kind::table) {
     findings.add(table.place, "\"" + name + "\" is " + describe(table),
-                 "{ normal = { mean, sd } } or { weights = [...] }");
+                 "write { normal = { mean, sd } } or { weights = [...] }");
     return prior;
   }
   TableReader reader(table, name, findings);
@@ -106,7 +107,7 @@ Prior read_prior(const text::Value& table, const std::string& name, text::Findin
   prior.weights = reader.maybe_numbers("weights", {0, 1e12});
   if (reader.has("normal") == reader.has("weights"))
     findings.add(table.place, "\"" + name + "\" has " + (normal ? "two forms" : "no form"),
-                 "exactly one of \"normal\" or \"weights\"");
+                 "write either \"normal\" or \"weights\"");
   if (normal) {
     TableReader inner(*normal, name + ".normal", findings);
     const double mean = inner.number("mean", {-1e6, 1e6});

@@ -37,7 +37,7 @@ void read_scale(TableReader& reader, Spec& spec) {
 }
 
 void read_stop(TableReader& reader, Spec& spec) {
-  const auto* table = reader.table("stop", "when it ends: { trials = 40 }");
+  const auto* table = reader.table("stop", "say when the procedure ends: { trials = 40 }");
   if (!table) return;
   TableReader inner(*table, reader.path("stop"), reader.findings());
   spec.stop.trials = inner.maybe_integer("trials", 1, 100000);
@@ -48,11 +48,12 @@ void read_stop(TableReader& reader, Spec& spec) {
   const int rules =
       inner.has("trials") + inner.has("reversals") + inner.has("threshold_sd") + inner.has("entropy_nats");
   if (rules == 0)
-    reader.findings().add(table->place, "\"stop\" has no rule",
-                          "\"trials\", \"reversals\", \"threshold_sd\" or \"entropy_nats\"");
+    reader.findings().add(table->place, "\"stop\" does not contain a stopping rule",
+                          "add \"trials\", \"reversals\", \"threshold_sd\" or \"entropy_nats\"");
   if (rules > 1 && !inner.has("rule"))
-    reader.findings().add(table->place, "\"stop\" has several rules",
-                          "\"rule\" = \"or\" (the first that holds ends it) or \"and\" (all must hold)");
+    reader.findings().add(
+        table->place, "\"stop\" contains several stopping rules",
+        "add rule = \"or\" (any of them ends the procedure) or rule = \"and\" (all must be met)");
   spec.stop.rule =
       inner.maybe_word("rule", {"or", "and"}).value_or("or") == "and" ? StopRule::all : StopRule::any;
   inner.finish();
@@ -71,13 +72,15 @@ void read_span(TableReader& reader, Spec& spec) {
 }
 
 void validate_span(const Spec& spec, std::vector<Problem>& problems) {
-  if (!spec.start) problems.push_back({"start", "missing", "the first level, a number"});
+  if (!spec.start) problems.push_back({"start", "missing", "write the first level as a number"});
   if (spec.min && spec.max && *spec.min >= *spec.max)
-    problems.push_back({"min", "not below max", "min < max"});
+    problems.push_back({"min", "\"min\" is not less than \"max\"", "min < max"});
   if (spec.start && ((spec.min && *spec.start < *spec.min) || (spec.max && *spec.start > *spec.max)))
-    problems.push_back({"start", "outside min ... max", "a level between min and max"});
+    problems.push_back(
+        {"start", "the first level is outside min to max", "write a level between min and max"});
   if (spec.scale != Scale::linear && spec.start && !(*spec.start > 0))
-    problems.push_back({"start", "not above 0 on a logarithmic scale", "a level above 0"});
+    problems.push_back(
+        {"start", "on a logarithmic scale the first level must be above 0", "write a level above 0"});
 }
 
 bool positive(const std::vector<double>& values) {

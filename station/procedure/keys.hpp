@@ -11,9 +11,9 @@ inline constexpr text::Range any_level{-1e6, 1e6};
 void read_scale(text::TableReader& reader, Spec& spec);
 void read_stop(text::TableReader& reader, Spec& spec);
 void read_tracks(text::TableReader& reader, Spec& spec);
-/// "repeats", "balance" and "order" of a list of levels.
+/// Reads "repeats", "balance" and "order" of a list of levels.
 void read_list(text::TableReader& reader, Spec& spec);
-/// "start", "min" and "max".
+/// Reads "start", "min" and "max".
 void read_span(text::TableReader& reader, Spec& spec);
 
 /// Adds the problems of a start, its limits and its scale.

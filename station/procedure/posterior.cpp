@@ -12,11 +12,11 @@ namespace turnpoint::procedure {
 
 namespace {
 
-/// No answer may be impossible, because a single slip would then make the posterior zero everywhere. The
-/// value is too small to be noticeable otherwise.
+/// The lowest probability of an answer. If an answer were impossible, a single slip would make the posterior
+/// zero everywhere. The value is too small to be noticeable otherwise.
 constexpr double kFloor = 1e-14;
 
-/// Used for a distance that no finite level can have.
+/// Stands for an infinite distance; no finite level has a distance this large.
 constexpr double kBeyond = 1e300;
 /// Distances that differ by less than this share of the largest one count as equal: the difference is only
 /// rounding.
@@ -40,7 +40,8 @@ double binary_entropy(double p) {
 /// Number of parallel partial sums in a sum of products.
 constexpr std::size_t kLanes = 8;
 
-// Function multiversioning, if the compiler and C library support it. The bits are the same everywhere.
+// Compiles a function for several kinds of processor, if the compiler and C library support that. The results
+// are the same on all of them.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define TURNPOINT_CLONES __attribute__((target_clones("avx2", "default")))

@@ -34,12 +34,12 @@ class Posterior {
   /// Mean and sd of the parameter's marginal. The mode is its value at the point of largest weight in the
   /// whole grid, as in Watson (2017), which need not be the maximum of the marginal.
   Estimate estimate(Parameter parameter) const;
-  /// True if it has more than one value on the grid and is not tied.
+  /// True if the parameter has more than one value on the grid and is not tied.
   bool varies(Parameter parameter) const { return values_[parameter].size() > 1; }
   double entropy_nats() const;
   const std::vector<double>& stimuli() const { return stimuli_; }
   std::size_t size() const { return weights_.size(); }
-  /// Memory of the tables and the weights.
+  /// Memory used by the tables and the weights.
   std::size_t memory_bytes() const;
 
  private:
@@ -62,13 +62,16 @@ class Posterior {
   Axes values_;
   std::array<std::size_t, 4> stride_{};
   std::size_t slopes_ = 1, padded_slopes_ = 1,
-              /// number of values of the slope; number of combinations of guess and lapse
+              /// number of values of the slope, and of combinations of guess and lapse
       ends_ = 1;
-  std::vector<double> guesses_, ranges_;  ///< indexed by [guess and lapse]: guess, and 1 - guess - lapse
-  std::vector<double> weights_;           ///< indexed by [threshold][slope][guess][lapse]
-  std::vector<std::uint32_t> rows_;       ///< [stimulus][threshold]: index of the distance
-  std::vector<double> core_;              ///< [distance][slope, padded]: the function from 0 to 1
-  std::vector<double> entropy_;           ///< [distance][slope][guess][lapse], without nuisance parameters
+  /// guess, and 1 - guess - lapse, for each combination of guess and lapse
+  std::vector<double> guesses_, ranges_;
+  std::vector<double> weights_;      ///< posterior weights, indexed by [threshold][slope][guess][lapse]
+  std::vector<std::uint32_t> rows_;  ///< index of the distance, for [stimulus][threshold]
+  /// value of the function between its asymptotes, 0 to 1, for [distance][slope, padded]
+  std::vector<double> core_;
+  /// entropy of the answer for [distance][slope][guess][lapse], used if there are no nuisance parameters
+  std::vector<double> entropy_;
   /// group of kept parameters for each grid point; empty without nuisance parameters
   std::vector<std::uint32_t> kept_;
   std::size_t groups_ = 0;

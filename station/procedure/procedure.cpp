@@ -36,7 +36,7 @@ constexpr std::array kDescriptions{
 const Description& description(Kind kind) {
   for (const auto* entry : kDescriptions)
     if (entry->kind == kind) return *entry;
-  throw std::logic_error("procedure: a kind without a description");
+  throw std::logic_error("procedure: this kind has no description in the table");
 }
 
 const char* name(Kind kind) { return description(kind).name; }
@@ -55,13 +55,13 @@ std::vector<std::string> kind_names() {
 
 std::vector<Problem> validate(const Spec& spec) {
   std::vector<Problem> problems;
-  if (spec.level.empty()) problems.push_back({"level", "missing", "the name of a factor"});
+  if (spec.level.empty()) problems.push_back({"level", "missing", "write the name of a factor"});
   description(spec.kind).validate(spec, problems);
   return problems;
 }
 
 void Procedure::record_setting(double) {
-  throw std::logic_error("procedure: only an adjustment takes a setting");
+  throw std::logic_error("procedure: only an adjustment can record a setting");
 }
 
 std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& context, const random::Key& key) {

@@ -25,7 +25,8 @@ enum class Answer { one, zero, none };  ///< one: correct, or the tracked answer
 
 struct Estimate {
   double mode = 0, mean = 0;
-  std::optional<double> sd;  ///< empty if there is only a single number
+  /// standard deviation of the estimate; empty if the estimate rests on a single number
+  std::optional<double> sd;
   /// for a track: what the estimate was computed from, "reversals 5 to 12 of 12"; otherwise empty
   std::string basis;
 };
@@ -44,12 +45,13 @@ struct Context {
 class Procedure {
  public:
   virtual ~Procedure() = default;
-  virtual std::optional<Proposal> next() const = 0;  ///< empty when done
+  /// the next level to present; empty when the procedure is done
+  virtual std::optional<Proposal> next() const = 0;
   /// records the answer to the proposal of next(); not allowed when done
   virtual void record(Answer answer) = 0;
-  /// The same for the setting of an adjustment; other kinds throw std::logic_error.
+  /// Records the setting of an adjustment; other kinds throw std::logic_error.
   virtual void record_setting(double setting);
-  virtual int recorded() const = 0;  ///< number of counted trials
+  virtual int recorded() const = 0;  ///< number of trials that count
   virtual int expected() const = 0;  ///< total number of trials; an estimate if a rule stops the procedure
   virtual std::map<std::string, Estimate> estimates() const { return {}; }
   virtual std::optional<double> entropy_nats() const { return std::nullopt; }
@@ -57,8 +59,8 @@ class Procedure {
   virtual std::uint64_t state_hash() const = 0;  ///< hash of the discrete state: counters and indices
 };
 
-/// Throws std::invalid_argument with the first problem of validate(). `key` gives the block and attempt; the
-/// procedure chooses stream and trial itself.
+/// Makes the procedure. Throws std::invalid_argument with the first problem of validate(). `key` gives the
+/// block and attempt; the procedure chooses stream and trial itself.
 std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& context, const random::Key& key);
 
 }  // namespace turnpoint::procedure

@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kLn10 = 2.302585092994045684;
 
-/// exp that saturates instead of overflowing; the functions that use it are flat there.
+/// The exponential function, limited so that it cannot overflow. The psychometric functions are flat beyond
+/// the limit.
 double saturating_exp(double x) { return random::exp(std::min(x, 700.0)); }
 
 double core(Function function, Scale scale, double threshold, double slope, double level) {
@@ -44,7 +45,7 @@ double normal_cdf(double z) {
     for (int n = 3; term > 1e-18 * sum; n += 2) term *= a * a / n, sum += term;
     tail = 0.5 - density * sum;
   } else {
-    // Laplace's continued fraction of Mills' ratio.
+    // Otherwise use Laplace's continued fraction of Mills' ratio.
     double ratio = a;
     for (int n = 60; n >= 1; --n) ratio = a + n / ratio;
     tail = density / ratio;

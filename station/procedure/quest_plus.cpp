@@ -71,10 +71,10 @@ std::uint64_t QuestPlus::state_hash() const {
 namespace {
 
 void read_axes(text::TableReader& reader, Spec& spec) {
-  if (const auto* grid = reader.table("grid", "grid.threshold, grid.slope, grid.guess and grid.lapse")) {
+  if (const auto* grid = reader.table("grid", "give grid.threshold, grid.slope, grid.guess and grid.lapse")) {
     text::TableReader inner(*grid, reader.path("grid"), reader.findings());
     const auto axis = [&](const char* key, Grid& into) {
-      if (const auto* value = inner.require(key, "a grid: { from, to, step } or { values = [...] }"))
+      if (const auto* value = inner.require(key, "write a grid: { from, to, step } or { values = [...] }"))
         into = read_grid(*value, inner.path(key), Axis::parameter, reader.findings());
     };
     axis("threshold", spec.threshold), axis("slope", spec.slope), axis("guess", spec.guess),
@@ -99,14 +99,15 @@ void read_posterior(text::TableReader& reader, Spec& spec) {
   spec.function = function == "normal"     ? terms::Function::normal
                   : function == "logistic" ? terms::Function::logistic
                                            : terms::Function::weibull;
-  if (const auto* stimuli = reader.require("stimuli", "the levels to choose from: { from, to, step }"))
+  if (const auto* stimuli =
+          reader.require("stimuli", "give the levels from which to choose: { from, to, step }"))
     spec.stimuli = read_grid(*stimuli, reader.path("stimuli"), Axis::stimuli, reader.findings());
   read_axes(reader, spec);
   const std::vector<std::string> parameters{"threshold", "slope", "guess", "lapse"};
   spec.nuisance = reader.maybe_strings("nuisance");
   for (const auto& name : spec.nuisance)
     if (std::find(parameters.begin(), parameters.end(), name) == parameters.end())
-      reader.problem("nuisance", "\"" + name + "\" is no parameter",
+      reader.problem("nuisance", "\"" + name + "\" is not a parameter of the psychometric function",
                      "allowed: " + text::quoted_list(parameters));
   reader.word("select", {"min-expected-entropy"}, "min-expected-entropy");
   read_stop(reader, spec);
@@ -115,7 +116,8 @@ void read_posterior(text::TableReader& reader, Spec& spec) {
 void validate_rate(const char* key, const Grid& grid, std::vector<Problem>& problems) {
   for (const double rate : grid.values)
     if (!(rate >= 0 && rate < 1))
-      return problems.push_back({key, "a rate outside 0 to 1", "probabilities from 0 up to, but not, 1"});
+      return problems.push_back({key, "a rate is outside the range from 0 to 1",
+                                 "write probabilities of at least 0 and less than 1"});
 }
 
 void validate_prior(const char* key, const Prior& prior, const Grid& grid, std::vector<Problem>& problems) {
@@ -123,16 +125,18 @@ void validate_prior(const char* key, const Prior& prior, const Grid& grid, std::
   const auto values = grid.values.size();
   if (prior.weights.size() != values)
     problems.push_back({key, std::to_string(prior.weights.size()) + " weights",
-                        "as many as \"grid\" has values: " + std::to_string(values)});
+                        "there must be one weight for each value of the grid: " + std::to_string(values)});
   else if (std::none_of(prior.weights.begin(), prior.weights.end(), [](double w) { return w > 0; }))
-    problems.push_back({key, "all weights are 0", "at least one above 0"});
+    problems.push_back({key, "all weights are 0", "at least one weight must be above 0"});
 }
 
 void validate_posterior(const Spec& spec, std::vector<Problem>& problems) {
-  if (spec.stimuli.values.empty()) problems.push_back({"stimuli", "missing", "the levels to choose from"});
+  if (spec.stimuli.values.empty())
+    problems.push_back({"stimuli", "missing", "give the levels from which to choose"});
   if (spec.threshold.values.empty()) problems.push_back({"grid.threshold", "missing", "its values"});
   if (spec.slope.values.empty()) problems.push_back({"grid.slope", "missing", "its values"});
-  if (!positive(spec.slope.values)) problems.push_back({"grid.slope", "a slope is not above 0", "above 0"});
+  if (!positive(spec.slope.values))
+    problems.push_back({"grid.slope", "each slope must be above 0", "above 0"});
   validate_rate("grid.guess", spec.guess, problems);
   validate_rate("grid.lapse", spec.lapse, problems);
   validate_prior("prior.threshold", spec.prior_threshold, spec.threshold, problems);
@@ -145,10 +149,11 @@ void validate_posterior(const Spec& spec, std::vector<Problem>& problems) {
   for (const auto* grid : {&spec.threshold, &spec.slope, &spec.guess, &spec.lapse})
     size *= static_cast<double>(std::max<std::size_t>(1, grid->values.size()));
   if (size > most)
-    problems.push_back({"grid.threshold", "stimuli and grids have too many combinations to choose in time",
-                        "at most 50 million"});
+    problems.push_back({"grid.threshold",
+                        "the stimuli and grids have too many combinations to choose a level in time",
+                        "allow at most 50 million combinations"});
   if (!spec.stop.trials && !spec.stop.threshold_sd && !spec.stop.entropy_nats)
-    problems.push_back({"stop", "nothing stops it", "trials or threshold_sd"});
+    problems.push_back({"stop", "no rule ends the procedure", "add trials or threshold_sd"});
 }
 
 std::unique_ptr<Procedure> make_quest_plus(const Spec& spec, const Context&, const random::Key&) {

@@ -22,7 +22,7 @@ enum class Kind {
 using terms::Function;
 enum class Scale { linear, log10, dB };
 enum class Shuffle { within_repeat, within_block, none };
-enum class StopRule { any, all };  ///< "or", "and"
+enum class StopRule { any, all };  ///< "or": any rule ends the procedure; "and": all must be met
 enum class Select { min_expected_entropy };
 
 /// The values of one axis of a grid, computed when the file is read: from-to-step, log_from-log_to-count, or
@@ -34,8 +34,8 @@ struct Grid {
 
 /// Prior over a grid's values; empty: uniform.
 struct Prior {
-  std::optional<std::pair<double, double>> normal;  ///< mean, sd
-  std::vector<double> weights;                      ///< one per value
+  std::optional<std::pair<double, double>> normal;  ///< mean and sd of a normal distribution
+  std::vector<double> weights;                      ///< one weight for each value of the grid
 };
 
 struct Stop {
@@ -49,21 +49,22 @@ struct Spec {
   std::string name;
   Kind kind = Kind::constant_stimuli;
   std::string level;   ///< the factor that the procedure sets
-  std::string tracks;  ///< "": the procedure follows correctness; otherwise the answer that counts as 1
+  std::string tracks;  ///< the answer that counts as 1; "" if the procedure follows correctness
   Scale scale = Scale::linear;
 
-  // constant stimuli
+  // for constant stimuli: the levels
   std::vector<double> values;
   int repeats = 1;
   std::vector<std::string> balance;
   Shuffle shuffle = Shuffle::within_repeat;
   std::optional<int> max_run;
 
-  // staircases
+  // for staircases: first level and limits
   std::optional<double> start, min, max;
-  /// each reversal moves on to the next step; the last one stays
+  /// sizes of the steps: each reversal moves on to the next size; the last one stays
   std::vector<double> step, step_down, step_up;
-  std::optional<double> target;  ///< weighted: the probability on which it converges
+  /// for weighted staircases: the probability on which the staircase converges
+  std::optional<double> target;
   int n_down = 1, n_up = 1;
   /// until the first reversal, this number of right answers causes a step down
   std::optional<int> initial_down;

@@ -76,7 +76,7 @@ void read_steps(text::TableReader& reader, Spec& spec) {
     reader.findings().add(
         reader.has("step") ? reader.place("step_down") : reader.place("step_up"),
         reader.title() + (reader.has("step") ? " has both \"step\" and \"step_down\"" : " has no steps"),
-        "\"step\" (up and down alike) or \"step_down\"");
+        "give either \"step\" (for both directions) or \"step_down\"");
 }
 
 void read_staircase(text::TableReader& reader, Spec& spec) {
@@ -92,8 +92,8 @@ void read_staircase(text::TableReader& reader, Spec& spec) {
   } else {
     spec.target = reader.number("target", {0, 1, text::Range::Ends::open});
     if (reader.has("step_up"))
-      reader.problem("step_up", "\"step_up\" beside \"target\"",
-                     "the step up follows from the target and the step down");
+      reader.problem("step_up", "\"step_up\" is not allowed together with \"target\"",
+                     "leave it out: the step up follows from the target and the step down");
   }
   read_stop(reader, spec);
 }
@@ -101,21 +101,24 @@ void read_staircase(text::TableReader& reader, Spec& spec) {
 void validate_staircase(const Spec& spec, std::vector<Problem>& problems) {
   validate_span(spec, problems);
   if (spec.step.empty() && spec.step_down.empty() && spec.step_up.empty())
-    problems.push_back({"step_down", "missing", "one or more steps above 0"});
+    problems.push_back({"step_down", "missing", "give one or more steps above 0"});
   if (!positive(spec.step) || !positive(spec.step_down) || !positive(spec.step_up))
-    problems.push_back({"step_down", "a step is not above 0", "steps above 0"});
+    problems.push_back({"step_down", "every step must be above 0", "steps above 0"});
   if (spec.kind == Kind::weighted_up_down && (!spec.target || !(*spec.target > 0 && *spec.target < 1)))
-    problems.push_back({"target", "missing or outside (0, 1)", "a probability between 0 and 1"});
+    problems.push_back(
+        {"target", "the target is missing, or not between 0 and 1", "give a probability between 0 and 1"});
   if (spec.kind == Kind::up_down && (spec.n_down < 1 || spec.n_up < 1))
-    problems.push_back({"n_down", "below 1", "whole numbers of 1 or more"});
+    problems.push_back({"n_down", "below 1", "write whole numbers of 1 or more"});
   if (spec.kind == Kind::up_down && spec.step.empty() && (spec.step_down.empty() || spec.step_up.empty()))
-    problems.push_back({"step", "missing for one direction", "step, or both step_down and step_up"});
+    problems.push_back(
+        {"step", "the step is missing for one direction", "give step, or both step_down and step_up"});
   if (!spec.stop.trials && !spec.stop.reversals)
-    problems.push_back({"stop", "nothing stops it", "trials or reversals"});
+    problems.push_back({"stop", "no rule ends the procedure", "add trials or reversals"});
   if (spec.discard_reversals < 0 || (spec.stop.reversals && spec.stop.rule == StopRule::any &&
                                      spec.discard_reversals + 2 > *spec.stop.reversals))
-    problems.push_back({"discard_reversals", "leaves fewer than two reversals to average",
-                        "at least two fewer than the reversals at which the staircase stops"});
+    problems.push_back(
+        {"discard_reversals", "fewer than two reversals would be left to average",
+         "it must be at least two less than the number of reversals at which the staircase stops"});
 }
 
 std::unique_ptr<Procedure> make_staircase(const Spec& spec, const Context&, const random::Key&) {

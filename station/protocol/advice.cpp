@@ -15,7 +15,7 @@ using text::number;
 // (Fehlberg et al. 2022). Everybody feels a difference above the larger one.
 constexpr double felt_by_all = 0.2;
 
-// How much the scene's boundary (mm) and zone friction change per unit of the factor.
+// The change of the scene's boundary (mm) and zone friction per unit of the factor.
 double coefficient(const std::optional<Linear>& expression, const std::string& factor) {
   if (!expression || expression->absolute) return 0;
   for (const auto& [name, value] : expression->terms)
@@ -36,8 +36,8 @@ double largest(const std::vector<double>& levels) {
   return most;
 }
 
-// A level must be well above the planner's possible error: four times the tolerance. If no level is, the
-// tolerance is reported instead.
+// Levels must be well above the planner's possible error, at least four times the tolerance. If even the
+// largest level is smaller, the advice is about the tolerance instead of the level.
 void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
   if (spec.kind != procedure::Kind::constant_stimuli || smallest(spec.values) == 0) return;
   for (const auto& name : scenes_used(advice.protocol)) {
@@ -48,8 +48,8 @@ void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
         advice.add(largest(spec.values) * per_unit < enough ? "scene." + name + ".tolerance"
                                                             : key_of(spec, "values"),
                    "the smallest level of \"" + spec.name + "\" moves scene \"" + name + "\" by " +
-                       number(step) + unit + ", and its tolerance is " + number(tolerance) + unit,
-                   "levels of four times the tolerance or more");
+                       number(step) + unit + ", but the scene's tolerance is " + number(tolerance) + unit,
+                   "use levels of at least four times the tolerance");
     };
     tell(coefficient(scene.boundary_mm, spec.level), scene.tolerance.boundary_mm.value_or(0), " mm");
     if (scene.zone)
@@ -69,7 +69,7 @@ void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
       advice.add("procedure." + spec.name,
                  "the smallest level of \"" + spec.name + "\" is a friction difference of " +
                      number(100 * fraction, 3) + " %, which everybody feels",
-                 "levels down to a Weber fraction of 0.1 or less (-20 dB)");
+                 "add levels down to a Weber fraction of 0.1 or less (-20 dB)");
   };
   for (const auto& name : scenes_used(advice.protocol)) {
     const auto& scene = advice.protocol.scenes.at(name);
@@ -88,10 +88,11 @@ void check_unequal_steps(AdviceList& advice, const procedure::Spec& spec) {
   const double down = spec.step_down.back(), up = spec.step_up.back();
   if (down == up) return;
   const double target = std::pow(up / (up + down), 1.0 / spec.n_down);
-  advice.add(key_of(spec, "step_up"),
-             "the unequal steps of \"" + spec.name + "\" make it settle near " + number(100 * target, 3) +
-                 " % right",
-             "equal steps settle at " + number(100 * std::pow(0.5, 1.0 / spec.n_down), 4) + " %");
+  advice.add(
+      key_of(spec, "step_up"),
+      "the unequal steps of \"" + spec.name + "\" let it converge near " + number(100 * target, 3) +
+          " % right",
+      "with equal steps it would converge at " + number(100 * std::pow(0.5, 1.0 / spec.n_down), 4) + " %");
 }
 
 void check_unused(AdviceList& advice) {
@@ -113,7 +114,7 @@ void check_unused(AdviceList& advice) {
   for (const auto& spec : protocol.procedures) {
     const auto runs = [&](const Source& source) { return source.spec == &spec; };
     if (std::none_of(sources.begin(), sources.end(), runs))
-      advice.add(key_of(spec, "name"), "the procedure \"" + spec.name + "\" is in no block", "");
+      advice.add(key_of(spec, "name"), "the procedure \"" + spec.name + "\" is not used in any block", "");
   }
 }
 

@@ -30,21 +30,25 @@ inline std::string key_of(const procedure::Spec& spec, const std::string& key) {
   return "procedure." + spec.name + "." + key;
 }
 
-/// `block.main.trials` or `sequence.main.block.trials`.
+/// The name of a key of a block or sequence in KeyPlaces: `block.main.trials` or
+/// `sequence.main.block.trials`.
 std::string key_of(const std::variant<Block, Sequence>& part, const std::string& key);
 
-/// The key that gives the levels of a procedure.
+/// The key that sets the levels of a procedure.
 std::string levels_key(const procedure::Spec& spec);
 
 /// The proportion correct of somebody who guesses.
 double chance(const Protocol& protocol);
 
-/// levels against tolerances, steps and limits; procedures that nothing uses
+/// Compares levels with tolerances, steps and limits; finds factors, scenes and procedures that nothing uses.
 void advise_on_levels(AdviceList& advice);
-/// which answers are right and how often; practice and catch trials
+/// Checks which answers are right and how often, also in practice and catch trials.
 void advise_on_answers(AdviceList& advice);
-void advise_on_times(AdviceList& advice);  ///< mistaken units, deadlines, events that come too late
-void advise_on_grids(AdviceList& advice);  ///< rates, thresholds and rules that end a procedure
-void advise_on_plan(AdviceList& advice);   ///< blocks, instructions, words, the analysis
+/// Finds mistaken units, deadlines that are too short, and events that come too late.
+void advise_on_times(AdviceList& advice);
+/// Checks the grids, rates, thresholds and stopping rules of procedures.
+void advise_on_grids(AdviceList& advice);
+/// Checks blocks, instructions, labels and questions, and the analysis.
+void advise_on_plan(AdviceList& advice);
 
 }  // namespace turnpoint::protocol

@@ -14,13 +14,14 @@ namespace {
 using procedure::Spec;
 using text::number;
 
-/// Counts over all cases: how often each answer is right, how often any answer is, and the number of cases.
+/// Counts over all cases: how often each answer is right, how often any answer is right, and the number of
+/// cases.
 struct Right {
   std::map<std::string, int> times;
   int scored = 0, all = 0;
 };
 
-// The cases combine every level with every level of the other factors in the comparisons. Designs with more
+// A case is one combination of a level with levels of the other factors in the comparisons. Designs with more
 // cases than this are not checked.
 constexpr std::size_t most_cases = 20000;
 
@@ -62,7 +63,7 @@ Right& operator+=(Right& sum, const Right& other) {
   return sum;
 }
 
-// If an answer is never right, or always, scoring is pointless.
+// If an answer is never right, or always right, scoring is pointless.
 void check_each_answer(AdviceList& advice) {
   const auto& protocol = advice.protocol;
   Right right;
@@ -72,10 +73,10 @@ void check_each_answer(AdviceList& advice) {
     const int times = right.times[id];
     if (times == 0)
       advice.add("task.correct." + id, "the answer \"" + id + "\" is never right",
-                 "a comparison that some level fulfils");
+                 "write a comparison that is true for some levels");
     else if (times == right.all)
       advice.add("task.correct." + id, "the answer \"" + id + "\" is always right",
-                 "a comparison that some level does not fulfil");
+                 "write a comparison that is false for some levels");
   }
 }
 
@@ -89,7 +90,7 @@ void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) 
     const auto here = right_at(protocol, level, levels);
     if (here.all > 0 && here.scored == 0)
       advice.add(at, "no answer is right at any of these levels",
-                 "levels for which \"correct\" names an answer");
+                 "use levels for which \"correct\" makes one answer right");
     if (key.empty()) key = at;
     right += here;
   };
@@ -98,37 +99,42 @@ void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) 
     if (spec && spec->tracks.empty() && !spec->values.empty())
       count(levels_key(*spec), spec->level, spec->values);
     else
-      return;  // an adaptive procedure goes wherever the answers lead it
+      return;  // the levels of an adaptive procedure depend on the answers, so they cannot be counted
   }
   if (!block.level.empty()) count(key_of(part, "levels"), block.level, block.levels);
   if (right.scored > 0 && right.times.size() == 1 && !block.pass)
     advice.add(key, "\"" + right.times.begin()->first + "\" is right at all of these levels",
-               "levels with each answer right equally often");
+               "use levels at which each answer is right equally often");
 }
 
-// A staircase or a posterior assumes one direction: easier is always up, or always down.
+// A staircase or a Bayesian procedure assumes that the task gets easier in one direction only: towards higher
+// levels, or towards lower ones.
 void check_followed(AdviceList& advice, const Source& source) {
   const auto* spec = source.spec;
   if (!spec || !spec->tracks.empty() || !spec->values.empty()) return;
   const auto& levels = source.levels;
   if (levels.empty() || levels.front() >= 0 || levels.back() <= 0) return;
   if (answer_rule(advice.protocol, spec->level).kind == AnswerKind::side)
-    advice.add(key_of(*spec, "level"),
-               "\"" + spec->name + "\" follows right answers through zero, on both sides of which it is easy",
-               "\"tracks\" = the answer that it follows, or levels on one side");
+    advice.add(
+        key_of(*spec, "level"),
+        "\"" + spec->name +
+            "\" follows right answers over levels on both sides of zero, but the task is easy on both sides",
+        "set \"tracks\" to the answer that the procedure should follow, or use levels on one side of zero "
+        "only");
 }
 
-// Checks that the trials allow the requested limit on runs: only trials with another right answer can end a
-// run.
+// Checks that `max_run` can be kept: only a trial with another right answer ends a run of trials with the
+// same right answer.
 void check_runs(AdviceList& advice, const Spec& spec) {
   if (!spec.max_run || spec.values.empty()) return;
   const auto right = right_at(advice.protocol, spec.level, spec.values);
   for (const auto& [id, times] : right.times)
     if (times > *spec.max_run * (right.all - times))
-      return advice.add(key_of(spec, "order.max_run"),
-                        "\"" + id + "\" is right in " + std::to_string(times) + " of " +
-                            std::to_string(right.all) + " trials: longer runs cannot be avoided",
-                        "a larger \"max_run\", or levels with each answer right equally often");
+      return advice.add(
+          key_of(spec, "order.max_run"),
+          "\"" + id + "\" is right in " + std::to_string(times) + " of " + std::to_string(right.all) +
+              " trials: longer runs cannot be avoided",
+          "set a larger \"max_run\", or use levels at which each answer is right equally often");
 }
 
 // The share of practice trials that a participant gets right by always pressing the same key.
@@ -147,17 +153,17 @@ void check_pass(AdviceList& advice, const std::variant<Block, Sequence>& part) {
   const double share = one_key_share(advice.protocol, block);
   if (share >= block.pass->accuracy)
     advice.add(key_of(part, "pass"),
-               "practice \"" + block.name + "\" is passed by one key, always pressed (" +
+               "practice \"" + block.name + "\" can be passed by always pressing the same key (" +
                    number(100 * share, 3) + " % right)",
-               "levels with each answer right equally often, and an accuracy above that");
+               "use levels at which each answer is right equally often, and require a higher accuracy");
 }
 
-// The ends of the factor's range, which are its easiest levels.
+// Suggests the ends of the factor's range, which are its easiest levels, for catch trials.
 std::string easy_on_both_sides(const Protocol& protocol, const std::string& name) {
   const auto* factor = find_factor(protocol.factors, name);
-  if (!factor || !factor->range) return "easy levels for each answer";
-  return "easy levels for each answer, such as " + name + " = [" + number(factor->range->first) + ", " +
-         number(factor->range->second) + "]";
+  if (!factor || !factor->range) return "include easy levels for each answer";
+  return "include easy levels for each answer, such as " + name + " = [" + number(factor->range->first) +
+         ", " + number(factor->range->second) + "]";
 }
 
 void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) {
@@ -169,12 +175,12 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
     if (right.all > 0 && right.times.size() < 2)
       return advice.add(key_of(part, "catch"),
                         "the catch trials of \"" + block_of(part).name + "\" have " +
-                            (right.times.empty() ? "no right answer" : "one right answer only"),
+                            (right.times.empty() ? "no right answer" : "only one right answer"),
                         easy_on_both_sides(protocol, trials->factor));
-    // a level without a signal is easy too
+    // a catch trial without a signal is easy too
     if (answer_rule(protocol, trials->factor).kind == AnswerKind::presence) return;
   }
-  // Larger levels are easier. A factor in dB is compared with its sign, any other by magnitude.
+  // Larger levels are easier. Levels in dB are compared as they are, all others by their magnitude.
   const bool decibel = trials->factor.ends_with("_dB");
   const auto sources = sources_of(protocol);
   const auto sets = [&](const Source& source) { return source.spec && source.level == trials->factor; };
@@ -184,7 +190,7 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
     if ((decibel ? level : std::fabs(level)) < middle)
       return advice.add(key_of(part, "catch"),
                         "catch trials at " + number(level) + " are harder than most trials",
-                        "easy levels, well beyond " + number(middle));
+                        "use easy levels, well above " + number(middle));
 }
 
 }  // namespace

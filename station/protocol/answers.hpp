@@ -8,18 +8,21 @@ namespace turnpoint::protocol {
 /// How the answers of a task relate to the level.
 enum class AnswerKind {
   right_answer,  ///< one of the choices is right; the level determines how easy it is to find
-  side,          ///< two answers: the level is below zero, or above
-  presence,      ///< two answers: the level is zero (same-different: the scenes are the same), or it is not
+  side,          ///< two answers: one is right for levels below zero, the other for levels above
+  /// two answers: one is right if the level is zero (same-different: the scenes are the same), the other if
+  /// not
+  presence,
 };
 
 struct AnswerRule {
   AnswerKind kind = AnswerKind::right_answer;
-  /// side: the answer that is right above zero; presence: the answer that is right unless the level is zero
+  /// for `side` the answer that is right above zero; for `presence` the answer that is right unless the level
+  /// is zero
   int positive = 1;
 };
 
-/// Derives how the answers relate to this factor by evaluating the comparisons in `correct` at its ends and
-/// at zero.
+/// Finds out how the answers relate to this factor by evaluating the comparisons of `correct` at zero and at
+/// the ends of the factor's range.
 AnswerRule answer_rule(const Protocol& protocol, const std::string& level);
 
 /// A typical level of this factor among the protocol's procedures (or, without procedures, its blocks): the

@@ -14,7 +14,8 @@ namespace {
 
 using text::Findings;
 
-// Reports a factor that nothing sets once, at the factor itself.
+// Reports a trial source in which a factor has no value. If no source sets the factor, this is reported only
+// once, where the factor is declared.
 void check_values(const std::vector<Source>& sources, const std::string& name, const Reading& reading) {
   const auto* factor = find_factor(reading.protocol.factors, name);
   if (factor && !factor->levels.empty()) return;
@@ -25,7 +26,7 @@ void check_values(const std::vector<Source>& sources, const std::string& name, c
     reading.findings.add(
         factor && !set_somewhere ? factor->place : source.block->place,
         "in block \"" + source.block->name + "\", " + source.what + ", \"" + name + "\" has no value",
-        "a procedure or fixed levels that set it, or \"levels\" of the factor to draw from");
+        "set this factor with a procedure or fixed levels, or give it \"levels\" from which to draw");
     if (!set_somewhere) return;
   }
 }
@@ -42,7 +43,7 @@ void check_answers(const std::vector<Source>& sources, const Reading& reading) {
       return reading.findings.add(
           answers.back().second.left.place,
           "at " + source.level + " = " + text::number(level) + " both answers are right",
-          "comparisons that exclude each other");
+          "write comparisons that cannot both be true");
     }
   }
 }
@@ -57,16 +58,17 @@ void check_scored(text::TableReader& file, const Reading& reading) {
   for (const auto& spec : protocol.procedures) {
     if (procedure::follows_answers(spec) && spec.tracks.empty())
       reading.findings.add(
-          table->place, "the procedure \"" + spec.name + "\" follows correctness, and no answer is correct",
-          "\"correct\" in [task], or \"tracks\" in the procedure");
+          table->place,
+          "the procedure \"" + spec.name + "\" depends on correct answers, but no answer is correct",
+          "set \"correct\" in [task], or \"tracks\" in the procedure");
   }
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
     for (const auto* key : {"pass", "feedback"})
       if (key == std::string("pass") ? block.pass.has_value() : block.feedback != Feedback::none)
         reading.findings.add(reading.places.of(key_of(part, key)),
-                             "block \"" + block.name + "\" judges answers, and no answer is correct",
-                             "\"correct\" in [task]");
+                             "block \"" + block.name + "\" judges answers, but no answer is correct",
+                             "set \"correct\" in [task]");
   }
 }
 
@@ -81,11 +83,12 @@ void check_adjustment(const Reading& reading) {
       if ((spec->kind == procedure::Kind::adjustment) != adjusting)
         reading.findings.add(reading.places.of(key_of(*spec, "kind")),
                              "the procedure \"" + name + "\" does not fit the kind of task",
-                             adjusting ? "kind = \"adjustment\"" : "any kind but \"adjustment\"");
+                             adjusting ? "kind = \"adjustment\"" : "use any kind except \"adjustment\"");
       else if (adjusting && spec->level != protocol.task.adjusts)
-        reading.findings.add(reading.places.of(key_of(*spec, "level")),
-                             "the procedure \"" + name + "\" sets \"" + spec->level + "\"",
-                             "the factor that the slider moves: \"" + protocol.task.adjusts + "\"");
+        reading.findings.add(
+            reading.places.of(key_of(*spec, "level")),
+            "the procedure \"" + name + "\" sets \"" + spec->level + "\"",
+            "it must set the factor that the slider moves: \"" + protocol.task.adjusts + "\"");
     }
   }
 }
@@ -121,25 +124,27 @@ void check_timing(text::TableReader& file, const Reading& reading) {
   const bool one_interval =
       protocol.task.kind == TaskKind::single_interval || protocol.task.kind == TaskKind::adjustment;
   if (one_interval && !table->find("explore_s") && !protocol.task.duration_s)
-    findings.add(table->place, "nothing ends the interval: [timing] has no \"explore_s\"",
-                 "the longest time that the tones last, in seconds (or \"duration_s\" in [task])");
+    findings.add(
+        table->place, "nothing ends the interval: [timing] has no \"explore_s\"",
+        "set it to the longest time that the tones last, in seconds (or set \"duration_s\" in [task])");
   if (!one_interval && table->find("explore_s"))
-    findings.add(place("explore_s"), "\"explore_s\" with several intervals",
-                 "\"duration_s\" in [task] says it");
+    findings.add(place("explore_s"), "\"explore_s\" does not apply to a task with several intervals",
+                 "use \"duration_s\" in [task] instead");
   if (timing.response_zero == ResponseZero::change && !has_change(protocol.task))
     findings.add(place("response_zero"),
-                 "\"response_zero\" is \"change\" without a second scene in the interval",
-                 "an interval of two scenes: intervals = [[\"a\", \"b\"]]");
+                 "\"response_zero\" is \"change\", but no interval has a second scene",
+                 "use an interval of two scenes: intervals = [[\"a\", \"b\"]]");
   if (!table->find("deadline_s"))
     if (const auto block = block_without_deadline(protocol))
       findings.add(table->place, "block \"" + *block + "\" has no deadline: [timing] has no \"deadline_s\"",
-                   "\"deadline_s\" here, or in the block's [instructions.NAME]");
-  // If the two conflict, blame the unusual one: no deadline is as short as the usual anticipation_s of 0.15.
+                   "set \"deadline_s\" here, or in the block's [instructions.NAME]");
+  // If an anticipation time and a deadline conflict, report the unusual one: anticipation_s is usually 0.15,
+  // and no deadline is as short as that.
   const auto check_anticipation = [&](const std::string& key, double deadline_s) {
     if (timing.anticipation_s >= deadline_s)
-      findings.add(deadline_s < shortest_deadline_s ? reading.places.of(key) : place("anticipation_s"),
-                   "\"anticipation_s\" is not below the deadline of " + text::number(deadline_s) + " s",
-                   "below it");
+      findings.add(
+          deadline_s < shortest_deadline_s ? reading.places.of(key) : place("anticipation_s"),
+          "\"anticipation_s\" must be shorter than the deadline of " + text::number(deadline_s) + " s", "");
   };
   if (timing.deadline_s) check_anticipation("timing.deadline_s", *timing.deadline_s);
   for (const auto& [name, instruction] : protocol.instructions)

@@ -10,8 +10,8 @@ namespace turnpoint::protocol {
 
 namespace {
 
-// The values that a factor takes in the trials of a source: the source's level, the value that the block
-// fixes, or else any level.
+// The values that a factor takes in the trials of a source: the level of the source, the value that the block
+// fixes, or otherwise all levels of the factor.
 std::vector<FactorValue> values_of(const Factor& factor, const Source& source) {
   if (factor.name == source.level) return {source.levels.begin(), source.levels.end()};
   const auto fixed = source.block->fixed.find(factor.name);
@@ -32,7 +32,8 @@ void cross(const Protocol& protocol, const Source& source, const std::string& sc
         next.push_back(std::move(combination));
       }
     product = std::move(next);
-    // A larger design is thinned anyway, and what is dropped here lies between values that are kept.
+    // A design as large as this is thinned out later anyway. The combinations dropped here lie between others
+    // that are kept.
     if (product.size() > 20000) product.resize(20000);
   }
   all.insert(all.end(), product.begin(), product.end());

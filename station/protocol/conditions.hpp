@@ -11,8 +11,8 @@ namespace turnpoint::protocol {
 std::string condition_of(const protocol::Protocol& protocol, const protocol::Factors& factors,
                          const std::string& instruction);
 
-/// All conditions in the order of the levels in the protocol file, which is the same for every participant.
-/// Instructions are in the order in which the file's blocks use them.
+/// All conditions of the protocol, in the order of the levels in its file, which is the same for every
+/// participant. Instructions are in the order in which the file's blocks use them.
 std::vector<std::string> conditions(const protocol::Protocol& protocol);
 
 /// A factor's name in words and its unit: `mark_mm` gives "mark" and "mm", `_um` gives the unit \u00b5m. The

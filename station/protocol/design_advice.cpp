@@ -16,7 +16,7 @@ using procedure::Kind;
 using text::number;
 using text::Problem;
 
-/// Far weaker than any finger feels, but larger than rounding errors.
+/// A displacement far too small to be felt, but larger than rounding errors.
 constexpr double least_displacement_um = 0.001;
 
 std::string trimmed(const std::string& text) {
@@ -35,13 +35,13 @@ void check_words(AdviceList& advice) {
       const auto key = "task.choices." + std::to_string(i) + ".label." + language;
       if (label.empty())
         advice.add(key, "the label of \"" + choice.id + "\" is blank",
-                   "what the participant reads on the button");
+                   "write what the participant reads on the button");
       else if (!seen.insert(label).second)
-        advice.add(key, "two answers have the label \"" + label + "\"", "labels that differ");
+        advice.add(key, "two answers have the label \"" + label + "\"", "give each answer a different label");
     }
     const auto question = task.question.find(language);
     if (question != task.question.end() && trimmed(question->second).empty())
-      advice.add("task.question." + language, "the question is blank", "what the participant is asked");
+      advice.add("task.question." + language, "the question is blank", "write what the participant is asked");
   }
 }
 
@@ -58,7 +58,7 @@ void check_ramps(AdviceList& advice) {
         : several ? "task.duration_s"
                   : "timing.explore_s",
         "the ramps of scene \"" + name + "\" take as long as its tones, " + number(longest_s) + " s",
-        "tones that last longer than both ramps");
+        "the tones must last longer than both ramps together");
   }
 }
 
@@ -74,15 +74,15 @@ void check_scenes(AdviceList& advice) {
         bounds(*scene.displacement_um, advice.protocol.factors).second < least_displacement_um)
       advice.add(key + "displacement_um",
                  "nobody feels a displacement of " + scene.displacement_um->source + " um",
-                 "about 0.2 to 3 um");
+                 "use about 0.2 to 3 um");
     for (std::size_t i = 0; i < scene.tones.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         const auto &a = scene.tones[i], &b = scene.tones[j];
         if (same(a.frequency_Hz, b.frequency_Hz) ||
             (same(a.boundary_mm, b.boundary_mm) && a.edge.name == b.edge.name &&
              a.edge.friction == b.edge.friction))
-          advice.add(key + "tones." + std::to_string(i), "this tone is the same as another of the scene",
-                     "one stronger tone, or another place");
+          advice.add(key + "tones." + std::to_string(i), "this tone is the same as another tone of the scene",
+                     "use one stronger tone, or place this tone elsewhere");
       }
   }
 }
@@ -92,20 +92,22 @@ void check_task(AdviceList& advice) {
   const auto& task = protocol.task;
   for (const auto& interval : task.intervals)
     if (interval.size() == 2 && interval[0] == interval[1])
-      advice.add("task.intervals", "the scene \"" + interval[0] + "\" follows itself: nothing changes",
-                 "two different scenes");
+      advice.add("task.intervals",
+                 "the scene \"" + interval[0] + "\" is followed by itself, so nothing changes",
+                 "use two different scenes");
   const auto* slider = find_factor(protocol.factors, task.adjusts);
   if (slider && slider->range && task.step && *task.step >= slider->range->second - slider->range->first)
     advice.add("task.step", "a step of " + number(*task.step) + " is as large as the slider's whole range",
-               "steps well below " + number(slider->range->second - slider->range->first));
+               "use steps well below " + number(slider->range->second - slider->range->first));
   const auto& plan = protocol.plan;
   for (const auto& part : plan)
     if (task.kind == TaskKind::adjustment && block_of(part).feedback != Feedback::none)
       advice.add(key_of(part, "feedback"), "a setting of the slider is neither right nor wrong",
-                 "feedback = \"none\"");
+                 "set feedback = \"none\"");
 }
 
-/// The largest number of trials, including catch trials; empty if only the answers end the block.
+/// The largest number of trials in a block, including catch trials; empty if the answers decide when the
+/// block ends.
 std::optional<double> most_trials(const Protocol& protocol, const Block& block) {
   if (block.trials) return *block.trials;
   double trials = static_cast<double>(block.levels.size());
@@ -133,21 +135,21 @@ void check_counts(AdviceList& advice, const std::variant<Block, Sequence>& part)
   const auto trials = static_cast<std::size_t>(block.trials.value_or(0));
   if (block.trials && trials < levels)
     advice.add(key_of(part, "trials"),
-               "of " + std::to_string(levels) + " levels " + std::to_string(trials) +
-                   " are presented: the others never are",
-               "at least " + std::to_string(levels) + " trials");
+               "the block has " + std::to_string(levels) + " levels but only " + std::to_string(trials) +
+                   " trials, so some levels are never presented",
+               "allow at least " + std::to_string(levels) + " trials");
   else if (block.trials && constant && block.procedures.size() == 1 && !block.practice &&
            !block.catch_trials && trials < levels * static_cast<std::size_t>(constant->repeats) &&
            trials % levels != 0)
     advice.add(key_of(part, "trials"),
-               std::to_string(trials) + " trials are not the same number of each of " +
-                   std::to_string(levels) + " levels",
-               "a multiple of " + std::to_string(levels) + ", or no \"trials\"");
+               std::to_string(trials) + " trials cannot be divided evenly among " + std::to_string(levels) +
+                   " levels",
+               "use a multiple of " + std::to_string(levels) + ", or leave out \"trials\"");
   const auto most = most_trials(advice.protocol, block);
   if (block.break_after && most && block.break_after->trials >= *most)
     advice.add(key_of(part, "break_after"),
-               "the break never comes: the block has " + number(std::floor(*most)) + " trials",
-               "after fewer trials");
+               "there will be no break: the block has only " + number(std::floor(*most)) + " trials",
+               "have the break after fewer trials");
 }
 
 void check_blocks(AdviceList& advice) {
@@ -158,19 +160,20 @@ void check_blocks(AdviceList& advice) {
     const auto& block = block_of(part);
     check_counts(advice, part);
     if (advice.places.has(key_of(part, "interleave")) && block.procedures.size() < 2)
-      advice.add(key_of(part, "interleave"), "\"interleave\" with one procedure", "two procedures or more");
+      advice.add(key_of(part, "interleave"), "\"interleave\" has no effect in a block with one procedure",
+                 "use two or more procedures");
     const auto* sequence = std::get_if<Sequence>(&part);
     if (sequence && sequence->mirror && sequence->cycles < 2)
-      advice.add("sequence." + sequence->name + ".mirror", "\"mirror\" with one cycle mirrors nothing",
-                 "cycles = 2 or more");
+      advice.add("sequence." + sequence->name + ".mirror", "\"mirror\" has no effect with a single cycle",
+                 "set cycles to 2 or more");
     for (const auto& name : block.procedures)
       if (const auto* spec = find_procedure(protocol, name);
           sequence && spec &&
           std::find(spec->balance.begin(), spec->balance.end(), sequence->over) != spec->balance.end())
         advice.add(key_of(*spec, "balance"),
                    "the sequence \"" + sequence->name + "\" holds \"" + sequence->over +
-                       "\" constant in each block, and \"balance\" changes it",
-                   "one of the two");
+                       "\" constant in each block, but \"balance\" would change it",
+                   "remove one of the two");
     const double trials = most_trials(protocol, block).value_or(1e9);
     (block.practice ? practice : rest) += trials;
     if (block.practice)
@@ -178,9 +181,9 @@ void check_blocks(AdviceList& advice) {
   }
   if (practice > 0 && rest == 0)
     advice.add(key_of(protocol.plan.back(), "practice"), "all blocks are practice: nothing is measured",
-               "a block without \"practice\"");
+               "add a block without \"practice\"");
   else if (practice > rest)
-    advice.add(practice_key, "there is more practice than the blocks that it prepares for", "less practice");
+    advice.add(practice_key, "there are more practice trials than other trials", "less practice");
 }
 
 void check_instructions(AdviceList& advice) {
@@ -191,12 +194,12 @@ void check_instructions(AdviceList& advice) {
       return fixed != block.fixed.end() && fixed->second == wanted;
     };
     if (std::none_of(blocks.begin(), blocks.end(), shows))
-      advice.add(
-          "instructions." + name, "nothing shows the instruction \"" + name + "\"",
-          "instruction = \"" + name + "\" in a block, or a sequence over a factor named \"instruction\"");
+      advice.add("instructions." + name, "no block shows the instruction \"" + name + "\"",
+                 "set instruction = \"" + name +
+                     "\" in a block, or use a sequence over a factor named \"instruction\"");
     const auto& target = instruction.target_accuracy;
     if (target && target->second <= chance(advice.protocol))
-      advice.add("instructions." + name + ".target_accuracy", "guessing is as accurate as that",
+      advice.add("instructions." + name + ".target_accuracy", "guessing already reaches this target accuracy",
                  "between " + number(chance(advice.protocol), 3) + " and 1");
   }
 }
@@ -206,11 +209,12 @@ void check_analysis(AdviceList& advice) {
   const auto moves = [](const auto& term) { return term.second != 0; };
   if (analysis.difficulty &&
       std::none_of(analysis.difficulty->terms.begin(), analysis.difficulty->terms.end(), moves))
-    advice.add("analysis.difficulty", "the difficulty is the same in all trials", "arithmetic with a factor");
+    advice.add("analysis.difficulty", "\"difficulty\" is the same in all trials",
+               "write arithmetic that depends on a factor");
   std::set<std::string> seen;
   for (const auto& word : analysis.show.value_or(std::vector<std::string>{}))
     if (!seen.insert(word).second)
-      advice.add("analysis.show", "\"" + word + "\" stands twice in \"show\"", "each once");
+      advice.add("analysis.show", "\"" + word + "\" appears twice in \"show\"", "list each only once");
 }
 
 }  // namespace
@@ -227,8 +231,8 @@ void advise_on_plan(AdviceList& advice) {
 
 namespace {
 
-constexpr std::size_t most_repeats = 10000;  // largest number that a protocol may ask for
-// limit for counting: a hundred long factors would overflow
+constexpr std::size_t most_repeats = 10000;  // largest number of repeats that a protocol may ask for
+// limit of the counting of combinations: the product for a hundred long factors would overflow
 constexpr std::size_t most_cells = 1'000'000'000'000;
 
 /// Reports how often each level is combined with each of these cells, unless that is equally often.
@@ -237,10 +241,10 @@ void note_uneven(AdviceList& notes, const procedure::Spec& spec, std::size_t cel
   if (repeats % cells == 0) return;
   const auto even = (least + 1) * cells;
   notes.add(key_of(spec, "balance"),
-            "each level meets each of the " + std::to_string(cells) + " " + what + " " +
+            "each level is combined with each of the " + std::to_string(cells) + " " + what + " " +
                 std::to_string(least) + " or " + std::to_string(least + 1) + " times",
-            even > most_repeats ? "fewer factors or fewer levels"
-                                : "equally often with repeats = " + std::to_string(even));
+            even > most_repeats ? "use fewer factors or fewer levels"
+                                : "for equal counts, set repeats = " + std::to_string(even));
 }
 
 }  // namespace
@@ -260,13 +264,14 @@ std::vector<Problem> notes(const Protocol& protocol) {
     std::set<double> seen;
     for (const double value : spec.values)
       if (!seen.insert(value).second)
-        notes.add(levels_key(spec), "the level " + number(value) + " stands twice, and comes twice as often",
-                  "");
+        notes.add(levels_key(spec),
+                  "the level " + number(value) + " is listed twice, so it is presented twice as often", "");
   }
-  if (protocol.timing.iti_s.high == 0) notes.add("timing.iti_s", "no pause between trials", "");
-  if (protocol.task.gap_s == 0.0) notes.add("task.gap_s", "no pause between the intervals of a trial", "");
+  if (protocol.timing.iti_s.high == 0) notes.add("timing.iti_s", "there is no pause between trials", "");
+  if (protocol.task.gap_s == 0.0)
+    notes.add("task.gap_s", "there is no pause between the intervals of a trial", "");
   if (protocol.task.foreperiod_s && protocol.task.foreperiod_s->high == 0)
-    notes.add("task.foreperiod_s", "the second scene begins at once", "");
+    notes.add("task.foreperiod_s", "the second scene begins at once, without a foreperiod", "");
   return std::move(notes.found);
 }
 

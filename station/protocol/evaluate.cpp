@@ -11,7 +11,8 @@ double evaluate(const Linear& expression, const Factors& factors) {
     const auto found = factors.find(name);
     const auto* value = found == factors.end() ? nullptr : std::get_if<double>(&found->second);
     if (!value)
-      throw std::invalid_argument("\"" + expression.source + "\": the factor \"" + name + "\" has no number");
+      throw std::invalid_argument("\"" + expression.source + "\": the factor \"" + name +
+                                  "\" does not have a number as its value");
     sum += coefficient * *value;
   }
   return expression.absolute ? std::fabs(sum) : sum;

@@ -23,16 +23,19 @@ class Parser {
 
   Linear whole() {
     auto result = sum();
-    if (peek() != '\0') throw SyntaxError{at_, std::string("\"") + source_[at_] + "\" is out of place", form};
+    if (peek() != '\0')
+      throw SyntaxError{at_, std::string("\"") + source_[at_] + "\" is not allowed here", form};
     if (!std::isfinite(result.constant)) throw SyntaxError{0, "the result is not finite", form};
     for (const auto& [name, coefficient] : result.terms)
-      if (!std::isfinite(coefficient)) throw SyntaxError{0, "the factor of " + name + " is not finite", form};
+      if (!std::isfinite(coefficient))
+        throw SyntaxError{0, "the coefficient of " + name + " is not finite", form};
     return result;
   }
 
  private:
   static constexpr const char* form =
-      "linear arithmetic on factors: \"150 - 0.5 * spread_mm\", or abs(...) around the whole";
+      "allowed: linear arithmetic with factors, such as \"150 - 0.5 * spread_mm\", or abs(...) around the "
+      "whole expression";
 
   char peek() {
     while (at_ < end_ && (source_[at_] == ' ' || source_[at_] == '\t')) ++at_;
@@ -57,11 +60,11 @@ class Parser {
       if (accept('*')) {
         auto right = signed_term();
         if (!right.is_constant()) std::swap(left, right);
-        if (!right.is_constant()) throw SyntaxError{at, "a product of two factors is not linear", form};
+        if (!right.is_constant()) throw SyntaxError{at, "multiplying two factors is not allowed", form};
         scale(left, right.constant, at);
       } else if (accept('/')) {
         const auto right = signed_term();
-        if (!right.is_constant()) throw SyntaxError{at, "division by a factor is not linear", form};
+        if (!right.is_constant()) throw SyntaxError{at, "dividing by a factor is not allowed", form};
         if (right.constant == 0) throw SyntaxError{at, "division by 0", form};
         scale(left, 1 / right.constant, at);
       } else {
@@ -79,7 +82,7 @@ class Parser {
     return term;
   }
   Linear signed_term_deeper() {
-    if (++depth_ > 50) throw SyntaxError{at_, "too deeply nested", form};
+    if (++depth_ > 50) throw SyntaxError{at_, "the expression is nested too deeply", form};
     auto term = signed_term();
     --depth_;
     return term;
@@ -91,13 +94,13 @@ class Parser {
     if ((c >= '0' && c <= '9') || c == '.') return number();
     if (std::isalpha(static_cast<unsigned char>(c)) || c == '_') return name();
     throw SyntaxError{
-        at_, c == '\0' ? "the expression ends too early" : std::string("\"") + c + "\" is out of place",
+        at_, c == '\0' ? "the expression ends too early" : std::string("\"") + c + "\" is not allowed here",
         form};
   }
 
   Linear parenthesised() {
     ++at_;
-    if (++depth_ > 50) throw SyntaxError{at_, "too deeply nested", form};
+    if (++depth_ > 50) throw SyntaxError{at_, "the expression is nested too deeply", form};
     auto inner = sum();
     --depth_;
     if (!accept(')')) throw SyntaxError{at_, "a \")\" is missing", form};
@@ -127,14 +130,14 @@ class Parser {
     if (!factor)
       throw SyntaxError{begin, "unknown factor \"" + word + "\"", suggestion(word, names(factors_))};
     if (!span(*factor) && !is_broken(*factor))
-      throw SyntaxError{begin, "the factor \"" + word + "\" has names, not numbers", form};
+      throw SyntaxError{begin, "the factor \"" + word + "\" has names as values, not numbers", form};
     Linear result;
     result.terms.emplace_back(word, 1.0);
     return result;
   }
 
   static void add(Linear& left, const Linear& right, double sign, std::size_t at) {
-    if (left.absolute || right.absolute) throw SyntaxError{at, "abs(...) inside a sum is not linear", form};
+    if (left.absolute || right.absolute) throw SyntaxError{at, "abs(...) is not allowed inside a sum", form};
     left.constant += sign * right.constant;
     for (const auto& [name, coefficient] : right.terms) {
       const auto same = [&, word = name](const auto& term) { return term.first == word; };
@@ -147,7 +150,7 @@ class Parser {
   }
 
   static void scale(Linear& expression, double by, std::size_t at) {
-    if (expression.absolute) throw SyntaxError{at, "abs(...) inside a product is not linear", form};
+    if (expression.absolute) throw SyntaxError{at, "abs(...) is not allowed inside a product", form};
     expression.constant *= by;
     for (auto& term : expression.terms) term.second *= by;
   }
@@ -158,7 +161,8 @@ class Parser {
   int depth_ = 0;
 };
 
-// The text starts one column after its opening quote. Columns count characters, not bytes.
+// The place of a character of the text in the file. The text starts one column after its opening quote.
+// Columns count characters, not bytes.
 text::Place inside(const text::Place& place, const std::string& source, std::size_t at) {
   const auto end = source.begin() + static_cast<std::ptrdiff_t>(std::min(at, source.size()));
   const auto characters = std::count_if(
@@ -204,7 +208,7 @@ std::optional<Comparison> parse_comparison(const std::string& source, const text
     length = 1;
   } else {
     findings.add(place, "\"" + source + "\" is not a comparison",
-                 "two sides with one of < <= == >= > between: \"offset_mm < 0\"");
+                 "write two sides with one of < <= == >= > between them, such as \"offset_mm < 0\"");
     return std::nullopt;
   }
   const auto left = side(source, 0, at, place, factors, findings);
@@ -226,8 +230,9 @@ std::optional<Linear> linear_from(const text::Value& value, const std::string& k
     result->source = text::exact(value.number);
     result->place = value.place;
   } else {
-    findings.add(value.place, "\"" + key + "\" is " + describe(value),
-                 "a number, or a text with linear arithmetic on factors: \"mark_mm + offset_mm\"");
+    findings.add(
+        value.place, "\"" + key + "\" is " + describe(value),
+        "write a number, or a text with linear arithmetic with factors, such as \"mark_mm + offset_mm\"");
     return std::nullopt;
   }
   const auto broken = [&](const auto& term) { return is_broken(*find_factor(factors, term.first)); };
@@ -239,7 +244,7 @@ std::optional<Linear> linear_from(const text::Value& value, const std::string& k
   else
     findings.add(value.place,
                  "\"" + key + "\" runs from " + text::number(low) + " to " + text::number(high) +
-                     " over the values of its factors",
+                     " depending on the values of its factors",
                  "allowed: " + describe(range));
   return std::nullopt;
 }
@@ -285,7 +290,7 @@ std::vector<std::string> names(const std::vector<Factor>& factors) {
 }
 
 std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
-  if (known.empty()) return "there is none in this file";
+  if (known.empty()) return "nothing of this kind is defined in this file";
   const auto near = text::nearest(word, known);
   std::string all;
   for (const auto& name : known) all += (all.empty() ? "" : ", ") + name;

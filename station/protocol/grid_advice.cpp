@@ -27,8 +27,8 @@ void check_level(AdviceList& advice, const Spec& spec) {
   if (depends_on(advice.protocol, spec.level)) return;
   const bool slider = spec.level == advice.protocol.task.adjusts;
   advice.add(slider ? "task.adjusts" : key_of(spec, "level"),
-             "no scene of the task depends on \"" + spec.level + "\": all trials are alike",
-             "a scene with \"" + spec.level + "\" in its arithmetic");
+             "no scene of the task depends on \"" + spec.level + "\", so all trials are the same",
+             "use a scene with \"" + spec.level + "\" in its arithmetic");
 }
 
 // Levels that differ only by rounding were meant to be the same level.
@@ -39,7 +39,7 @@ void check_values(AdviceList& advice, const Spec& spec) {
     const double apart = values[i] - values[i - 1];
     if (apart > 0 && apart < 1e-6 * (values.back() - values.front()))
       return advice.add(levels_key(spec), "two levels differ by " + number(apart) + " only",
-                        "each level once, or clearly apart");
+                        "list each level once, or use clearly different levels");
   }
 }
 
@@ -49,23 +49,26 @@ void check_steps(AdviceList& advice, const Spec& spec) {
   if (down.empty() || spec.scale != procedure::Scale::linear) return;
   if (spec.min && spec.max && down.front() >= *spec.max - *spec.min)
     advice.add(key, "a step of " + number(down.front()) + " is as large as the whole range",
-               "steps well below " + number(*spec.max - *spec.min));
+               "use steps well below " + number(*spec.max - *spec.min));
   if (!std::is_sorted(down.rbegin(), down.rend()))
-    advice.add(key, "the steps grow from reversal to reversal", "steps that become smaller, [4.0, 2.0, 1.0]");
+    advice.add(key, "the steps become larger from reversal to reversal",
+               "use steps that become smaller, such as [4.0, 2.0, 1.0]");
 }
 
-// If as many wrong answers as right ones move a staircase, it converges where at most half of the answers are
-// right.
+// If wrong answers move a staircase at least as often as right ones do, it converges where at most half of
+// the answers are right.
 void check_target(AdviceList& advice, const Spec& spec) {
   const double guessing = chance(advice.protocol);
   if (spec.target && *spec.target <= guessing + 1e-9)
-    advice.add(key_of(spec, "target"), "a target of " + number(*spec.target, 3) + " is not above guessing",
+    advice.add(key_of(spec, "target"),
+               "a target of " + number(*spec.target, 3) + " is not higher than the accuracy of guessing",
                "between " + number(guessing, 3) + " and 1");
   const bool larger_up = !spec.step_up.empty() && spec.step_up.back() > spec.step_down.back();
   if (spec.kind == Kind::up_down && guessing > 0.4 && spec.n_down <= spec.n_up && !larger_up)
     advice.add(key_of(spec, spec.n_up > 1 ? "n_up" : "n_down"),
-               "the staircase settles where at most half of the answers are right, as by guessing",
-               "\"n_down\" above \"n_up\"");
+               "the staircase converges where at most half of the answers are right, which is no better than "
+               "guessing",
+               "set \"n_down\" higher than \"n_up\"");
 }
 
 void check_rates(AdviceList& advice, const Spec& spec) {
@@ -74,18 +77,18 @@ void check_rates(AdviceList& advice, const Spec& spec) {
     check_target(advice, spec);
     for (const double guess : spec.guess.values)
       if (std::fabs(guess - guessing) > 0.1) {
-        advice.add(
-            key_of(spec, "grid.guess"),
-            "a guess rate of " + number(guess, 3) + ", where guessing gets " + number(guessing, 3) + " right",
-            number(guessing, 3) + ", or values near it");
+        advice.add(key_of(spec, "grid.guess"),
+                   "a guess rate of " + number(guess, 3) + ", but in this task guessing gets " +
+                       number(guessing, 3) + " right",
+                   number(guessing, 3) + ", or values near it, should be used");
         break;
       }
   }
   for (const double lapse : spec.lapse.values)
     if (lapse >= 0.5 && lapse < 1) {
       advice.add(key_of(spec, "grid.lapse"),
-                 "a lapse rate of " + number(lapse, 3) + ": most answers would be slips",
-                 "small values, such as 0.01 to 0.1");
+                 "a lapse rate of " + number(lapse, 3) + ": most answers would be lapses of attention",
+                 "use small values, such as 0.01 to 0.1");
       break;
     }
 }
@@ -97,7 +100,8 @@ void check_grids(AdviceList& advice, const Spec& spec) {
   const auto [low, high] = std::minmax_element(stimuli.begin(), stimuli.end());
   const auto [from, to] = std::minmax_element(threshold.begin(), threshold.end());
   if (*to < *low || *from > *high)
-    advice.add(key_of(spec, "grid.threshold"), "no threshold of the grid lies among the stimuli",
+    advice.add(key_of(spec, "grid.threshold"),
+               "no threshold of the grid lies within the range of the stimuli",
                number(*low) + " to " + number(*high));
   const auto& prior = spec.prior_threshold.normal;
   if (prior && (prior->first < *from - 3 * prior->second || prior->first > *to + 3 * prior->second))
@@ -112,19 +116,19 @@ void check_grids(AdviceList& advice, const Spec& spec) {
     advice.add(key_of(spec, "stop.threshold_sd"),
                "a \"threshold_sd\" of " + number(*spec.stop.threshold_sd) +
                    " is finer than the grid, whose values are " + number(finest) + " apart",
-               number(least_sd, 2) + " or more, or a finer \"grid.threshold\"");
+               number(least_sd, 2) + " or more is possible; otherwise use a finer \"grid.threshold\"");
 }
 
 void check_stop(AdviceList& advice, const Spec& spec) {
   const auto& stop = spec.stop;
   if (stop.min_trials && stop.trials && *stop.min_trials > *stop.trials)
-    advice.add(key_of(spec, "stop"), "\"min_trials\" is above \"trials\"",
+    advice.add(key_of(spec, "stop"), "\"min_trials\" is larger than \"trials\"",
                "at most " + std::to_string(*stop.trials));
   if (stop.reversals && stop.trials && *stop.reversals >= *stop.trials)
     advice.add(key_of(spec, "stop"),
                std::to_string(*stop.reversals) + " reversals need more than " + std::to_string(*stop.trials) +
-                   " trials: one of the two rules has no effect",
-               "fewer reversals than trials");
+                   " trials, so one of the two stopping rules has no effect",
+               "set fewer reversals than trials");
 }
 
 }  // namespace

@@ -18,14 +18,14 @@ using text::Place;
 /// A text in each of the protocol's languages.
 using Localised = std::map<std::string, std::string>;
 
-/// Values of the factors in one trial: numbers for numeric factors, names for text factors.
+/// Values of the factors in one trial: a number for a numeric factor, a name for a text factor.
 using FactorValue = std::variant<double, std::string>;
 using Factors = std::map<std::string, FactorValue>;
 
 /// A linear combination of numeric factors: `150 - 0.5 * spread_mm`, `-30`, `abs(change)` (absolute set).
 struct Linear {
   double constant = 0;
-  std::vector<std::pair<std::string, double>> terms;  ///< factor name, coefficient
+  std::vector<std::pair<std::string, double>> terms;  ///< each factor's name with its coefficient
   bool absolute = false;
   std::string source;
   Place place;
@@ -83,12 +83,13 @@ struct Scene {
   std::string name, base;
   std::optional<Linear> boundary_mm;
   Edge edge;
-  std::optional<Linear> displacement_um, friction;  ///< at the last maximum; at most one is set
+  /// strength at the last maximum of the vibration; at most one of the two is set
+  std::optional<Linear> displacement_um, friction;
   std::vector<SceneTone> tones;
   std::optional<Zone> zone;
-  /// zone friction is lower than the base's by 20 log10(dmu / mu)
+  /// makes the zone's friction lower than that of the base scene by 20 log10(dmu / mu)
   std::optional<Linear> friction_contrast_dB;
-  /// random change of displacement, uniform within +- this value
+  /// the displacement is changed at random, uniformly within +- this value
   double rove_dB = 0;
   double ramp_ms = 50;
   Tolerance tolerance;
@@ -113,7 +114,7 @@ struct Choice {
 struct Task {
   TaskKind kind = TaskKind::single_interval;
   std::vector<std::vector<std::string>> intervals;  ///< scene names; an interval is a sequence of scenes
-  std::string standard, target;                     ///< for oddity and same-different
+  std::string standard, target;                     ///< scenes of an oddity or same-different task
   Odd odd = Odd::either;
   std::optional<double> duration_s, gap_s;
   std::optional<Distribution> foreperiod_s;  ///< time from the interval's start to its second scene
@@ -124,8 +125,8 @@ struct Task {
   Place sound_place;
   Localised question;
   std::vector<Choice> choices;
-  std::string correct_scene;  ///< 2ifc: the answer is the interval with this scene
-  /// choice id -> condition under which it is right
+  std::string correct_scene;  ///< 2ifc: the interval that contains this scene is the correct answer
+  /// id of each choice, with the condition under which the choice is right
   std::vector<std::pair<std::string, Comparison>> correct_answer;
   /// For adjustment only: the factor that the slider moves, its range and step.
   std::string adjusts;
@@ -137,7 +138,7 @@ using terms::ResponseZero;
 struct Timing {
   ResponseZero response_zero = ResponseZero::go_cue;
   Place response_zero_place;
-  std::optional<double> explore_s;   ///< single interval: the longest time that the tones last
+  std::optional<double> explore_s;   ///< for a single interval: the longest time that the tones last
   std::optional<double> deadline_s;  ///< counted from response_zero; empty if the instructions give it
   Distribution iti_s;
   double anticipation_s = 0;
@@ -166,8 +167,8 @@ struct Break {
 struct Block {
   std::string name;
   std::vector<std::string> procedures;
-  std::string level;           ///< for practice with fixed levels: the factor that they set
-  std::vector<double> levels;  ///< the levels, presented in shuffled order
+  std::string level;           ///< for practice with fixed levels: the factor that the levels set
+  std::vector<double> levels;  ///< the fixed levels, presented in shuffled order
   std::optional<int> trials;
   Feedback feedback = Feedback::none;
   bool practice = false;
@@ -196,7 +197,8 @@ struct Instruction {
 struct Analysis {
   std::vector<std::string> by;  ///< factors with levels: each combination of them is analysed separately
   std::optional<Linear> difficulty;
-  std::optional<std::vector<std::string>> show;  ///< empty: everything that suits the task
+  /// parts of the report to show; empty: all parts that suit the task
+  std::optional<std::vector<std::string>> show;
   double exclude_below_s = 0;
   std::optional<double> exclude_mad;
 };
@@ -207,7 +209,7 @@ struct Resume {
   ResumePolicy incomplete = ResumePolicy::ask;
   double max_age_h = 24;
   int warmup = 0;
-  std::string restart_unit;  ///< "" or "block"
+  std::string restart_unit;  ///< "block" if a resumed session restarts the interrupted block, otherwise ""
 };
 
 /// A complete and checked protocol file; every reference inside it resolves.
@@ -216,13 +218,13 @@ struct Protocol {
   std::string id, version;
   std::string title;
   std::vector<std::string> languages;
-  std::optional<std::uint64_t> seed;  ///< empty for "per-session"
-  std::vector<Factor> factors;        ///< in file order
+  std::optional<std::uint64_t> seed;  ///< seed of the random numbers; empty for "per-session"
+  std::vector<Factor> factors;        ///< factors in the order of the file
   std::map<std::string, Scene> scenes;
   Task task;
   Timing timing;
   std::vector<procedure::Spec> procedures;
-  std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences, in file order
+  std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences in the order of the file
   std::map<std::string, Instruction> instructions;
   Analysis analysis;
   Resume resume;
@@ -233,7 +235,7 @@ struct Protocol {
 /// Throws text::BadInput with all problems at once, or std::system_error if the file cannot be read.
 Protocol load(const std::string& path);
 
-/// The same for text that is already in memory (a resumed session); `path` is only used in messages.
+/// Like load(), for a text that is already in memory (of a resumed session); `path` is only used in messages.
 Protocol parse(const std::string& source, const std::string& path);
 
 /// The blocks in the order for the participant with this sequence index (from 0): the Williams square, cycles

@@ -29,28 +29,29 @@ void read_by(TableReader& reader, Reading& reading) {
       reader.problem("by", "unknown factor \"" + name + "\"", suggestion(name, names(factors)));
     else if (factor->levels.empty())
       reader.problem("by", "the factor \"" + name + "\" has a range, not levels",
-                     "factors with \"levels\": there is one curve for each of them");
+                     "use factors with \"levels\", because one curve is fitted for each level");
     else if (!seen.insert(name).second)
-      reader.problem("by", "\"" + name + "\" stands twice in \"by\"", "each factor once");
+      reader.problem("by", "\"" + name + "\" appears twice in \"by\"", "list each factor only once");
     for (const auto& spec : reading.protocol.procedures)
       if (spec.level == name)
         reader.problem("by", "the procedure \"" + spec.name + "\" sets \"" + name + "\"",
-                       "factors that no procedure sets: a curve needs several levels of what it is over");
+                       "use factors that no procedure sets, because each curve needs several levels of the "
+                       "procedure's own factor");
   }
 }
 
-/// The reason why a value of `show` would have no effect on the report of this protocol; "" if it has one.
+/// Why a value of `show` would add nothing to the report of this protocol; "" if it would add something.
 std::string without_effect(const std::string& word, const Protocol& protocol) {
   const auto& task = protocol.task;
   if (word == "trace" || task.choices.empty()) return "";  // a task without choices is reported elsewhere
-  if (task.kind == TaskKind::adjustment) return "an adjustment has settings, no answers";
+  if (task.kind == TaskKind::adjustment) return "an adjustment task has settings instead of answers";
   if (word == "psychometric") return "";
   if (task.kind == TaskKind::single_interval && task.correct_answer.empty())
-    return "no answer is right or wrong without \"correct\"";
+    return "without \"correct\" in [task], no answer is right or wrong";
   if (word == "dprime" && task.kind != TaskKind::single_interval && task.kind != TaskKind::two_interval)
-    return "d' is estimated for \"single-interval\" and \"2ifc\" alone";
+    return "d' is estimated for \"single-interval\" and \"2ifc\" only";
   if (word == "bis" && protocol.analysis.by.empty() && protocol.instructions.size() < 2)
-    return "a single condition has no BIS";
+    return "BIS compares conditions, and there is only one";
   return "";
 }
 

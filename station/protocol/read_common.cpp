@@ -17,28 +17,29 @@ Localised localised_from(const text::Value& value, const std::string& key, const
   const std::string example = "{ " + (languages.empty() ? "en" : languages.front()) + " = \"...\" }";
   if (value.kind != Value::Kind::table) {
     findings.add(value.place, "\"" + key + "\" is " + describe(value),
-                 "a text in each language is needed: " + example);
+                 "write a text in each language: " + example);
     return texts;
   }
   for (const auto& entry : value.entries) {
     if (std::find(languages.begin(), languages.end(), entry.key) == languages.end())
-      findings.add(entry.place, "\"" + key + "\" has a text in \"" + entry.key + "\", which is not declared",
-                   "[protocol] languages has " + text::quoted_list(languages));
+      findings.add(entry.place,
+                   "\"" + key + "\" has a text in \"" + entry.key + "\", which is not a declared language",
+                   "the languages declared in [protocol] are " + text::quoted_list(languages));
     else if (entry.value.kind != Value::Kind::string || entry.value.string.empty())
       findings.add(entry.value.place, "\"" + key + "\" is " + describe(entry.value),
-                   "a text in quotes is needed");
+                   "write a text in quotes");
     else
       texts[entry.key] = entry.value.string;
   }
   for (const auto& language : languages)
     if (!value.find(language))
       findings.add(value.place, "\"" + key + "\" has no text in \"" + language + "\"",
-                   "a text is needed in every language of [protocol] languages");
+                   "write a text in every language that [protocol] declares");
   return texts;
 }
 
 Localised read_localised(TableReader& reader, const std::string& key, const Reading& reading) {
-  const auto* value = reader.require(key, "a text in each language: { en = \"...\" }");
+  const auto* value = reader.require(key, "write a text in each language: { en = \"...\" }");
   return value ? localised_from(*value, key, reading) : Localised{};
 }
 
@@ -48,7 +49,7 @@ std::optional<Distribution> read_distribution(TableReader& reader, const std::st
   const text::Range seconds{0, 3600, text::Range::Ends::closed, "s"};
   if (value->kind == Value::Kind::table) {
     TableReader inner(*value, reader.path(key), reader.findings());
-    inner.require("uniform", "two times in seconds: { uniform = [0.8, 1.2] }");
+    inner.require("uniform", "give the shortest and longest time in seconds: { uniform = [0.8, 1.2] }");
     const auto interval = inner.maybe_interval("uniform", seconds);
     inner.finish();
     return interval ? std::optional(Distribution{interval->first, interval->second}) : std::nullopt;
@@ -64,7 +65,7 @@ std::string read_name(TableReader& reader, const std::string& key, const std::st
   };
   if (!std::all_of(name.begin(), name.end(), good) || name.size() > 64)
     reader.problem(key, "\"" + key + "\" is \"" + name + "\"",
-                   "letters, digits, _ and - only, at most 64 of them");
+                   "allowed: at most 64 letters, digits, _ and -");
   return name;
 }
 
@@ -86,7 +87,7 @@ std::optional<FactorValue> read_factor_value(const text::Value& value, const Fac
   const bool is_number = value.kind == Value::Kind::number || value.kind == Value::Kind::integer;
   if (numeric != is_number || (!numeric && value.kind != Value::Kind::string)) {
     findings.add(value.place, "a value of \"" + factor.name + "\" is " + describe(value),
-                 numeric ? "a number is needed" : "one of its names in quotes is needed");
+                 numeric ? "write a number" : "write one of the factor's names in quotes");
     return std::nullopt;
   }
   const FactorValue result = numeric ? FactorValue(value.number) : FactorValue(value.string);
@@ -94,26 +95,27 @@ std::optional<FactorValue> read_factor_value(const text::Value& value, const Fac
     const text::Range range{factor.range->first, factor.range->second};
     if (text::inside_range(value.number, range)) return result;
     findings.add(value.place, "\"" + factor.name + "\" is " + text::number(value.number),
-                 "its range is " + describe(range));
+                 "the factor's range is " + describe(range));
     return std::nullopt;
   }
   if (std::find(factor.levels.begin(), factor.levels.end(), result) != factor.levels.end()) return result;
   std::string levels;
   for (const auto& level : factor.levels) levels += (levels.empty() ? "" : ", ") + shown(level);
-  findings.add(value.place, "\"" + factor.name + "\" is " + shown(result), "its levels are " + levels);
+  findings.add(value.place, "\"" + factor.name + "\" is " + shown(result),
+               "the factor's levels are " + levels);
   return std::nullopt;
 }
 
 const Factor* read_numeric_factor(TableReader& reader, const std::string& key, const Reading& reading) {
   const auto& factors = reading.protocol.factors;
-  const auto name = reader.string(key, "the name of a factor");
+  const auto name = reader.string(key, "write the name of a factor");
   if (name.empty()) return nullptr;
   const auto* factor = find_factor(factors, name);
   if (!factor)
     reader.problem(key, "unknown factor \"" + name + "\"", suggestion(name, names(factors)));
   else if (!span(*factor) && !is_broken(*factor))
-    reader.problem(key, "the factor \"" + name + "\" has names, not numbers",
-                   "a factor with a range or numeric levels");
+    reader.problem(key, "the factor \"" + name + "\" has names as values, not numbers",
+                   "use a factor with a range or numeric levels");
   return factor && (span(*factor) || is_broken(*factor)) ? factor : nullptr;
 }
 

@@ -27,7 +27,7 @@ void read_seed(TableReader& file, Reading& reading) {
     return;
   }
   TableReader reader(*table, "random", reading.findings);
-  const auto* seed = reader.require("seed", "\"per-session\" or a whole number from 0 to 2^53");
+  const auto* seed = reader.require("seed", "write \"per-session\" or a whole number from 0 to 2^53");
   if (seed && seed->kind == Value::Kind::integer && seed->integer >= 0 &&
       seed->integer <= (std::int64_t{1} << 53))
     reading.protocol.seed = static_cast<std::uint64_t>(seed->integer);
@@ -44,9 +44,9 @@ void check_factor_name(TableReader& reader, const std::string& name) {
   if (name.empty()) return;
   if (!std::all_of(name.begin(), name.end(), good) || std::isdigit(static_cast<unsigned char>(name[0])) ||
       name == "abs")
-    reader.problem("name", "\"" + name + "\" cannot be used in arithmetic",
-                   "letters, digits and _, not starting with a digit; the unit "
-                   "goes at its end: \"offset_mm\"");
+    reader.problem("name", "\"" + name + "\" is not a valid name for a factor",
+                   "use letters, digits and _, and do not begin with a digit; end the name with the unit: "
+                   "\"offset_mm\"");
 }
 
 void read_level(const text::Value& item, Factor& factor, text::Findings& findings) {
@@ -57,9 +57,10 @@ void read_level(const text::Value& item, Factor& factor, text::Findings& finding
   const auto& levels = factor.levels;
   if (!fits || (!levels.empty() && value.index() != levels.front().index()))
     findings.add(item.place, "a level of \"" + factor.name + "\" is " + describe(item),
-                 "all numbers (finite, up to a million) or all names");
+                 "levels must be either all numbers (between -1000000 and 1000000) or all names");
   else if (std::find(levels.begin(), levels.end(), value) != levels.end())
-    findings.add(item.place, "a level of \"" + factor.name + "\" stands twice", "levels must differ");
+    findings.add(item.place, "a level of \"" + factor.name + "\" appears twice",
+                 "each level must be different");
   else if (factor.range && !text::inside_range(item.number, {factor.range->first, factor.range->second}))
     findings.add(item.place, "a level of \"" + factor.name + "\" is outside its range",
                  describe(Range{factor.range->first, factor.range->second}));
@@ -71,18 +72,18 @@ Factor read_factor(const text::Value& table, Reading& reading) {
   TableReader reader(table, titled("factor", table), reading.findings);
   Factor factor;
   factor.place = reader.place("name");
-  factor.name = reader.string("name", "a name: \"offset_mm\"");
+  factor.name = reader.string("name", "give the factor a name, such as \"offset_mm\"");
   check_factor_name(reader, factor.name);
   factor.range = reader.maybe_interval("range", {-1e6, 1e6});
   const auto* levels = reader.take("levels");
   if (!reader.has("range") && !levels)
     reading.findings.add(factor.place, "the factor \"" + factor.name + "\" has no values",
-                         "\"range\" = [low, high] or \"levels\" = [...]");
+                         "write range = [low, high] or levels = [...]");
   if (levels && (levels->kind != Value::Kind::array || levels->items.empty()))
     reader.problem(
         "levels",
         "\"levels\" is " + std::string(levels->kind == Value::Kind::array ? "empty" : describe(*levels)),
-        "a list of numbers or of names is needed");
+        "write a list of numbers or of names");
   else if (levels)
     for (const auto& item : levels->items) read_level(item, factor, reading.findings);
   reader.finish();
@@ -94,17 +95,20 @@ Factor read_factor(const text::Value& table, Reading& reading) {
 void read_header(TableReader& file, Reading& reading) {
   file.word("format", {"friction-protocol/1"});
   auto& protocol = reading.protocol;
-  if (const auto* table = file.table("protocol", "a table [protocol] with id, version, title, languages")) {
+  if (const auto* table =
+          file.table("protocol", "add a table [protocol] with id, version, title and languages")) {
     TableReader reader(*table, "protocol", reading.findings);
-    protocol.id = read_name(reader, "id", "a short name; exported data go to a folder of this name");
-    protocol.version = reader.string("version", "a text such as \"1.0.0\"; raise it with each change");
-    protocol.title = reader.string("title", "a title for the researcher");
-    protocol.languages = reader.strings("languages", "a list of language codes: [\"en\", \"ja\"]");
+    protocol.id =
+        read_name(reader, "id", "choose a short name; exported data are written to a folder with this name");
+    protocol.version =
+        reader.string("version", "write a text such as \"1.0.0\" and increase it with each change");
+    protocol.title = reader.string("title", "write a title for the researcher");
+    protocol.languages = reader.strings("languages", "write a list of language codes: [\"en\", \"ja\"]");
     std::set<std::string> seen;
     for (const auto& code : protocol.languages)
       if (!is_language(code) || !seen.insert(code).second)
         reader.problem("languages", "\"" + code + "\" in \"languages\"",
-                       "each language code once: \"en\", \"de\", \"ja\"");
+                       "list each language code only once, such as \"en\", \"de\", \"ja\"");
     reader.finish();
   }
   read_seed(file, reading);
@@ -120,8 +124,8 @@ void read_factors(TableReader& file, Reading& reading) {
   for (const auto* table : tables) {
     auto factor = read_factor(*table, reading);
     if (find_factor(factors, factor.name))
-      reading.findings.add(factor.place, "a second factor named \"" + factor.name + "\"",
-                           "names must differ");
+      reading.findings.add(factor.place, "there is already a factor named \"" + factor.name + "\"",
+                           "each factor needs a different name");
     else
       factors.push_back(std::move(factor));
   }

@@ -15,7 +15,8 @@ using text::Value;
 namespace {
 
 void read_what(TableReader& reader, Block& block, const Reading& reading) {
-  if (reader.has("procedures")) block.procedures = reader.strings("procedures", "at least one procedure");
+  if (reader.has("procedures"))
+    block.procedures = reader.strings("procedures", "name at least one procedure");
   std::vector<std::string> known;
   for (const auto& spec : reading.protocol.procedures) known.push_back(spec.name);
   std::set<std::string> seen;
@@ -25,7 +26,7 @@ void read_what(TableReader& reader, Block& block, const Reading& reading) {
     if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
       reader.problem("procedures", "unknown procedure \"" + name + "\"", suggestion(name, known));
     if (!seen.insert(name).second)
-      reader.problem("procedures", "\"" + name + "\" stands twice", "each procedure once");
+      reader.problem("procedures", "\"" + name + "\" appears twice", "list each procedure only once");
   }
   const bool levels = reader.has("level") || reader.has("levels");
   reader.take("level"), reader.take("levels");
@@ -33,10 +34,10 @@ void read_what(TableReader& reader, Block& block, const Reading& reading) {
     return reading.findings.add(
         reader.place(),
         reader.title() + (levels ? " has both procedures and fixed levels" : " presents nothing"),
-        "either \"procedures\" or both \"level\" and \"levels\"");
+        "write either \"procedures\" or both \"level\" and \"levels\"");
   if (!levels) return;
   const auto* factor = read_numeric_factor(reader, "level", reading);
-  const auto* list = reader.require("levels", "the values to show in turn");
+  const auto* list = reader.require("levels", "list the levels to present");
   reader.numbers("levels", {-1e6, 1e6});
   if (!factor || !list || list->kind != Value::Kind::array) return;
   block.level = factor->name;
@@ -55,25 +56,25 @@ void read_catch(TableReader& reader, Block& block, const Reading& reading) {
     const auto* value = inner.take(factor.name);
     if (!value) continue;
     if (!trials.factor.empty())
-      inner.problem(factor.name, "\"catch\" sets a second factor", "one factor only");
+      inner.problem(factor.name, "\"catch\" sets a second factor", "\"catch\" may set only one factor");
     trials.factor = factor.name;
     const auto one = [&](const Value& item) {
       const auto read = read_factor_value(item, factor, reading.findings);
       if (const auto* number = read ? std::get_if<double>(&*read) : nullptr)
         trials.levels.push_back(*number);
       else if (read)
-        inner.problem(factor.name, "\"catch\" sets a factor that has names", "a numeric factor");
+        inner.problem(factor.name, "\"catch\" sets a factor whose values are names", "a numeric factor");
     };
     if (value->kind != Value::Kind::array)
       one(*value);
     else
       for (const auto& item : value->items) one(item);
     if (value->kind == Value::Kind::array && value->items.empty())
-      inner.problem(factor.name, "\"catch\" has an empty list", "at least one level that is easy");
+      inner.problem(factor.name, "\"catch\" has an empty list", "list at least one easy level");
   }
   if (trials.factor.empty() && table->entries.size() <= 1)
-    reading.findings.add(table->place, "\"catch\" does not say what it shows",
-                         "a factor and its easy levels: { rate = 0.06, offset_mm = [-25.0, 25.0] }");
+    reading.findings.add(table->place, "\"catch\" does not say what to present",
+                         "name a factor and its easy levels: { rate = 0.06, offset_mm = [-25.0, 25.0] }");
   inner.finish();
   block.catch_trials = trials;
 }
@@ -82,7 +83,8 @@ void read_practice(TableReader& reader, Block& block, const Reading& reading) {
   block.practice = reader.boolean("practice", "false");
   const auto* table = reader.maybe_table("pass");
   if (!table) return;
-  if (!block.practice) reader.problem("pass", "\"pass\" in a block that is not practice", "practice = true");
+  if (!block.practice)
+    reader.problem("pass", "\"pass\" is only allowed in a practice block", "set practice = true");
   TableReader inner(*table, reader.path("pass"), reading.findings);
   block.pass = Pass{inner.number("accuracy", {0, 1, Range::Ends::open_low}), inner.integer("retries", 0, 20)};
   inner.finish();
@@ -127,7 +129,7 @@ void read_block_keys(TableReader& reader, Block& block, const Reading& reading) 
 Block read_block(const Value& table, const Reading& reading) {
   TableReader reader(table, titled("block", table), reading.findings);
   Block block;
-  block.name = read_name(reader, "name", "a name for the data file");
+  block.name = read_name(reader, "name", "choose a name, which is stored with the data");
   read_block_keys(reader, block, reading);
   reader.finish();
   return block;
@@ -139,28 +141,30 @@ void check_instruction_levels(const Factor& factor, TableReader& reader, const R
     const auto* name = std::get_if<std::string>(&level);
     if (name && !reading.protocol.instructions.count(*name))
       reader.problem("over", "there is no [instructions." + *name + "]",
-                     "one for each level of \"instruction\"");
+                     "add such a table for each level of the factor \"instruction\"");
   }
 }
 
 Sequence read_sequence(const Value& table, const Reading& reading) {
   TableReader reader(table, titled("sequence", table), reading.findings);
   Sequence sequence;
-  sequence.name = read_name(reader, "name", "a name for the data file");
+  sequence.name = read_name(reader, "name", "choose a name, which is stored with the data");
   reader.word("design", {"latin-square"});
-  sequence.over = reader.string("over", "the factor that differs between the blocks");
+  sequence.over = reader.string("over", "name the factor that differs between the blocks");
   const auto& factors = reading.protocol.factors;
   const auto* factor = find_factor(factors, sequence.over);
   if (!sequence.over.empty() && !factor)
     reader.problem("over", "unknown factor \"" + sequence.over + "\"",
                    suggestion(sequence.over, names(factors)));
   if (factor && factor->levels.size() < 2)
-    reader.problem("over", "the factor \"" + sequence.over + "\" has no levels to order",
-                   "a factor with two \"levels\" or more");
+    reader.problem("over",
+                   "the factor \"" + sequence.over + "\" does not have several levels to put in order",
+                   "use a factor with two or more \"levels\"");
   if (factor) check_instruction_levels(*factor, reader, reading);
   sequence.cycles = reader.integer("cycles", 1, 100, 1);
   sequence.mirror = reader.boolean("mirror", "false");
-  if (const auto* block = reader.table("block", "what each block does: { procedures = [\"levels\"] }")) {
+  if (const auto* block =
+          reader.table("block", "describe what each block presents: { procedures = [\"levels\"] }")) {
     TableReader inner(*block, reader.path("block"), reading.findings);
     read_block_keys(inner, sequence.block, reading);
     inner.finish();
@@ -173,7 +177,7 @@ Sequence read_sequence(const Value& table, const Reading& reading) {
 }  // namespace
 
 void read_plan(TableReader& file, Reading& reading) {
-  std::vector<std::pair<const Value*, bool>> tables;  // with whether it is a sequence
+  std::vector<std::pair<const Value*, bool>> tables;  // each table, and true if it is a sequence
   for (const auto* table : file.tables("block")) tables.emplace_back(table, false);
   for (const auto* table : file.tables("sequence")) tables.emplace_back(table, true);
   const auto above = [](const auto& a, const auto& b) {
@@ -194,12 +198,13 @@ void read_plan(TableReader& file, Reading& reading) {
       reading.protocol.plan.emplace_back(std::move(block));
     }
     if (!name.empty() && !seen.insert(name).second)
-      reading.findings.add(table->find("name")->place, "a second block named \"" + name + "\"",
-                           "names of blocks and sequences must differ");
+      reading.findings.add(table->find("name")->place,
+                           "there is already a block or sequence named \"" + name + "\"",
+                           "each block and sequence needs a different name");
   }
   if (tables.empty() && !file.has("block") && !file.has("sequence"))
     reading.findings.add(file.place(), "the file has no [[block]] and no [[sequence]]",
-                         "at least one is needed");
+                         "add at least one of them");
 }
 
 }  // namespace turnpoint::protocol

@@ -46,10 +46,10 @@ void check_balance(TableReader& reader, const Spec& spec, const Reading& reading
       reader.problem("balance", "unknown factor \"" + name + "\"", suggestion(name, names(factors)));
     else if (factor->levels.empty())
       reader.problem("balance", "the factor \"" + name + "\" has a range, not levels",
-                     "a factor with \"levels\"");
+                     "use a factor with \"levels\"");
     if (name == spec.level || !seen.insert(name).second)
       reader.problem("balance", "\"" + name + "\" is set twice",
-                     "each factor once, and not the level itself");
+                     "list each factor only once, and not the factor that the procedure sets");
   }
 }
 
@@ -57,7 +57,7 @@ void check_tracks(TableReader& reader, const Spec& spec, const Reading& reading)
   std::vector<std::string> ids;
   for (const auto& choice : reading.protocol.task.choices) ids.push_back(choice.id);
   if (!spec.tracks.empty() && !ids.empty() && std::find(ids.begin(), ids.end(), spec.tracks) == ids.end())
-    reader.problem("tracks", "\"" + spec.tracks + "\" is no choice of the task",
+    reader.problem("tracks", "\"" + spec.tracks + "\" is not a choice of the task",
                    suggestion(spec.tracks, ids));
 }
 
@@ -86,7 +86,7 @@ void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
   if (spec.max) check("max", *spec.max);
 }
 
-// Checks the procedure's own rules. A problem names its key, with dots for a key of an inner table.
+// Checks the rules of this kind of procedure. A problem names the key; inner tables are separated by dots.
 void check_spec(const Value& table, const Spec& spec, text::Findings& findings) {
   for (const auto& fault : procedure::validate(spec)) {
     const Value* at = &table;
@@ -106,7 +106,7 @@ void check_spec(const Value& table, const Spec& spec, text::Findings& findings) 
 Spec read_procedure(const Value& table, const Reading& reading, text::Findings& findings) {
   TableReader reader(table, titled("procedure", table), findings);
   Spec spec;
-  spec.name = read_name(reader, "name", "a name for the data file");
+  spec.name = read_name(reader, "name", "choose a name, which is stored with the data");
   reader.take("copy");
   spec.kind =
       procedure::parse_kind(reader.word("kind", procedure::kind_names())).value_or(Kind::constant_stimuli);
@@ -134,7 +134,8 @@ Value with_copies(const Value& table, const std::map<std::string, Value>& above,
   for (const auto& [name, value] : above) known.push_back(name);
   const auto found = copy->value.kind == Value::Kind::string ? above.find(copy->value.string) : above.end();
   if (found != above.end()) return overlay(found->second, table);
-  findings.add(copy->value.place, "\"copy\" is " + describe(copy->value) + ", which is no procedure above",
+  findings.add(copy->value.place,
+               "\"copy\" is " + describe(copy->value) + ", which is not a procedure above this one",
                suggestion(copy->value.string, known));
   return table;
 }
@@ -158,8 +159,8 @@ void read_procedures(TableReader& file, Reading& reading) {
     auto& defaults = reading.findings.defaults_used;
     defaults.insert(defaults.end(), found.defaults_used.begin(), found.defaults_used.end());
     if (!name.empty() && !above.emplace(name, whole).second)
-      reading.findings.add(table->find("name")->place, "a second procedure named \"" + name + "\"",
-                           "names must differ");
+      reading.findings.add(table->find("name")->place, "there is already a procedure named \"" + name + "\"",
+                           "each procedure needs a different name");
     else if (!name.empty())
       spec.name = name, reading.protocol.procedures.push_back(std::move(spec));
   }

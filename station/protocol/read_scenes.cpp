@@ -33,7 +33,7 @@ std::optional<Linear> read_linear(TableReader& reader, const std::string& key, c
 Edge read_edge(TableReader& reader) {
   Edge edge;
   const auto* value =
-      reader.require("edge", "which edge \"boundary_mm\" means: " + text::quoted_list(edge_names) +
+      reader.require("edge", "say which edge \"boundary_mm\" means: " + text::quoted_list(edge_names) +
                                  ", or { friction = 0.7 }");
   if (!value) return edge;
   if (value->kind != Value::Kind::table) {
@@ -55,12 +55,12 @@ SceneTone read_tone(const Value& table, const std::string& name, Findings& findi
   if (reader.has("boundary_mm") == reader.has("frequency_Hz"))
     findings.add(table.place,
                  "a tone of " + name + " has " + (reader.has("boundary_mm") ? "two places" : "no place"),
-                 "exactly one of \"boundary_mm\" or \"frequency_Hz\"");
+                 "give either \"boundary_mm\" or \"frequency_Hz\"");
   if (reader.has("boundary_mm"))
     tone.edge = read_edge(reader);
   else if (reader.take("edge"))
-    reader.problem("edge", "an \"edge\" without \"boundary_mm\"", "a tone placed by frequency has none");
-  reader.require("displacement_um", "peak displacement at the tone's last maximum, in um");
+    reader.problem("edge", "\"edge\" needs \"boundary_mm\"", "a tone placed by its frequency has no edge");
+  reader.require("displacement_um", "give the peak displacement at the tone's last maximum, in um");
   if (const auto displacement = read_linear(reader, "displacement_um", displacement_um, reading))
     tone.displacement_um = *displacement;
   tone.phase_deg = reader.maybe_number("phase_deg", {-360, 360, Ends::closed, "degrees"}).value_or(0);
@@ -72,7 +72,7 @@ Zone read_zone(const Value& table, const std::string& name, Findings& findings, 
   TableReader reader(table, name, findings);
   Zone zone;
   zone.from_mm = reader.number("from_mm", {0, 1e5, Ends::closed, "mm"});
-  reader.require("friction", "mean relative friction inside the zone, above 0 and below 1");
+  reader.require("friction", "give the mean relative friction inside the zone, above 0 and below 1");
   zone.friction = read_linear(reader, "friction", relative_friction, reading);
   zone.tones = reader.integer("tones", 1, 16);
   reader.finish();
@@ -92,7 +92,8 @@ Tolerance read_tolerance(const Value& table, const std::string& name, Findings& 
 // A scene can be given in three forms. Checks that exactly one is used.
 void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
   const auto form =
-      "one boundary (\"boundary_mm\", \"edge\" and \"displacement_um\" or \"friction\"), a \"zone\" with "
+      "use one of three forms: one boundary (\"boundary_mm\", \"edge\" and \"displacement_um\" or "
+      "\"friction\"), a \"zone\" with "
       "\"boundary_mm\" and \"edge\", or explicit \"tones\"";
   const bool tones = reader.has("tones"), zone = reader.has("zone"), boundary = reader.has("boundary_mm");
   if (!tones && !boundary) return findings.add(reader.place(), reader.title() + " presents nothing", form);
@@ -100,30 +101,32 @@ void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
     for (const auto* key :
          {"boundary_mm", "edge", "zone", "displacement_um", "friction", "friction_contrast_dB"})
       if (reader.has(key))
-        reader.problem(key, std::string("\"") + key + "\" beside \"tones\" in " + reader.title(), form);
+        reader.problem(
+            key, std::string("\"") + key + "\" is not allowed together with \"tones\" in " + reader.title(),
+            form);
     return;
   }
   const int levels = reader.has("displacement_um") + reader.has("friction");
   if (zone) {
     for (const auto* key : {"displacement_um", "friction"})
       if (reader.has(key))
-        reader.problem(key, std::string("\"") + key + "\" beside \"zone\"",
-                       "the zone's own \"friction\" says it");
+        reader.problem(key, std::string("\"") + key + "\" is not allowed together with \"zone\"",
+                       "set \"friction\" inside \"zone\" instead");
   } else if (levels != 1) {
     findings.add(levels == 2 ? reader.place("friction") : reader.place(),
                  reader.title() + (levels == 2 ? " has both \"displacement_um\" and \"friction\""
                                                : " does not say how strong it is"),
-                 "exactly one of \"displacement_um\" (at the last maximum) or \"friction\"");
+                 "give exactly one of \"displacement_um\" (at the last maximum) and \"friction\"");
   }
   if (scene.friction_contrast_dB && !zone && !reader.has("friction"))
     reader.problem("friction_contrast_dB", "\"friction_contrast_dB\" needs a base that states friction",
-                   "a base with \"friction\" or with a \"zone\"");
+                   "use a base with \"friction\" or with a \"zone\"");
   if (scene.zone && scene.boundary_mm && scene.zone->from_mm) {
     const auto least = bounds(*scene.boundary_mm, {}).first;
     if (scene.boundary_mm->is_constant() && *scene.zone->from_mm >= least)
       reader.problem("zone",
-                     "the zone begins at " + text::number(*scene.zone->from_mm) + " mm, behind its boundary",
-                     "\"from_mm\" below \"boundary_mm\"");
+                     "the zone begins at " + text::number(*scene.zone->from_mm) + " mm, beyond its boundary",
+                     "\"from_mm\" must be less than \"boundary_mm\"");
   }
 }
 
@@ -139,20 +142,20 @@ Scene read_scene(const Value& table, const std::string& name, const Value& own, 
   if (reader.has("boundary_mm"))
     scene.edge = read_edge(reader);
   else if (reader.take("edge"))
-    reader.problem("edge", "an \"edge\" without \"boundary_mm\"", "the boundary that it is the edge of");
+    reader.problem("edge", "\"edge\" needs \"boundary_mm\"", "give the boundary to which the edge belongs");
   scene.displacement_um = read_linear(reader, "displacement_um", displacement_um, reading);
   scene.friction = read_linear(reader, "friction", relative_friction, reading);
   for (const auto* tone : reader.tables("tones"))
     scene.tones.push_back(read_tone(*tone, path + ".tones", findings, reading));
   if (reader.has("tones") && scene.tones.empty())
-    reader.problem("tones", "\"tones\" has no tone", "at least one { ... }");
+    reader.problem("tones", "\"tones\" has no tone", "add at least one tone: { ... }");
   if (const auto* zone = reader.maybe_table("zone"))
     scene.zone = read_zone(*zone, path + ".zone", findings, reading);
   scene.friction_contrast_dB =
       read_linear(reader, "friction_contrast_dB", {-infinity, 0, Ends::open_high, "dB"}, reading);
   if (own.find("friction_contrast_dB") && scene.base.empty())
-    reader.problem("friction_contrast_dB", "\"friction_contrast_dB\" without a \"base\"",
-                   "the scene that it is lower than");
+    reader.problem("friction_contrast_dB", "\"friction_contrast_dB\" needs a \"base\"",
+                   "name the scene whose friction is to be lowered");
   scene.rove_dB = reader.number("rove_dB", {0, 40, Ends::closed, "dB"}, 0);
   scene.ramp_ms = reader.number("ramp_ms", {1, 2000, Ends::closed, "ms"}, 50);
   if (const auto* tolerance = reader.maybe_table("tolerance"))
@@ -203,11 +206,12 @@ class Resolver {
       if (!below) return open_.erase(name), nullptr;
       if (own.find("friction_contrast_dB") && below->find("friction_contrast_dB"))
         reading_.findings.add(base->value.place,
-                              "the base \"" + base->value.string + "\" has a contrast itself",
-                              "a base without \"friction_contrast_dB\"");
+                              "the base \"" + base->value.string + "\" has a friction contrast itself",
+                              "use a base without \"friction_contrast_dB\"");
       if (own.find("friction_contrast_dB") && (own.find("zone") || own.find("friction")))
         reading_.findings.add(own.find("friction_contrast_dB")->place,
-                              "both a contrast to the base and a friction of its own", "one of them");
+                              "the scene has both a contrast to its base and its own friction",
+                              "remove one of the two");
       table = laid_over(*below, own);
     }
     open_.erase(name);
@@ -222,7 +226,7 @@ class Resolver {
       if (entry.key != name) others.push_back(entry.key);
     if (open_.count(base.string)) {
       reading_.findings.add(base.place, "the bases of \"" + name + "\" run in a circle",
-                            "a base that leads to no other way back");
+                            "use a base that does not depend on this scene");
       return nullptr;
     }
     const auto* found = scenes_.find(base.string);
@@ -254,7 +258,7 @@ class Resolver {
 }  // namespace
 
 void read_scenes(TableReader& file, Reading& reading) {
-  const auto* scenes = file.table("scene", "at least one table [scene.NAME]");
+  const auto* scenes = file.table("scene", "add at least one table [scene.NAME]");
   if (!scenes) return;
   for (const auto& entry : scenes->entries) reading.declared_scenes.push_back(entry.key);
   Resolver resolver(*scenes, reading);
@@ -263,7 +267,7 @@ void read_scenes(TableReader& file, Reading& reading) {
       resolver.resolve(entry.key);
     else
       reading.findings.add(entry.place, "\"scene." + entry.key + "\" is " + describe(entry.value),
-                           "a table [scene.NAME] is needed");
+                           "write a table [scene.NAME]");
   }
 }
 

@@ -25,7 +25,7 @@ std::vector<std::string> read_interval(const Value& item, const Reading& reading
   const auto one = [&](const Value& value) {
     if (value.kind != Value::Kind::string)
       return reading.findings.add(value.place, "an interval holds " + describe(value),
-                                  "the name of a scene in quotes");
+                                  "write the name of a scene in quotes");
     check_scene(value.string, value.place, reading);
     scenes.push_back(value.string);
   };
@@ -34,33 +34,34 @@ std::vector<std::string> read_interval(const Value& item, const Reading& reading
   else
     for (const auto& value : item.items) one(value);
   if (item.kind == Value::Kind::array && item.items.size() != 1 && item.items.size() != 2)
-    reading.findings.add(item.place, "an interval has " + std::to_string(item.items.size()) + " scenes",
-                         "one, or two of which the second follows after the foreperiod");
+    reading.findings.add(
+        item.place, "an interval has " + std::to_string(item.items.size()) + " scenes",
+        "an interval must have one scene, or two scenes with a foreperiod before the second");
   return scenes;
 }
 
 void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
   const bool pair = task.kind == TaskKind::same_different || task.kind == TaskKind::oddity;
   if (pair) {
-    task.standard = reader.string("standard", "the name of the scene that is usual");
-    task.target = reader.string("target", "the name of the scene that differs");
+    task.standard = reader.string("standard", "name the scene that most intervals present");
+    task.target = reader.string("target", "name the scene that differs");
     for (const auto* key : {"standard", "target"})
       if (reader.has(key))
         check_scene(key == std::string("standard") ? task.standard : task.target, reader.place(key), reading);
     if (!task.standard.empty() && task.standard == task.target)
-      reader.problem("target", "\"target\" and \"standard\" are the same scene", "two different ones");
+      reader.problem("target", "\"target\" and \"standard\" are the same scene", "name two different scenes");
     return;
   }
-  const auto* list = reader.require("intervals", "a list of scene names: [\"edge\"]");
+  const auto* list = reader.require("intervals", "write a list of scene names: [\"edge\"]");
   if (!list) return;
   if (list->kind != Value::Kind::array)
     return reader.problem("intervals", "\"intervals\" is " + describe(*list),
-                          "a list of scene names: [\"edge\"]");
+                          "write a list of scene names: [\"edge\"]");
   for (const auto& item : list->items) task.intervals.push_back(read_interval(item, reading));
   const std::size_t needed = task.kind == TaskKind::two_interval ? 2 : 1;
   if (task.intervals.size() != needed)
     reader.problem("intervals", "\"intervals\" has " + std::to_string(task.intervals.size()),
-                   std::to_string(needed) + " for this kind of task");
+                   std::to_string(needed) + " must be given for this kind of task");
 }
 
 void read_times(TableReader& reader, Task& task) {
@@ -75,27 +76,29 @@ void read_times(TableReader& reader, Task& task) {
   const auto sequence = [](const auto& interval) { return interval.size() > 1; };
   const bool change = std::any_of(task.intervals.begin(), task.intervals.end(), sequence);
   if (change) {
-    reader.require("foreperiod_s", "the time before the second scene, in seconds: { uniform = [1.0, 2.5] }");
+    reader.require("foreperiod_s",
+                   "give the time before the second scene, in seconds: { uniform = [1.0, 2.5] }");
     task.foreperiod_s = read_distribution(reader, "foreperiod_s");
     task.transition_ms = reader.number("transition_ms", {1, 5000, Range::Ends::closed, "ms"});
   } else {
     for (const auto* key : {"foreperiod_s", "transition_ms"})
       if (reader.take(key))
-        reader.problem(key, std::string("\"") + key + "\" without a second scene",
-                       "it belongs to an interval of two scenes: intervals = [[\"a\", \"b\"]]");
+        reader.problem(key, std::string("\"") + key + "\" needs an interval with a second scene",
+                       "use an interval of two scenes: intervals = [[\"a\", \"b\"]]");
   }
 }
 
 void read_choices(TableReader& reader, Task& task, const Reading& reading) {
-  reader.require("choices", "the answers: [ { id = \"left\", label = { en = \"Left\" } }, ... ]");
+  reader.require("choices", "list the answers: [ { id = \"left\", label = { en = \"Left\" } }, ... ]");
   std::set<std::string> seen;
   for (const auto* table : reader.tables("choices")) {
     TableReader inner(*table, "task.choices", reading.findings);
     Choice choice;
-    choice.id = read_name(inner, "id", "a short name for the data file");
+    choice.id = read_name(inner, "id", "choose a short name, which is stored with the data");
     choice.label = read_localised(inner, "label", reading);
     if (!choice.id.empty() && !seen.insert(choice.id).second)
-      inner.problem("id", "a second choice \"" + choice.id + "\"", "ids must differ");
+      inner.problem("id", "there is already a choice with the id \"" + choice.id + "\"",
+                    "each choice needs a different id");
     inner.finish();
     task.choices.push_back(std::move(choice));
   }
@@ -104,15 +107,15 @@ void read_choices(TableReader& reader, Task& task, const Reading& reading) {
   if (list && list->kind == Value::Kind::array && list->items.size() != needed)
     reading.findings.add(list->items.size() > needed ? list->items[needed].place : list->place,
                          "\"choices\" has " + std::to_string(list->items.size()),
-                         std::to_string(needed) + " for this kind of task");
+                         std::to_string(needed) + " must be given for this kind of task");
   if (task.kind == TaskKind::same_different && task.choices.size() == 2 &&
       seen != std::set<std::string>{"same", "different"})
-    reader.problem("choices", "the answers of a same-different task have other ids",
-                   "\"same\" and \"different\"");
+    reader.problem("choices", "these are not the ids of the answers in a same-different task",
+                   "use the ids \"same\" and \"different\"");
 }
 
 void read_correct_scene(TableReader& reader, Task& task, const Reading& reading) {
-  task.correct_scene = reader.string("correct", "the scene whose interval is the right answer");
+  task.correct_scene = reader.string("correct", "name the scene whose interval is the right answer");
   if (task.correct_scene.empty()) return;
   check_scene(task.correct_scene, reader.place("correct"), reading);
   const auto in = [&](const auto& interval) {
@@ -122,7 +125,7 @@ void read_correct_scene(TableReader& reader, Task& task, const Reading& reading)
     reader.problem(task.intervals[0] == task.intervals[1] ? "intervals" : "correct",
                    "\"" + task.correct_scene + "\" is in " +
                        (in(task.intervals[0]) ? "both intervals" : "neither interval"),
-                   "a scene that only one of the two intervals holds");
+                   "name a scene that is in only one of the two intervals");
 }
 
 void read_correct_answers(TableReader& reader, Task& task, const Reading& reading) {
@@ -132,11 +135,12 @@ void read_correct_answers(TableReader& reader, Task& task, const Reading& readin
   for (const auto& choice : task.choices) ids.push_back(choice.id);
   for (const auto& entry : table->entries) {
     if (std::find(ids.begin(), ids.end(), entry.key) == ids.end())
-      reading.findings.add(entry.place, "\"correct\" has \"" + entry.key + "\", which is no choice",
+      reading.findings.add(entry.place,
+                           "\"correct\" has \"" + entry.key + "\", which is not the id of a choice",
                            suggestion(entry.key, ids));
     if (entry.value.kind != Value::Kind::string) {
       reading.findings.add(entry.value.place, "\"correct\" has " + describe(entry.value),
-                           "a comparison in quotes: \"offset_mm < 0\"");
+                           "write a comparison in quotes: \"offset_mm < 0\"");
       continue;
     }
     const auto comparison =
@@ -146,7 +150,7 @@ void read_correct_answers(TableReader& reader, Task& task, const Reading& readin
   for (const auto& id : ids)
     if (!id.empty() && !table->find(id))
       reading.findings.add(table->place, "\"correct\" does not say when \"" + id + "\" is right",
-                           "a comparison for each choice");
+                           "write a comparison for each choice");
 }
 
 void read_correct(TableReader& reader, Task& task, const Reading& reading) {
@@ -165,7 +169,7 @@ void read_correct(TableReader& reader, Task& task, const Reading& reading) {
         task.adjusts = factor->name;
         if (!factor->range)
           reader.problem("adjusts", "the factor \"" + factor->name + "\" has no range",
-                         "the slider runs over a \"range\"");
+                         "give this factor a \"range\", over which the slider moves");
       }
       task.step = reader.number("step", {0, 1e6, Range::Ends::open_low});
       return;
@@ -212,7 +216,7 @@ void read_timing(TableReader& file, Reading& reading) {
     if (zero == name(known)) timing.response_zero = known;
   timing.explore_s = reader.maybe_number("explore_s", {0, 600, Range::Ends::open_low, "s"});
   timing.deadline_s = reader.maybe_number("deadline_s", {0, 3600, Range::Ends::open_low, "s"});
-  reader.require("iti_s", "the pause between trials in seconds: a number or { uniform = [0.8, 1.2] }");
+  reader.require("iti_s", "give the pause between trials in seconds: a number or { uniform = [0.8, 1.2] }");
   timing.iti_s = read_distribution(reader, "iti_s").value_or(Distribution{1, 1});
   timing.anticipation_s = reader.number("anticipation_s", {0, 10, Range::Ends::closed, "s"}, 0);
   reader.finish();
@@ -224,7 +228,7 @@ void read_instructions(TableReader& file, Reading& reading) {
   for (const auto& entry : tables->entries) {
     if (entry.value.kind != Value::Kind::table) {
       reading.findings.add(entry.place, "\"instructions." + entry.key + "\" is " + describe(entry.value),
-                           "a table [instructions.NAME] is needed");
+                           "write a table [instructions.NAME]");
       continue;
     }
     TableReader reader(entry.value, "instructions." + entry.key, reading.findings);

@@ -16,10 +16,11 @@ struct Reading {
   Protocol& protocol;
   text::Findings& findings;
   const KeyPlaces& places;
-  std::vector<std::string> declared_scenes;  ///< all scenes of the file, including those with problems
+  /// names of all scenes in the file, including scenes with problems
+  std::vector<std::string> declared_scenes;
 };
 
-void read_header(text::TableReader& file, Reading& reading);  ///< format, [protocol], [random]
+void read_header(text::TableReader& file, Reading& reading);  ///< Reads `format`, [protocol] and [random].
 void read_factors(text::TableReader& file, Reading& reading);
 void read_scenes(text::TableReader& file, Reading& reading);
 void read_instructions(text::TableReader& file, Reading& reading);
@@ -30,7 +31,8 @@ void read_plan(text::TableReader& file, Reading& reading);
 void read_analysis(text::TableReader& file, Reading& reading);
 void read_resume(text::TableReader& file, Reading& reading);
 
-/// Checks what requires the whole file: values of factors in each trial, answers, passes, deadlines.
+/// Checks what can be checked only in the whole file: values of factors in each trial, answers, pass
+/// criteria, deadlines.
 void check_whole(text::TableReader& file, Reading& reading);
 
 /// Reads a text in each declared language. A missing or undeclared language is a problem.

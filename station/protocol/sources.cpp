@@ -107,7 +107,7 @@ Factors any_factors(const Protocol& protocol) {
     else if (factor.range)
       factors[factor.name] = 0.5 * (factor.range->first + factor.range->second);
     else
-      factors[factor.name] = 0.0;  // a factor that has a problem, which is reported elsewhere
+      factors[factor.name] = 0.0;  // this factor has a problem, which is reported elsewhere
   }
   return factors;
 }

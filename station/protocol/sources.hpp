@@ -11,17 +11,19 @@ namespace turnpoint::protocol {
 /// One source of trials in a block: a procedure, fixed levels, or catch trials.
 struct Source {
   const Block* block = nullptr;
-  std::string what;            ///< name for messages: `procedure "levels"`, `fixed levels`, `catch trials`
-  std::string level;           ///< the factor that it sets
-  std::vector<double> levels;  ///< every value that it can set, as far as the file says
-  std::set<std::string> sets;  ///< factors that it sets in its trials, so that they are not drawn
+  /// name of the source for messages: `procedure "levels"`, `fixed levels`, `catch trials`
+  std::string what;
+  std::string level;           ///< the factor that the source sets
+  std::vector<double> levels;  ///< every value of the factor that the source can set, as far as the file says
+  /// factors that the source sets in its trials, so that they are not drawn at random
+  std::set<std::string> sets;
   const procedure::Spec* spec = nullptr;
 };
 
 /// All sources of trials. The pointers point into the protocol.
 std::vector<Source> sources_of(const Protocol& protocol);
 
-/// All expressions of a scene. The pointers point into it.
+/// All expressions of a scene. The pointers point into the scene.
 std::vector<const Linear*> expressions_of(const Scene& scene);
 
 /// The factors on which the task's scenes and its right answers depend.

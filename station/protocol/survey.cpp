@@ -42,8 +42,8 @@ std::string reach(const scene::Scene& scene, const rig::Rig& rig, const scene::P
       nearest = std::min(nearest.value_or(*x), *x);
       furthest = std::max(furthest.value_or(*x), *x);
     }
-  if (!nearest) return "this rig reaches no boundary with this edge";
-  return "with this edge the rig reaches " + text::number(1e3 * *nearest, 4) + " to " +
+  if (!nearest) return "this rig cannot present any boundary with this edge";
+  return "with this edge the rig can present boundaries from " + text::number(1e3 * *nearest, 4) + " to " +
          text::number(1e3 * *furthest, 4) + " mm (" + text::number(1e-3 * low_Hz, 4) + " to " +
          text::number(1e-3 * high_Hz, 4) + " kHz)";
 }
@@ -185,7 +185,7 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
       if (explained.insert(combination.scene).second) try {
           answers[i].place = blamed_place(protocol, places, from, scene, planner);
           answers[i].allowed = reach(scene, rig, planner);
-        } catch (const std::domain_error&) {  // no boundary at all can have this edge
+        } catch (const std::domain_error&) {  // this edge does not exist at any boundary
         }
     }
   }
@@ -215,7 +215,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   const auto combinations = planned(protocol, all);
   const auto answers = plan_all(protocol, rig, combinations, stop);
   std::map<std::string, Trouble> unreachable, inexact;
-  std::map<std::string, std::string> told;  // the planner's warnings by code, each reported once
+  std::map<std::string, std::string> told;  // the planner's warnings by code, so that each is reported once
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto& combination = combinations[i];
     if (!answers[i].plan) {
@@ -236,9 +236,9 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   for (const auto& [name, trouble] : unreachable)
     survey.problems.push_back({trouble.place, counted(trouble), trouble.allowed});
   for (const auto& [name, trouble] : inexact)
-    survey.warnings.push_back(
-        {protocol.scenes.at(name).place, counted(trouble), "no model is known to be inside its tolerance"});
-  if (rig.reproduction) return;  // a historical rig is known to be unable to do this
+    survey.warnings.push_back({protocol.scenes.at(name).place, counted(trouble),
+                               "no physical model is known to meet the scene's tolerance"});
+  if (rig.reproduction) return;  // a rig that reproduces a historical one is known to be too weak for this
   for (const auto& [code, warning] : told) survey.warnings.push_back({{protocol.path, 0, 0}, warning, ""});
 }
 
@@ -248,28 +248,28 @@ void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey
   };
   const auto& task = protocol.task;
   if (task.device == Device::buttons && !rig.buttons_uri)
-    add(task.device_place, "the task needs buttons, and the rig has none",
-        "a rig with [buttons], or device = \"touch\"");
+    add(task.device_place, "the task needs buttons, but the rig has none",
+        "use a rig with [buttons], or set device = \"touch\"");
   if (task.device == Device::touch && !rig.touch_uri)
-    add(task.device_place, "the task needs a touchscreen, and the rig has none",
-        "a rig with [touch], or device = \"buttons\"");
+    add(task.device_place, "the task needs a touchscreen, but the rig has none",
+        "use a rig with [touch], or set device = \"buttons\"");
   if (task.device == Device::either && !rig.touch_uri && !rig.buttons_uri)
-    add(task.device_place, "the rig has neither touchscreen nor buttons", "a rig with [touch] or [buttons]");
+    add(task.device_place, "the rig has neither touchscreen nor buttons",
+        "use a rig with [touch] or [buttons]");
   const bool two_lines = rig.buttons_uri && rig.buttons_uri->rfind("gpio:", 0) == 0 &&
                          rig.buttons_uri->find("third=") == std::string::npos;
   if (task.device == Device::buttons && task.choices.size() > 2 && two_lines)
-    add(task.device_place, "the task has three answers, and the rig two buttons",
-        "a line \"third\" in [buttons], or device = \"touch\"");
+    add(task.device_place, "the task has three answers, but the rig has only two buttons",
+        "add a line \"third\" to [buttons], or set device = \"touch\"");
   if (task.sound == Sound::masking_noise && !rig.noise)
-    add(task.sound_place, "the task needs masking noise, and the rig has none",
-        "a rig with [noise] (headphones on a spare channel), or no \"sound\"");
+    add(task.sound_place, "the task needs masking noise, but the rig has none",
+        "use a rig with [noise] (headphones on a spare channel), or leave out \"sound\"");
   const auto zero = protocol.timing.response_zero;
   const bool contact = zero == ResponseZero::first_contact || zero == ResponseZero::lift_off;
   if (contact && !rig.contact_uri)
     add(protocol.timing.response_zero_place,
-        "response times are counted from the finger's contact, and the rig "
-        "does not sense it",
-        "a rig with [contact], or another \"response_zero\"");
+        "response times are measured from the finger's contact, but the rig cannot sense contact",
+        "use a rig with [contact], or another \"response_zero\"");
 }
 
 void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
@@ -280,7 +280,7 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
         {KeyPlaces(protocol.source, protocol.path)
              .of(protocol.task.duration_s ? "task.duration_s" : "timing.explore_s"),
          "tones last up to " + text::number(longest_s) + " s without a pause",
-         "at most the rig's continuous_s = " + text::number(rig.limits.continuous_s) + " s"});
+         "the rig allows at most continuous_s = " + text::number(rig.limits.continuous_s) + " s"});
 }
 
 }  // namespace

@@ -23,30 +23,31 @@ struct Sight {
   std::vector<physics::Tone> tones;  ///< at the drive edge, with the strength roved upwards
   physics::Model field_model = physics::Model::mode;
   std::optional<double> boundary_mm;
-  double displacement_um = 0;  ///< largest anywhere on the surface, with the strength roved upwards
+  /// largest displacement anywhere on the surface, with the strength roved upwards
+  double displacement_um = 0;
   double lowest_friction = 1;
   std::string model;
   double error_bound_mm = 0;
   bool inside_tolerance = true;
-  scene::Cues cues;  ///< with the strength roved upwards
-  /// With the strength roved downwards. Set only if that changes more than the strength, that is, for edges
-  /// defined by friction.
+  scene::Cues cues;  ///< the cues when the strength is roved upwards
+  /// The cues when the strength is roved downwards. Set only if roving changes more than the strength, that
+  /// is, for edges defined by friction.
   std::optional<scene::Cues> cues_roved_down;
 };
 
 /// The result of checking a protocol against a rig. Problems prevent a session, warnings do not.
 struct Survey {
   std::vector<text::Problem> problems, warnings;
-  std::vector<Sight> sights;  ///< in the order of blocks in the file; each combination once
+  std::vector<Sight> sights;  ///< in the order of blocks in the file; each combination appears once
   /// total number of combinations; if fewer were planned, they are the extremes and steps between
   std::size_t combinations = 0;
   std::set<std::string> models;
 };
 
-/// Thrown if the caller asked the work to stop before it had a result.
+/// Thrown if the caller stops the work before there is a result.
 class Abandoned : public std::runtime_error {
  public:
-  Abandoned() : std::runtime_error("abandoned before it had a result") {}
+  Abandoned() : std::runtime_error("the check of the protocol was stopped before it had a result") {}
 };
 
 /// Plans every scene for the combinations of factors that can occur (for a staircase: its limits), and checks

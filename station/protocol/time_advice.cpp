@@ -15,20 +15,20 @@ constexpr double longest_s = 120;
 void check_length(AdviceList& advice, const std::string& key, double seconds) {
   if (seconds > longest_s)
     advice.add(key, number(seconds) + " s are " + number(seconds / 60, 3) + " minutes",
-               "seconds: 800 ms are 0.8");
+               "times are in seconds: write 0.8 for 800 ms");
 }
 
 void check_deadline(AdviceList& advice, const std::string& key, double seconds) {
   check_length(advice, key, seconds);
   if (seconds < shortest_deadline_s)
-    advice.add(key, "nobody answers within " + number(seconds) + " s",
+    advice.add(key, "nobody can answer within " + number(seconds) + " s",
                number(shortest_deadline_s) + " s or more");
   const double below_s = advice.protocol.analysis.exclude_below_s;
   if (below_s >= seconds)
     advice.add("analysis.response_time_exclude.below_s",
-               "\"below_s\" excludes all answers up to " + number(below_s) + " s, and the deadline is " +
+               "\"below_s\" excludes all answers up to " + number(below_s) + " s, but the deadline is only " +
                    number(seconds) + " s",
-               "well below every deadline");
+               "set it well below every deadline");
 }
 
 // Checks that the change of scene can end before the tones do. The second scene begins after the foreperiod.
@@ -39,9 +39,9 @@ void check_change(AdviceList& advice) {
   const double latest_s = task.foreperiod_s->high + 1e-3 * task.transition_ms.value_or(0);
   if (whole_s > 0 && latest_s >= whole_s)
     advice.add("task.foreperiod_s",
-               "the change can end " + number(latest_s) + " s after the tones begin, which last " +
-                   number(whole_s) + " s",
-               "a foreperiod and a transition well below " + number(whole_s) + " s");
+               "the change can end " + number(latest_s) +
+                   " s after the tones begin, but the tones last only " + number(whole_s) + " s",
+               "the foreperiod plus the transition must be well below " + number(whole_s) + " s");
 }
 
 }  // namespace

@@ -67,8 +67,8 @@ std::vector<text::Problem> problems_of(const std::string& source) {
 bool lacks_the_rest(const text::Problem& problem) {
   for (const auto* part :
        {"the file needs", "the file has no", "unknown factor", "unknown scene", "unknown procedure",
-        "not declared", "has no value", "there is no [instructions", "has no deadline", "without a second",
-        "nothing ends the interval", "unknown key \"offset_mm\""})
+        "not a declared language", "has no value", "there is no [instructions", "has no deadline",
+        "second scene", "nothing ends the interval", "unknown key \"offset_mm\""})
     if (problem.what.find(part) != std::string::npos) return true;
   return false;
 }

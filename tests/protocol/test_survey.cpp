@@ -79,7 +79,7 @@ TEST_CASE("a boundary that the rig cannot reach is refused with what it can reac
   const auto found = problems(text, quick_rig());
   CHECK(contains(found, "p.toml:25:15: scene \"edge\" in block \"main\" at mark_mm = 250, offset_mm = "));
   CHECK(contains(found, "more cases"));
-  CHECK(contains(found, "with this edge the rig reaches"));
+  CHECK(contains(found, "with this edge the rig can present boundaries from"));
 }
 
 TEST_CASE("a displacement above the rig's limit is refused, roving included", "[protocol]") {
@@ -101,18 +101,18 @@ TEST_CASE("devices that the task needs and the rig lacks are named at the key th
           "[protocol]") {
   const auto buttons = replaced(source("demo.toml"), "device = \"either\"", "device = \"buttons\"");
   const auto without = rig::parse(replaced(quick_rig_source(), "[buttons]\nuri = \"sim:\"\n", ""), "r.toml");
-  CHECK(contains(problems(buttons, without), "p.toml:35:10: the task needs buttons, and the rig has none"));
+  CHECK(contains(problems(buttons, without), "p.toml:35:10: the task needs buttons, but the rig has none"));
   CHECK(problems(source("demo.toml"), without).empty());
   const auto no_contact =
       rig::parse(replaced(quick_rig_source(), "[contact]\nuri = \"sim:\"\n", ""), "r.toml");
   const auto lift =
       replaced(source("demo.toml"), "response_zero = \"go_cue\"", "response_zero = \"lift_off\"");
-  CHECK(contains(problems(lift, no_contact), "the rig does not sense it"));
+  CHECK(contains(problems(lift, no_contact), "the rig cannot sense contact"));
   CHECK(problems(lift, quick_rig()).empty());
   const auto masked =
       replaced(buttons, "device = \"buttons\"", "device = \"buttons\"\nsound = \"masking_noise\"");
   CHECK(contains(problems(masked, quick_rig()),
-                 "p.toml:36:9: the task needs masking noise, and the rig has none"));
+                 "p.toml:36:9: the task needs masking noise, but the rig has none"));
   const auto headphones = rig::parse(
       replaced(quick_rig_source(), "[limits]", "[noise]\nchannel = 1\nrms = 0.05\n[limits]"), "r.toml");
   CHECK(problems(masked, headphones).empty());
@@ -120,7 +120,7 @@ TEST_CASE("devices that the task needs and the rig lacks are named at the key th
 
 TEST_CASE("tones that last longer than the rig allows are refused", "[protocol]") {
   const auto text = replaced(source("demo.toml"), "explore_s = 4.0", "explore_s = 40.0");
-  CHECK(contains(problems(text, quick_rig()), "at most the rig's continuous_s = 30 s"));
+  CHECK(contains(problems(text, quick_rig()), "the rig allows at most continuous_s = 30 s"));
 }
 
 TEST_CASE("what is probably not meant is a warning at its place", "[protocol]") {
@@ -130,7 +130,7 @@ TEST_CASE("what is probably not meant is a warning at its place", "[protocol]") 
   const auto constant = source("boundary-constant.toml");
   SECTION("levels finer than four times the tolerance") {
     CHECK(contains(advice(replaced(constant, "boundary_mm = 0.5,", "boundary_mm = 1.0,")),
-                   "its tolerance is 1 mm"));
+                   "the scene's tolerance is 1 mm"));
   }
   SECTION("levels that everybody feels") {
     const auto coarse =
@@ -139,24 +139,25 @@ TEST_CASE("what is probably not meant is a warning at its place", "[protocol]") 
   }
   SECTION("practice that one key passes") {
     CHECK(contains(advice(replaced(constant, "levels = [-28.0, 28.0]", "levels = [20.0, 28.0]")),
-                   "is passed by one key"));
-    CHECK(contains(advice(replaced(constant, "accuracy = 0.75", "accuracy = 0.5")), "is passed by one key"));
+                   "can be passed by always pressing the same key"));
+    CHECK(contains(advice(replaced(constant, "accuracy = 0.75", "accuracy = 0.5")),
+                   "can be passed by always pressing the same key"));
   }
   SECTION("catch trials with one right answer") {
     const auto text =
         replaced(source("boundary-adaptive.toml"), "offset_mm = [-24.0, 24.0] }", "offset_mm = 24.0 }");
-    CHECK(contains(advice(text), "have one right answer only"));
+    CHECK(contains(advice(text), "have only one right answer"));
   }
   SECTION("a grid of one stimulus") {
     const auto text =
         replaced(source("friction-2ifc.toml"), "stimuli = { from = -30.0, to = -3.0, step = 1.0 }",
                  "stimuli = { values = [-20.0] }");
-    CHECK(contains(advice(text), "a grid of one point"));
+    CHECK(contains(advice(text), "the grid has only one point"));
   }
   SECTION("unequal steps whose target is not the usual one") {
     const auto text = replaced(source("friction-staircase.toml"), "step = [4.0, 2.0, 1.0]",
                                "step_down = [1.0]\nstep_up = [2.0]");
-    CHECK(contains(advice(text), "make it settle near 87.4 % right"));
+    CHECK(contains(advice(text), "let it converge near 87.4 % right"));
   }
   SECTION("parts that nothing uses") {
     CHECK(contains(advice(replaced(constant, "[scene.edge]",
@@ -184,24 +185,25 @@ TEST_CASE("counts that balance cannot make even are noted, of one factor and of 
     const auto said = notes(mark, "10");
     CHECK(contains(said, "p.toml:65:"));
     CHECK(contains(said,
-                   "each level meets each of the 3 values of \"mark_mm\" 3 or 4 times; "
-                   "equally often with repeats = 12"));
+                   "each level is combined with each of the 3 values of \"mark_mm\" 3 or 4 times; "
+                   "for equal counts, set repeats = 12"));
     CHECK(one_line(said));
   }
   SECTION("two factors whose combinations are uneven though each factor is even") {
     const auto both = "[\"mark_mm\", \"hand\"]";
     CHECK(notes(both, "12").empty());
     const auto more = notes("[\"hand\", \"speed\"]", "12");
-    CHECK(contains(more,
-                   "each level meets each of the 8 combinations of \"hand\" and \"speed\" 1 or 2 times; "
-                   "equally often with repeats = 16"));
+    CHECK(contains(
+        more,
+        "each level is combined with each of the 8 combinations of \"hand\" and \"speed\" 1 or 2 times; "
+        "for equal counts, set repeats = 16"));
     CHECK(one_line(more));
   }
   SECTION("more combinations than repeats") {
     const auto said = notes("[\"mark_mm\", \"hand\", \"speed\"]", "12");
     CHECK(contains(said,
                    "each of the 24 combinations of \"mark_mm\", \"hand\" and \"speed\" 0 or 1 times; "
-                   "equally often with repeats = 24"));
+                   "for equal counts, set repeats = 24"));
     CHECK(one_line(said));
   }
   SECTION("combinations that no number of repeats meets") {
@@ -211,8 +213,9 @@ TEST_CASE("counts that balance cannot make even are noted, of one factor and of 
                          "[[factor]]\nname = \"many\"\nlevels = " + levels +
                              "]\n[[factor]]\nname = \"more\"\nlevels = " + levels + "]\n[scene.edge]");
     text = replaced(text, "balance = [\"mark_mm\"]", "balance = [\"many\", \"more\"]");
-    CHECK(contains(all_of(protocol::notes(protocol::parse(text, "p.toml"))),
-                   "each of the 2250000 combinations of \"many\" and \"more\" 0 or 1 times; fewer factors or "
-                   "fewer levels"));
+    CHECK(contains(
+        all_of(protocol::notes(protocol::parse(text, "p.toml"))),
+        "each of the 2250000 combinations of \"many\" and \"more\" 0 or 1 times; use fewer factors or "
+        "fewer levels"));
   }
 }
