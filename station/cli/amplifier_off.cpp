@@ -6,10 +6,10 @@
 namespace turnpoint::cli {
 
 void add_amplifier_off(CommandLine& app, Context& context) {
-  auto* command = app.add_subcommand(
-      "amplifier-off",
-      "Switch the amplifier's enable line low after the station has died. Accepts the options that the "
-      "station was started with; only --rig is used");
+  auto* command =
+      app.add_subcommand("amplifier-off",
+                         "Set the amplifier's enable line low after the station program has crashed. Accepts "
+                         "the options with which the station was started, but uses only --rig");
   auto request = add_station_options(*command);
   command->footer("Example: turnpoint amplifier-off --rig /etc/turnpoint/rig.toml");
   command->callback([request, &context] {

@@ -21,7 +21,7 @@ void annotate(const Options& options, Context& context) {
   if (context.json)
     context.out << Json{{"session_id", options.session}, {"text", options.text}}.dump(2) << "\n";
   else
-    fmt::print(context.out, "noted on session {}\n", options.session);
+    fmt::print(context.out, "the note was added to session {}\n", options.session);
 }
 
 }  // namespace annotate_command
@@ -29,9 +29,9 @@ void annotate(const Options& options, Context& context) {
 void add_annotate(CommandLine& app, Context& context) {
   using namespace annotate_command;
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("annotate", "Add a note to a session; its trials do not change");
+  auto* command = app.add_subcommand("annotate", "Add a note to a session without changing its trials");
   command->add_option("--db", options->database, "Database")->required();
-  command->add_option("--session", options->session, "Session id; `turnpoint sessions` lists them")
+  command->add_option("--session", options->session, "Session id; `turnpoint sessions` lists all ids")
       ->required();
   command->add_option("text", options->text, "The note")->required();
   add_json(*command, context);

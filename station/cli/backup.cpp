@@ -33,8 +33,8 @@ void back_up(const Options& options, Context& context) {
                 << "\n";
     return;
   }
-  fmt::print(context.out, "{}: {} sessions, {} trials, {} bytes, read back and checked\n", report.path,
-             report.sessions, report.trials, report.bytes);
+  fmt::print(context.out, "{}: {} sessions, {} trials, {} bytes; the backup was read back and checked\n",
+             report.path, report.sessions, report.trials, report.bytes);
   for (const auto& path : report.removed) fmt::print(context.out, "rotated out: {}\n", path);
   if (!report.unrecorded.empty())
     fmt::print(context.out, "the note about this backup could not be written beside the database: {}\n",
@@ -57,12 +57,16 @@ void drill(const Options& options, Context& context) {
                 << "\n";
     return;
   }
-  fmt::print(context.out, "{}: {} old, restored into a temporary file, checked and removed again\n",
-             drill.from, desk::age_in_words(drill.age_s));
-  fmt::print(context.out, "it holds {} sessions, {} trials; the database has {} sessions, {} trials\n",
-             drill.sessions, drill.trials, drill.live_sessions, drill.live_trials);
+  fmt::print(
+      context.out,
+      "the backup {} ({} old) was restored into a temporary file, which was checked and removed again\n",
+      drill.from, desk::age_in_words(drill.age_s));
+  fmt::print(
+      context.out,
+      "the backup contains {} sessions and {} trials; the database contains {} sessions and {} trials\n",
+      drill.sessions, drill.trials, drill.live_sessions, drill.live_trials);
   for (const auto& problem : drill.problems) fmt::print(context.out, "{}\n", problem);
-  if (drill.problems.empty()) fmt::print(context.out, "every row of it is as it was recorded\n");
+  if (drill.problems.empty()) fmt::print(context.out, "every row of the backup is as it was recorded\n");
 }
 
 void restore(const Options& options, Context& context) {
@@ -81,16 +85,17 @@ void restore(const Options& options, Context& context) {
                 << "\n";
     return;
   }
-  for (const auto& path : restored.rejected) fmt::print(context.out, "failed its check: {}\n", path);
-  fmt::print(context.out, "{} restored from {}: {} sessions, {} trials, opened and checked\n",
+  for (const auto& path : restored.rejected)
+    fmt::print(context.out, "this backup failed its check and was not used: {}\n", path);
+  fmt::print(context.out, "{} was restored from {}, opened and checked: {} sessions, {} trials\n",
              options.database, restored.from, restored.sessions, restored.trials);
   for (const auto& id : restored.changed)
     fmt::print(context.out,
-               "session {} is not as it was recorded, and was not when the backup was made; "
-               "`turnpoint verify` says what differs\n",
+               "session {} differs from what was recorded, and already did when the backup was made; "
+               "`turnpoint verify` lists the differences\n",
                id);
   if (!restored.quarantined.empty())
-    fmt::print(context.out, "what was there before is kept as {}, with its log if it had one\n",
+    fmt::print(context.out, "the previous file was kept as {}, together with its log if it had one\n",
                restored.quarantined);
 }
 
@@ -100,21 +105,23 @@ void add_backup(CommandLine& app, Context& context) {
   using namespace backup_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
-      "backup", "Copy a database (even while it is in use), check the copy, remove the oldest copies");
+      "backup",
+      "Back up a database (even while it is in use), check the backup, and remove the oldest backups");
   command->add_option("--db", options->database, "Database")->required();
   command->add_option("--dir", options->backup.directory, "Folder for the backups")->required();
-  command->add_option("--keep", options->backup.keep, "How many backups to keep; 0 keeps all")
+  command->add_option("--keep", options->backup.keep, "Number of backups to keep; 0 keeps all")
       ->check(not_negative())
       ->capture_default_str();
   command->add_flag("--restore", options->restore,
-                    "Replace a damaged, empty or missing database by its newest good backup");
-  command->add_option("--database-id", options->database_id,
-                      "With --restore: whose backups, where the folder holds those of several databases");
+                    "Replace a damaged, empty or missing database by its newest intact backup");
+  command->add_option(
+      "--database-id", options->database_id,
+      "With --restore: id of the database, if the folder contains backups of several databases");
   command
       ->add_option(
           "--to", options->to,
-          "folder | disk; disk: refuse unless another disk than the database's is mounted at --dir or "
-          "the folder above it")
+          "folder | disk; with disk, the backup is refused unless a disk other than that of the database is "
+          "mounted at --dir or at the folder above it")
       ->check(one_of({"folder", "disk"}))
       ->capture_default_str();
   command->add_flag("--drill", options->drill,
@@ -123,12 +130,12 @@ void add_backup(CommandLine& app, Context& context) {
   add_json(*command, context);
   command->footer(
       "Example: turnpoint backup --db lab.sqlite --dir /mnt/backup --keep 30\n"
-      "turnpoint-backup.timer makes one every day (deploy/README.md). Exit status 1 where a backup, a "
-      "restore or a "
-      "drill\nis not good.");
+      "turnpoint-backup.timer makes a backup every day (deploy/README.md). The exit status is 1 if a backup, "
+      "a restore\nor a drill found a problem.");
   command->callback([options, &context] {
-    if (options->restore && options->drill) throw UsageError("--restore and --drill: one of them");
-    if (options->backup.directory.empty()) throw UsageError("--dir: the name of the folder is empty");
+    if (options->restore && options->drill) throw UsageError("--restore and --drill cannot be used together");
+    if (options->backup.directory.empty())
+      throw UsageError("--dir: the name of the folder must not be empty");
     if (options->drill)
       drill(*options, context);
     else if (options->restore)

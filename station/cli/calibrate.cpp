@@ -35,7 +35,7 @@ calibration::Measurements measurements_of(const Options& options) {
   for (const auto& sweep : options.sweeps) {
     const auto equals = sweep.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == sweep.size())
-      throw UsageError("calibrate: --response " + sweep + "; TRANSDUCER=FILE.csv is allowed");
+      throw UsageError("calibrate: --response " + sweep + "; write TRANSDUCER=FILE.csv");
     measurements.sweeps.push_back({sweep.substr(0, equals), sweep.substr(equals + 1), options.full_scale});
   }
   measurements.boundaries_csv = options.boundaries;
@@ -46,9 +46,8 @@ calibration::Measurements measurements_of(const Options& options) {
   if (options.sweeps.empty() && options.boundaries.empty() && options.friction.empty() &&
       options.sound.empty())
     throw UsageError(
-        "calibrate: nothing was measured; give --response, --boundaries, --friction or --sound (or --sweep "
-        "for "
-        "the tones to measure with)");
+        "calibrate: no measurements were given; use --response, --boundaries, --friction or --sound (or "
+        "--sweep for a list of test tones)");
   return measurements;
 }
 
@@ -84,7 +83,8 @@ void print(std::ostream& out, const calibration::Calibration& c) {
                b.law == BoundaryFit::Law::plate ? "plate" : "membrane", number(1e3 * b.apex_m, 5),
                number(1e3 * b.apex_sd_m, 2), number(b.constant, 6), number(1e3 * b.residual_m, 2));
     if (b.curvature_z && *b.curvature_z > 2)
-      fmt::print(out, "  bending is visible: curvature of {} standard errors\n", number(*b.curvature_z, 2));
+      fmt::print(out, "  the data show bending: the curvature is {} standard errors from zero\n",
+                 number(*b.curvature_z, 2));
   }
   if (c.friction)
     fmt::print(out, "friction: {} points, residual {}\n", c.friction->points.size(),
@@ -99,8 +99,9 @@ void sweep(const Options& options, const rig::Rig& rig, Context& context) {
     return;
   }
   if (options.sweep_out.starts_with("alsa:") && !options.arm)
-    throw UsageError("calibrate: --sweep-out " + options.sweep_out +
-                     " plays on the amplifier; with the surface clear, give --arm");
+    throw UsageError(
+        "calibrate: --sweep-out " + options.sweep_out +
+        " plays through the amplifier; make sure that nobody touches the surface, and add --arm");
   maintenance::play_sweep(rig, steps, options.sweep_out);
   const double length_s = steps.back().start_s + steps.back().length_s;
   fmt::print(context.err, "{} tones, {} s, to {}\n", steps.size(), number(length_s, 4), options.sweep_out);
@@ -119,7 +120,7 @@ void calibrate_panel(const Options& options, const rig::Rig& rig, Context& conte
   const auto reference = options.reference == "photodiode" ? calibration::LatencyReference::photodiode
                                                            : calibration::LatencyReference::button;
   const auto measured = context.screens->latency({options.rig, reference});
-  if (!measured) throw std::runtime_error("calibrate --panel: nothing was kept, so nothing is written");
+  if (!measured) throw std::runtime_error("calibrate --panel: no result was accepted, so no file is written");
   const auto made = maintenance::with_panel(rig, *measured);
   const auto out =
       options.out.empty() ? calibration::file_for(options.rig, calibration::today()) : options.out;
@@ -167,36 +168,46 @@ void calibrate(const Options& options, Context& context) {
 void add_calibrate(CommandLine& app, Context& context) {
   using namespace calibrate_command;
   auto options = std::make_shared<Options>();
-  auto* command =
-      app.add_subcommand("calibrate", "Fit measurements of a rig; plan or play the sweep for them");
-  command->add_option("--rig", options->rig, "Rig file that was measured")->required();
-  command->add_option("--response", options->sweeps,
-                      "TRANSDUCER=FILE: a vibrometer's frequency_Hz,displacement_um,phase_deg");
-  command->add_option("--full-scale", options->full_scale, "Drive during the sweep, 1 is full scale")
+  auto* command = app.add_subcommand(
+      "calibrate",
+      "Make a calibration file from measurements of a rig; list or play the tones for the measurements");
+  command->add_option("--rig", options->rig, "Rig file of the rig that was measured")->required();
+  command->add_option(
+      "--response", options->sweeps,
+      "TRANSDUCER=FILE: measurements by a vibrometer, with columns frequency_Hz,displacement_um,phase_deg");
+  command
+      ->add_option("--full-scale", options->full_scale,
+                   "Amplitude of the drive signal during the measurement; 1 is full scale")
       ->capture_default_str();
   command->add_option("--boundaries", options->boundaries,
-                      "File: frequency_Hz,boundary_mm,sd_mm (sd 0: unknown)");
-  command->add_option("--law", options->law, "membrane | plate; otherwise three boundaries decide")
+                      "File with columns frequency_Hz,boundary_mm,sd_mm (0 if the SD is unknown)");
+  command
+      ->add_option("--law", options->law,
+                   "membrane | plate; by default chosen from the data if there are three boundaries or more")
       ->check(one_of({"membrane", "plate"}));
-  command->add_option("--friction", options->friction, "File: displacement_um,relative_friction");
-  command->add_option("--sound", options->sound, "File: frequency_Hz,level_dB (SPL at full scale)");
+  command->add_option("--friction", options->friction, "File with columns displacement_um,relative_friction");
+  command->add_option("--sound", options->sound,
+                      "File with columns frequency_Hz,level_dB (sound pressure level at full scale)");
   command->add_option("--valid-days", options->valid_days, "Days until the calibration expires")
       ->capture_default_str()
       ->check(range(1, 3650));
-  command->add_option("--note", options->note, "Note kept in the file: instruments, temperature, operator");
+  command->add_option("--note", options->note,
+                      "Note to store in the calibration file: instruments, temperature, operator");
   command->add_option("--out", options->out,
-                      "File; otherwise beside the rig, with the date, where `run` finds it");
-  command->add_option("--plots", options->plots, "SVG of fits and residuals; otherwise beside the file");
-  command->add_flag("--panel", options->panel,
-                    "Measure the touch panel's latency on its screen, against one of the rig's button lines");
+                      "Calibration file to write; by default beside the rig file, with the date in its name, "
+                      "where `run` finds it");
+  command->add_option("--plots", options->plots,
+                      "SVG file with fits and residuals; by default beside the calibration file");
+  command->add_flag(
+      "--panel", options->panel,
+      "Measure the latency of the touch panel, using one of the rig's button lines as the reference");
   command
-      ->add_option(
-          "--reference", options->reference,
-          "button: pressed by the tapping finger, measures input latency | photodiode: on the flashing "
-          "square, measures display latency")
+      ->add_option("--reference", options->reference,
+                   "button: a button pressed by the tapping finger; measures input latency | photodiode: a "
+                   "photodiode on the flashing square; measures display latency")
       ->capture_default_str()
       ->check(one_of({"button", "photodiode"}));
-  command->add_flag("--sweep", options->sweep, "Print the tones of the measuring sweep as CSV");
+  command->add_flag("--sweep", options->sweep, "Print the tones of the test sweep as CSV");
   command->add_option("--sweep-out", options->sweep_out,
                       "With --sweep: play the sweep to wav:FILE or alsa:NAME");
   command->add_flag("--arm", options->arm, "With --sweep-out alsa:...: arm the amplifier");

@@ -128,9 +128,11 @@ long percent(double share) { return std::lround(100 * share); }
 
 void print_cues(std::ostream& out, const simulation::CueGuard& cues) {
   if (!cues.not_compared.empty())
-    return fmt::print(out, "Cues: NOT COMPARED ({}): nothing is known of leaks\n", cues.not_compared);
+    return fmt::print(out,
+                      "Cues: NOT COMPARED ({}): it is not known whether unwanted cues give the answer away\n",
+                      cues.not_compared);
   if (!cues.nothing_to_tell.empty())
-    return fmt::print(out, "Cues: none to compare: {}\n", cues.nothing_to_tell);
+    return fmt::print(out, "Cues: there are none to compare: {}\n", cues.nothing_to_tell);
   std::string named;
   double least = 1, most = 0;
   for (const auto& cue : cues.reports) {
@@ -143,14 +145,15 @@ void print_cues(std::ostream& out, const simulation::CueGuard& cues) {
       named += fmt::format(", {} to {} {}", number(cue.low, 3), number(cue.high, 3), cue.unit);
   }
   if (!named.empty())
-    return fmt::print(out,
-                      "Cues: with one of these alone an observer who knows the best rule does better than "
-                      "without it:{}\n",
-                      named);
+    return fmt::print(
+        out,
+        "Cues: an observer who uses only one of these cues, with the best rule, does better than chance:{}\n",
+        named);
   const auto chance = percent(least) == percent(most)
                           ? fmt::format("{}", percent(most))
                           : fmt::format("{} to {}", percent(least), percent(most));
-  fmt::print(out, "Cues: an observer with one cue alone stays near chance ({} %), for each of the {} cues\n",
+  fmt::print(out,
+             "Cues: an observer who uses only one cue stays near chance ({} %), for each of the {} cues\n",
              chance, cues.reports.size());
 }
 
@@ -160,8 +163,8 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
   for (const auto& block : check.blocks)
     fmt::print(out, "  {}{}{}: {} trials\n", block.practice ? "practice block " : "block ", block.name,
                block.instruction.empty() ? "" : " (" + block.instruction + ")", range(block.trials, 1));
-  fmt::print(out, "Trials: {}. Duration: {} minutes, by {} simulated sessions\n", range(check.trials, 1),
-             range(check.duration_s, 60), check.simulated_sessions);
+  fmt::print(out, "Trials: {}. Duration: {} minutes. Both are from {} simulated sessions\n",
+             range(check.trials, 1), range(check.duration_s, 60), check.simulated_sessions);
   const auto extremes = extremes_of(check.survey);
   std::string models;
   for (const auto& model : check.survey.models) models += (models.empty() ? "" : ", ") + model;
@@ -195,13 +198,13 @@ void check(const Options& options, Context& context) {
 void add_check(CommandLine& app, Context& context) {
   using namespace check_command;
   auto options = std::make_shared<Options>();
-  auto* command =
-      app.add_subcommand("check", "List all mistakes in a protocol file, or describe the session");
+  auto* command = app.add_subcommand(
+      "check", "List all mistakes in a protocol file, or describe its session if there are none");
   command->add_option("protocol", options->protocol, "Protocol file")->required();
   command->add_option("--rig", options->rig, "Rig file");
   command
       ->add_option("--sessions", options->sessions,
-                   "Number of simulated sessions for trials and duration; 0 for none")
+                   "Number of sessions to simulate in order to predict trials and duration; 0 for none")
       ->check(range(0, 1000));
   add_json(*command, context);
   command->footer("Example: turnpoint check protocols/demo.toml --rig deploy/rigs/simulated.toml");

@@ -8,14 +8,15 @@
 
 namespace turnpoint::cli {
 
-struct Screens;  // defined in screens.hpp
+struct Screens;  // see screens.hpp
 
 /// What every sub-command gets: the streams for its result and its messages, and the common options.
 struct Context {
   std::ostream& out;  ///< the result: text for people, or one JSON document
-  std::ostream& err;  ///< messages
+  std::ostream& err;  ///< warnings, errors and progress
   bool json = false;
-  int exit_code = 0;  ///< set by a command if its status is neither 0 nor an exception
+  /// the exit status; a command sets it if it ends without an exception but must not return 0
+  int exit_code = 0;
   /// the command line as given, ending in null, to pass on to another program
   std::vector<char*> arguments;
   const Screens* screens = nullptr;  ///< null in a program without a screen
@@ -23,7 +24,7 @@ struct Context {
 
 using terms::UsageError;
 
-/// Runs work that passes the user's numbers directly to the physics library. If the library refuses them,
+/// Does work in which numbers from the user reach the physics library unchecked. If the library refuses them,
 /// that is a usage error.
 template <class Work>
 auto with_users_numbers(Work work) {

@@ -18,10 +18,11 @@ namespace turnpoint::cli {
 /// A check of an option's value, and the description of allowed values in the help.
 struct Check {
   std::string allowed;
-  std::function<std::string(const std::string& value)> problem;  ///< returns "" if the value is allowed
+  /// given the value, returns what is wrong with it; "" if nothing is
+  std::function<std::string(const std::string& value)> problem;
 };
-Check range(std::int64_t least, std::int64_t most);  ///< whole numbers
-Check between(double least, double most);            ///< any numbers
+Check range(std::int64_t least, std::int64_t most);  ///< accepts whole numbers from `least` to `most`
+Check between(double least, double most);            ///< accepts any number from `least` to `most`
 Check positive();
 Check not_negative();
 Check one_of(std::vector<std::string> values);

@@ -51,7 +51,8 @@ int exit_status(std::ostream& err, const std::function<int()>& work) {
     return report(err, error, 2);
   } catch (const std::logic_error& error) {
     report(err, error, kSoftwareFault);
-    err << "This is a fault of Turnpoint, not yours. Please report it with the command and the files.\n";
+    err << "This is a bug in Turnpoint, not your mistake. Please report it with the command and the files "
+           "that you used.\n";
     return kSoftwareFault;
   } catch (const std::exception& error) {
     return report(err, error, 1);

@@ -31,7 +31,7 @@ class StopOnSignal {
     session::Input input;
     input.time_ns = system::monotonic_ns();
     input.kind = session::InputKind::stop;
-    input.text = "the program was asked to end (" + signal + ")";
+    input.text = "the program was stopped by a signal (" + signal + ")";
     inputs.push(std::move(input));
   }
 
@@ -43,8 +43,8 @@ class StopOnSignal {
 }  // namespace
 
 void run_without_screen(Context& context, const session::Setup& setup) {
-  // Ctrl-C also ends the program that the messages are piped into. Without this, the next message would then
-  // end the session.
+  // Ctrl-C also ends the program that reads our messages through a pipe. Without this line, our next message
+  // would then end the session.
   ::signal(SIGPIPE, SIG_IGN);
   session::Inputs inputs;
   const StopOnSignal stop(inputs);

@@ -50,7 +50,8 @@ void add_doctor(CommandLine& app, Context& context) {
   auto rig = std::make_shared<std::string>();
   auto data =
       std::make_shared<std::string>(std::filesystem::path(setup::default_database()).parent_path().string());
-  command->add_option("--rig", *rig, "Rig file; otherwise the installed one, else the simulated one");
+  command->add_option("--rig", *rig,
+                      "Rig file; by default the installed rig, or the simulated rig if none is installed");
   command->add_option("--data", *data, "Folder for databases")->capture_default_str();
   add_json(*command, context);
   command->footer("Example: turnpoint doctor --rig deploy/rigs/raspberry-pi-aluminium.toml");

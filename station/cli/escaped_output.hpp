@@ -25,7 +25,7 @@ class EscapedOutput : public std::ostream {
     bool escape(const char* form, unsigned character);
 
     std::streambuf& to_;
-    bool lead_ = false;  ///< true while a byte C2, which may begin a control character, is held back
+    bool lead_ = false;  ///< true while a byte C2 is held back, because it may begin a control character
   };
   Buffer buffer_;
 };

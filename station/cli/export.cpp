@@ -21,7 +21,8 @@ struct Options {
 
 char single(const std::string& option, const std::string& text) {
   if (text == "tab" || text == "\\t") return '\t';
-  if (text.size() != 1) throw UsageError(fmt::format("{} \"{}\": one character, or \"tab\"", option, text));
+  if (text.size() != 1)
+    throw UsageError(fmt::format("{} \"{}\": write a single character, or \"tab\"", option, text));
   return text.front();
 }
 
@@ -60,13 +61,14 @@ void export_data(Options options, Context& context) {
 void add_export(CommandLine& app, Context& context) {
   using namespace export_command;
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("export", "Write sessions as CSV or BIDS, one folder a protocol");
+  auto* command =
+      app.add_subcommand("export", "Write sessions as CSV or BIDS, with one folder for each protocol");
   command->add_option("--db", options->database, "Database")->required();
   command->add_option("--out", options->out, "Folder to write to")->required();
-  command->add_option("--session", options->selection.session_id, "Only this session");
+  command->add_option("--session", options->selection.session_id, "Export only this session");
   command->add_option("--participant", options->selection.participant,
-                      "Only this participant: CODE or CODE@STATION");
-  command->add_option("--protocol", options->selection.protocol_id, "Only this protocol");
+                      "Export only this participant: CODE or CODE@STATION");
+  command->add_option("--protocol", options->selection.protocol_id, "Export only this protocol");
   command->add_option("--format", options->format, "csv | bids")
       ->check(one_of({"csv", "bids"}))
       ->capture_default_str();
@@ -74,7 +76,8 @@ void add_export(CommandLine& app, Context& context) {
       ->capture_default_str();
   command->add_option("--decimal", options->decimal, "Decimal mark: . or ,")->capture_default_str();
   command->add_option("--sign", options->sign,
-                      "SSH key file: signs the checksums of all exported files (SHA256SUMS, SHA256SUMS.sig)");
+                      "SSH key file with which to sign the checksums of all exported files (writes "
+                      "SHA256SUMS and SHA256SUMS.sig)");
   add_json(*command, context);
   command->footer("Example: turnpoint export --db lab.sqlite --out export --separator ';' --decimal ,");
   command->callback([options, &context] { export_data(*options, context); });

@@ -38,7 +38,8 @@ Choice choose(const physics::Surface& surface, const std::vector<physics::Tone>&
   request.normalise = physics::parse_normalise(options.normalise);
   if (options.tolerance > 0) request.tolerance.amplitude = options.tolerance;
   // Without a tolerance use the best one-mode profile. The cheapest model would be too inaccurate.
-  if (options.tolerance <= 0) return {physics::Model::mode, "no tolerance was stated: the one-mode equation"};
+  if (options.tolerance <= 0)
+    return {physics::Model::mode, "the one-mode equation, because no tolerance was given"};
   auto choice = physics::choose_model(surface, request);
   return {choice.model, choice.reason};
 }
@@ -99,8 +100,7 @@ void print(std::ostream& out, const physics::Field& field, const Choice& choice,
 }
 
 void field(const Options& options, Context& context) {
-  if ((options.points > 0) == !options.at.empty())
-    throw UsageError("field: give either --points N or --at MM,...");
+  if ((options.points > 0) == !options.at.empty()) throw UsageError("field: give either --points or --at");
   const auto rig = rig::load(options.rig);
   const auto surface = scene::surface_of(rig);
   const auto tones = parse_tones(options.tones);
@@ -111,7 +111,7 @@ void field(const Options& options, Context& context) {
   const auto choice = choose(surface, tones, static_cast<int>(x_m.size()), options);
   const auto result =
       physics::evaluate(surface, tones, x_m, choice.model, physics::parse_normalise(options.normalise));
-  // Friction requires metres, whatever the profile is normalised to.
+  // The friction model needs displacements in metres, whatever the profile is normalised to.
   const auto metres = physics::evaluate(surface, tones, x_m, choice.model, physics::Normalise::none);
   const auto map = scene::friction_of(rig);
   std::vector<double> friction;
@@ -127,15 +127,18 @@ void field(const Options& options, Context& context) {
 void add_field(CommandLine& app, Context& context) {
   using namespace field_command;
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("field", "Displacement and friction along the centre line");
+  auto* command =
+      app.add_subcommand("field", "Compute displacement and friction along the centre line of the surface");
   command->add_option("--rig", options->rig, "Rig file")->required();
-  command->add_option("--tone", options->tones, "HZ[:UM[:DEG]]: frequency, drive-edge displacement, phase")
+  command
+      ->add_option("--tone", options->tones,
+                   "HZ[:UM[:DEG]]: frequency, displacement of the driven edge, phase")
       ->required();
   command
       ->add_option("--points", options->points,
                    "Number of evenly spaced points along the surface, ends included")
       ->check(range(2, 10'000'000));
-  command->add_option("--at", options->at, "Points in mm, with commas between");
+  command->add_option("--at", options->at, "Positions in mm, separated by commas");
   command->add_option("--model", options->model, "auto | airy | seed | uniform | mode | modes")
       ->capture_default_str();
   command->add_option("--tolerance", options->tolerance, "Allowed relative error of the amplitude")

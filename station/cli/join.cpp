@@ -22,9 +22,10 @@ void join(const Options& options, Context& context) {
   if (context.json)
     context.out << Json{{"participant", label}, {"joined", !options.undo}}.dump(2) << "\n";
   else if (options.undo)
-    fmt::print(context.out, "{} and {} are two people again\n", options.first, options.second);
+    fmt::print(context.out, "{} and {} are recorded as two people again\n", options.first, options.second);
   else
-    fmt::print(context.out, "{} and {} are one person, called {}\n", options.first, options.second, label);
+    fmt::print(context.out, "{} and {} are recorded as one person with the name {}\n", options.first,
+               options.second, label);
 }
 
 }  // namespace join_command
@@ -32,15 +33,16 @@ void join(const Options& options, Context& context) {
 void add_join(CommandLine& app, Context& context) {
   using namespace join_command;
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("join", "Say that two participant codes are one person");
+  auto* command = app.add_subcommand("join", "Record that two participant codes belong to one person");
   command->add_option("--db", options->database, "Database")->required();
   command
       ->add_option("first", options->first,
-                   "CODE@STATION, or a code that only one person has; gives the name")
+                   "First code: CODE@STATION, or a code that only one person has; the person gets this name")
       ->required();
-  command->add_option("second", options->second, "CODE@STATION, or a code that only one person has")
+  command
+      ->add_option("second", options->second, "Second code: CODE@STATION, or a code that only one person has")
       ->required();
-  command->add_flag("--undo", options->undo, "Undo: they are two people");
+  command->add_flag("--undo", options->undo, "Undo a join: the two codes belong to two people");
   add_json(*command, context);
   command->footer("Example: turnpoint join --db lab.sqlite P01@station-a P07@station-b");
   command->callback([options, &context] { join(*options, context); });

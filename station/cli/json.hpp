@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 /// JSON has no NaN and no infinity; they become null.
 inline Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-/// The value times `factor` (a unit), or null.
+/// The value times `factor`, which converts its unit; null if there is no value.
 inline Json json_number(const std::optional<double>& value, double factor = 1) {
   return value ? json_number(*value * factor) : Json(nullptr);
 }

@@ -48,7 +48,7 @@ void print(std::ostream& out, const std::vector<physics::MapAnswer>& answers) {
 
 void map(const Options& options, Context& context) {
   if (options.boundaries_mm.empty() == options.frequencies_Hz.empty())
-    throw UsageError("map: give either --boundary MM... or --frequency HZ...");
+    throw UsageError("map: give either --boundary or --frequency");
   const auto rig = rig::load(options.rig);
   physics::MapOptions wanted;
   wanted.edge = physics::parse_edge(options.edge);
@@ -79,8 +79,9 @@ void add_map(CommandLine& app, Context& context) {
   command->add_option("--edge", options->edge, "turning | peak | p70 | p50 | p25 | p10 | friction=0.7")
       ->capture_default_str();
   command->add_option("--model", options->model,
-                      "Model to use; otherwise the cheapest that meets the tolerance");
-  command->add_option("--tolerance-mm", options->tolerance_mm, "Allowed error in mm")->check(positive());
+                      "Physical model to use; by default the cheapest one that meets the tolerance");
+  command->add_option("--tolerance-mm", options->tolerance_mm, "Largest allowed error in mm")
+      ->check(positive());
   add_json(*command, context);
   command->footer("Example: turnpoint map --rig deploy/rigs/simulated.toml --boundary 150 200 --edge p50");
   command->callback([options, &context] { with_users_numbers([&] { map(*options, context); }); });

@@ -36,7 +36,10 @@ void print(std::ostream& out, const std::string& source, const store::MergeRepor
     fmt::print(out, "  {} {:<9} {} of {} at {}, {} trials\n", s.session_id, store::name(s.what),
                s.participant, s.protocol_id, s.station_id, s.trials);
   for (const auto& id : report.withdrawn_there)
-    fmt::print(out, "  {} was withdrawn there and is still here: withdraw its participant here too\n", id);
+    fmt::print(out,
+               "  session {} was withdrawn in the other database but is still in this one: withdraw its "
+               "participant here too\n",
+               id);
 }
 
 void merge(const Options& options, Context& context) {
@@ -58,7 +61,8 @@ void add_merge(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("merge", "Merge the sessions of other stations' databases into one");
   command->add_option("--db", options->database, "Database to merge into; created if missing")->required();
-  command->add_option("source", options->sources, "Databases or backups of other stations; only read")
+  command
+      ->add_option("source", options->sources, "Databases or backups of other stations; they are not changed")
       ->required();
   add_json(*command, context);
   command->footer("Example: turnpoint merge --db lab.sqlite station-a.sqlite station-b.sqlite");

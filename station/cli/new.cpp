@@ -19,7 +19,7 @@ namespace new_command {
 
 namespace fs = std::filesystem;
 
-// A goal of a researcher in words, and the shipped protocol that measures it.
+// What a researcher may want to measure, in words, and the shipped protocol that measures it.
 struct Goal {
   const char* word;
   const char* what;
@@ -27,14 +27,17 @@ struct Goal {
 };
 constexpr Goal goals[] = {
     {"boundary", "where people feel the end of the smooth part, and how sharply", "boundary-constant"},
-    {"boundary-quick", "the same with an even zone and fewer trials (adaptive)", "boundary-adaptive"},
+    {"boundary-quick", "the end of the smooth part, with an even zone and fewer trials (adaptive)",
+     "boundary-adaptive"},
     {"setting", "where people set the boundary themselves with a slider", "boundary-adjustment"},
-    {"contrast", "the smallest friction difference, two intervals, QUEST+", "friction-2ifc"},
-    {"contrast-staircase", "the same by 3-down-1-up staircases", "friction-staircase"},
-    {"same-different", "friction differences without naming a direction", "friction-same-different"},
-    {"pattern", "how far apart two slippery spots must be", "two-spots-oddity"},
-    {"speed-accuracy", "a change under the finger, fast against careful", "speed-accuracy"},
-    {"control", "whether the task can be done without touching", "no-touch-control"},
+    {"contrast", "the smallest noticeable friction difference (two intervals, QUEST+)", "friction-2ifc"},
+    {"contrast-staircase", "the smallest noticeable friction difference (3-down-1-up staircases)",
+     "friction-staircase"},
+    {"same-different", "whether two surfaces feel different, without saying which is smoother",
+     "friction-same-different"},
+    {"pattern", "how far apart two slippery spots must be to be felt as two", "two-spots-oddity"},
+    {"speed-accuracy", "noticing a change under the finger, answering fast or carefully", "speed-accuracy"},
+    {"control", "whether the task can be done without touching the surface (control)", "no-touch-control"},
     {"demo", "ten trials to try out a station", "demo"},
 };
 
@@ -59,23 +62,23 @@ std::string goal_words() {
 
 // Asks on standard error, because standard output is for the command's result.
 const Goal& ask(Context& context) {
-  fmt::print(context.err, "What is to be measured?\n");
+  fmt::print(context.err, "What do you want to measure?\n");
   int number = 1;
   for (const auto& goal : goals)
     fmt::print(context.err, "  {:>2}  {} ({})\n", number++, goal.what, goal.word);
   for (;;) {
-    fmt::print(context.err, "Number or word: ");
+    fmt::print(context.err, "Type a number or the word in brackets: ");
     context.err.flush();
     std::string answer;
     if (!std::getline(std::cin, answer))
-      throw UsageError("new: no answer; give --measure with one of " + goal_words());
+      throw UsageError("new: there was no answer; use --measure with one of " + goal_words());
     if (const auto* goal = find_goal(answer)) return *goal;
-    fmt::print(context.err, "\"{}\" is not one of them.\n", answer);
+    fmt::print(context.err, "\"{}\" is not one of these goals.\n", answer);
   }
 }
 
-// Replaces the shipped id by the study's own, and the version by 0.1.0, because nothing was measured with
-// this protocol yet.
+// Replaces the id of the shipped protocol by that of the study, and its version by 0.1.0, because nothing was
+// measured with this protocol yet.
 std::string own(std::string source, const std::string& shipped_id, const std::string& id) {
   const auto replace = [&source](const std::string& from, const std::string& to) {
     const auto at = source.find(from);
@@ -88,16 +91,18 @@ std::string own(std::string source, const std::string& shipped_id, const std::st
 }
 
 void make(const Options& options, Context& context) {
-  if (fs::exists(options.file)) throw UsageError(options.file + " exists already; choose another name");
+  if (fs::exists(options.file)) throw UsageError(options.file + " already exists; choose another file name");
   const auto* goal = options.goal.empty() ? &ask(context) : find_goal(options.goal);
-  if (!goal) throw UsageError(fmt::format("--measure {}: allowed are {}", options.goal, goal_words()));
+  if (!goal)
+    throw UsageError(fmt::format("--measure {}: the allowed words are {}", options.goal, goal_words()));
   const auto from = fs::path(setup::shipped("protocols")) / (std::string(goal->file) + ".toml");
   const auto id = options.id.empty() ? fs::path(options.file).stem().string() : options.id;
   const auto source = own(system::read_file(from.string()), goal->file, id);
   protocol::parse(source, options.file);  // refuses an invalid id before anything is written
   system::write_file(options.file, source);
   fmt::print(context.out, "{}\n", options.file);
-  fmt::print(context.err, "It begins as a copy of {}. Change levels and texts, then: turnpoint check {}\n",
+  fmt::print(context.err,
+             "The new file is a copy of {}. Change its levels and texts, then run: turnpoint check {}\n",
              goal->file, options.file);
 }
 
@@ -106,10 +111,12 @@ void make(const Options& options, Context& context) {
 void add_new(CommandLine& app, Context& context) {
   using namespace new_command;
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("new", "Starts a protocol file by asking what is to be measured");
+  auto* command = app.add_subcommand(
+      "new", "Make a protocol file: asks what you want to measure and copies a suitable shipped protocol");
   command->add_option("file", options->file, "The file to write, such as my-study.toml")->required();
-  command->add_option("--measure", options->goal, "The answer in advance: " + goal_words());
-  command->add_option("--id", options->id, "The protocol's id; otherwise the file's name");
+  command->add_option("--measure", options->goal,
+                      "What to measure, so that the command need not ask: " + goal_words());
+  command->add_option("--id", options->id, "Id of the protocol; by default the name of the file");
   command->footer("Example: turnpoint new my-study.toml --measure contrast");
   command->callback([options, &context] { make(*options, context); });
 }

@@ -37,7 +37,7 @@ class NoEcho {
 
 std::string line_from(std::istream& in) {
   std::string line;
-  if (!std::getline(in, line)) throw UsageError("operator-code: nothing was entered; nothing was stored");
+  if (!std::getline(in, line)) throw UsageError("operator-code: no code was typed; no code was stored");
   return line;
 }
 
@@ -53,27 +53,27 @@ std::string entered(Context& context) {
     return line;
   };
   auto code = ask("New operator's code (4 to 12 digits)");
-  if (ask("Again") != code) throw UsageError("operator-code: the two entries differ; nothing was stored");
+  if (ask("Again") != code) throw UsageError("operator-code: the two codes differ; no code was stored");
   return code;
 }
 
 void set_operator_code(Context& context) {
   const auto file = desk::operator_code_files().front();
   desk::store_operator_code(desk::OperatorCode::of_digits(entered(context)), file);
-  fmt::print(
-      context.out,
-      "The operator's code is stored in {} (its hash). A station that runs takes it when it is started "
-      "again: sudo systemctl restart turnpoint\n",
-      file);
+  fmt::print(context.out,
+             "The hash of the operator's code was stored in {}. A running station uses the new code after a "
+             "restart: sudo systemctl restart turnpoint\n",
+             file);
 }
 
 }  // namespace operator_code_command
 
 void add_operator_code(CommandLine& app, Context& context) {
   using namespace operator_code_command;
-  auto* command = app.add_subcommand("operator-code",
-                                     "Asks for the code that opens the operator's pages on the participant's "
-                                     "screen, and stores its hash; as root for the station's service");
+  auto* command =
+      app.add_subcommand("operator-code",
+                         "Asks for the code that opens the operator's pages on the participant's "
+                         "screen, and stores its hash. Run it as root if the station runs as a service");
   command->footer("Example: sudo turnpoint operator-code");
   command->callback([&context] { set_operator_code(context); });
 }

@@ -31,7 +31,7 @@ std::optional<InputKind> command_of(const std::string& word) {
 const char* name(PageKind kind) {
   switch (kind) {
     case PageKind::instructions:
-      return "instructions: a button or next";
+      return "instructions: press a button or type next";
     case PageKind::cue:
       return "get ready";
     case PageKind::stimulus:
@@ -45,13 +45,13 @@ const char* name(PageKind kind) {
     case PageKind::interval:
       return "interval";
     case PageKind::rest:
-      return "rest: a button or next";
+      return "rest: press a button or type next";
     case PageKind::adjust:
       return "adjust";
     case PageKind::fault:
       return "fault";
     case PageKind::paused:
-      return "paused: next or stop";
+      return "paused: type next or stop";
     case PageKind::end:
       return "end";
     case PageKind::failed:
@@ -67,7 +67,7 @@ OperatorConsole::OperatorConsole(const rig::Rig& rig, session::Inputs& inputs, s
       contact_simulated_(rig.contact_uri == "sim:"),
       inputs_(inputs),
       messages_(messages) {
-  say("operator: arm | disarm | next | pause | repeat | stop | note TEXT");
+  say("operator, type: arm | disarm | next | pause | repeat | stop | note TEXT");
   reader_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
@@ -93,7 +93,7 @@ void OperatorConsole::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     if (::poll(&input, 1, 100) <= 0) continue;
     char letter = 0;
-    // standard input is closed: no operator, the session continues
+    // standard input was closed, so there is no operator; the session continues
     if (::read(STDIN_FILENO, &letter, 1) != 1) return;
     if (letter == '\n')
       take(std::exchange(line, ""));
@@ -123,8 +123,7 @@ void OperatorConsole::take(const std::string& line) {
     input.kind = *command;
     if (*command == InputKind::note && space != std::string::npos) input.text = line.substr(space + 1);
   } else if (!simulate(line, input)) {
-    return say("\"" + line +
-               "\" is not understood; arm, disarm, next, pause, repeat, stop, note TEXT are allowed");
+    return say("\"" + line + "\" is not a command; type arm, disarm, next, pause, repeat, stop or note TEXT");
   }
   inputs_.push(std::move(input));
 }

@@ -30,7 +30,7 @@ class OperatorConsole : public session::Display {
   session::Inputs& inputs_;
   std::ostream& messages_;
   std::mutex writing_;
-  std::string last_;  ///< session thread only: the last message printed about a page
+  std::string last_;  ///< last message printed about a page; used by the session thread only
   // The last member, so that the thread is joined before the objects that it uses are destroyed.
   std::jthread reader_;
 };

@@ -82,12 +82,12 @@ Json to_json(const scene::DrivePlan& plan, const protocol::Factors& factors,
 
 void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<scene::SoundBound>& sound) {
   using text::number;
-  fmt::print(out, "Scene {}: boundary {} mm ({} edge)\n", plan.scene.name,
+  fmt::print(out, "Scene {}: boundary at {} mm ({} edge)\n", plan.scene.name,
              plan.boundary_m ? number(*plan.boundary_m * 1e3) : "none", physics::format(plan.scene.edge));
   fmt::print(out, "  model {}: {}\n", physics::name(plan.model), plan.reason);
   fmt::print(out, "  model error at most {} mm, parameter uncertainty {} mm{}\n",
              number(plan.error_bound_m * 1e3, 3), number(plan.uncertainty_m * 1e3, 3),
-             plan.inside_tolerance ? "" : "; OUTSIDE the scene's tolerance");
+             plan.inside_tolerance ? "" : "; EXCEEDS the scene's tolerance");
   for (const auto& tone : plan.tones)
     fmt::print(out, "  {} Hz, drive {} um at {} deg on {} ({} of full scale), {} um at its last maximum{}\n",
                number(tone.frequency_Hz, 8), number(tone.amplitude_m * 1e6, 4),
@@ -97,7 +97,7 @@ void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<
   if (plan.zone_friction)
     fmt::print(out, "  zone: mean friction {}, rms {} about it\n", number(*plan.zone_friction, 3),
                number(plan.residual.value_or(0), 3));
-  fmt::print(out, "  surface moves {} um at most, crest factor {}, lowest friction {}\n",
+  fmt::print(out, "  largest displacement of the surface {} um, crest factor {}, lowest friction {}\n",
              number(plan.peak_displacement_m * 1e6, 4), number(plan.crest_factor, 3),
              number(plan.lowest_friction, 3));
   fmt::print(out, "  sound: {}\n", in_words(sound));
@@ -112,7 +112,8 @@ void plan(const Options& options, Context& context) {
   if (!protocol.scenes.count(options.scene)) {
     std::string known;
     for (const auto& [name, scene] : protocol.scenes) known += (known.empty() ? "" : ", ") + name;
-    throw UsageError(fmt::format("--scene {}: the protocol has {}", options.scene, known));
+    throw UsageError(
+        fmt::format("--scene {}: the protocol has no such scene; its scenes are {}", options.scene, known));
   }
   std::vector<std::string> assumed;
   const auto factors = desk::factors_for(protocol, options.set, assumed);
@@ -140,8 +141,9 @@ void add_plan(CommandLine& app, Context& context) {
       app.add_subcommand("plan", "Show how a scene of a protocol is presented: tones, model, reason, cues");
   command->add_option("protocol", options->protocol, "Protocol file")->required();
   command->add_option("--scene", options->scene, "Name of the scene")->required();
-  command->add_option("--set", options->set,
-                      "factor=value; otherwise its first level or the middle of its range");
+  command->add_option(
+      "--set", options->set,
+      "Value of a factor, as factor=value; by default its first level or the middle of its range");
   command->add_option("--rig", options->rig, "Rig file");
   add_json(*command, context);
   command->footer("Example: turnpoint plan protocols/demo.toml --scene edge --set offset_mm=9");

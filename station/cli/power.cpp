@@ -99,18 +99,17 @@ void print(std::ostream& out, const simulation::Power& power) {
                fmt::format("{} of {}", r.estimates.size(), r.sessions));
   }
   fmt::print(out,
-             "Truth: what the observer was made with. Bias: mean - truth; of slopes and spreads, whose "
-             "distribution has a long tail, median - truth\n");
+             "Truth: the parameters of the simulated observer. Bias: mean - truth (for slopes and spreads, "
+             "whose distribution has a long tail: median - truth)\n");
   fmt::print(out,
-             "Width (median) and coverage: of the 95 % intervals of the first {} sessions; of all sessions "
-             "where intervals "
-             "are of a posterior\n",
+             "Median width and coverage are those of the 95 % intervals of the first {} sessions, or of all "
+             "sessions if the intervals come from a posterior\n",
              power.interval_sessions);
 }
 
 void print(std::ostream& out, const std::vector<simulation::CueReport>& cues) {
   if (cues.empty()) return;
-  fmt::print(out, "An observer with one cue alone and the best rule for it:\n");
+  fmt::print(out, "An observer who uses only one cue, with the best rule for it:\n");
   for (const auto& cue : cues)
     fmt::print(out, "  {:<30} {:>5} % right (chance {} %){}\n", cue.cue, number(100 * cue.accuracy, 3),
                number(100 * cue.chance, 3), cue.above_chance() ? ", above chance" : "");
@@ -166,11 +165,14 @@ void add_power(CommandLine& app, Context& context) {
   auto* command = app.add_subcommand(
       "power", "Predict what a study would find: bias, spread and interval coverage from simulated sessions");
   command->add_option("protocol", options->protocol, "Protocol file")->required();
-  command->add_option("--rig", options->rig, "Rig file, for the unwanted cues that an observer could use");
+  command->add_option("--rig", options->rig,
+                      "Rig file, used to predict unwanted cues that an observer could use");
   command->add_option("--observers", options->observers, "Simulated sessions")
       ->capture_default_str()
       ->check(range(1, 1'000'000));
-  command->add_option("--intervals", options->intervals, "Number of sessions that also get 95 % intervals")
+  command
+      ->add_option("--intervals", options->intervals,
+                   "Number of sessions for which 95 % intervals are computed as well")
       ->capture_default_str()
       ->check(range(0, 1'000'000));
   command

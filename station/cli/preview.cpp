@@ -63,11 +63,13 @@ void add_preview(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("preview", "Show the scenes of a protocol without a session");
   command->add_option("protocol", options->protocol, "Protocol file")->required();
-  command->add_option("--scene", options->scene, "Name of the scene; otherwise every scene");
-  command->add_option("--set", options->set,
-                      "factor=value; otherwise its first level or the middle of its range");
+  command->add_option("--scene", options->scene, "Name of the scene; by default all scenes");
+  command->add_option(
+      "--set", options->set,
+      "Value of a factor, as factor=value; by default its first level or the middle of its range");
   command->add_option("--rig", options->rig, "Rig file");
-  command->add_option("--out", options->out, "Folder for SVG pictures, instead of a screen with sliders");
+  command->add_option("--out", options->out,
+                      "Folder in which to write SVG pictures, instead of showing a screen with sliders");
   command->footer(
       "Example: turnpoint preview protocols/demo.toml --scene edge --set offset_mm=9 --out looks");
   command->callback([options, &context] {

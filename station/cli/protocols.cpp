@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 void protocols(const std::string& folder, Context& context) {
   std::vector<fs::path> files;
-  if (!fs::is_directory(folder)) throw UsageError(fmt::format("{}: no such folder", folder));
+  if (!fs::is_directory(folder)) throw UsageError(fmt::format("{}: there is no such folder", folder));
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
@@ -53,7 +53,7 @@ void add_protocols(CommandLine& app, Context& context) {
   using namespace protocols_command;
   auto folder = std::make_shared<std::string>();
   auto* command = app.add_subcommand("protocols", "Lists the protocols that come with the program");
-  command->add_option("--folder", *folder, "Another folder with protocol files");
+  command->add_option("--folder", *folder, "List the protocol files of this folder instead");
   add_json(*command, context);
   command->footer("Example: turnpoint protocols");
   command->callback(

@@ -38,11 +38,14 @@ void add_report(CommandLine& app, Context& context) {
   auto* command = app.add_subcommand(
       "report", "Write a report of a session: fits, bias, speed-accuracy trade-off, health");
   command->add_option("--db", options->database, "Database")->required();
-  command->add_option("--session", options->filter.session_id, "This session; otherwise the newest");
+  command->add_option("--session", options->filter.session_id,
+                      "Session to report; by default the newest one");
   command->add_option("--participant", options->filter.participant,
-                      "The newest session of this participant: CODE or CODE@STATION");
-  command->add_option("--protocol", options->filter.protocol_id, "The newest session of this protocol");
-  command->add_option("--out", options->out, "HTML file; otherwise report-SESSION.html, with --json none");
+                      "Report the newest session of this participant: CODE or CODE@STATION");
+  command->add_option("--protocol", options->filter.protocol_id,
+                      "Report the newest session of this protocol");
+  command->add_option("--out", options->out,
+                      "HTML file to write; by default report-SESSION.html, or no file with --json");
   add_json(*command, context);
   command->footer("Example: turnpoint report --db lab.sqlite --participant P07 --out P07.html");
   command->callback([options, &context] { report_session(*options, context); });

@@ -12,12 +12,13 @@ void add_resume(CommandLine& app, Context& context) {
   auto request = std::make_shared<setup::ResumeRequest>();
   auto* command = app.add_subcommand("resume", "Continue the newest interrupted session");
   command->add_option("--db", request->database, "Database file")->required()->check(existing_file());
-  command->add_option("--session", request->session_id, "Session; otherwise the newest interrupted one");
+  command->add_option("--session", request->session_id,
+                      "Session to continue; by default the newest interrupted one");
   command->add_option("--policy", request->policy, "resume | restart | block; otherwise as the protocol says")
       ->check(one_of({"resume", "restart", "block"}));
-  command->add_flag(
-      "--any-age", request->any_age,
-      "Continue even a session older than its protocol allows, because the clock is or was wrong");
+  command->add_flag("--any-age", request->any_age,
+                    "Continue a session although it seems older than its protocol allows, because the clock "
+                    "is or was wrong");
   command->add_flag("--headless", request->headless, "No screen");
   add_json(*command, context);
   command->footer("Example: turnpoint resume --db lab.sqlite --policy resume");

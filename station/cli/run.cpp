@@ -71,7 +71,7 @@ void print_summary(std::ostream& out, const session::Summary& s) {
   for (const auto& e : s.estimates)
     fmt::print(out, "  {}: {} {}\n", e.procedure, e.parameter, trial::in_words(e));
   if (s.stretched_s > 0)
-    fmt::print(out, "  intervals stretched by {} s in all to keep the rig's limits\n",
+    fmt::print(out, "  pauses were lengthened by {} s in total to keep within the rig's limits\n",
                number(s.stretched_s, 3));
   fmt::print(out, "  real-time rights: {}\n", s.realtime_rights);
   fmt::print(out, "  database {}\n", s.database);
@@ -102,28 +102,31 @@ void show_summary(Context& context, const session::Summary& summary, const std::
 std::shared_ptr<setup::RunRequest> add_run_options(Command& command) {
   auto request = std::make_shared<setup::RunRequest>();
   command.add_option("protocol", request->protocol, "Protocol file")->required();
-  command.add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
+  command.add_option("--rig", request->rig,
+                     "Rig file; by default the installed rig, or the simulated rig if none is installed");
   command.add_option("--participant", request->participant,
                      "Participant code (never a name); if it is left out, the screen asks for it");
   command.add_option("--db", request->database, "Database file; created if missing")->required();
   command.add_option("--mode", request->mode, "live | pilot")
       ->capture_default_str()
       ->check(one_of({"live", "pilot"}));
-  command.add_option("--language", request->language, "One of the protocol's languages; otherwise its first");
+  command.add_option("--language", request->language,
+                     "One of the protocol's languages; by default the first one");
   command.add_option(
       "--observer", request->observer,
       "sim[:threshold=...,slope=...,lapse=...,bias=...,criterion=...,bound=...]: a simulated observer "
       "answers; protocols/README.md lists all keys");
-  command.add_option("--seed", request->seed, "Seed of all random draws, 0 to 2^53")
+  command.add_option("--seed", request->seed, "Seed for all random numbers, 0 to 2^53")
       ->check(range(0, 9007199254740992));
   command.add_option(
       "--consent", request->consent_version,
       "Version of the consent form; the screen asks the participant to confirm having signed it");
   command.add_flag("--headless", request->headless, "No screen");
-  command.add_flag("--buttons-only", request->buttons_only,
-                   "No screen: a person answers with the rig's buttons, the operator types");
+  command.add_flag(
+      "--buttons-only", request->buttons_only,
+      "Run without a screen: a person answers with the rig's buttons, and the operator types commands");
   command.add_option("--calibration", request->calibration,
-                     "Calibration file; otherwise the newest one beside the rig file");
+                     "Calibration file; by default the newest one beside the rig file");
   return request;
 }
 
@@ -135,13 +138,13 @@ void add_run(CommandLine& app, Context& context) {
   command->footer(
       "Example: turnpoint run protocols/demo.toml --rig deploy/rigs/simulated.toml --participant P01 --db "
       "lab.sqlite\n"
-      "A session without a screen ends in order, to be resumed, at Ctrl-C or SIGTERM; a second one cuts it "
-      "off.");
+      "Ctrl-C or SIGTERM ends a session without a screen cleanly, so that it can be resumed; a second one "
+      "kills it.");
   command->callback([request, &context] {
     const bool person = request->observer.empty();
     if (person && request->headless && !request->buttons_only)
       throw UsageError(
-          "run: nobody can answer without a screen; give --observer sim for a simulated observer, or "
+          "run: without a screen nobody can answer; use --observer sim for a simulated observer, or "
           "--buttons-only");
     const bool on_screen = person && !request->buttons_only;
     if (on_screen && !context.screens) return become_ui(context);

@@ -66,10 +66,10 @@ void add_sessions(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("sessions", "List the sessions of a database");
   command->add_option("--db", options->database, "Database")->required();
-  command->add_option("--session", options->filter.session_id, "Only this session");
+  command->add_option("--session", options->filter.session_id, "List only this session");
   command->add_option("--participant", options->filter.participant,
-                      "Only this participant: CODE or CODE@STATION");
-  command->add_option("--protocol", options->filter.protocol_id, "Only this protocol");
+                      "List only this participant: CODE or CODE@STATION");
+  command->add_option("--protocol", options->filter.protocol_id, "List only this protocol");
   add_json(*command, context);
   command->footer("Example: turnpoint sessions --db lab.sqlite --participant P07");
   command->callback([options, &context] { sessions(*options, context); });

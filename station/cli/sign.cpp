@@ -42,7 +42,8 @@ std::vector<std::string> sign_files(const std::string& folder, const std::vector
   const auto list = (std::filesystem::path(folder) / "SHA256SUMS").string();
   const auto signature = list + ".sig";
   store::write_file(list, sums);
-  std::filesystem::remove(signature);  // otherwise ssh-keygen would ask whether to overwrite it
+  // Without this, ssh-keygen would ask whether to overwrite an existing signature.
+  std::filesystem::remove(signature);
   if (const int status = run_program({"ssh-keygen", "-q", "-Y", "sign", "-n", "turnpoint", "-f", key, list}))
     throw std::runtime_error(
         fmt::format("export: ssh-keygen did not sign {} with {} (exit status {}); the exported files are "

@@ -12,24 +12,27 @@ namespace turnpoint::cli {
 std::shared_ptr<setup::StationRequest> add_station_options(Command& command) {
   auto request = std::make_shared<setup::StationRequest>();
   command.add_option("--protocols", request->protocols,
-                     "Folder with protocol files; otherwise the shipped ones");
-  command.add_option("--rig", request->rig, "Rig file; otherwise the installed one, else the simulated one");
-  command.add_option("--db", request->database, "Database; otherwise one in the user's data folder");
-  command.add_flag(
-      "--locked", request->locked,
-      "Ask for the operator's code even before the first page, for a screen that participants can reach");
+                     "Folder with protocol files; by default the shipped protocols");
+  command.add_option("--rig", request->rig,
+                     "Rig file; by default the installed rig, or the simulated rig if none is installed");
+  command.add_option("--db", request->database, "Database file; by default one in the user's data folder");
+  command.add_flag("--locked", request->locked,
+                   "Ask for the operator's code before showing the first page; use this if participants can "
+                   "reach the screen");
   return request;
 }
 
 void add_station(CommandLine& app, Context& context) {
-  auto* command = app.add_subcommand("station", "The operator's start page: choose, check, run, resume");
+  auto* command = app.add_subcommand(
+      "station",
+      "Show the operator's start page, from which sessions are chosen, checked, started and resumed");
   auto request = add_station_options(*command);
   command->footer("Example: turnpoint station --db lab.sqlite");
   command->callback([request, &context] {
     if (request->locked && desk::operator_code().is_built_in())
       throw UsageError(
-          "station: --locked would open with the built-in code, which is public; store your own: sudo "
-          "turnpoint operator-code");
+          "station: --locked needs your own operator's code, because the built-in code is public; store one "
+          "with: sudo turnpoint operator-code");
     if (!context.screens) return become_ui(context);
     request->rig = setup::rig_or_default(request->rig, context.err);
     if (request->protocols.empty()) request->protocols = setup::shipped("protocols");

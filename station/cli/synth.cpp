@@ -34,12 +34,13 @@ drive::Burst burst_for(const rig::Rig& rig, const Options& options) {
   burst.length_frames = frames(options.seconds);
   burst.ramp.frames = frames(options.ramp_ms * 1e-3);
   if (2 * burst.ramp.frames > burst.length_frames)
-    throw UsageError(fmt::format(
-        "synth: two ramps of {} ms do not fit into {} s; --ramp-ms {} or less is allowed",
-        text::number(options.ramp_ms), text::number(options.seconds), text::number(500 * options.seconds)));
+    throw UsageError(fmt::format("synth: two ramps of {} ms do not fit into {} s; use --ramp-ms {} or less",
+                                 text::number(options.ramp_ms), text::number(options.seconds),
+                                 text::number(500 * options.seconds)));
   const auto tones = parse_tones(options.tones);
   if (tones.size() > static_cast<std::size_t>(drive::max_tones))
-    throw UsageError(fmt::format("synth: {} tones; at most {} are allowed", tones.size(), drive::max_tones));
+    throw UsageError(
+        fmt::format("synth: {} tones were given; at most {} are allowed", tones.size(), drive::max_tones));
   for (const auto& tone : tones) {
     scene::DrivenTone driven;
     driven.frequency_Hz = tone.frequency_Hz;
@@ -79,10 +80,11 @@ drive::PlayReport play(const rig::Rig& rig, const Options& options) {
   }
   if (!options.out.starts_with("alsa:"))
     throw UsageError("synth: --arm with --out " + options.out +
-                     "; only alsa:NAME has an amplifier behind it");
+                     "; --arm is only possible with --out alsa:NAME, which plays through the amplifier");
   if (options.seconds > rig.limits.continuous_s)
-    throw UsageError(fmt::format("synth: --arm for {} s; the rig allows {} s without a pause",
-                                 text::number(options.seconds), text::number(rig.limits.continuous_s)));
+    throw UsageError(fmt::format(
+        "synth: with --arm for {} s the amplifier would run too long; the rig allows {} s without a pause",
+        text::number(options.seconds), text::number(rig.limits.continuous_s)));
   return maintenance::play_armed(rig, options.out, {burst});
 }
 
@@ -104,8 +106,13 @@ void add_synth(CommandLine& app, Context& context) {
   using namespace synth_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("synth", "Play or render tones");
-  command->add_option("--rig", options->rig, "Rig file: rate, depth, transducers")->required();
-  command->add_option("--tone", options->tones, "HZ[:UM[:DEG]]: frequency, drive-edge displacement, phase")
+  command
+      ->add_option("--rig", options->rig,
+                   "Rig file, which gives the sample rate, sample size and transducers")
+      ->required();
+  command
+      ->add_option("--tone", options->tones,
+                   "HZ[:UM[:DEG]]: frequency, displacement of the driven edge, phase")
       ->required();
   command->add_option("--seconds", options->seconds, "Duration, including both ramps")
       ->required()
@@ -114,7 +121,8 @@ void add_synth(CommandLine& app, Context& context) {
       ->capture_default_str()
       ->check(not_negative());
   command->add_option("--out", options->out, "null: | wav:FILE | alsa:NAME")->required();
-  command->add_flag("--arm", options->arm, "With --out alsa:...: arm the rig's amplifier while it plays");
+  command->add_flag("--arm", options->arm,
+                    "With --out alsa:...: arm the rig's amplifier while the tones play");
   add_json(*command, context);
   command->footer(
       "Example: turnpoint synth --rig deploy/rigs/simulated.toml --tone 30000:0.5 --seconds 2 --out "

@@ -40,8 +40,8 @@ physics::Tone parse_tone(const std::string& text) {
   if (parts.size() > 3 || numbers.size() != parts.size() || numbers[0] <= 0 ||
       (numbers.size() > 1 && numbers[1] < 0))
     throw UsageError(
-        fmt::format("--tone {}: not a tone; HZ[:UM[:DEG]] with HZ above 0 and UM 0 or more is allowed, as in "
-                    "30000:0.5:90",
+        fmt::format("--tone {}: this is not a tone; write HZ[:UM[:DEG]] with HZ above 0 and UM 0 or more, as "
+                    "in 30000:0.5:90",
                     text));
   physics::Tone tone;
   tone.frequency_Hz = numbers[0];
@@ -62,7 +62,7 @@ std::vector<double> parse_list(const std::string& text, const std::string& optio
     const auto number = parse_number(part);
     if (!number)
       throw UsageError(
-          fmt::format("{} {}: \"{}\" is not a number; numbers with commas between are allowed, as in 10,20.5",
+          fmt::format("{} {}: \"{}\" is not a number; write numbers separated by commas, as in 10,20.5",
                       option, text, part));
     numbers.push_back(*number);
   }

@@ -11,7 +11,7 @@ namespace turnpoint::cli {
 physics::Tone parse_tone(const std::string& text);
 std::vector<physics::Tone> parse_tones(const std::vector<std::string>& texts);
 
-/// Parses `1,2.5,3`. Throws UsageError naming the option.
+/// Parses numbers separated by commas, such as `1,2.5,3`. Throws UsageError naming the option.
 std::vector<double> parse_list(const std::string& text, const std::string& option);
 
 }  // namespace turnpoint::cli

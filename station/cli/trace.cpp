@@ -25,7 +25,8 @@ const procedure::Spec& find(const protocol::Protocol& protocol, const std::strin
     if (spec.name == name) return spec;
     known += (known.empty() ? "" : ", ") + spec.name;
   }
-  throw UsageError(fmt::format("--procedure {}: the protocol has {}", name, known));
+  throw UsageError(
+      fmt::format("--procedure {}: the protocol has no such procedure; its procedures are {}", name, known));
 }
 
 /// What the procedure needs to know about the protocol, with the other factors at their first levels.
@@ -67,7 +68,8 @@ void trace(const Options& options, Context& context) {
   }
   for (std::size_t i = 0; i < result.levels.size(); ++i)
     fmt::print(context.out, "{:>4} {:>10} {}\n", i + 1, text::number(result.levels[i]), options.answers[i]);
-  fmt::print(context.out, "next {}\n", result.next ? text::number(*result.next) : "none: it has stopped");
+  fmt::print(context.out, "next {}\n",
+             result.next ? text::number(*result.next) : "none, because the procedure has stopped");
   for (const auto& [parameter, e] : result.estimates)
     fmt::print(context.out, "{}: mode {}, mean {}{}{}\n", parameter, text::number(e.mode),
                text::number(e.mean), e.sd ? ", SD " + text::number(*e.sd) : "",
@@ -82,9 +84,12 @@ void add_trace(CommandLine& app, Context& context) {
   auto* command = app.add_subcommand("trace", "Show the levels that a procedure chooses for given answers");
   command->add_option("protocol", options->protocol, "Protocol file")->required();
   command->add_option("--procedure", options->procedure, "Name of the procedure")->required();
-  command->add_option("--answers", options->answers, "1 (correct, or the tracked answer) and 0, as in 1011")
+  command
+      ->add_option("--answers", options->answers,
+                   "Answers as a row of 1 (correct, or the tracked answer) and 0, as in 1011")
       ->required();
-  command->add_option("--seed", options->seed, "Seed of shuffles; otherwise the file's, or 0");
+  command->add_option("--seed", options->seed,
+                      "Seed for shuffling levels; by default the seed in the protocol file, or 0");
   add_json(*command, context);
   command->footer(
       "Example: turnpoint trace protocols/friction-2ifc.toml --procedure threshold --answers 11101");

@@ -36,7 +36,7 @@ void print(std::ostream& out, const store::Verification& result) {
     unsealed += s.links == 0;
     fmt::print(out, "{}  {} {}, {} trials: {}\n", s.session_id, s.participant, s.protocol_id, s.trials,
                !s.problems.empty() ? "CHANGED"
-               : s.links == 0      ? "no checksums, an earlier release recorded it"
+               : s.links == 0      ? "no checksums, because an earlier release recorded this session"
                                    : "as recorded, checksum " + s.last_sha256);
     for (const auto& problem : s.problems) fmt::print(out, "    {}\n", problem);
   }
@@ -60,14 +60,15 @@ void add_verify(CommandLine& app, Context& context) {
   using namespace verify_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("verify", "Check that the stored data are as they were recorded");
-  command->add_option("--db", options->database, "Database or backup; only read")->required();
-  command->add_option("--session", options->verify.session_id, "Only this session");
+  command->add_option("--db", options->database, "Database or backup to check; it is not changed")
+      ->required();
+  command->add_option("--session", options->verify.session_id, "Check only this session");
   command->add_option("--against", options->verify.against,
                       "A sessions.csv exported earlier: its checksums must still be in the database");
   add_json(*command, context);
   command->footer(
       "Example: turnpoint verify --db lab.sqlite --against export/my-study/sessions.csv\n"
-      "Exit status 1 where anything was changed, added or removed.");
+      "The exit status is 1 if anything was changed, added or removed.");
   command->callback([options, &context] { verify(*options, context); });
 }
 

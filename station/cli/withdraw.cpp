@@ -56,9 +56,9 @@ void print_what_stays(std::ostream& out, const store::Withdrawal& gone, const Op
   for (const auto& path : gone.remaining_copies)
     fmt::print(out, "{} still contains these data or cannot be read; remove it by hand\n", path);
   if (options.withdraw.backup_directory.empty())
-    fmt::print(out,
-               "Earlier backups and exports are not searched: give --backups FOLDER, and remove exports by "
-               "hand.\n");
+    fmt::print(
+        out,
+        "Earlier backups were not searched; use --backups FOLDER to do so. Remove exported files by hand.\n");
 }
 
 /// Lists what would be deleted and asks. Only the participant's code is accepted as agreement.
@@ -71,7 +71,8 @@ bool agreed(const Options& options, Context& context) {
   std::string answer;
   if (!std::getline(std::cin, answer))
     throw UsageError(
-        "withdraw: nobody has agreed: standard input has ended; nothing was deleted; a script gives --yes");
+        "withdraw: standard input ended before anybody confirmed; nothing was deleted; use --yes in a "
+        "script");
   return answer == options.withdraw.participant;
 }
 
@@ -103,15 +104,16 @@ void add_withdraw(CommandLine& app, Context& context) {
   command->add_option("--db", options->database, "Database")->required();
   command
       ->add_option("--participant", options->withdraw.participant,
-                   "Participant: CODE, or CODE@STATION where several people have the code")
+                   "Participant: CODE, or CODE@STATION if several people have this code")
       ->required();
-  command->add_option("--station", options->withdraw.station, "Only the sessions at this station");
-  command->add_option("--session", options->withdraw.session_id, "Only this session; the code stays in use");
-  command->add_option(
-      "--backups", options->withdraw.backup_directory,
-      "Folder of the backups: makes a new backup and removes this database's backups that contain the data");
+  command->add_option("--station", options->withdraw.station, "Withdraw only the sessions at this station");
+  command->add_option("--session", options->withdraw.session_id,
+                      "Withdraw only this session; the participant's code stays in use");
+  command->add_option("--backups", options->withdraw.backup_directory,
+                      "Folder with backups: make a new backup there and remove this database's backups that "
+                      "contain the data");
   command->add_flag("--dry-run", options->dry_run, "List what would be deleted, and delete nothing");
-  command->add_flag("--yes", options->yes, "Do not ask: for scripts");
+  command->add_flag("--yes", options->yes, "Do not ask for confirmation (for scripts)");
   add_json(*command, context);
   command->footer("Example: turnpoint withdraw --db lab.sqlite --participant P07 --backups /mnt/backup");
   command->callback([options, &context] { withdraw(*options, context); });

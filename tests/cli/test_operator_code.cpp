@@ -90,7 +90,7 @@ TEST_CASE("the operator's code is asked for twice on a terminal and never shown 
   other.type_after("New operator's code", "8520");
   other.type_after("Again", "8521");
   CHECK(other.ends() == 2);
-  CHECK(other.seen().find("the two entries differ") != std::string::npos);
+  CHECK(other.seen().find("the two codes differ") != std::string::npos);
   CHECK(content(file) == before);
 }
 
@@ -120,6 +120,6 @@ TEST_CASE("a locked station begins with a stored code alone, and no command line
     CHECK(child.outcome() == 2);
     return child.said();
   };
-  CHECK(station({"--locked"}).find("store your own: sudo turnpoint operator-code") != std::string::npos);
+  CHECK(station({"--locked"}).find("store one with: sudo turnpoint operator-code") != std::string::npos);
   CHECK(station({"--operator-code", "7391"}).find("--operator-code") != std::string::npos);
 }

@@ -92,7 +92,7 @@ std::vector<records::TrialRow> trials_of(const std::string& database) {
 }
 
 std::string reason_for(int signal) {
-  return std::string("the program was asked to end (SIG") + ::sigabbrev_np(signal) + ")";
+  return std::string("the program was stopped by a signal (SIG") + ::sigabbrev_np(signal) + ")";
 }
 
 /// Checks what the process has printed about a session that `signal` ended, and what its database contains.

@@ -26,12 +26,14 @@ TEST_CASE(
     "nothing plays on the amplifier that the operator has not armed, nor for longer than the rig allows",
     "[cli]") {
   check_refused({"synth", "--rig", kRig, "--tone", "30000", "--seconds", "2", "--out", "null:", "--arm"},
-                "synth: --arm with --out null:; only alsa:NAME has an amplifier behind it");
-  check_refused({"synth", "--rig", kRig, "--tone", "30000", "--seconds", "31", "--out", "alsa:hw:9", "--arm"},
-                "synth: --arm for 31 s; the rig allows 30 s without a pause");
+                "synth: --arm with --out null:; --arm is only possible with --out alsa:NAME, which plays "
+                "through the amplifier");
   check_refused(
-      {"calibrate", "--rig", kRig, "--sweep", "--sweep-out", "alsa:hw:9"},
-      "calibrate: --sweep-out alsa:hw:9 plays on the amplifier; with the surface clear, give --arm");
+      {"synth", "--rig", kRig, "--tone", "30000", "--seconds", "31", "--out", "alsa:hw:9", "--arm"},
+      "synth: with --arm for 31 s the amplifier would run too long; the rig allows 30 s without a pause");
+  check_refused({"calibrate", "--rig", kRig, "--sweep", "--sweep-out", "alsa:hw:9"},
+                "calibrate: --sweep-out alsa:hw:9 plays through the amplifier; make sure that nobody touches "
+                "the surface, and add --arm");
 }
 
 TEST_CASE("the doctor warns of a simulated panel beside a real converter", "[cli]") {
@@ -39,7 +41,7 @@ TEST_CASE("the doctor warns of a simulated panel beside a real converter", "[cli
   const auto rig = folder / "rig.toml";
   std::ifstream simulated(kRig);
   std::string text{std::istreambuf_iterator<char>(simulated), {}};
-  const std::string warning = "simulated: answers by touch have no kernel time";
+  const std::string warning = "the touch panel is simulated, so answers by touch have no kernel time";
   for (const char* output : {"null:", "alsa:hw:31"}) {  // the card hw:31 does not exist
     const auto uri = text.find("uri = \"null:\"");
     if (uri != std::string::npos) text.replace(uri, 13, std::string("uri = \"") + output + "\"");
