@@ -37,7 +37,8 @@ void check_type(snd_pcm_t* pcm, const OutputConfig& config, const std::string& n
   const auto& allowed = config.allow_plugin;
   if (std::find(allowed.begin(), allowed.end(), found) == allowed.end())
     refuse(name,
-           "is the alsa-lib plug-in '{}', not hardware; use a name that begins with hw:, as 'aplay -l' lists",
+           "is an alsa-lib plug-in of type '{}', not a hardware device; use a name that begins with hw: (see "
+           "'aplay -l')",
            found);
 }
 
@@ -79,7 +80,8 @@ std::string offered_channels(snd_pcm_t* pcm, snd_pcm_hw_params_t* params) {
   return text;
 }
 
-// Prefers 32-bit samples and falls back to 24-bit ones. Uses as many channels as the device has.
+// Chooses 32-bit samples, or 24-bit samples if the device has no 32-bit ones. Uses as many channels as the
+// device has.
 void set_layout(AlsaDevice& device, snd_pcm_hw_params_t* p, const OutputConfig& config,
                 const std::string& name) {
   snd_pcm_t* pcm = device.pcm.get();
@@ -87,37 +89,37 @@ void set_layout(AlsaDevice& device, snd_pcm_hw_params_t* p, const OutputConfig& 
   if (snd_pcm_hw_params_set_format(pcm, p, SND_PCM_FORMAT_S32_LE) < 0) {
     device.layout.format = SampleFormat::s24_3le;
     if (snd_pcm_hw_params_set_format(pcm, p, SND_PCM_FORMAT_S24_3LE) < 0)
-      refuse(name, "takes neither 32-bit samples (S32_LE) nor 24-bit ones (S24_3LE)");
+      refuse(name, "accepts neither 32-bit samples (S32_LE) nor 24-bit samples (S24_3LE)");
   }
   if (device.layout.bits() < config.bits)
-    refuse(name, "takes samples of {} bits, but the rig file says {}", device.layout.bits(), config.bits);
+    refuse(name, "accepts samples of {} bits, but the rig file says {}", device.layout.bits(), config.bits);
   const int channels = device.layout.channels;
   if (snd_pcm_hw_params_set_channels(pcm, p, static_cast<unsigned>(channels)) < 0)
-    refuse(name, "does not take {} channels; it takes {} (the rig's device_channels)", channels,
+    refuse(name, "does not accept {} channels; it accepts {} (set device_channels in the rig file)", channels,
            offered_channels(pcm, p));
 }
 
-// Every refused parameter is an error. Otherwise alsa-lib would silently install another value.
+// Throws for every parameter that the device refuses. Otherwise alsa-lib would silently use another value.
 void set_hardware(AlsaDevice& device, const OutputConfig& config, const std::string& name) {
   snd_pcm_t* pcm = device.pcm.get();
   const HwParams params = any_params(pcm, name);
   snd_pcm_hw_params_t* p = params.get();
   check(snd_pcm_hw_params_set_rate_resample(pcm, p, 0), name, "switching resampling off");
   if (snd_pcm_hw_params_set_access(pcm, p, SND_PCM_ACCESS_RW_INTERLEAVED) < 0)
-    refuse(name, "does not take interleaved frames");
+    refuse(name, "does not accept interleaved frames");
   set_layout(device, p, config, name);
   const auto rate = static_cast<unsigned>(config.rate_Hz);
   if (snd_pcm_hw_params_set_rate(pcm, p, rate, 0) < 0)
     refuse(name, "rate {} Hz not supported; it offers {}", rate, offered_rates(pcm, p));
   if (snd_pcm_hw_params_set_period_size(pcm, p, static_cast<snd_pcm_uframes_t>(config.period_frames), 0) < 0)
-    refuse(name, "does not take periods of {} frames", config.period_frames);
+    refuse(name, "does not accept periods of {} frames", config.period_frames);
   if (snd_pcm_hw_params_set_periods(pcm, p, static_cast<unsigned>(config.periods), 0) < 0)
-    refuse(name, "does not take {} periods of {} frames", config.periods, config.period_frames);
+    refuse(name, "does not accept {} periods of {} frames", config.periods, config.period_frames);
   check(snd_pcm_hw_params(pcm, p), name, "installing hardware parameters");
   unsigned numerator = 0, denominator = 0;
   check(snd_pcm_hw_params_get_rate_numden(p, &numerator, &denominator), name, "reading the rate back");
   if (denominator == 0 || numerator != rate * denominator)
-    refuse(name, "runs at {}/{} Hz when asked for {} Hz", numerator, denominator, rate);
+    refuse(name, "runs at {}/{} Hz instead of the requested {} Hz", numerator, denominator, rate);
   const int depth = snd_pcm_hw_params_get_sbits(p);
   if (snd_pcm_type(pcm) == SND_PCM_TYPE_HW && depth > 0 && depth < config.bits)
     refuse(name, "the converter has {} bits, but the rig file says {}", depth, config.bits);
@@ -156,17 +158,19 @@ std::string described(snd_pcm_t* pcm) {
   return chain;
 }
 
-// An allowed plug-in may hide a rate converter, so every rate along the chain must be the requested one.
+// An allowed plug-in may contain a rate converter, so every rate along the plug-in chain must be the
+// requested one.
 void check_chain(const AlsaDevice& device, const OutputConfig& config, const std::string& name) {
-  if (device.chain.empty()) refuse(name, "alsa-lib does not say what the samples pass through");
+  if (device.chain.empty()) refuse(name, "alsa-lib does not say through which plug-ins the samples pass");
   if (device.chain.find("Rate conversion PCM") != std::string::npos)
-    refuse(name, "resamples: a rate converter is behind it");
+    refuse(name, "resamples: the plug-in chain contains a rate converter");
   for (std::size_t at = device.chain.find("  rate "); at != std::string::npos;
        at = device.chain.find("  rate ", at + 1)) {
     const auto colon = device.chain.find(':', at);
     const long rate =
         colon == std::string::npos ? 0 : std::strtol(device.chain.c_str() + colon + 1, nullptr, 10);
-    if (rate != config.rate_Hz) refuse(name, "resamples: {} Hz behind {} Hz", rate, config.rate_Hz);
+    if (rate != config.rate_Hz)
+      refuse(name, "resamples: a plug-in runs at {} Hz instead of {} Hz", rate, config.rate_Hz);
   }
 }
 
@@ -184,14 +188,16 @@ void check_kernel(snd_pcm_t* pcm, const OutputConfig& config, const std::string&
   for (std::string line; std::getline(file, line);) {
     if (line.rfind("rate: ", 0) != 0) continue;
     if (std::strtol(line.c_str() + 6, nullptr, 10) == config.rate_Hz) return;
-    refuse(name, "the kernel runs it at {} when asked for {} Hz ({})", line.substr(6), config.rate_Hz, path);
+    refuse(name, "the kernel runs the device at {} instead of the requested {} Hz ({})", line.substr(6),
+           config.rate_Hz, path);
   }
-  refuse(name, "{} does not state the rate", path);
+  refuse(name, "the sample rate is missing in {}", path);
 }
 
 void say_nothing(const char*, int, const char*, int, const char*, va_list) {}
 
-// alsa-lib also prints its errors to standard error. Silence it on this thread: our own messages report them.
+// alsa-lib also prints its errors to standard error. This object silences it on this thread, because our own
+// messages report the errors.
 struct QuietAlsa {
   snd_local_error_handler_t before = snd_lib_error_set_local(say_nothing);
   QuietAlsa() = default;
@@ -208,7 +214,8 @@ AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name)
   snd_pcm_t* pcm = nullptr;
   const int opened =
       snd_pcm_open(&pcm, name.c_str(), SND_PCM_STREAM_PLAYBACK, no_conversion | SND_PCM_NONBLOCK);
-  check(opened, name, opened == -EBUSY ? "in use by another program" : "cannot be opened");
+  check(opened, name,
+        opened == -EBUSY ? "the device is in use by another program" : "the device cannot be opened");
   device.pcm.reset(pcm);
   check_type(pcm, config, name);
   set_hardware(device, config, name);

@@ -26,7 +26,8 @@ class AlsaOutput final : public Output {
     const auto frames = static_cast<std::int64_t>(interleaved.size()) / config_.channels;
     if (recovery_.lost()) return absent(frames);
     WriteResult result;
-    // Start only once the first block is there. Starting at the opening would cause an underrun.
+    // Start the device only when the first block has been written. Starting it when it is opened would cause
+    // an underrun.
     if (!running_) {
       running_ = true;
       if (const int error = start(); error < 0) follow(recovery_.transferred({error}), error, frames, result);
@@ -60,7 +61,7 @@ class AlsaOutput final : public Output {
   std::vector<system::MemoryRange> memory() const override {
     return {system::range_of(*this), system::range_of(packed_)};
   }
-  // alsa-lib's structures are opaque, so their memory ranges are unknown here.
+  // alsa-lib's structures are opaque, so the memory that they use is not known here and cannot be locked.
   std::string memory_left_out() const override { return "alsa-lib's own objects"; }
 
   void finish() override {
@@ -96,7 +97,7 @@ class AlsaOutput final : public Output {
       if (ready < 0) return ready;
       if (ready == 0) return stalled();
       stalls_ = 0;
-      room = snd_pcm_avail(pcm());  // the wait may have been longer than the buffer lasts
+      room = snd_pcm_avail(pcm());  // the device may have played its whole buffer during the wait
     }
     if (room < 0) return room;
     // With less than an eighth of a period left, the device could overtake the block during the write.
@@ -113,7 +114,8 @@ class AlsaOutput final : public Output {
     return done;
   }
 
-  // When the device has run out of samples, it plays silence. This writes silence for the next `late` frames.
+  // Called when the device has run out of samples and plays silence. Writes silence for the next `late`
+  // frames.
   snd_pcm_sframes_t skip(snd_pcm_sframes_t late, WriteResult& result) noexcept {
     const snd_pcm_sframes_t skipped = snd_pcm_forward(pcm(), static_cast<snd_pcm_uframes_t>(late));
     if (skipped < 0) return skipped;
@@ -164,8 +166,8 @@ class AlsaOutput final : public Output {
     }
   }
 
-  // The silence that the device was restarted with counts as frames that passed. Samples that it had not
-  // played before are gone.
+  // Counts the silence with which the device was restarted as frames that passed. Samples that it had not
+  // played before are lost.
   void note_gap(int error, WriteResult& result) noexcept {
     const auto gap = static_cast<std::int64_t>(device_.buffer_frames - device_.period_frames);
     result.status = WriteStatus::restarted;
@@ -214,7 +216,7 @@ class AlsaOutput final : public Output {
     } catch (const std::system_error& error) {
       return -error.code().value();
     } catch (const std::exception&) {
-      return -EINVAL;  // the device is back, but with different properties
+      return -EINVAL;  // the device is back, but its properties have changed
     }
   }
 
@@ -225,10 +227,10 @@ class AlsaOutput final : public Output {
   OutputConfig config_;
   std::string name_;
   AlsaDevice device_;
-  std::vector<unsigned char> packed_;  ///< a buffer of frames in the device's format
+  std::vector<unsigned char> packed_;  ///< frames in the device's own sample format
   Recovery recovery_;
   std::int64_t frames_ = 0;  ///< frames written or skipped
-  std::int64_t played_ = 0;  ///< frames of these known to be played
+  std::int64_t played_ = 0;  ///< number of those frames known to have been played
   std::int64_t lost_at_ns_ = 0;
   int stalls_ = 0;
   bool running_ = false;

@@ -46,8 +46,8 @@ class Amplifier {
   /// For the operator: clears a latched fault if its cause is gone. The amplifier is disarmed afterwards.
   [[nodiscard]] virtual Refusal clear() = 0;
 
-  /// Proof of life. The audio thread and the session each report that they are alive. So does the
-  /// participant's page, from its first report on (a session without a screen has none). The heartbeat line
+  /// Each of these reports that its caller is still running: the audio thread, the session, and the
+  /// participant's page from its first report on (a session without a screen has no page). The heartbeat line
   /// toggles only while all of them report. These functions never block.
   virtual void audio_alive() noexcept = 0;
   virtual void session_alive() noexcept = 0;
@@ -56,8 +56,8 @@ class Amplifier {
   virtual AmplifierState state() const noexcept = 0;
   /// The latched fault; valid while the state is `faulted`.
   virtual AmplifierFault fault() const = 0;
-  /// Time from the kernel's stamp of the last fault or stop edge until the line was low; -1 if there was none
-  /// yet.
+  /// Time from the kernel's time stamp of the last fault or stop signal until the enable line was low; -1 if
+  /// there was none yet.
   virtual std::int64_t reaction_ns() const noexcept = 0;
 };
 

@@ -9,8 +9,8 @@ inline constexpr int max_tones = 32;
 inline constexpr int max_channels = 8;
 inline constexpr int max_changes = 4;
 
-/// One sinusoid `amplitude * sin(2 pi frequency t + phase)`, t counted from the first frame of its burst.
-/// Full scale is 1; the channel is an output channel from 0.
+/// One sinusoid `amplitude * sin(2 pi frequency t + phase)`, with t counted from the first frame of its
+/// burst. Amplitude 1 is full scale; the output channel counts from 0.
 struct Tone {
   double frequency_Hz = 0;
   double amplitude = 0;
@@ -46,7 +46,7 @@ struct Marker {
   MarkerKind kind = MarkerKind::none;
   std::int32_t channel = 1;
   double amplitude = 0.5;
-  double frequency_Hz = 1000;  ///< frequency of a gated tone
+  double frequency_Hz = 1000;  ///< frequency if the marker is a tone
   std::int64_t frames = 192;
 };
 
@@ -65,7 +65,7 @@ struct Burst {
   std::int64_t length_frames = 0;
   Ramp ramp;
   ToneSet tones;
-  std::array<Change, max_changes> changes{};  ///< ascending, without overlap
+  std::array<Change, max_changes> changes{};  ///< changes in order of time, without overlap
   std::int32_t change_count = 0;
   Marker marker;
   MaskingNoise noise;

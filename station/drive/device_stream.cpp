@@ -110,7 +110,7 @@ void DeviceStream::follow_device() noexcept {
   const auto position = output_->position();
   if (!position) return;
   core_.heard(position->frame);
-  // If nobody reads the clock, the ring is full of older pairs. Those are good enough.
+  // If nobody reads the clock, this ring is full of older measurements, which are good enough.
   static_cast<void>(positions_->push({relation_.load(), *position}));
   if (!rate_told_) check_rate(*position);
 }
@@ -125,7 +125,8 @@ void DeviceStream::check_rate(const Position& position) noexcept {
     core_.report({EventKind::rate_wrong, 0, position.frame, std::llround(rate->rate_Hz * 1000)});
 }
 
-// Files and null accept frames at once, so a clock paces them like a converter that is one period behind.
+// Outputs to a file or to null accept frames at once, so the clock paces them like a converter that is one
+// period behind.
 void DeviceStream::follow_clock() noexcept {
   const std::int64_t rate = config_.output.rate_Hz, heard = frame_ - config_.output.period_frames;
   const std::int64_t due_ns = origin_ns_ + heard / rate * 1'000'000'000 + heard % rate * 1'000'000'000 / rate;

@@ -41,7 +41,7 @@ class DeviceStream : public Stream {
     core_.stop(burst, ramp, frame);
   }
   std::optional<Event> poll() override;
-  /// Two periods ahead of what has been rendered, because one period is being rendered now.
+  /// Two periods after the last rendered frame, because one period is being rendered now.
   std::int64_t earliest_frame() const override {
     return core_.counters().frames + 2 * std::int64_t{config_.output.period_frames};
   }
@@ -79,11 +79,11 @@ class DeviceStream : public Stream {
   std::unique_ptr<Ring<StampedRate, 4>> rates_ = std::make_unique<Ring<StampedRate, 4>>();
   std::atomic<std::uint32_t> relation_{0};  ///< incremented whenever the device was restarted
   std::atomic<std::uint32_t> device_{0};    ///< incremented whenever a device was lost
-  // Control side:
+  // the members from here on belong to the control side
   FrameClock clock_;
   std::uint32_t clock_relation_ = 0;
   std::optional<StampedRate> rate_;
-  // Audio side:
+  // the members from here on belong to the audio side
   std::vector<std::int32_t> block_;
   std::int64_t frame_ = 0;  ///< the next frame to render
   std::int64_t origin_ns_ = 0;

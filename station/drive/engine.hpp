@@ -23,13 +23,16 @@ namespace turnpoint::drive {
 /// underrun event names the burst and there is no burst_heard.
 enum class EventKind : std::int32_t {
   burst_started,  ///< frame: first frame of the burst, as scheduled
-  burst_ended,    ///< frame: first silent frame, or the burst's first frame if it was stopped before it began
-  burst_heard,    ///< frame: first silent frame; every frame before it has been played as scheduled
-  burst_missed,   ///< the command came after its first frame had been rendered: the burst is not played
-  underrun,       ///< frames [frame, frame + frames) were not played; sounding bursts continue with a ramp
-  device_lost,    ///< nothing is played from `frame` on, until the device is back and the operator re-arms
-  device_back,    ///< the device was reopened by name; frame numbers continue from `frame`
-  rate_wrong,  ///< the measured rate is more than 200 ppm off (`frames`: the rate in mHz): stop the session
+  /// frame: the first silent frame after the burst, or the burst's first frame if it was stopped before it
+  /// began
+  burst_ended,
+  /// frame: the first silent frame after the burst, which has been played completely and as scheduled
+  burst_heard,
+  burst_missed,  ///< the command came after its first frame had been rendered: the burst is not played
+  underrun,      ///< frames [frame, frame + frames) were not played; sounding bursts continue with a ramp
+  device_lost,   ///< nothing is played from `frame` on, until the device is back and the operator re-arms
+  device_back,   ///< the device was reopened by name; frame numbers continue from `frame`
+  rate_wrong,    ///< the measured rate is more than 200 ppm off (`frames`: the rate in mHz): stop the session
 };
 
 struct Event {
@@ -37,7 +40,7 @@ struct Event {
   std::uint32_t burst = 0;  ///< for an underrun or a loss: the first burst that lost frames; 0 if none did
   std::int64_t frame = 0;
   std::int64_t frames = 0;
-  int error = 0;  ///< negative errno of the device, if any
+  int error = 0;  ///< negative errno that the device reported; 0 if none
   /// For an underrun: the device was restarted, so what follows is played at a different time than predicted.
   /// A burst that had not been heard to its end by then has lost frames, even if none of them fell into the
   /// gap.
@@ -45,13 +48,14 @@ struct Event {
 };
 
 struct Counters {
-  std::int64_t frames = 0;  ///< rendered frames
-  std::int64_t heard = 0;   ///< frames known to have been played or lost; earlier losses have been reported
-  std::int64_t bursts = 0;  ///< bursts that began
+  std::int64_t frames = 0;  ///< number of frames rendered
+  /// number of frames known to have been played or lost; losses before this frame have been reported
+  std::int64_t heard = 0;
+  std::int64_t bursts = 0;  ///< number of bursts that began
   std::int64_t missed = 0;
   std::int64_t underruns = 0;
-  std::int64_t lost_frames = 0;  ///< frames that underruns kept from being played
-  std::int64_t saturated = 0;    ///< samples out of range; anything but 0 is a fault
+  std::int64_t lost_frames = 0;  ///< number of frames that were not played because of underruns
+  std::int64_t saturated = 0;    ///< number of samples that exceeded the range; anything but 0 is a fault
   std::int64_t device_losses = 0;
   std::int64_t events_dropped = 0;  ///< events lost because nobody called poll()
 };
@@ -115,7 +119,8 @@ class Stream {
   /// that the time is not known: before the device has reported its first position, while it is lost, and
   /// just after a restart.
   virtual ClockFit clock() = 0;
-  /// Predicted time (ns) at which a frame leaves the converter, group delay included; empty while unknown.
+  /// Predicted time (ns) at which this frame leaves the converter, including the group delay; empty if not
+  /// known.
   virtual std::optional<std::int64_t> time_of(std::int64_t frame) = 0;
   virtual std::optional<std::int64_t> frame_at(std::int64_t time_ns) = 0;
 
@@ -133,7 +138,7 @@ class SynchronousStream : public Stream {
   /// Renders and writes this many frames. Throws std::system_error if a file cannot be written.
   virtual void advance(std::int64_t frames) = 0;
   virtual std::int64_t frame() const = 0;     ///< the next frame to render
-  virtual std::int64_t now_ns() const = 0;    ///< time of that frame
+  virtual std::int64_t now_ns() const = 0;    ///< virtual time of the next frame to render
   virtual double largest_sample() const = 0;  ///< largest sample written so far, relative to full scale
   /// Completes the output (file headers). Throws std::system_error.
   virtual void finish() = 0;
@@ -152,8 +157,8 @@ struct PlayReport {
   Counters counters;
   system::Rights rights;
   ClockFit clock;
-  std::optional<MeasuredRate> rate;  ///< for a device that played for 2 s or more
-  double peak = 0;                   ///< computed before playing, relative to full scale
+  std::optional<MeasuredRate> rate;  ///< measured clock rate; only for a device that played for 2 s or more
+  double peak = 0;                   ///< largest sample, computed before playing, relative to full scale
   /// largest sample written, relative to full scale; 0 if the output is a device
   double largest_sample = 0;
   std::int64_t onset_frame = 0;

@@ -8,7 +8,7 @@
 namespace turnpoint::drive {
 namespace {
 
-constexpr const char* not_taken = "burst refused: the audio thread has not taken the last 16 commands";
+constexpr const char* not_taken = "burst refused: the audio thread has not processed the last 16 commands";
 
 }  // namespace
 
@@ -31,11 +31,12 @@ void EngineCore::check_room(const PreparedBurst& burst) const {
     for (std::size_t c = 0; c < max_channels; ++c) sum[c] += other.burst.peak[c];
   }
   if (voices >= Synth::max_voices)
-    throw BurstRefused(fmt::format("burst refused: {} bursts wait or sound already", voices));
+    throw BurstRefused(fmt::format("burst refused: {} bursts are already waiting or playing", voices));
   for (std::size_t c = 0; c < max_channels; ++c)
     if (sum[c] > config_.limits.peak)
       throw BurstRefused(
-          fmt::format("burst refused: with what sounds already, channel {} may reach {:.6f}; allowed {:.6f}",
+          fmt::format("burst refused: together with the bursts already playing, channel {} could reach "
+                      "{:.6f} of full scale; the limit is {:.6f}",
                       c, sum[c], config_.limits.peak));
 }
 
@@ -44,8 +45,9 @@ std::uint32_t EngineCore::schedule(const Burst& burst, const Earliest& earliest_
   const auto only_then = [&] {
     const auto earliest = earliest_frame();
     if (burst.start_frame < earliest)
-      throw BurstRefused(fmt::format("burst refused: frame {} is already past; the earliest possible is {}",
-                                     burst.start_frame, earliest));
+      throw BurstRefused(fmt::format(
+          "burst refused: start frame {} is already past; the earliest possible start is frame {}",
+          burst.start_frame, earliest));
     return earliest;
   };
   return schedule_together({&prepared, 1}, only_then).front().burst;
@@ -147,7 +149,7 @@ void EngineCore::follow(Event& event) {
 }
 
 void EngineCore::gather() {
-  // Read this before the events, so that every loss before this frame is among them.
+  // Read this position before the events, so that the events contain every loss before this frame.
   const std::int64_t heard = atomics_.heard.load();
   Event event;
   while (events_->pop(event)) {
@@ -209,8 +211,8 @@ void EngineCore::report(const Event& event) noexcept {
 
 void EngineCore::lose(const Event& event, std::int64_t next_frame) noexcept {
   synth_.skip_to(next_frame);
-  // Store this before sending the event, so that nobody who has read the event schedules a burst into the
-  // gap.
+  // Store the frame before sending the event, so that nobody who has read the event schedules a burst into
+  // the gap.
   atomics_.frames.store(next_frame);
   report(event);
 }
@@ -223,7 +225,7 @@ void EngineCore::take_commands() noexcept {
           report({EventKind::burst_missed, incoming_->start.id, incoming_->start.start_frame});
         break;
       case CommandKind::change:
-        // A burst that has just ended can no longer change; its end is reported.
+        // Ignored if the burst has just ended; the end of the burst is reported.
         static_cast<void>(synth_.change(incoming_->burst, incoming_->change));
         break;
       case CommandKind::stop:

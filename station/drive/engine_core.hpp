@@ -31,9 +31,9 @@ class EngineCore {
 
   /// Takes the waiting commands and renders frames, beginning with `frame`.
   void process(std::int64_t frame, std::span<std::int32_t> samples) noexcept;
-  /// The same without samples: only commands and events.
+  /// Like process(), but without computing samples: only handles commands and events.
   void pass(std::int64_t frame, std::int64_t frames) noexcept;
-  /// Everything before `frame` has been played, except what was reported as lost before this call.
+  /// Tells that everything before `frame` has been played, except what was reported as lost before this call.
   void heard(std::int64_t frame) noexcept { atomics_.heard.store(frame); }
   /// Skips lost frames and sends the event that reports them. Rendering continues at `next_frame`, which must
   /// not lie before the end of what has been rendered.
@@ -54,7 +54,7 @@ class EngineCore {
   /// A burst that was sent but has not yet been heard or reported as damaged.
   struct Open {
     PreparedBurst burst;
-    std::int64_t end_frame = 0;  ///< as scheduled; once rendered, the actual end
+    std::int64_t end_frame = 0;  ///< end of the burst as scheduled; once rendered, its actual end
     bool begun = false, rendered = false, damaged = false;
   };
   struct Atomics {
@@ -73,7 +73,7 @@ class EngineCore {
 
   StreamConfig config_;
   std::uint32_t last_id_ = 0;
-  std::vector<Open> open_;  ///< in the order of sending
+  std::vector<Open> open_;  ///< open bursts in the order in which they were sent
   std::deque<Event> gathered_;
   std::unique_ptr<Command> outgoing_ = std::make_unique<Command>();
   std::unique_ptr<Command> incoming_ = std::make_unique<Command>();

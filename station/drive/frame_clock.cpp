@@ -19,7 +19,7 @@ FrameClock::FrameClock(double nominal_rate_Hz, int window)
     : nominal_ns_per_frame_(1e9 / nominal_rate_Hz), window_(static_cast<std::size_t>(window)) {
   if (!(nominal_rate_Hz > 0) || window < 2)
     throw std::invalid_argument(
-        fmt::format("frame clock of {} Hz over {} pairs; allowed above 0 Hz and 2 pairs or more",
+        fmt::format("a frame clock needs a rate above 0 Hz and at least 2 pairs, not {} Hz and {} pairs",
                     nominal_rate_Hz, window));
   pairs_.reserve(window_);
 }
@@ -52,7 +52,7 @@ ClockFit FrameClock::fit() const {
   line.frame = newest.frame;
   line.time_ns = newest.time_ns;
   if (pairs_.size() < 8) return line;
-  // Relative to the newest pair, so that the sums stay small.
+  // Times and frames are relative to the newest pair, so that the sums stay small.
   const auto count = static_cast<double>(pairs_.size());
   double mean_x = 0, mean_y = 0;
   for (const Pair& pair : pairs_) {

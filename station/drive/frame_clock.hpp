@@ -6,14 +6,15 @@ namespace turnpoint::drive {
 
 /// A straight line through (frame, CLOCK_MONOTONIC) pairs; stored with each trial.
 struct ClockFit {
-  std::int64_t frame = 0;    ///< reference frame
-  std::int64_t time_ns = 0;  ///< when that frame leaves the converter, not counting its group delay
+  std::int64_t frame = 0;  ///< a frame on the fitted line
+  /// time at which this frame leaves the converter, without the converter's group delay
+  std::int64_t time_ns = 0;
   double ns_per_frame = 0;
   double residual_ns = 0;  ///< rms distance of the pairs from the line
   int pairs = 0;
 
   std::int64_t time_of(std::int64_t at_frame) const noexcept;
-  std::int64_t frame_at(std::int64_t at_ns) const noexcept;  ///< nearest frame
+  std::int64_t frame_at(std::int64_t at_ns) const noexcept;  ///< the frame that is nearest to this time
   double rate_Hz() const noexcept { return 1e9 / ns_per_frame; }
 };
 

@@ -12,14 +12,14 @@ inline std::uint64_t hashed(std::uint64_t counter) noexcept {
   return z ^ (z >> 31);
 }
 
-/// Triangular in (-1, 1), variance 1/6: the sum of two independent uniform values, one from each half of the
-/// bits.
+/// A random number in (-1, 1) with a triangular distribution of variance 1/6: the sum of two independent
+/// uniform numbers, one from each half of the bits.
 inline double triangular(std::uint64_t bits) noexcept {
   const auto high = static_cast<std::int32_t>(bits >> 32), low = static_cast<std::int32_t>(bits);
   return (static_cast<double>(high) + static_cast<double>(low) + 1.0) * 0x1p-32;
 }
 
-/// Uniform in (-1, 1).
+/// A random number, uniform in (-1, 1).
 inline double uniform(std::uint64_t bits) noexcept {
   return (static_cast<double>(static_cast<std::int64_t>(bits) >> 11) + 0.5) * 0x1p-52;
 }

@@ -8,12 +8,14 @@ namespace turnpoint::drive {
 struct Partial {
   std::uint64_t phase = 0;
   std::uint64_t increment = 0;
-  std::uint64_t curvature = 0;  ///< signed, in two's complement; 0 unless the frequency glides
+  /// change of the increment per frame; a signed number in two's complement, 0 unless the frequency glides
+  std::uint64_t curvature = 0;
   double amplitude = 0;
-  double amplitude_change = 0;  ///< multiplied by the glide's shape, 0 to 1
+  /// change of the amplitude over a glide; it is multiplied by the glide's shape, which rises from 0 to 1
+  double amplitude_change = 0;
 };
 
-/// The same sinusoid with n counted from `frames` later.
+/// The same sinusoid, with n = 0 moved to a point `frames` frames later.
 inline Partial advanced(Partial partial, std::uint64_t frames) noexcept {
   partial.phase += partial.increment * frames;
   // n (n - 1) / 2 modulo 2^64. Dividing the wrapped product would lose its highest bit.

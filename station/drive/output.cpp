@@ -30,8 +30,9 @@ Format format_of(const OutputConfig& config) noexcept {
 
 std::unique_ptr<Output> open_output(const OutputConfig& config) {
   if (config.period_frames < 16 || config.period_frames > 65536 || config.periods < 2 || config.periods > 64)
-    throw terms::UsageError(fmt::format("output of {} periods of {} frames; allowed 2 to 64 of 16 to 65536",
-                                        config.periods, config.period_frames));
+    throw terms::UsageError(
+        fmt::format("output with {} periods of {} frames; allowed are 2 to 64 periods of 16 to 65536 frames",
+                    config.periods, config.period_frames));
   const auto colon = config.uri.find(':');
   const std::string scheme = config.uri.substr(0, colon);
   const std::string rest = colon == std::string::npos ? "" : config.uri.substr(colon + 1);
@@ -39,7 +40,7 @@ std::unique_ptr<Output> open_output(const OutputConfig& config) {
     return std::make_unique<NullOutput>(config);
   if (scheme == "wav" && !rest.empty()) return open_wav(config, rest);
   if (scheme == "alsa" && !rest.empty()) return open_alsa(config, rest);
-  throw terms::UsageError(fmt::format("output '{}'; allowed null:, wav:FILE, alsa:NAME", config.uri));
+  throw terms::UsageError(fmt::format("output '{}'; allowed are null:, wav:FILE and alsa:NAME", config.uri));
 }
 
 }  // namespace turnpoint::drive

@@ -20,9 +20,11 @@ struct OutputConfig {
   int bits = 24;
   int period_frames = 384;
   int periods = 4;
-  /// channels of an ALSA device, if it has more than the stream; the others carry zeros
+  /// number of channels of the ALSA device, if it has more than the stream; the additional channels carry
+  /// zeros
   int device_channels = 0;
-  std::vector<std::string> allow_plugin;  ///< alsa-lib plug-in types accepted beside hw (tests)
+  /// types of alsa-lib plug-ins that are accepted besides hw; for tests only
+  std::vector<std::string> allow_plugin;
 };
 
 Format format_of(const OutputConfig& config) noexcept;
@@ -38,10 +40,11 @@ enum class WriteStatus { ok, skipped, restarted, lost, reopened };
 /// again, because their time has passed. The next frame to write is the block's first plus `taken + passed`.
 struct WriteResult {
   WriteStatus status = WriteStatus::ok;
-  int error = 0;            ///< negative errno
+  int error = 0;            ///< negative errno if the write failed
   std::int64_t taken = 0;   ///< frames of this block that the device took
-  std::int64_t passed = 0;  ///< frames after those that were replaced by silence
-  /// Frames that the device received, up to the last taken one, but (as far as is known) never played.
+  std::int64_t passed = 0;  ///< number of frames after the taken ones that were replaced by silence
+  /// Number of frames that the device received up to the last taken one but, as far as is known, never
+  /// played.
   std::int64_t dropped = 0;
 };
 
@@ -68,7 +71,7 @@ class Output {
   /// Plays what is buffered, then closes. Throws std::system_error if a file cannot be completed. The
   /// destructor closes too, but reports no errors.
   virtual void finish() = 0;
-  /// True if writing takes as long as playing.
+  /// True if writing a block takes as long as playing it.
   virtual bool paced() const noexcept = 0;
 };
 

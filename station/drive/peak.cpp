@@ -10,7 +10,8 @@
 namespace turnpoint::drive {
 namespace {
 
-// Impulse response of the noise filters until it has decayed: its sum of squares and sum of magnitudes.
+// The impulse response of the noise filters, followed until it has decayed: sum of squares and sum of
+// magnitudes.
 struct Response {
   double energy = 0, magnitude = 0;
 };

@@ -9,7 +9,7 @@ namespace turnpoint::drive {
 /// between two sets stays below the larger one), the marker and the noise.
 std::array<double, max_channels> peak_bound(const PreparedBurst& burst);
 
-/// The same for the time in which the burst plays this change's tones.
+/// The same bound for the time in which the burst plays the tones of this change.
 std::array<double, max_channels> peak_bound(const PreparedBurst& burst, const PreparedChange& change);
 
 /// For each channel, the largest sample of the whole burst, found by rendering it (about 1 ns per tone and

@@ -18,21 +18,22 @@ template <typename... Args>
 
 void check_channel(const char* what, int channel, const Format& format) {
   if (channel < 0 || channel >= format.channels)
-    refuse("{} on channel {}; the output has channels 0 to {}", what, channel, format.channels - 1);
+    refuse("{} on channel {}; the output has only channels 0 to {}", what, channel, format.channels - 1);
 }
 
 void check_frequency(const char* what, double frequency_Hz, const Format& format, const SynthLimits& limits) {
   const double highest = limits.highest_relative_Hz * format.rate_Hz;
   if (!(frequency_Hz > 0 && frequency_Hz < highest))
-    refuse("{} of {} Hz; allowed above 0 and below {} Hz ({} of the rate of {} Hz)", what, frequency_Hz,
-           highest, limits.highest_relative_Hz, format.rate_Hz);
+    refuse("{} of {} Hz; the frequency must be above 0 and below {} Hz ({} of the sample rate of {} Hz)",
+           what, frequency_Hz, highest, limits.highest_relative_Hz, format.rate_Hz);
 }
 
 PreparedTone prepare(const Tone& tone, const Format& format, const SynthLimits& limits) {
   check_channel("tone", tone.channel, format);
   check_frequency("tone", tone.frequency_Hz, format, limits);
   if (!(tone.amplitude >= 0 && std::isfinite(tone.amplitude)))
-    refuse("tone of {} Hz with amplitude {}; allowed 0 and above", tone.frequency_Hz, tone.amplitude);
+    refuse("tone of {} Hz with amplitude {}; the amplitude must not be negative", tone.frequency_Hz,
+           tone.amplitude);
   if (!std::isfinite(tone.phase_rad))
     refuse("tone of {} Hz with a phase that is not finite", tone.frequency_Hz);
   return {phase_of_angle(tone.phase_rad), phase_increment(tone.frequency_Hz, format.rate_Hz), tone.amplitude,
@@ -40,16 +41,19 @@ PreparedTone prepare(const Tone& tone, const Format& format, const SynthLimits& 
 }
 
 int checked_count(const ToneSet& set) {
-  if (set.count < 0 || set.count > max_tones) refuse("{} tones; allowed 0 to {}", set.count, max_tones);
+  if (set.count < 0 || set.count > max_tones)
+    refuse("{} tones; the number of tones must be from 0 to {}", set.count, max_tones);
   return set.count;
 }
 
-// Fills in `change` for a burst whose tones before the change are `before` (its first `count` entries).
+// Prepares a change of a burst. `before` holds the burst's tones before the change, of which the first
+// `before_count` are used.
 PreparedChange prepare(const Change& change, const std::array<PreparedTone, max_tones>& before,
                        int before_count, const Format& format, const SynthLimits& limits) {
   PreparedChange out;
   if (change.at_frame < 0 || change.frames < 0)
-    refuse("change at frame {} within {} frames; neither may be negative", change.at_frame, change.frames);
+    refuse("change at frame {} with a length of {} frames; neither number may be negative", change.at_frame,
+           change.frames);
   out.at_frame = change.at_frame;
   out.frames = std::max<std::int64_t>(1, change.frames);
   out.count = std::max(before_count, checked_count(change.to));
@@ -62,8 +66,8 @@ PreparedChange prepare(const Change& change, const std::array<PreparedTone, max_
     }
     out.to[k] = prepare(change.to.tones[k], format, limits);
     if (i < before_count && out.to[k].channel != before[k].channel)
-      refuse("change moves tone {} from channel {} to {}; a tone keeps its channel", i, before[k].channel,
-             out.to[k].channel);
+      refuse("the change moves tone {} from channel {} to {}; a tone must keep its channel", i,
+             before[k].channel, out.to[k].channel);
   }
   return out;
 }
@@ -71,15 +75,17 @@ PreparedChange prepare(const Change& change, const std::array<PreparedTone, max_
 void prepare_changes(const Burst& burst, const Format& format, const SynthLimits& limits,
                      PreparedBurst& out) {
   if (burst.change_count < 0 || burst.change_count > max_changes)
-    refuse("{} changes; allowed 0 to {}", burst.change_count, max_changes);
+    refuse("{} changes; the number of changes must be from 0 to {}", burst.change_count, max_changes);
   std::array<PreparedTone, max_tones> before = out.tones;
   std::int64_t free_from = 0;
   for (int c = 0; c < burst.change_count; ++c) {
     const auto k = static_cast<std::size_t>(c);
     const PreparedChange change = prepare(burst.changes[k], before, out.tone_count, format, limits);
     if (change.at_frame < free_from || change.at_frame + change.frames > burst.length_frames)
-      refuse("change at frame {} within {} frames; allowed from frame {} to the burst's end at {}",
-             change.at_frame, change.frames, free_from, burst.length_frames);
+      refuse(
+          "change at frame {} with a length of {} frames; it must lie between frame {} and the burst's end "
+          "at frame {}",
+          change.at_frame, change.frames, free_from, burst.length_frames);
     for (int i = out.tone_count; i < change.count; ++i) {
       const auto t = static_cast<std::size_t>(i);
       out.tones[t] = change.to[t];
@@ -100,14 +106,17 @@ PreparedMarker prepare(const Marker& marker, const Burst& burst, const Format& f
   check_channel("marker", marker.channel, format);
   if (marker.kind == MarkerKind::tone) check_frequency("marker", marker.frequency_Hz, format, limits);
   if (!(std::abs(marker.amplitude) <= 1) || marker.frames < 1 || marker.frames > burst.length_frames)
-    refuse("marker of amplitude {} and {} frames; allowed -1 to 1 and 1 to {} frames", marker.amplitude,
-           marker.frames, burst.length_frames);
+    refuse(
+        "marker with amplitude {} and length {} frames; allowed are amplitudes from -1 to 1 and lengths from "
+        "1 to {} frames",
+        marker.amplitude, marker.frames, burst.length_frames);
   out = {marker.kind, marker.channel, marker.amplitude, 0, marker.frames};
   if (marker.kind == MarkerKind::tone) out.increment = phase_increment(marker.frequency_Hz, format.rate_Hz);
   return out;
 }
 
-// Second-order Butterworth filter by the bilinear transform. It uses only the station's own arithmetic.
+// Second-order Butterworth low-pass filter by the bilinear transform. It uses only the station's own
+// arithmetic functions, so that all machines get the same result.
 void low_pass(double frequency_Hz, const Format& format, double (&out)[5]) {
   const std::uint64_t half_angle = phase_increment(frequency_Hz, format.rate_Hz) / 2;
   const double t = sine_of_phase(half_angle) / sine_of_phase(half_angle + quarter_cycle);
@@ -134,7 +143,7 @@ PreparedNoise prepare(const MaskingNoise& noise, const Format& format, const Syn
   check_frequency("masking noise", noise.high_Hz, format, limits);
   if (!(noise.rms > 0 && noise.rms < 1) || noise.low_Hz >= noise.high_Hz)
     refuse(
-        "masking noise of {} rms from {} to {} Hz; allowed: an rms between 0 and 1, and a first frequency "
+        "masking noise of {} rms from {} to {} Hz; the rms must be between 0 and 1, and the first frequency "
         "below the second",
         noise.rms, noise.low_Hz, noise.high_Hz);
   out.channel = noise.channel;
@@ -146,12 +155,12 @@ PreparedNoise prepare(const MaskingNoise& noise, const Format& format, const Syn
 }
 
 void check_shape(const Burst& burst, const SynthLimits& limits) {
-  if (burst.start_frame < 0) refuse("start frame {}; allowed 0 and above", burst.start_frame);
+  if (burst.start_frame < 0) refuse("start frame {}; it must not be negative", burst.start_frame);
   if (burst.length_frames < 1 || burst.length_frames > limits.longest_frames)
-    refuse("length of {} frames; allowed 1 to {}", burst.length_frames, limits.longest_frames);
+    refuse("length of {} frames; it must be from 1 to {} frames", burst.length_frames, limits.longest_frames);
   if (burst.ramp.frames < 0 || burst.ramp.frames > burst.length_frames / 2)
-    refuse("ramps of {} frames in a burst of {}; allowed 0 to half of it", burst.ramp.frames,
-           burst.length_frames);
+    refuse("ramps of {} frames in a burst of {} frames; a ramp may take at most half of the burst",
+           burst.ramp.frames, burst.length_frames);
 }
 
 }  // namespace
@@ -175,7 +184,7 @@ PreparedBurst prepare(const Burst& burst, const Format& format, const SynthLimit
     out.peak = rendered_peak(out, format);
   for (std::size_t c = 0; c < max_channels; ++c)
     if (above(out.peak[c]))
-      refuse("peak of {:.6f} of full scale on channel {}; allowed {:.6f}", out.peak[c], c, limits.peak);
+      refuse("peak of {:.6f} of full scale on channel {}; the limit is {:.6f}", out.peak[c], c, limits.peak);
   return out;
 }
 
@@ -193,8 +202,8 @@ PreparedChange prepare_change(const Change& change, PreparedBurst& burst, const 
   for (std::size_t c = 0; c < max_channels; ++c) {
     with.peak[c] = std::max({burst.peak[c], own[c], live[c]});
     if (with.peak[c] > limits.peak)
-      refuse("change may reach {:.6f} of full scale on channel {}; allowed {:.6f}", with.peak[c], c,
-             limits.peak);
+      refuse("the change could reach {:.6f} of full scale on channel {}; the limit is {:.6f}", with.peak[c],
+             c, limits.peak);
   }
   burst = with;
   return out;

@@ -20,11 +20,13 @@ struct Format {
 
 /// The limits that a burst must meet to be accepted.
 struct SynthLimits {
-  double peak = 1.0 - 0x1p-20;  ///< for each channel, relative to full scale; leaves room for dither
+  /// largest peak of each channel, relative to full scale; leaves room for dither
+  double peak = 1.0 - 0x1p-20;
   double highest_relative_Hz = terms::kHighestShareOfRate;
   std::int64_t longest_frames = 192000LL * 3600;
   std::int64_t longest_rendered_frames =
-      192000LL * 60;  ///< longer bursts are not rendered but judged by the sum of their amplitudes
+      /// a burst longer than this is not rendered for the check, but judged by the sum of its amplitudes
+      192000LL * 60;
 };
 
 /// Thrown for a burst that will not be played; gives the reason.
@@ -44,10 +46,11 @@ struct PreparedTone {
 /// The tones after the change: tone i of `to` continues tone i of the burst. `count` is at least the burst's
 /// own count.
 struct PreparedChange {
-  std::int64_t at_frame = 0;  ///< counted from the burst's first frame
+  std::int64_t at_frame = 0;  ///< frame at which the change begins, counted from the burst's first frame
   std::int64_t frames = 1;
   std::int32_t count = 0;
-  /// sent while the burst sounds: if it comes late, it begins at once and nothing of it is skipped
+  /// true for a change sent while the burst plays: if it comes late, it begins at once and no part of it is
+  /// skipped
   bool live = false;
   std::array<PreparedTone, max_tones> to{};
 };

@@ -5,7 +5,8 @@
 
 namespace turnpoint::drive {
 
-// x: seconds on the raw clock. y: frames in excess of the nominal rate, which keeps the sums small.
+// The regression uses x, the seconds on the raw clock, and y, the frames in excess of the nominal rate, which
+// keeps the sums small.
 void RateCheck::add(std::int64_t frame, std::int64_t raw_ns) noexcept {
   if (count_ == 0 || frame < last_frame_ || raw_ns < last_ns_) {
     first_frame_ = frame;

@@ -11,9 +11,9 @@ struct DeviceReport {
 };
 
 enum class RecoveryAction {
-  go_on,    ///< all is well, or the call was merely interrupted: try again
-  restart,  ///< underrun, or after a resume: prepare, fill with silence, start
-  resume,   ///< suspended: ask the device to resume before restarting it
+  go_on,    ///< nothing to recover from, or the call was only interrupted: try again
+  restart,  ///< after an underrun or a resume: prepare the device, fill it with silence, start it
+  resume,   ///< the device was suspended: ask it to resume, then restart it
   wait,     ///< the device is resuming: wait one period, then ask again
   abandon,  ///< the device is gone: close it; the amplifier goes off
   reopen,   ///< the device is lost: try to open it by name

@@ -19,7 +19,8 @@ class Synchronous final : public SynchronousStream {
         block_(static_cast<std::size_t>(config.output.channels) *
                static_cast<std::size_t>(config.output.period_frames)) {
     if (config.samples == Samples::passed && config.output.uri != "null:")
-      throw terms::UsageError(config.output.uri + " needs its samples; only null: can do without");
+      throw terms::UsageError(config.output.uri +
+                              " needs computed samples; they can be left out only with the output null:");
   }
 
   std::uint32_t schedule(const Burst& burst) override {

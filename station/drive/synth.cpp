@@ -105,9 +105,10 @@ struct Synth::State {
 Synth::Synth(const Format& format, const Kernels& kernels) : state_(new State) {
   if (format.rate_Hz < 8000 || format.rate_Hz > 768000 || format.channels < 1 ||
       format.channels > max_channels || format.bits < 8 || format.bits > 32)
-    throw terms::UsageError(fmt::format(
-        "stream of {} Hz, {} channels, {} bits; allowed 8000 to 768000 Hz, 1 to {} channels, 8 to 32 bits",
-        format.rate_Hz, format.channels, format.bits, max_channels));
+    throw terms::UsageError(
+        fmt::format("stream of {} Hz, {} channels, {} bits; allowed are 8000 to 768000 Hz, 1 to {} channels "
+                    "and 8 to 32 bits",
+                    format.rate_Hz, format.channels, format.bits, max_channels));
   state_->format = format;
   state_->kernels = &kernels;
 }
@@ -158,7 +159,7 @@ void Synth::render(std::int64_t frame, std::span<std::int32_t> samples) noexcept
   for (std::size_t done = 0; done < total; done += max_block) {
     const auto frames = static_cast<int>(std::min<std::size_t>(max_block, total - done));
     const std::int64_t at = frame + static_cast<std::int64_t>(done);
-    if (!state_->active()) {  // most of a session is digital silence
+    if (!state_->active()) {  // most of a session is digital silence, which need not be computed
       std::fill_n(samples.data() + done * channels, static_cast<std::size_t>(frames) * channels, 0);
       state_->next_frame = at + frames;
       continue;

@@ -15,7 +15,8 @@ enum class SynthEventKind : std::int32_t { started, ended, missed };
 struct SynthEvent {
   SynthEventKind kind = SynthEventKind::started;
   std::uint32_t burst = 0;
-  /// started: first frame; ended: first silent frame; missed: the frame that was already past
+  /// started: the first frame; ended: the first silent frame; missed: the requested frame, which was already
+  /// past
   std::int64_t frame = 0;
 };
 
@@ -51,7 +52,7 @@ class Synth {
   /// `frame` is not the one at which the last call ended, frames were lost: bursts continue where they would
   /// have been, with a ramp.
   void render(std::int64_t frame, std::span<std::int32_t> samples) noexcept;
-  /// The same before dither and quantisation, as doubles, for measurement.
+  /// Like the other render(), but before dither and quantisation and as doubles, for measurements.
   void render(std::int64_t frame, std::span<double> samples) noexcept;
   /// Call this if the last block, or its end, was not played. The next block begins at `frame`, which is at
   /// or after the end of what was rendered. Bursts that have begun by then continue with a ramp.
@@ -60,15 +61,16 @@ class Synth {
   /// after rendering (except for masking noise).
   void pass(std::int64_t frame, std::int64_t frames) noexcept;
 
-  /// Events since the last call, oldest first; valid until the next render.
+  /// Events since the last call, oldest first. The span is valid until the next render.
   std::span<const SynthEvent> events() const noexcept;
   void clear_events() noexcept;
 
   /// All memory that render() uses beside this object.
   system::MemoryRange memory() const noexcept;
 
-  bool active() const noexcept;              ///< true while a burst waits or sounds
-  std::uint64_t saturated() const noexcept;  ///< samples out of range: 0 unless limits were lifted
+  bool active() const noexcept;  ///< true while a burst waits or sounds
+  /// number of samples that exceeded the range: 0 unless limits were lifted
+  std::uint64_t saturated() const noexcept;
 
  private:
   struct State;

@@ -8,7 +8,7 @@
 namespace turnpoint::drive {
 namespace {
 
-// Transposed direct form II.
+// Filters one sample by a second-order section in transposed direct form II.
 double section(const double (&c)[5], double (&state)[2], double x) noexcept {
   const double y = c[0] * x + state[0];
   state[0] = c[1] * x - c[3] * y + state[1];
@@ -98,7 +98,7 @@ void Voice::end_glide(std::int64_t at) noexcept {
   glide_end_ = never;
 }
 
-// Passes every boundary up to and including `at`, in order.
+// Begins and ends every change that is due up to and including frame `at`, in order.
 void Voice::enter(std::int64_t at) noexcept {
   for (;;) {
     std::int64_t change_at = never;
@@ -112,7 +112,7 @@ void Voice::enter(std::int64_t at) noexcept {
         ++next_change_;
       else
         live_waits_ = false;
-      // A live change that came late begins now: the frames before have already been rendered.
+      // A live change that came late begins now, because the frames before have already been rendered.
       begin_glide(change.live ? at : change_at, change);
     } else {
       return;

@@ -33,7 +33,7 @@ class Voice {
   void begin(const PreparedBurst& burst) noexcept;
   /// Replaces any live change that is still waiting.
   void change(const PreparedChange& change) noexcept;
-  /// Ignored if the burst already ends at least as soon, and after eight stops.
+  /// Adds a stop. Ignored if the burst already ends at least as soon, and after eight stops.
   void stop(std::int64_t at, const Ramp& ramp) noexcept;
   /// Call this if frames were lost: from `at` on the sound continues with a ramp.
   void resume(std::int64_t at) noexcept;
@@ -45,7 +45,7 @@ class Voice {
   /// Advances by this many frames without computing them. The noise filters keep their state.
   void pass(std::int64_t at, int frames) noexcept;
 
-  std::int64_t end() const noexcept;  ///< first silent frame
+  std::int64_t end() const noexcept;  ///< the first silent frame after the burst
   const PreparedBurst& burst() const noexcept { return burst_; }
 
  private:
@@ -61,8 +61,8 @@ class Voice {
 
   PreparedBurst burst_;
   std::array<Partial, max_tones> partials_;
-  std::int64_t origin_ = 0;         ///< frame at which n of `partials_` is 0
-  std::int64_t glide_end_ = never;  ///< end of the glide in progress
+  std::int64_t origin_ = 0;         ///< frame that is n = 0 for `partials_`
+  std::int64_t glide_end_ = never;  ///< frame at which the current glide ends
   std::int64_t glide_frames_ = 1;
   std::array<PreparedTone, max_tones> target_;
   int next_change_ = 0;
@@ -73,7 +73,8 @@ class Voice {
     Ramp ramp;
     std::int64_t end() const noexcept { return at + ramp.frames; }
   };
-  std::array<Stop, 8> stops_;  ///< each ends sooner than the one before it; their gains are multiplied
+  /// stops in effect, each ending sooner than the one before; their gains are multiplied
+  std::array<Stop, 8> stops_;
   std::size_t stop_count_ = 0;
   std::int64_t resume_at_ = -never;
   double high_[2] = {}, low_[2] = {};  ///< filter states of the noise

@@ -26,7 +26,7 @@ void put(std::array<char, header_bytes>& header, std::size_t at, T value) {
 
 std::array<char, header_bytes> header_of(const OutputConfig& config, std::uint32_t data_bytes) {
   std::array<char, header_bytes> h{};
-  // KSDATAFORMAT_SUBTYPE_PCM after its first two bytes.
+  // The GUID KSDATAFORMAT_SUBTYPE_PCM without its first two bytes, which are the format tag.
   constexpr unsigned char pcm_tail[14] = {0, 0, 0, 0, 0x10, 0, 0x80, 0, 0, 0xaa, 0, 0x38, 0x9b, 0x71};
   const auto channels = static_cast<std::uint16_t>(config.channels);
   const auto rate = static_cast<std::uint32_t>(config.rate_Hz);

@@ -12,17 +12,17 @@ namespace {
 
 bool is_low(const std::string& value, const Uri& uri) {
   if (value != "low" && value != "high")
-    throw terms::UsageError("'" + uri.text + "': '" + value + "'; allowed low, high");
+    throw terms::UsageError("'" + uri.text + "': '" + value + "'; allowed are low and high");
   return value == "low";
 }
 
 bool is_on(const std::string& value, const Uri& uri) {
   if (value != "on" && value != "off")
-    throw terms::UsageError("'" + uri.text + "': read_back=" + value + "; allowed on, off");
+    throw terms::UsageError("'" + uri.text + "': read_back=" + value + "; allowed are on and off");
   return value == "on";
 }
 
-/// The settings in a rig's URI; no line requests if it is simulated.
+/// The settings in the amplifier's URI. `requests` is empty for a simulated amplifier.
 struct Asked {
   GuardLines roles;
   std::vector<LineRequest> requests;
@@ -33,7 +33,7 @@ Asked read(const std::string& text) {
   if (uri.scheme == "sim" && uri.name.empty() && uri.values.empty()) return {{0, 1, 2, 3}, {}};
   if (uri.scheme != "gpio" || !uri.name.empty())
     throw terms::UsageError("amplifier '" + text +
-                            "'; allowed sim: or gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE");
+                            "'; allowed are sim: and gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE");
   Asked asked;
   const auto want = [&](const char* key, const char* consumer, LineUse use) {
     const std::string line = uri.take(key, "");
@@ -68,10 +68,12 @@ void force_amplifier_off(const std::string& text) {
   Asked asked = read(text);
   if (asked.requests.empty()) return;
   std::erase_if(asked.requests, [](const LineRequest& wanted) { return wanted.use == LineUse::input; });
-  const auto lines = open_gpio_lines(asked.requests);  // outputs are low from the moment of the request
+  // requesting the lines as outputs already sets them low
+  const auto lines = open_gpio_lines(asked.requests);
   const auto level = asked.roles.read_back ? lines->read_back(asked.roles.enable) : std::nullopt;
   if (level.value_or(false))
-    throw std::runtime_error("gpio line " + asked.requests.front().name + ": driven low, reads high");
+    throw std::runtime_error("gpio line " + asked.requests.front().name +
+                             ": the line was set low but reads high");
 }
 
 }  // namespace turnpoint::lines

@@ -38,7 +38,7 @@ class LineReader {
     std::int64_t due = now + settle_check_ns;
     for (const Watched& line : watched_) due = std::min(due, line.filter.due_ns());
     if (const auto edge = lines_->wait(std::max<std::int64_t>(due - now, 0))) return take(*edge);
-    // Read the time first: edges on their way at this time have arrived when the lines are polled again.
+    // Read the time before the lines: edges before this time have arrived when the lines are polled again.
     const std::int64_t quiet_until = system::monotonic_ns();
     if (const auto edge = lines_->wait(0)) return take(*edge);
     settle(quiet_until);
@@ -61,7 +61,7 @@ class LineReader {
   void take(const Edge& edge) {
     Watched& watched = watched_.at(static_cast<std::size_t>(edge.line));
     if (const auto missed = watched.sequence.missed_before(edge.sequence); missed > 0)
-      fault_of_line(edge.line, std::to_string(missed) + " edges were lost");
+      fault_of_line(edge.line, std::to_string(missed) + " edges of the line were lost");
     decide(edge.line, edge.time_ns);
     tell(edge.line, watched.filter.edge(edge.time_ns, active(edge.line, edge.rising)));
   }
@@ -83,7 +83,7 @@ class LineReader {
     if (!change) return;
     if (change->kind == LineChange::Kind::glitch) return tell_glitch(line, *change);
     if (change->kind == LineChange::Kind::lost)
-      fault_of_line(line, "its level changed and the kernel reported no edge");
+      fault_of_line(line, "the level of the line changed, but the kernel reported no edge");
     if (line == plan_.contact) {
       if (handlers_.contact) handlers_.contact({change->time_ns, change->active, std::nullopt});
     } else if (change->kind == LineChange::Kind::pressed && handlers_.press) {
@@ -91,7 +91,8 @@ class LineReader {
     }
   }
 
-  // Interference can come thousands of times per second, but people read the log.
+  // Limits how often glitches are reported: interference can come thousands of times per second, but people
+  // read the log.
   void tell_glitch(int line, const LineChange& change) {
     Watched& watched = watched_[static_cast<std::size_t>(line)];
     if (watched.glitch_told_ns && change.time_ns < *watched.glitch_told_ns + glitch_pause_ns) {
@@ -158,14 +159,14 @@ class RigButtons final : public Buttons {
 
  private:
   void check_simulated() const {
-    if (lines_ || contact_) throw std::logic_error("buttons on real lines cannot be simulated");
+    if (lines_ || contact_) throw std::logic_error("only simulated buttons can be pressed by the program");
   }
 };
 
 bool take_low(Uri& uri) {
   const std::string active = uri.take("active", "high");
   if (active != "low" && active != "high")
-    throw terms::UsageError("'" + uri.text + "': active=" + active + "; allowed low, high");
+    throw terms::UsageError("'" + uri.text + "': active=" + active + "; allowed are low and high");
   return active == "low";
 }
 
@@ -194,7 +195,7 @@ void plan_buttons(const std::string& text, RigButtons& buttons, WatchedLines& pl
     return;
   }
   if (uri.scheme != "gpio")
-    throw terms::UsageError("buttons '" + text + "'; allowed sim: or gpio:left=LINE,right=LINE");
+    throw terms::UsageError("buttons '" + text + "'; allowed are sim: and gpio:left=LINE,right=LINE");
   plan.buttons_low = take_low(uri);
   plan.button_rules = take_rules(uri);
   for (const auto& [name, line] : uri.values) {
@@ -202,7 +203,7 @@ void plan_buttons(const std::string& text, RigButtons& buttons, WatchedLines& pl
     plan.names.push_back(name);
     plan.requests.push_back({line, "turnpoint-button-" + name, LineUse::input});
   }
-  if (buttons.names_.empty()) throw terms::UsageError("buttons '" + text + "' name no line");
+  if (buttons.names_.empty()) throw terms::UsageError("buttons '" + text + "' do not name any line");
 }
 
 void plan_contact(const std::string& text, RigButtons& buttons, WatchedLines& plan) {
@@ -213,7 +214,7 @@ void plan_contact(const std::string& text, RigButtons& buttons, WatchedLines& pl
     const std::string line = uri.take("line", "");
     plan.contact_rules = take_rules(uri);
     uri.check_empty("line, active, hold_ms, refractory_ms");
-    if (line.empty()) throw terms::UsageError("contact '" + text + "' names no line");
+    if (line.empty()) throw terms::UsageError("contact '" + text + "' does not name a line");
     plan.contact = static_cast<int>(plan.requests.size());
     plan.requests.push_back({line, "turnpoint-contact", LineUse::input});
     plan.names.push_back("contact");
@@ -226,7 +227,7 @@ void plan_contact(const std::string& text, RigButtons& buttons, WatchedLines& pl
         contact_opener(uri.name, axis == "x" ? ABS_X : ABS_Y, buttons.handlers_), evdev_priority,
         buttons.handlers_);
   } else {
-    throw terms::UsageError("contact '" + text + "'; allowed sim:, gpio:line=LINE, evdev:NAME");
+    throw terms::UsageError("contact '" + text + "'; allowed are sim:, gpio:line=LINE and evdev:NAME");
   }
 }
 

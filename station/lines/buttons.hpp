@@ -12,23 +12,23 @@ namespace turnpoint::lines {
 
 /// A press of a response button that lasted long enough, stamped at the first edge of its bouncing.
 struct Press {
-  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC, kernel's stamp of the first edge
-  int button = 0;            ///< index in the order of the URI
+  std::int64_t time_ns = 0;  ///< kernel's time stamp of the first edge (CLOCK_MONOTONIC)
+  int button = 0;            ///< index of the button in the order of the URI
 };
 
 /// Interference on a line: its level changed and returned before that could count as a press or a touch.
 struct Glitch {
-  std::int64_t time_ns = 0;    ///< CLOCK_MONOTONIC, kernel's stamp of the first edge
-  std::string line;            ///< "left", "right", "contact"
+  std::int64_t time_ns = 0;    ///< kernel's time stamp of the first edge (CLOCK_MONOTONIC)
+  std::string line;            ///< name of the line: "left", "right", "contact"
   int edges = 0;               ///< number of edges that the kernel reported
-  std::int64_t length_ns = 0;  ///< time from the first to the last of them
-  int untold = 0;              ///< number of earlier glitches of this line that were counted but not reported
+  std::int64_t length_ns = 0;  ///< time from the first to the last edge
+  int untold = 0;              ///< number of earlier glitches of this line that were not reported
 };
 
 /// A fault of the buttons or the contact.
 struct ButtonsFault {
   enum class Kind {
-    edges_lost,  ///< more edges than the kernel can store
+    edges_lost,  ///< the kernel had more edges than it can store
     gone,        ///< a chip or a sensor was lost; the panel looks for it until it is back
   };
   std::int64_t time_ns = 0;
@@ -36,13 +36,13 @@ struct ButtonsFault {
   std::string what;
 };
 
-/// Called on the thread that watches them; they must return quickly.
+/// Functions called on the thread that watches the buttons; they must return quickly.
 struct ButtonsHandlers {
   std::function<void(const Press&)> press;
   std::function<void(const touch::Contact&)> contact;
-  std::function<void(const Glitch&)> glitch;  ///< at most one per second for each line
+  std::function<void(const Glitch&)> glitch;  ///< called at most once per second for each line
   std::function<void(const ButtonsFault&)> fault;
-  /// the lost device is back; a button held at that time does not count as a press
+  /// called when the lost device is back; a button held at that time does not count as a press
   std::function<void(std::int64_t time_ns)> back;
 };
 
@@ -63,12 +63,12 @@ struct ContactConfig {
 class Buttons {
  public:
   virtual ~Buttons() = default;
-  /// Names in the order of the URI ("left", "right"); empty without buttons.
+  /// Names of the buttons in the order of the URI ("left", "right"); empty without buttons.
   virtual const std::vector<std::string>& names() const = 0;
-  /// What has been lost and is not back yet, and why; "" if nothing.
+  /// Which device is lost at present, and why; "" if none.
   virtual std::string missing() const = 0;
 
-  /// For simulated buttons only: simulates this event. Throws std::logic_error on real ones.
+  /// Simulates this event, for simulated buttons only. Throws std::logic_error on real ones.
   virtual void simulate(const Press& press) = 0;
   virtual void simulate(const touch::Contact& touch) = 0;
 };

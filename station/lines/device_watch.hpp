@@ -12,13 +12,14 @@ namespace turnpoint::lines {
 /// until it is back.
 class DeviceWatch {
  public:
-  /// Checks the open device once, waiting a short time for news; throws if the device is lost.
+  /// A function that checks the open device once, waiting a short time for news; throws if the device is
+  /// lost.
   using Look = std::function<void()>;
-  /// Opens the device; throws if it does not exist.
+  /// A function that opens the device; throws if the device does not exist.
   using Open = std::function<Look()>;
 
-  /// Opens the device and watches it at this SCHED_FIFO priority, if granted. `handlers` must outlive this
-  /// object. Throws what `open` throws.
+  /// Opens the device and watches it, with SCHED_FIFO priority `priority` if the system grants it. `handlers`
+  /// must outlive this object. Throws the errors of `open`.
   DeviceWatch(Open open, int priority, const ButtonsHandlers& handlers);
 
   /// Why the device cannot be watched at present; "" while it can.
@@ -32,7 +33,7 @@ class DeviceWatch {
   Open open_;
   int priority_;
   const ButtonsHandlers& handlers_;
-  Look look_;  ///< empty while the device is lost; used only by the thread
+  Look look_;  ///< checks the open device; empty while the device is lost; used only by the thread
   mutable std::mutex mutex_;
   std::string missing_;
   std::jthread thread_;

@@ -10,13 +10,13 @@ namespace turnpoint::lines {
 /// The filter's verdict on one or more edges of a line.
 struct LineChange {
   enum class Kind {
-    pressed,   ///< became active and stayed active
-    released,  ///< became inactive and stayed inactive
-    glitch,    ///< changed its level and returned before the new level had lasted long enough
+    pressed,   ///< the line became active and stayed active
+    released,  ///< the line became inactive and stayed inactive
+    glitch,    ///< the line changed its level and returned before the new level had lasted long enough
     lost,      ///< the level changed without an edge: the kernel dropped edges
   };
   Kind kind = Kind::pressed;
-  /// kernel's stamp of the first edge; for `lost`, the time at which it was noticed
+  /// kernel's time stamp of the first edge; for `lost`, the time at which the change was noticed
   std::int64_t time_ns = 0;
   int edges = 0;               ///< number of edges in the burst; 0 for `lost`
   std::int64_t length_ns = 0;  ///< time from the first to the last of these edges
@@ -43,8 +43,8 @@ class EdgeFilter {
   EdgeFilter(const Rules& rules, bool active) noexcept
       : rules_(rules), level_(active), stable_(active), told_(active) {}
 
-  /// The verdicts that are certain once every edge before `now_ns` has been passed in. Call until it returns
-  /// nothing.
+  /// A press, release or glitch that is certain once every edge before `now_ns` has been passed in. Call
+  /// until it returns nothing.
   std::optional<LineChange> decide(std::int64_t now_ns) noexcept;
 
   /// Takes the next edge; call decide() for its time first. `active` is the level after the edge. Returns a
@@ -56,7 +56,7 @@ class EdgeFilter {
   /// time is unknown.
   std::optional<LineChange> level(std::int64_t now_ns, bool active) noexcept;
 
-  /// The time at which decide() can be certain of what is still open; the largest time if nothing is open.
+  /// The time at which decide() can judge the current burst; the largest time if there is none.
   std::int64_t due_ns() const noexcept;
 
  private:
@@ -67,7 +67,7 @@ class EdgeFilter {
   Rules rules_;
   bool level_;                     ///< level after the last edge
   bool stable_;                    ///< the last level that lasted long enough
-  std::int64_t stable_since_ = 0;  ///< first edge of the burst that led to it
+  std::int64_t stable_since_ = 0;  ///< first edge of the burst that led to the stable level
   bool told_;                      ///< the level that was reported last
   std::int64_t quiet_until_ = std::numeric_limits<std::int64_t>::min();
   bool in_burst_ = false;
@@ -79,7 +79,7 @@ class EdgeFilter {
 /// Detects lost edges from the kernel's per-line sequence numbers.
 class SequenceCheck {
  public:
-  /// The number of edges lost just before this one.
+  /// The number of edges lost just before the one with this sequence number.
   std::uint32_t missed_before(std::uint32_t sequence) noexcept {
     const std::uint32_t missed = last_ == 0 ? 0 : sequence - last_ - 1;
     last_ = sequence;

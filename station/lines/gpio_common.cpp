@@ -27,10 +27,11 @@ std::optional<std::size_t> wait_readable(std::vector<pollfd>& descriptors, std::
   const int error = errno;
   descriptors.pop_back();
   if (ready < 0 && error == EINTR) return std::nullopt;
-  if (ready < 0) throw std::system_error(error, std::generic_category(), "gpio lines: poll");
+  if (ready < 0)
+    throw std::system_error(error, std::generic_category(), "gpio lines: waiting for an edge (poll)");
   for (std::size_t k = 0; ready > 0 && k < descriptors.size(); ++k) {
     if (descriptors[k].revents & (POLLHUP | POLLERR | POLLNVAL))
-      throw std::system_error(ENODEV, std::generic_category(), "gpio lines: the chip is gone");
+      throw std::system_error(ENODEV, std::generic_category(), "gpio lines: the GPIO chip was removed");
     if (descriptors[k].revents & POLLIN) return k;
   }
   return std::nullopt;

@@ -8,7 +8,7 @@
 namespace turnpoint::lines {
 namespace {
 
-// buffer for one line in version 1 of Linux's character device interface
+// number of edges that the kernel buffers for a line in version 1 of the character device interface
 constexpr int kernel_buffer_edges = 16;
 
 struct ChipCloser {
@@ -18,7 +18,7 @@ using Chip = std::unique_ptr<gpiod_chip, ChipCloser>;
 
 struct Found {
   Chip chip;
-  gpiod_line* line = nullptr;  ///< owned by the chip
+  gpiod_line* line = nullptr;  ///< the line, which belongs to the chip
 };
 
 // Each found line has its own chip handle. Never pass a null chip to the library, because it does not check.
@@ -36,7 +36,8 @@ Found find(const std::string& name) {
     if (found.line) throw_line_error(EEXIST, name, "two lines have this name");
     found = {std::move(chip), line};
   }
-  if (!found.line && denied) throw_line_error(denied, name, "no right to open the chips (group gpio?)");
+  if (!found.line && denied)
+    throw_line_error(denied, name, "no permission to open the GPIO chips (is the user in the group gpio?)");
   return found;
 }
 
@@ -57,7 +58,7 @@ class GpioLines final : public Lines {
   explicit GpioLines(const std::vector<LineRequest>& requests) : last_(requests.size()) {
     for (const LineRequest& wanted : requests) {
       Found found = find(wanted.name);
-      if (!found.line) throw_line_error(ENOENT, wanted.name, "no chip has a line of this name");
+      if (!found.line) throw_line_error(ENOENT, wanted.name, "no GPIO chip has a line with this name");
       request(found, wanted);
       if (wanted.use == LineUse::input) {
         descriptors_.push_back({gpiod_line_event_get_fd(found.line), POLLIN, 0});
@@ -69,7 +70,7 @@ class GpioLines final : public Lines {
 
   std::optional<Edge> wait(std::int64_t timeout_ns, int wake) override {
     auto ready = wait_readable(descriptors_, 0, -1);
-    if (!ready) {  // nothing was waiting: all buffers are empty
+    if (!ready) {  // no edge was waiting, so all buffers are empty
       for (Last& last : last_) last.waiting = 0;
       ready = wait_readable(descriptors_, timeout_ns, wake);
     }
@@ -117,7 +118,7 @@ class GpioLines final : public Lines {
   };
   std::vector<Found> lines_;
   std::vector<pollfd> descriptors_;
-  std::vector<int> inputs_;  ///< line of each descriptor
+  std::vector<int> inputs_;  ///< index of the line that each descriptor belongs to
   std::vector<Last> last_;
 };
 

@@ -43,7 +43,8 @@ Found find(const std::string& name) {
     if (found.chip) throw_line_error(EEXIST, name, "two lines have this name");
     found = {std::move(chip), static_cast<unsigned>(offset)};
   }
-  if (!found.chip && denied) throw_line_error(denied, name, "no right to open the chips (group gpio?)");
+  if (!found.chip && denied)
+    throw_line_error(denied, name, "no permission to open the GPIO chips (is the user in the group gpio?)");
   return found;
 }
 
@@ -85,10 +86,11 @@ Request request(const Found& found, const LineRequest& wanted) {
 class GpioLines final : public Lines {
  public:
   explicit GpioLines(const std::vector<LineRequest>& requests) : buffer_(gpiod_edge_event_buffer_new(1)) {
-    if (!buffer_) throw std::system_error(ENOMEM, std::generic_category(), "gpio lines: event buffer");
+    if (!buffer_)
+      throw std::system_error(ENOMEM, std::generic_category(), "gpio lines: allocating an event buffer");
     for (const LineRequest& wanted : requests) {
       const Found found = find(wanted.name);
-      if (!found.chip) throw_line_error(ENOENT, wanted.name, "no chip has a line of this name");
+      if (!found.chip) throw_line_error(ENOENT, wanted.name, "no GPIO chip has a line with this name");
       Request held = request(found, wanted);
       if (wanted.use == LineUse::input) {
         descriptors_.push_back({gpiod_line_request_get_fd(held.get()), POLLIN, 0});
@@ -142,7 +144,7 @@ class GpioLines final : public Lines {
   Buffer buffer_;
   std::vector<Held> lines_;
   std::vector<pollfd> descriptors_;
-  std::vector<int> inputs_;  ///< line of each descriptor
+  std::vector<int> inputs_;  ///< index of the line that each descriptor belongs to
 };
 
 }  // namespace
@@ -158,7 +160,7 @@ std::optional<LineState> find_line(const std::string& name) {
   if (!found.chip) return std::nullopt;
   const ChipInfo chip(gpiod_chip_get_info(found.chip.get()));
   const LineInfo line(gpiod_chip_get_line_info(found.chip.get(), found.offset));
-  if (!chip || !line) throw_line_error(errno, name, "asking about it");
+  if (!chip || !line) throw_line_error(errno, name, "reading the state of the line");
   LineState state{name, gpiod_chip_info_get_name(chip.get()), static_cast<int>(found.offset),
                   gpiod_line_info_is_used(line.get()), ""};
   if (const char* consumer = gpiod_line_info_get_consumer(line.get())) state.consumer = consumer;

@@ -15,7 +15,7 @@ std::optional<FaultKind> Guard::silent(std::int64_t now_ns) const noexcept {
   return std::nullopt;
 }
 
-/// A cause that is still present and would trip the amplifier again.
+/// A fault that is still present and would make the guard switch the amplifier off again.
 std::optional<FaultKind> Guard::present() const noexcept {
   if (fault_active_) return FaultKind::amplifier;
   if (stop_active_) return FaultKind::stop_pressed;
@@ -68,11 +68,12 @@ void Guard::enable_line(std::int64_t time_ns, bool level) noexcept {
   const bool wanted = state_ == AmplifierState::enabled;
   stuck_high_ = level && !wanted;
   if (level != wanted)
-    trip(time_ns, FaultKind::enable_line, wanted ? "driven high, reads low" : "driven low, reads high");
+    trip(time_ns, FaultKind::enable_line,
+         wanted ? "the line was set high but reads low" : "the line was set low but reads high");
 }
 
 void Guard::trip(std::int64_t time_ns, FaultKind kind, const char* detail) noexcept {
-  if (state_ == AmplifierState::faulted) return;  // the first cause is kept
+  if (state_ == AmplifierState::faulted) return;  // keep the first fault, which is the cause of later ones
   state_ = AmplifierState::faulted;
   fault_ = {kind, detail, time_ns};
 }

@@ -19,13 +19,13 @@ struct GuardOutputs {
 class Guard {
  public:
   struct Config {
-    std::int64_t toggle_ns = 10'000'000;              ///< half a heartbeat
+    std::int64_t toggle_ns = 10'000'000;              ///< half a period of the heartbeat
     std::int64_t audio_timeout_ns = 100'000'000;      ///< limit without a report from the audio thread
     std::int64_t session_timeout_ns = 2'000'000'000;  ///< limit without a report from the session
     std::int64_t page_timeout_ns = 2'000'000'000;     ///< limit without a report from the participant's page
   };
 
-  /// Why a command is refused: what is wrong now, or the latched fault that has to be cleared first.
+  /// Why a command is refused: the current problem, or the latched fault that has to be cleared first.
   struct Refusal {
     terms::FaultKind kind = terms::FaultKind::other;
     bool latched = false;
@@ -40,14 +40,14 @@ class Guard {
   Guard() noexcept : Guard(Config{}) {}
   explicit Guard(const Config& config) noexcept : config_(config) {}
 
-  /// Commands of operator and session. Each returns the reason for a refusal, or nothing.
+  /// Commands of the operator and the session. Each returns the reason for a refusal, or nothing on success.
   [[nodiscard]] std::optional<Refusal> arm(std::int64_t now_ns) noexcept;
   [[nodiscard]] std::optional<Refusal> enable(std::int64_t now_ns) noexcept;
   [[nodiscard]] std::optional<Refusal> clear() noexcept;
   void disarm() noexcept;
   void disable() noexcept;
 
-  /// Events of lines. `active` is the level after an edge, or a level that was read.
+  /// Reports a change on a line. `active` is the level after an edge, or a level that was read.
   void fault_line(std::int64_t time_ns, bool active) noexcept;
   void stop_line(std::int64_t time_ns, bool active) noexcept;
   /// The actual level of the enable line. If it is high although it was set low, the heartbeat ends as well,
@@ -55,8 +55,8 @@ class Guard {
   void enable_line(std::int64_t time_ns, bool level) noexcept;
   void trip(std::int64_t time_ns, terms::FaultKind kind, const char* detail = "") noexcept;
 
-  /// Reports that a thread is alive, and the passing of time. The page is expected to keep reporting after
-  /// its first report.
+  /// Report that a thread is alive, or that time has passed. After the page's first report the guard expects
+  /// it to keep reporting.
   void audio_alive(std::int64_t now_ns) noexcept { audio_seen_ns_ = now_ns; }
   void session_alive(std::int64_t now_ns) noexcept { session_seen_ns_ = now_ns; }
   void page_alive(std::int64_t now_ns) noexcept { page_seen_ns_ = now_ns; }

@@ -18,12 +18,12 @@ class GuardOrders {
   /// Commands of an operator or the session that may be refused.
   enum class Ask : std::uint32_t { nothing, arm, enable, clear };
 
-  /// The commands that the guard finds when it looks. Those that switch off take precedence over the others.
+  /// The commands that the guard finds when it checks. Those that switch off take precedence over the others.
   struct Taken {
     std::uint32_t ticket = 0;
     Ask ask = Ask::nothing;
     bool disable = false, disarm = false;
-    std::uint32_t trips = 0;  ///< bit k: terms::FaultKind k
+    std::uint32_t trips = 0;  ///< faults to trip for; bit k is terms::FaultKind k
   };
 
   /// `scheduler_point` (may be empty) is called on the caller's thread between the steps of a command, so
@@ -31,13 +31,14 @@ class GuardOrders {
   explicit GuardOrders(std::function<void()> scheduler_point)
       : scheduler_point_(std::move(scheduler_point)) {}
 
-  // For ordinary threads. Only one at a time may use ask(); others wait for their turn.
+  // Gives a command and waits for the answer. For ordinary threads; only one at a time can do this, others
+  // wait for their turn.
   std::optional<Guard::Refusal> ask(Ask what);
   void disable() noexcept { post(off_, disable_bit); }
   void disarm() noexcept { post(off_, disarm_bit); }
   void trip(terms::FaultKind kind) noexcept { post(trips_, 1u << static_cast<unsigned>(kind)); }
 
-  // The guard's thread.
+  // Takes the waiting commands, if any. For the guard's thread.
   std::optional<Taken> take() noexcept;
   void done(const Taken& taken, std::optional<Guard::Refusal> refusal) noexcept;
 
@@ -53,7 +54,7 @@ class GuardOrders {
   void scheduler_point() const noexcept;
 
   std::function<void()> scheduler_point_;
-  std::mutex asking_;  ///< one ordinary thread asks at a time; the guard never takes it
+  std::mutex asking_;  ///< held by the ordinary thread that is asking; the guard never takes it
   std::atomic<Ask> ask_{Ask::nothing};
   std::atomic<std::uint32_t> off_{0}, trips_{0};
   std::atomic<std::uint32_t> posted_{0}, handled_{0};

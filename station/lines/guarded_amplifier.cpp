@@ -23,21 +23,21 @@ using Ask = GuardOrders::Ask;
 
 constexpr int guard_priority = 75;
 constexpr std::int64_t open_again_ns = 100'000'000;
-// how often the levels of fault and stop are read while the line is high
+// how often the levels of the fault and stop lines are read while the enable line is high
 constexpr std::int64_t look_ns = 500'000;
-static_assert(terms::fault_kinds.size() <= 32, "a trip is a bit of a word");
+static_assert(terms::fault_kinds.size() <= 32, "each kind of fault needs its own bit in the word of trips");
 
-/// The guard's state for ordinary threads.
+/// The guard's state, published for ordinary threads.
 struct Report {
   drive::AmplifierState state = drive::AmplifierState::disarmed;
   Guard::Fault fault;
   std::int64_t reaction_ns = -1;
 };
-/// Why the lines were lost, truncated to fit.
+/// The reason why the lines were lost, truncated to fit.
 using Reason = std::array<char, 160>;
 
-/// Owns lines and rules. All members belong to the guard's thread, which publishes what other threads may
-/// read.
+/// Owns the lines and the guard's rules. All members belong to the guard's thread, which publishes what other
+/// threads may read.
 class GuardThread {
  public:
   GuardThread(OpenLines open, const GuardLines& roles, const GuardOptions& options)
@@ -83,7 +83,7 @@ class GuardThread {
     if (const auto at = page_ns.load(); at >= 0) guard_.page_alive(at);
   }
 
-  /// Takes over freshly opened lines: outputs are low, and existing stops and faults are read.
+  /// Starts to use freshly opened lines: outputs are low, and existing stops and faults are read.
   void take_up() {
     lines_ = open_();
     driven_high_ = false;
@@ -92,7 +92,7 @@ class GuardThread {
     publish();
   }
 
-  /// Without its lines the guard cannot guard: the heartbeat ends, and the external monitor switches the
+  /// Gives up the lines after they were lost. The heartbeat ends, so the external monitor switches the
   /// amplifier off.
   void let_go(const char* why) noexcept {
     guard_.trip(system::monotonic_ns(), FaultKind::lines_gone);
@@ -104,7 +104,7 @@ class GuardThread {
     publish();
   }
 
-  /// First set the line low; do everything else afterwards.
+  /// Handles an edge: first sets the enable line low if necessary, and does everything else afterwards.
   void edge(const Edge& edge) {
     const bool fault = edge.line == roles_.fault;
     const bool active = fault ? fault_at(edge.rising) : stop_at(edge.rising);
@@ -185,7 +185,7 @@ class GuardThread {
     if (wants_high() && now >= next_look_ns_) look();
   }
 
-  /// Answers commands meanwhile, however many come.
+  /// Tries to open lost lines again, at intervals. Answers commands meanwhile, however many come.
   void look_for_lines() {
     const std::int64_t left_ns = std::max<std::int64_t>(0, next_open_ns_ - system::monotonic_ns());
     pollfd order{orders.descriptor(), POLLIN, 0};
@@ -205,7 +205,7 @@ class GuardThread {
     }
     try {
       if (lines_) lines_->drive(roles_.enable, 0);
-    } catch (const std::exception&) {  // the chip has gone, and the line with it
+    } catch (const std::exception&) {  // the chip has been removed, and the line with it
     }
   }
 
@@ -216,7 +216,7 @@ class GuardThread {
   std::int64_t next_open_ns_ = 0;  ///< when to try again to open lost lines
   std::int64_t next_look_ns_ = 0;
   bool driven_high_ = false;
-  std::int64_t lowered_ns_ = 0;  ///< time at which it was last set from high to low
+  std::int64_t lowered_ns_ = 0;  ///< time at which the enable line was last set from high to low
   std::int64_t reaction_ns_ = -1;
   std::jthread thread_;
 };
@@ -232,7 +232,7 @@ class GuardedAmplifier final : public drive::Amplifier {
   void disarm() noexcept override { guard_.orders.disarm(); }
   void disable() noexcept override { guard_.orders.disable(); }
   void trip(FaultKind kind, std::string_view detail) noexcept override {
-    guard_.orders.trip(kind);  // post this first; the guard does not need the detail
+    guard_.orders.trip(kind);  // post this first: the guard must act at once, and does not need the detail
     const std::lock_guard lock(details_mutex_);
     details_[static_cast<std::size_t>(kind)] = detail;
   }
@@ -252,8 +252,8 @@ class GuardedAmplifier final : public drive::Amplifier {
   Refusal ask(Ask what) {
     const auto refusal = guard_.orders.ask(what);
     if (!refusal) return std::nullopt;
-    return terms::Fault{refusal->kind,
-                        refusal->latched ? "latched; clear it first" : detail_of(refusal->kind, "")};
+    return terms::Fault{refusal->kind, refusal->latched ? "the fault is latched; clear it first"
+                                                        : detail_of(refusal->kind, "")};
   }
 
   std::string detail_of(FaultKind kind, const char* constant) const {
@@ -263,8 +263,9 @@ class GuardedAmplifier final : public drive::Amplifier {
     return details_[static_cast<std::size_t>(kind)];
   }
 
-  mutable std::mutex details_mutex_;                            ///< used only by ordinary threads
-  std::array<std::string, terms::fault_kinds.size()> details_;  ///< details of trips by the station itself
+  mutable std::mutex details_mutex_;  ///< used only by ordinary threads
+  /// details of faults that the station itself reported
+  std::array<std::string, terms::fault_kinds.size()> details_;
   GuardThread guard_;
 };
 

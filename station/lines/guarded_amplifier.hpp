@@ -8,7 +8,7 @@
 
 namespace turnpoint::lines {
 
-/// The index of each line; -1 if there is none.
+/// The index of each line among the requests; -1 if the amplifier does not have the line.
 struct GuardLines {
   int enable = -1;
   int heartbeat = -1;

@@ -14,17 +14,18 @@ enum class LineUse { input, output_low };
 
 /// A GPIO line is found by its name, whatever chip it is on and however the chips are numbered.
 struct LineRequest {
-  std::string name;      ///< as the board's device tree names it
+  std::string name;      ///< name in the board's device tree
   std::string consumer;  ///< name that the kernel shows to other programs, e.g. "turnpoint-amp-enable"
   LineUse use = LineUse::input;
 };
 
 /// A change of an input with the kernel's own time stamp.
 struct Edge {
-  std::int64_t time_ns = 0;    ///< CLOCK_MONOTONIC, when the interrupt occurred
-  int line = 0;                ///< index into the requests
-  bool rising = false;         ///< level after the edge
-  std::uint32_t sequence = 0;  ///< for this line, from 1; a gap means that the kernel's buffer overflowed
+  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC time at which the interrupt occurred
+  int line = 0;              ///< index of the line in the requests
+  bool rising = false;       ///< true if the level after the edge is high
+  /// number of the edge on this line, from 1; a gap means that the kernel's buffer overflowed
+  std::uint32_t sequence = 0;
 };
 
 /// Lines requested together. Outputs start low, and go low when this is destroyed, provided that the kernel
@@ -35,14 +36,14 @@ class Lines {
 
   /// Waits for an edge, at most `timeout_ns` (0: not at all) and at most until the descriptor `wake` (-1:
   /// none) is readable. Edges of each line come in the order of their time stamps. Throws std::system_error:
-  /// ENODEV if the chip is gone.
+  /// ENODEV if the chip was removed.
   virtual std::optional<Edge> wait(std::int64_t timeout_ns, int wake = -1) = 0;
   /// The current level of line `index`. Throws std::system_error.
   virtual bool level(int index) = 0;
   /// Sets output `index`. Throws std::system_error. Safe on a real-time thread: one system call.
   virtual void drive(int index, int level) = 0;
   /// The actual level of output `index`; empty if the chip cannot tell. Throws std::system_error: ENODEV if
-  /// the chip is gone.
+  /// the chip was removed.
   virtual std::optional<bool> read_back(int index) = 0;
 };
 
@@ -59,7 +60,7 @@ using OpenLines = std::function<std::unique_ptr<Lines>()>;
 /// Requests kernel lines by name (libgpiod 1 or 2, as built). Throws LineError naming the line.
 std::unique_ptr<Lines> open_gpio_lines(const std::vector<LineRequest>& requests);
 
-/// The library that this build uses: "libgpiod 1.6.3".
+/// Name and version of the library that this build uses, such as "libgpiod 1.6.3".
 std::string gpio_library();
 
 /// What can be found out about a named line without requesting it; for `doctor`.

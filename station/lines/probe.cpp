@@ -18,7 +18,7 @@ namespace {
 
 using Status = Finding::Status;
 
-// Keys of a URI that do not name a line.
+// True if a key of a URI names a line; false for keys with settings.
 bool names_line(const std::string& key) {
   return key != "active" && key != "fault_active" && key != "stop_active" && key != "read_back" &&
          key != "hold_ms" && key != "refractory_ms" && key != "axis";
@@ -33,13 +33,15 @@ Finding check_line(const std::string& device, const std::string& role, const std
       check.what = "no GPIO chip has a line named " + line;
       check.mend =
           gpio_chips().empty()
-              ? "no chip can be opened: load the board's GPIO driver, and put the user into the group gpio"
+              ? "no GPIO chip can be opened: load the board's GPIO driver, and put the user into the group "
+                "gpio"
               : "name the line in the device tree (gpio-line-names), or correct the rig file; gpioinfo lists "
                 "them";
     } else if (state->used) {
       check.status = Status::failed;
       check.what = line + " is in use by " + (state->consumer.empty() ? "a driver" : state->consumer);
-      check.mend = "end the other program, or take the line out of its driver's device tree node";
+      check.mend =
+          "end the other program; if a driver uses the line, remove the line from its device tree node";
     } else {
       check.what = line + " is line " + std::to_string(state->offset) + " of " + state->chip;
     }
@@ -66,14 +68,15 @@ Finding check_touch(const std::string& device, const std::string& text) {
   const Uri uri = parse_uri(text);
   if (uri.scheme != "evdev") return {device, Status::ok, uri.scheme == "sim" ? "simulated" : uri.scheme, ""};
   const std::string mend =
-      "plug it in; its name stands in /proc/bus/input/devices; the user needs the group input";
+      "plug the device in; its name is listed in /proc/bus/input/devices; the user must be in the group "
+      "input";
   try {
     const auto panel = touch::EvdevDevice::find(uri.name);
     if (!panel)
       return {device, Status::failed,
               "input device '" + uri.name + "': " + std::generic_category().message(errno), mend};
     static_cast<void>(panel->range(panel->slot_count() > 0 ? ABS_MT_POSITION_X : ABS_X));
-    return {device, Status::ok, "'" + uri.name + "' is there, with monotonic time stamps", ""};
+    return {device, Status::ok, "'" + uri.name + "' exists and has monotonic time stamps", ""};
   } catch (const std::exception& error) {
     return {device, Status::failed, error.what(), mend};
   }

@@ -21,10 +21,11 @@ std::vector<Finding> check_lines(const std::string& device, const std::string& u
 /// Checks that the touch sensor or panel of an `evdev:NAME` URI exists, is readable and has monotonic stamps.
 Finding check_touch(const std::string& device, const std::string& uri);
 
-/// The result of opening the machine's input devices.
+/// The result of trying to open the machine's input devices.
 struct InputDevices {
   int opened = 0;
-  std::vector<std::string> refused;  ///< "/dev/input/event3: Operation not permitted"
+  /// devices that could not be opened, such as "/dev/input/event3: Operation not permitted"
+  std::vector<std::string> refused;
 };
 
 /// Opens each input device in `folder` for reading and writing, and closes it. libinput, which eglfs and

@@ -20,9 +20,9 @@ class SimulatedLines : public Lines {
   void drive(int index, int level) override;
   std::optional<bool> read_back(int index) override { return level(index); }
 
-  /// Changes an input at that time.
+  /// Changes an input at the given time.
   void set(int index, bool level, std::int64_t time_ns);
-  /// An input changes its level and returns; both edges are available at once.
+  /// Changes an input and changes it back after `length_ns`; both edges are available at once.
   void pulse(int index, std::int64_t time_ns, std::int64_t length_ns);
   /// Simulates edges for which the kernel's buffer had no room.
   void lose_edges(int index, std::uint32_t count);

@@ -26,7 +26,8 @@ Uri parse_uri(const std::string& text) {
   uri.text = text;
   const auto colon = text.find(':');
   if (colon == std::string::npos || colon == 0)
-    throw terms::UsageError("'" + text + "' names no device; allowed sim:, gpio:... or evdev:...");
+    throw terms::UsageError("'" + text +
+                            "' does not name a device; allowed are sim:, gpio:... and evdev:...");
   uri.scheme = text.substr(0, colon);
   std::istringstream rest(text.substr(colon + 1));
   for (std::string part; std::getline(rest, part, ',');) {
@@ -36,7 +37,7 @@ Uri parse_uri(const std::string& text) {
       continue;
     }
     if (equals == std::string::npos || equals == 0 || equals + 1 == part.size())
-      throw terms::UsageError("'" + text + "': '" + part + "' is not key=value");
+      throw terms::UsageError("'" + text + "': '" + part + "' does not have the form key=value");
     uri.values.emplace_back(part.substr(0, equals), part.substr(equals + 1));
   }
   return uri;

@@ -16,7 +16,7 @@ struct Uri {
   std::string take(const std::string& key, const std::string& otherwise);
   /// Throws terms::UsageError naming the first key that nobody took.
   void check_empty(const std::string& allowed) const;
-  std::string text;  ///< as written
+  std::string text;  ///< the URI as written in the file
 };
 
 /// Throws terms::UsageError for text without a scheme or with an empty key or value.

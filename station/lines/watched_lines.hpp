@@ -14,20 +14,20 @@ namespace turnpoint::lines {
 /// The lines to watch: first the buttons in order, then the contact, if any.
 struct WatchedLines {
   std::vector<LineRequest> requests;
-  std::vector<std::string> names;  ///< for each line: "left", "right", "contact"
+  std::vector<std::string> names;  ///< name of each line: "left", "right", "contact"
   int lines = 0;
-  int contact = -1;                               ///< index of the contact line
-  bool buttons_low = false, contact_low = false;  ///< active level
+  int contact = -1;                               ///< index of the contact line; -1 if there is none
+  bool buttons_low = false, contact_low = false;  ///< true if the lines are active at low level
   EdgeFilter::Rules button_rules, contact_rules;
 };
 
-/// Like open_buttons(), but on lines that `request` provides for those named in the rig.
+/// Like open_buttons(), but `request` provides the lines that the rig names.
 using RequestLines = std::function<std::unique_ptr<Lines>(const std::vector<LineRequest>&)>;
 std::unique_ptr<Buttons> open_buttons(const std::optional<ButtonsConfig>& buttons,
                                       const std::optional<ContactConfig>& contact, ButtonsHandlers handlers,
                                       const RequestLines& request);
 
-/// Buttons on lines, kernel or simulated. Throws what `open` throws at the start.
+/// Watches buttons on kernel or simulated lines. Throws the errors of `open`.
 std::unique_ptr<Buttons> watch_lines(OpenLines open, const WatchedLines& plan, ButtonsHandlers handlers);
 
 }  // namespace turnpoint::lines

@@ -9,13 +9,13 @@ namespace turnpoint::session {
 
 drive::ToneSet tones_of(const scene::DrivePlan& plan) {
   if (plan.tones.size() > static_cast<std::size_t>(drive::max_tones))
-    throw std::length_error("a scene has more tones than the drive plays at once");
+    throw std::length_error("a scene has more tones than the drive can play at once");
   drive::ToneSet set;
   for (const auto& tone : plan.tones) {
     auto& driven = set.tones[static_cast<std::size_t>(set.count++)];
     driven.frequency_Hz = tone.frequency_Hz;
     driven.amplitude = tone.full_scale;
-    // The drive's phase refers to the sine, the surface's to the cosine.
+    // The drive defines the phase of a sine, the surface model that of a cosine, so convert.
     driven.phase_rad = tone.output_phase_rad + std::numbers::pi / 2;
     driven.channel = tone.channel;
   }
@@ -25,7 +25,7 @@ drive::ToneSet tones_of(const scene::DrivePlan& plan) {
 drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::vector<double>& starts_s,
                       double transition_s, double length_s, int rate_Hz) {
   if (scenes.size() - 1 > static_cast<std::size_t>(drive::max_changes))
-    throw std::length_error("an interval has more scenes than the drive can change between");
+    throw std::length_error("an interval has more changes of scene than the drive supports");
   const auto frames = [rate_Hz](double s) { return static_cast<std::int64_t>(std::llround(s * rate_Hz)); };
   drive::Burst burst;
   burst.length_frames = frames(length_s);

@@ -7,13 +7,13 @@
 
 namespace turnpoint::session {
 
-/// The tones of a plan in the drive's form. Throws std::length_error if there are too many.
+/// Converts the tones of a plan for the drive. Throws std::length_error if there are too many.
 drive::ToneSet tones_of(const scene::DrivePlan& plan);
 
-/// One interval in the drive's form. Plays the plans of its scenes in turn; the second and later ones begin
-/// at `starts_s` from the onset, with a transition of `transition_s`. The total length is `length_s`,
-/// including both ramps. Tone i of a scene glides to tone i of the next. Throws std::length_error if the
-/// drive has no room.
+/// Converts one interval to a burst of the drive. The burst plays the plans of the interval's scenes in turn;
+/// the second and later ones begin at `starts_s` from the onset, with a transition of `transition_s`. The
+/// total length is `length_s`, including both ramps. Tone i of a scene glides to tone i of the next. Throws
+/// std::length_error if the drive has no room.
 drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::vector<double>& starts_s,
                       double transition_s, double length_s, int rate_Hz);
 

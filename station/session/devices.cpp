@@ -10,7 +10,7 @@
 namespace turnpoint::session {
 
 static_assert(2e9 * rig::longest_period_s <= static_cast<double>(lines::Guard::Config{}.audio_timeout_ns),
-              "the guard must not miss the sign of a period that a rig may have");
+              "the guard must wait for at least two of the longest periods that a rig may have");
 
 lines::ButtonsHandlers handlers_for(Inputs& inputs) {
   const auto stamped = [](std::int64_t time_ns, InputKind kind) {
@@ -34,9 +34,10 @@ lines::ButtonsHandlers handlers_for(Inputs& inputs) {
   };
   handlers.glitch = [&inputs, stamped](const lines::Glitch& glitch) {
     Input input = stamped(glitch.time_ns, InputKind::glitch);
-    input.text = fmt::format("{}: edges {}, over {:.3f} ms", glitch.line, glitch.edges,
+    input.text = fmt::format("{}: {} edges within {:.3f} ms", glitch.line, glitch.edges,
                              1e-6 * static_cast<double>(glitch.length_ns));
-    if (glitch.untold > 0) input.text += fmt::format("; {} more before it", glitch.untold);
+    if (glitch.untold > 0)
+      input.text += fmt::format("; {} earlier glitches were not reported", glitch.untold);
     inputs.push(std::move(input));
   };
   handlers.fault = [&inputs, stamped](const lines::ButtonsFault& fault) {
@@ -47,7 +48,7 @@ lines::ButtonsHandlers handlers_for(Inputs& inputs) {
   };
   handlers.back = [&inputs, stamped](std::int64_t time_ns) {
     Input input = stamped(time_ns, InputKind::notice);
-    input.text = "panel: what had gone is back";
+    input.text = "panel: the lost device is connected again";
     inputs.push(std::move(input));
   };
   return handlers;

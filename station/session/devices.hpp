@@ -11,8 +11,8 @@
 
 namespace turnpoint::session {
 
-/// The devices of a real session. The buttons may be null (no buttons, no contact). Tests may replace stream
-/// and clocks.
+/// The devices of a real session. `buttons` is null if the rig has neither buttons nor contact. Tests may
+/// replace stream and clocks.
 struct Devices {
   std::unique_ptr<drive::Amplifier> amplifier;
   std::unique_ptr<lines::Buttons> buttons;

@@ -21,16 +21,19 @@ enum class InputKind {
   slider,      ///< number = the slider's value
   touch_down,  ///< any touch on the panel, answer or not; only logged
   button,      ///< value = index of the response button, in the order of the rig's URI
-  contact,     ///< value 1: finger on the surface, 0: lifted; number: where along it, 0 to 1, or below 0
+  /// value 1: finger on the surface, 0: finger lifted; number: position of the finger along the surface, 0 to
+  /// 1, or below 0 if unknown
+  contact,
   /// the participant, the operator, or the program named in text wants to stop; completed trials are kept
   stop,
-  pause,        ///< by the operator
-  xrun,         ///< the drive lost frames; value 1: of the last stimulus, 0: of silence
-  heard,        ///< value = index of the interval that has been played completely; never logged
-  fault,        ///< `fault` is its kind, text the detail; from drive, amplifier or panel: the trial is void
-  failure,      ///< text says what happened: the session cannot continue
+  pause,  ///< the operator wants a pause
+  xrun,   ///< the drive lost frames; value 1: frames of the last stimulus, 0: of silence
+  heard,  ///< value = index of the interval that has been played completely; never logged
+  /// a fault of drive, amplifier or panel, with its kind in `fault` and the detail in text; the trial is void
+  fault,
+  failure,      ///< the session cannot continue; text says what happened
   glitch,       ///< interference on a button or contact line, named in text; only logged
-  notice,       ///< text says what happened; only logged
+  notice,       ///< something that is only logged; text says what happened
   arm,          ///< by the operator: clear a latched fault of the amplifier and arm it
   disarm,       ///< by the operator: amplifier off, until it is armed again
   repeat,       ///< by the operator: void the current trial and present it again
@@ -43,7 +46,7 @@ enum class TimeQuality { kernel, toolkit, simulated };
 const char* name(TimeQuality quality);
 
 struct Input {
-  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC (virtual in a simulated session)
+  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC in ns (virtual in a simulated session)
   InputKind kind = InputKind::next;
   int value = 0;
   double number = 0;

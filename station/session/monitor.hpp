@@ -15,8 +15,8 @@ class Monitor {
  public:
   virtual ~Monitor() = default;
 
-  /// A trial is about to begin, and everything that it will present is decided. `plans` are what will be
-  /// played: for each interval the plans of its scenes. They are valid only during the call.
+  /// A trial is about to begin, and everything that it will present is decided. For each interval, `plans`
+  /// holds the plans of its scenes, exactly as they will be played. They are valid only during the call.
   virtual void trial_begins(const trial::TrialSpec& spec, const protocol::Block& block,
                             const PlanAhead::Plans& plans) = 0;
 

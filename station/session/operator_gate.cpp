@@ -11,11 +11,11 @@ namespace turnpoint::session {
 
 namespace {
 
-// A button press before anybody can have read a page does not turn the page.
+// A button press sooner than this, before anybody can have read the page, does not turn the page.
 constexpr std::int64_t kReading_ns = 500'000'000;
 
-/// The answer that a button chooses: the one with the button's name, else left is the first and right the
-/// second.
+/// The answer that a button chooses: the answer with the button's name; otherwise the left button chooses the
+/// first answer and the right one the second.
 std::optional<int> answer_of(const std::string& button, const protocol::Task& task) {
   const auto& choices = task.choices;
   for (std::size_t i = 0; i < choices.size(); ++i)
@@ -91,7 +91,7 @@ void OperatorGate::keep(const std::function<void()>& write) {
   }
 }
 
-/// Waits until somebody says that there is space again (true), or gives up (false).
+/// Waits until somebody presses Continue because there is space again (true), or stops the session (false).
 bool OperatorGate::space_again(const std::string& detail) {
   stage_.close_amplifier();
   show(pages_.fault(FaultKind::disk_full, detail, director_));
@@ -122,7 +122,7 @@ Flow OperatorGate::until_armed(const Fault& why) {
     if (input.kind == InputKind::fault) page = pages_.fault(input.fault, input.text, director_);
     if (input.kind == InputKind::arm && !armed()) page.detail = input.text;
   }
-  fault_.reset();  // faults that came meanwhile were already shown on the page
+  fault_.reset();  // faults that came while the page was shown have already been shown on it
   return Flow::go_on;
 }
 
@@ -188,7 +188,7 @@ Flow OperatorGate::show_and_wait(Page page, double at_least_s) {
     if (input.kind == InputKind::next) return Flow::go_on;
     if (buttons_turn && input.kind == InputKind::answer && input.time_ns >= read_ns) return Flow::go_on;
     if (input.kind != InputKind::fault && input.kind != InputKind::disarm) continue;
-    // The fault was repaired, and somebody pressed Continue: that also settles the fault before it.
+    // The fault was repaired, and somebody pressed Continue. That also settles an earlier fault.
     if (page.kind == PageKind::fault || page.kind == PageKind::paused) return Flow::go_on;
     show(page);
   }

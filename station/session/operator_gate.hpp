@@ -19,14 +19,14 @@ enum class Flow { go_on, stop };
 /// input of the session passes through it, and it remembers what has to be handled later.
 class OperatorGate {
  public:
-  /// All references must outlive it. `display` may be null.
+  /// All references must outlive this object. `display` may be null.
   OperatorGate(const Setup& setup, const Pages& pages, const trial::Director& director, Stage& stage,
                store::SessionLog& log, Display* display);
 
-  /// Carries out the operator's commands and logs the result. A button press is returned as the answer that
-  /// it chooses, or as a mere touch.
+  /// Carries out an operator's command and logs the result. A button press is returned as the answer that it
+  /// chooses, or as a mere touch.
   Input received(Input input);
-  /// Remembers what has to be handled once the trial or page is over.
+  /// Remembers an input that has to be handled once the trial or page is over.
   void note(const Input& input);
 
   void show(const Page& page);
@@ -36,11 +36,12 @@ class OperatorGate {
   /// to repair.
   Flow handle_on_page(const Input& input);
 
-  /// Makes rows durable before the session continues. If the disk is full, the screen says so, nothing
-  /// sounds, and the same rows are written once there is space. Operator inputs are kept in memory meanwhile.
+  /// Makes sure that rows are on the disk before the session continues. If the disk is full, the screen says
+  /// so, the surface stays silent, and the same rows are written once there is space. Operator inputs are
+  /// kept in memory meanwhile.
   void keep(const std::function<void()>& write);
 
-  /// Waits until the operator has armed the amplifier; nothing sounds before.
+  /// Waits until the operator has armed the amplifier; until then the surface stays silent.
   Flow until_armed(const Fault& why);
   /// Before a trial: waits until nothing is left to repair and the amplifier is armed.
   Flow until_clear();

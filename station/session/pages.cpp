@@ -153,7 +153,7 @@ Page Pages::end(const Summary& summary, const trial::Director& director) const {
   auto page = blank(PageKind::end, nullptr, &director);
   const bool whole = summary.status == records::SessionStatus::completed;
   page.title = texts::text(whole ? "thanks" : "thanks_early", setup_.language);
-  // until now the total was only an estimate if a procedure is adaptive
+  // the total is exact only now, because with adaptive procedures it was an estimate
   if (whole) page.trials_total = page.trials_done;
   page.summary = {{"Trials", std::to_string(summary.trials)},
                   {"Too late", std::to_string(summary.timeouts)},

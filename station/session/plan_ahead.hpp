@@ -29,7 +29,8 @@ class PlanAhead {
     std::vector<drive::PreparedBurst> bursts;
   };
 
-  /// The rig and the protocol must outlive it. `seed` is the session's. Throws the errors of scene::Planner.
+  /// The rig and the protocol must outlive this object. `seed` is the seed of the session. Throws the errors
+  /// of scene::Planner.
   PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol, std::uint64_t seed);
   ~PlanAhead();
 
@@ -38,7 +39,7 @@ class PlanAhead {
   void begin(const trial::TrialSpec& trial);
   /// True if take() would not have to wait.
   bool ready(const trial::TrialSpec& trial);
-  /// The plans of a trial; waits for them if necessary. Throws what planning them threw.
+  /// The plans of a trial; waits for them if necessary. If planning failed, throws its exception.
   const Planned& take(const trial::TrialSpec& trial);
 
  private:
@@ -50,7 +51,7 @@ class PlanAhead {
   const rig::Rig& rig_;
   const protocol::Protocol& protocol_;
   const std::uint64_t seed_;
-  scene::Planner planner_;  // worker thread only
+  scene::Planner planner_;  // used by the worker thread only
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<trial::TrialSpec> wanted_;  ///< the newest requested trial whose planning has not begun

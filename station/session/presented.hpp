@@ -11,7 +11,7 @@ namespace turnpoint::session {
 
 // Functions on streams that both stages share.
 
-/// The bursts scheduled last, one per interval, for later requests.
+/// The bursts scheduled last, one per interval, kept for later requests.
 struct Presented {
   std::uint32_t burst = 0;
   std::int64_t start_frame = 0, end_frame = 0;
@@ -25,7 +25,7 @@ inline std::optional<int> interval_of(const std::vector<Presented>& presented, s
   return std::nullopt;
 }
 
-/// Returns nothing if the stream's time is not known.
+/// Schedules the intervals of a trial. Returns nothing if the stream's time is not known.
 inline std::vector<Onset> schedule(drive::Stream& stream, std::span<const drive::PreparedBurst> intervals,
                                    std::int64_t earliest_ns, std::vector<Presented>& presented) {
   const auto earliest = stream.frame_at(earliest_ns);
@@ -42,7 +42,7 @@ inline std::vector<Onset> schedule(drive::Stream& stream, std::span<const drive:
     if (const auto time_ns = stream.time_of(start)) onsets.push_back({start, *time_ns});
   }
   if (onsets.size() == bursts.size()) return onsets;
-  stream.stop(0, drive::Ramp{});  // the time has become unknown meanwhile
+  stream.stop(0, drive::Ramp{});  // the stream's time has become unknown meanwhile
   return {};
 }
 
@@ -52,7 +52,7 @@ inline std::optional<std::int64_t> glide_to(drive::Stream& stream, const std::ve
   const auto& sounding = presented.back();
   const auto frames = static_cast<std::int64_t>(seconds * stream.config().output.rate_Hz);
   const auto at = std::max(stream.earliest_frame(), sounding.start_frame);
-  // A burst that is about to end ramps down: no change can begin then, and after it nothing sounds.
+  // No change can begin while a burst ramps down at its end, and afterwards nothing is playing.
   if (at + frames + sounding.ramp.frames >= sounding.end_frame) return std::nullopt;
   stream.change(sounding.burst, {at - sounding.start_frame, frames, to});
   return at;

@@ -16,12 +16,13 @@ namespace {
 
 constexpr std::int64_t kPoll_ns = 5'000'000;        // how often drive and guard are polled
 constexpr std::int64_t kClocks_ns = 1'000'000'000;  // how often the clocks are compared
-constexpr std::int64_t kSettle_ns = 50'000'000;     // time in silence for an amplifier to come up
+// time in silence that an amplifier needs after it was switched on
+constexpr std::int64_t kSettle_ns = 50'000'000;
 constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
 // time limit for the first position of a restarted device
 constexpr std::int64_t kFirstPosition_ns = 500'000'000;
-constexpr std::int64_t kHeard_ns = 1'000'000'000;  // time limit for the report of what was played
-constexpr std::int64_t kTail_ns = 20'000'000;      // time in silence before the amplifier goes off
+constexpr std::int64_t kHeard_ns = 1'000'000'000;  // time limit for the report that an interval was played
+constexpr std::int64_t kTail_ns = 20'000'000;      // time in silence before the amplifier is switched off
 
 class RealStage : public Stage {
  public:
@@ -62,13 +63,14 @@ class RealStage : public Stage {
 
   std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
                              std::int64_t earliest_ns) override {
-    // An aborted trial may still be ramping down, and occupies voices until it is silent.
+    // An aborted trial may still be ramping down. Its bursts occupy the drive until they are silent.
     wait_for([&] { return now_ns() >= quiet_ns_; });
     const auto until_ns = now_ns() + kFirstPosition_ns;
     wait_for([&] { return stream_->clock().pairs > 0 || now_ns() > until_ns; });
     auto onsets = schedule(*stream_, intervals, std::max(earliest_ns, opened_ns_ + kSettle_ns), presented_);
     if (onsets.empty())
-      push_fault(now_ns(), FaultKind::stimulus_missed, "the converter does not say what it is playing");
+      push_fault(now_ns(), FaultKind::stimulus_missed,
+                 "the converter does not report which frame it is playing");
     else
       quiet_ns_ = std::max(quiet_ns_, later(onsets.back(), intervals.back().length_frames));
     if (!onsets.empty()) first_onset_ = onsets.front();
@@ -81,7 +83,7 @@ class RealStage : public Stage {
   }
 
   std::int64_t silence() override {
-    // Bursts that have not begun are cancelled, and nobody waits for their reports.
+    // Cancels bursts that have not begun, so that nobody waits for their reports.
     const auto from = stream_->earliest_frame();
     if (!presented_.empty() && presented_.back().start_frame >= from) unheard_ = 0;
     const auto silent_ns = ramp_down(*stream_, presented_, now_ns());
@@ -89,8 +91,8 @@ class RealStage : public Stage {
   }
 
   Refusal arm() override {
-    // The audio thread reports that it is alive with its first blocks. At a session's start they have not
-    // been written yet.
+    // The audio thread reports that it is alive with its first blocks, which have not been written yet when a
+    // session starts. So wait for them.
     const auto until_ns = now_ns() + kFirstBlocks_ns;
     const auto begun = 2 * stream_->config().output.period_frames;
     wait_for([&] { return stream_->counters().frames > begun || now_ns() > until_ns; });
@@ -133,7 +135,8 @@ class RealStage : public Stage {
  private:
   drive::Amplifier& amplifier_() { return *devices_.amplifier; }
 
-  /// Reports that the session is alive, which it is if it gets here. The page reports for itself.
+  /// Reports to the guard that the session is alive, which it is if it calls this. The page reports for
+  /// itself.
   void show_life() {
     amplifier_().session_alive();
     if (const auto page_ns = inputs_.page_alive_ns(); page_ns >= 0) amplifier_().page_alive(page_ns);
@@ -151,7 +154,8 @@ class RealStage : public Stage {
     look_at_samples();
     if (unheard_ > 0 && now > quiet_ns_ + kHeard_ns) {
       unheard_ = 0;
-      push_fault(now, FaultKind::stimulus_missed, "the converter does not say whether a stimulus was played");
+      push_fault(now, FaultKind::stimulus_missed,
+                 "the converter does not report whether a stimulus was played");
     }
     if (amplifier() == drive::AmplifierState::faulted && !std::exchange(fault_told_, true))
       tell_amplifier_fault();
@@ -163,7 +167,8 @@ class RealStage : public Stage {
     const auto reaction_ns = amplifier_().reaction_ns();
     const bool by_edge = fault.kind == FaultKind::amplifier || fault.kind == FaultKind::stop_pressed;
     if (by_edge && reaction_ns >= 0)
-      fault.detail = fmt::format("amplifier off after {:.0f} us", 1e-3 * static_cast<double>(reaction_ns));
+      fault.detail = fmt::format("the amplifier was switched off after {:.0f} us",
+                                 1e-3 * static_cast<double>(reaction_ns));
     push_fault(fault.time_ns, fault.kind, fault.detail);
   }
 
@@ -188,18 +193,18 @@ class RealStage : public Stage {
              interval ? 1 : 0);
         if (underruns_.exceeded_by(now))
           push(InputKind::failure, now,
-               "more than three underruns within a minute; see `turnpoint doctor`, then resume");
+               "more than three underruns within a minute; run `turnpoint doctor`, then resume the session");
         return;
       case drive::EventKind::burst_missed:
         return push_fault(now, FaultKind::stimulus_missed, "a stimulus came too late to be played");
       case drive::EventKind::device_lost:
-        unheard_ = 0;  // the trial is void
+        unheard_ = 0;  // no more reports are expected, because the trial is void
         if (!presented_.empty()) lost_ns_ = later(first_onset_, event.frame - first_onset_.frame);
         amplifier_().trip(FaultKind::converter_gone,
                           event.error == 0 ? "" : std::strerror(std::abs(event.error)));
-        return;  // attend() reports what is latched
+        return;  // attend() reports the latched fault
       case drive::EventKind::device_back:
-        wrong_rate_.reset();  // this may be another device
+        wrong_rate_.reset();  // the device that is back may be another one
         return push(InputKind::notice, now, "the sound device is back");
       case drive::EventKind::rate_wrong:
         wrong_rate_ = Fault{FaultKind::converter_rate, fmt::format("{:.1f} Hz instead of {} Hz",
@@ -223,7 +228,7 @@ class RealStage : public Stage {
     if (news.jump_s)
       push(InputKind::notice, now, fmt::format("the wall clock was set by {:+.3f} s", *news.jump_s));
     if (!news.suspended_s) return;
-    const auto slept = fmt::format("the machine slept for {:.1f} s", *news.suspended_s);
+    const auto slept = fmt::format("the computer was suspended for {:.1f} s", *news.suspended_s);
     push(InputKind::notice, now, slept);
     amplifier_().trip(FaultKind::suspended, slept);
   }
@@ -253,10 +258,11 @@ class RealStage : public Stage {
   Inputs& inputs_;
   std::unique_ptr<drive::Stream> stream_;
   std::vector<Presented> presented_;
-  Onset first_onset_;        ///< the first of them
+  Onset first_onset_;        ///< onset of the trial's first interval
   std::size_t unheard_ = 0;  ///< number of intervals not yet reported as heard
   std::optional<std::int64_t>
-      lost_ns_;  ///< time at which the converter was lost during them: the surface has been silent since
+      /// time at which the converter was lost while a trial was presented: the surface has been silent since
+      lost_ns_;
   drive::UnderrunLimit underruns_;
   system::ClockWatch clocks_;
   std::int64_t clocks_due_ns_ = 0;
@@ -264,7 +270,7 @@ class RealStage : public Stage {
   std::int64_t opened_ns_ = 0;  ///< time at which the amplifier was enabled
   bool closing_ = false, fault_told_ = false;
   std::int64_t saturated_ = 0;  ///< number of samples clipped so far
-  Refusal wrong_rate_;          ///< set until the device has been reopened
+  Refusal wrong_rate_;          ///< the wrong rate of the converter; set until the device has been reopened
 };
 
 }  // namespace

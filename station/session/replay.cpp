@@ -25,28 +25,29 @@ void enter_stored(trial::Director& director, const records::BlockStart& block) {
   while (!here() && director.block_index() == block.block_index && director.attempt() < block.attempt)
     director.restart_block();
   if (!here())
-    throw std::runtime_error("resume: the log's block " + std::to_string(block.block_index) +
-                             " is not the one that the protocol runs next; they do not belong together");
+    throw std::runtime_error(
+        "resume: the stored block " + std::to_string(block.block_index) +
+        " is not the block that the protocol runs next; the session and the protocol do not belong together");
 }
 
 /// Passes a stored trial through the director again. Throws std::runtime_error if the director would have
-/// presented another level, or if its state differs afterwards: the log and the program do not belong
+/// presented another level, or if its state differs afterwards: then the log and the program do not belong
 /// together.
 void replay(trial::Director& director, const records::TrialRow& trial, const protocol::Protocol& protocol) {
   const auto mismatch = [&trial](const std::string& what) {
     throw std::runtime_error(
-        fmt::format("resume: trial {} of the log cannot be replayed: {}; the database, the protocol or this "
+        fmt::format("resume: stored trial {} cannot be replayed: {}; the database, the protocol or this "
                     "program has changed",
                     trial.trial_index, what));
   };
   const auto spec = director.next();
   if (!spec) mismatch("the session would already have ended");
   if (spec->level != trial.level)
-    mismatch(fmt::format("level {} would have come, the log holds {}", spec->level.value_or(0),
-                         trial.level.value_or(0)));
+    mismatch(fmt::format("this program would present level {}, but level {} is stored",
+                         spec->level.value_or(0), trial.level.value_or(0)));
   const auto again = trial::row_of(*spec, protocol, trial.trial_index);
   if (again.factors != trial.factors || again.correct_response != trial.correct_response)
-    mismatch("another combination of factors or another right answer would have come");
+    mismatch("this program would present other values of the factors, or another answer would be right");
   trial::TrialEnd end;
   end.outcome = trial.outcome;
   end.correct = trial.correct;
@@ -57,11 +58,12 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
     double setting = 0;
     const auto* last = trial.response->data() + trial.response->size();
     const auto read = std::from_chars(trial.response->data(), last, setting);
-    if (read.ec != std::errc{} || read.ptr != last) mismatch("\"" + *trial.response + "\" is no setting");
+    if (read.ec != std::errc{} || read.ptr != last)
+      mismatch("\"" + *trial.response + "\" is not a setting of the slider");
     end.response = 0, end.setting = setting;
   }
   director.record(end);
-  if (director.state_hash() != trial.state_hash) mismatch("its state hash differs");
+  if (director.state_hash() != trial.state_hash) mismatch("the state of the procedures differs afterwards");
 }
 
 /// A session answered half by one simulated observer and half by a different one would be useless. Sliders
@@ -77,9 +79,9 @@ void check_observer(const Setup& setup, const store::StoredSession& stored, cons
       std::fabs(reply.response_time_s - *trial.response_time_s) < tolerance_s)
     return;
   throw std::runtime_error(
-      "resume: trial " + std::to_string(trial.trial_index) + " was not answered by \"" + setup.observer +
-      "\" as this program simulates it; an earlier program did, and only that one can go "
-      "on with the session");
+      "resume: trial " + std::to_string(trial.trial_index) +
+      " was not answered as the simulated observer \"" + setup.observer +
+      "\" of this program would answer; only the earlier version that recorded the session can continue it");
 }
 
 }  // namespace

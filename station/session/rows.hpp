@@ -19,9 +19,9 @@ namespace turnpoint::session {
 void add_tones(records::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
                std::int64_t onset_frame, const drive::PreparedBurst& burst);
 
-/// The surface of an adjustment has begun to follow the slider at this frame. Scene 0 remains what the trial
-/// began with, and scene 1 becomes this one. The trial's boundary, frequency and amplitude are set to those
-/// of scene 1.
+/// Records that the surface of an adjustment has begun to follow the slider at this frame. Scene 0 remains
+/// what the trial began with, and scene 1 becomes this one. The trial's boundary, frequency and amplitude are
+/// set to those of scene 1.
 void set_scene(records::TrialRow& row, const scene::DrivePlan& scene, std::int64_t frame);
 
 records::EventRow event_row(const Input& input, int trial_index);

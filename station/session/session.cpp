@@ -51,11 +51,11 @@ std::string kernel() {
   return fmt::format("{} {} {}", names.sysname, names.release, names.machine);
 }
 
-/// A seed for a session that states none, in the range that JSON and spreadsheets represent exactly.
+/// A seed for a session whose protocol gives none, in the range that JSON and spreadsheets represent exactly.
 std::uint64_t fresh_seed() {
   std::uint64_t bits = 0;
   if (::getrandom(&bits, sizeof bits, 0) != static_cast<ssize_t>(sizeof bits))
-    throw std::system_error(errno, std::generic_category(), "cannot draw a seed");
+    throw std::system_error(errno, std::generic_category(), "cannot get a random seed");
   return bits >> 11;
 }
 
@@ -167,7 +167,7 @@ Begun resume(const Setup& setup, Stage& stage) {
       store::SessionLog::resume(setup.database, setup.resume_session, segment("resume", stage.now_ns()));
   if (log.session().trials != stored.session.trials)
     throw std::runtime_error("resume: another process has added trials to session " + setup.resume_session +
-                             " meanwhile; resume it again");
+                             " meanwhile; resume the session again");
   return {std::move(log), std::move(director)};
 }
 

@@ -27,7 +27,8 @@ struct Setup {
   std::string database;
   terms::RunMode run_mode = terms::RunMode::pilot;
   std::string language;
-  std::string observer;  ///< "" for a person; otherwise "sim" or "sim:threshold=..."
+  /// how the simulated observer is described: "sim" or "sim:threshold=..."; "" for a person
+  std::string observer;
   std::optional<std::uint64_t> seed;
   std::string resume_session;  ///< the session to continue; "" begins a new one
   ResumeAt resume_at = ResumeAt::next_trial;
@@ -39,8 +40,8 @@ struct Setup {
   std::string consent_version;
   /// The touch panel's own latency, stored with each answer by touch, never subtracted.
   double response_offset_s = 0;
-  /// Source of the time stamps for which it was measured (kernel | toolkit). Answers with another source do
-  /// not get it; "" means that all do.
+  /// Source of the time stamps for which response_offset_s was measured (kernel | toolkit). Answers with
+  /// another source do not get the offset; "" means that all do.
   std::string response_offset_quality;
 };
 
@@ -52,7 +53,7 @@ struct Summary {
   std::uint64_t seed = 0;
   int blocks = 0, trials = 0, answered = 0, timeouts = 0, anticipations = 0, voided = 0;
   std::optional<double> accuracy;  ///< proportion correct of scored, answered, experimental trials
-  double duration_s = 0;           ///< on the session's clock
+  double duration_s = 0;           ///< duration on the session's clock
   int xruns = 0;
   /// how much pauses between trials were extended to keep the limit on the duty cycle
   double stretched_s = 0;
@@ -69,7 +70,7 @@ struct Summary {
 /// store::StoreError, and std::system_error for devices.
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor = nullptr);
 
-/// The same with devices that are already open (for a real session only).
+/// Runs a session with devices that are already open (for a real session only).
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices,
             Monitor* monitor = nullptr);
 

@@ -31,7 +31,8 @@ Summary SessionRun::run() {
   started_ns_ = stage_->now_ns();
   // In a pilot without an amplifier there is nothing for an operator to arm.
   if (setup_.run_mode != terms::RunMode::live && setup_.rig.amplifier_uri == "sim:")
-    static_cast<void>(stage_->arm());  // a refusal shows up below, because the amplifier is then not armed
+    // a refused request shows up below, because the amplifier is then not armed
+    static_cast<void>(stage_->arm());
   if (gate_.until_armed({FaultKind::disarmed, ""}) == Flow::go_on)
     while (director_.block() != nullptr)
       if (run_block() == Flow::stop) break;
@@ -71,7 +72,7 @@ Flow SessionRun::run_block() {
 Flow SessionRun::rest_if_due(int trials) {
   const auto& block = *director_.block();
   if (!block.break_after || trials % block.break_after->trials != 0) return Flow::go_on;
-  if (!director_.next()) return Flow::go_on;  // no break if no trial follows
+  if (!director_.next()) return Flow::go_on;  // no break after the last trial of a block
   return gate_.show_and_wait(pages_.rest(block, block.break_after->min_s, director_),
                              block.break_after->min_s);
 }

@@ -32,24 +32,25 @@ class SessionRun {
     trial::TrialSpec spec;
     trial::Machine machine;
     records::TrialRow row;
-    std::optional<trial::Slider> slider;  ///< for an adjustment
+    std::optional<trial::Slider> slider;  ///< the slider of an adjustment
     std::vector<Onset> onsets;            ///< onsets of all intervals, once they are scheduled
     std::size_t begun = 0;                ///< number of intervals that have begun
     bool decided = false;
-    bool by_button = false;  ///< answered by button, so the touch panel's latency does not apply
+    /// true if the answer came from a button, so that the touch panel's latency does not apply
+    bool by_button = false;
   };
   /// An interval of the trial: scheduled, being presented, or finished.
   struct OnSurface {
     std::int64_t on_ns = 0, off_ns = 0;
   };
 
-  // session_run.cpp: blocks and pages
+  // blocks and pages, in session_run.cpp
   Flow run_block();
   Flow rest_if_due(int trials_in_block);
   int trial_index() const { return log_.session().trials; }
   void finish(records::SessionStatus status, const std::string& reason);
 
-  // session_run_trial.cpp: one trial
+  // one trial, in session_run_trial.cpp
   Flow run_trial(const trial::TrialSpec& spec);
   Flow prepare_trial(const trial::TrialSpec& spec);
   Flow keep_limits(const trial::TrialSpec& spec);
@@ -67,7 +68,7 @@ class SessionRun {
   void leave_surface();
   void count(const trial::TrialSpec& spec, const records::TrialRow& row);
 
-  // session_run_adjustment.cpp
+  // adjustments, in session_run_adjustment.cpp
   void show_phase(trial::Phase phase, const Running& trial);
   std::optional<trial::Event> event_in_trial(const Input& input, Running& trial);
   void glide(Running& trial);

@@ -17,7 +17,7 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
 
 std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Running& trial) {
   if (!trial.slider) return event_of(input);
-  // Only while the surface vibrates: a setting made in silence cannot be felt.
+  // The slider works only while the surface vibrates, because a setting made in silence cannot be felt.
   if (input.kind == InputKind::slider && trial.machine.phase() == trial::Phase::stimulus)
     trial.slider->move(input.number);
   if (input.kind == InputKind::next) return trial::Event{input.time_ns, trial::EventKind::answer, 0};

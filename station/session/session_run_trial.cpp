@@ -40,8 +40,8 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
                 {}};
   if (spec.slider) trial.slider.emplace(*spec.slider, spec.level.value_or(spec.slider->low));
   if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block(), plans_.take(spec).plans);
-  // Commit this before the amplifier is on, because a disk may take seconds during which nothing else
-  // happens.
+  // Commit this event before the amplifier is switched on, because a disk may take seconds, during which
+  // nothing else can happen.
   gate_.keep([&] { log_.presented(trial_index(), stage_->now_ns()); });
   drive_trial(trial, open_amplifier());
   stage_->close_amplifier();
@@ -95,7 +95,7 @@ Flow SessionRun::keep_limits(const trial::TrialSpec& spec) {
   return Flow::go_on;
 }
 
-/// The last check of what is about to be felt and heard. Throws limits::LimitExceeded.
+/// The last check of the scenes before they are presented. Throws limits::LimitExceeded.
 void SessionRun::check_plans(const trial::TrialSpec& spec) {
   const auto& plans = plans_.take(spec).plans;
   const auto times = trial::interval_times(setup_.protocol, spec);
@@ -183,7 +183,7 @@ void SessionRun::perform(const std::vector<trial::Action>& actions, Running& tri
 void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
   const auto& bursts = plans_.take(trial.spec).bursts;
   trial.onsets = stage_->present(bursts, earliest_ns);
-  if (trial.onsets.empty()) return;  // a fault with the reason is on its way
+  if (trial.onsets.empty()) return;  // a fault that gives the reason will be among the inputs
   const auto times = trial::interval_times(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     const auto on_ns = trial.onsets[i].time_ns;
@@ -193,7 +193,8 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
   ask_observer(trial, trial.onsets.back().time_ns);
 }
 
-/// The row contains what reaches the surface, but not what is cancelled before.
+/// Appends this interval to the row now, so that the row contains what reaches the surface but not what is
+/// cancelled before.
 void SessionRun::interval_begins(Running& trial) {
   const auto i = trial.begun++;
   const auto& planned = plans_.take(trial.spec);

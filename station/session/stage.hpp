@@ -18,7 +18,7 @@
 
 namespace turnpoint::session {
 
-/// The time at which a burst reaches the surface, in both of the session's units.
+/// The time at which a burst reaches the surface, in ns and in frames.
 struct Onset {
   std::int64_t frame = 0;
   std::int64_t time_ns = 0;
@@ -42,14 +42,14 @@ class Stage {
 
   virtual std::int64_t now_ns() = 0;
 
-  /// The next input stamped no later than `deadline_ns`; empty once that time has come.
+  /// Waits for the next input stamped no later than `deadline_ns`; empty once that time has come.
   virtual std::optional<Input> wait_until(std::int64_t deadline_ns) = 0;
 
   /// Removes all waiting inputs for a fresh start, and returns them for the log.
   virtual std::vector<Input> drain() = 0;
 
-  /// Waits until `ready`, which another thread makes true. Keeps reporting to the amplifier's guard
-  /// meanwhile. The virtual clock stops meanwhile.
+  /// Waits until `ready` returns true, which another thread brings about. Keeps reporting to the amplifier's
+  /// guard meanwhile. The virtual clock stands still during the wait.
   virtual void wait_for(const std::function<bool()>& ready) = 0;
 
   /// Schedules the intervals of a trial. The first begins at the earliest safe frame that is not before
@@ -83,14 +83,14 @@ class Stage {
 
   /// Names of the rig's response buttons, in the order of their indices.
   virtual const std::vector<std::string>& buttons() const = 0;
-  /// Which of buttons and contact have been lost and are not back yet, and why; "" if none.
+  /// Which of buttons and contact are lost at present, and why; "" if none.
   virtual std::string missing() const = 0;
 
-  /// For a simulated observer: this question has to be answered, with times from `zero_ns`. A real stage
+  /// Asks a simulated observer to answer this question, with times counted from `zero_ns`. A real stage
   /// ignores it.
   virtual void question(const observer::Question& question, std::int64_t zero_ns) = 0;
 
-  /// For a simulated observer: this slider has to be set, with times from `zero_ns`, and then Done pressed.
+  /// Asks a simulated observer to set this slider and press Done, with times counted from `zero_ns`.
   virtual void adjustment(const observer::Adjustment& adjustment, std::int64_t zero_ns) = 0;
 
   virtual std::optional<ClockFit> clock_fit() = 0;
@@ -103,7 +103,7 @@ class Stage {
 drive::StreamConfig stream_of(const rig::Rig& rig);
 
 /// A stage in real time: CLOCK_MONOTONIC, the audio thread, the amplifier's guard, inputs from a display and
-/// the panel. `inputs` must outlive it.
+/// the panel. `inputs` must outlive the stage.
 std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices devices, Inputs& inputs);
 
 /// A stage on the virtual clock. The drive advances with the clock, and the observer answers and arms a

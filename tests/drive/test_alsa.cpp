@@ -102,12 +102,13 @@ TEST_CASE("a refusal names the device and what it is; a device that is not there
           "[drive][alsa]") {
   CHECK_THROWS_WITH(
       open_output(config_for("plugged")),
-      "alsa:plugged: is the alsa-lib plug-in 'plug', not hardware; use a name that begins with hw:, as "
-      "'aplay -l' lists");
+      "alsa:plugged: is an alsa-lib plug-in of type 'plug', not a hardware device; use a name that begins "
+      "with hw: (see 'aplay -l')");
   OutputConfig config = config_for("rated");
   config.allow_plugin = {"rate",  "plug",    "file",  "hooks",     "copy",         "linear", "route",
                          "multi", "softvol", "meter", "mmap_emul", "linear_float", "null"};
-  CHECK_THROWS_WITH(open_output(config), "alsa:rated: resamples: a rate converter is behind it");
+  CHECK_THROWS_WITH(open_output(config),
+                    "alsa:rated: resamples: the plug-in chain contains a rate converter");
   config = config_for("plugged");
   config.allow_plugin = {"plug"};
   CHECK_THROWS_WITH(open_output(config), "alsa:plugged: rate 192000 Hz not supported; it offers 48000 Hz");
@@ -123,7 +124,7 @@ TEST_CASE("a device that takes neither 32 nor 24 bits is refused", "[drive][alsa
   auto config = config_for("compressed");
   config.allow_plugin = {"adpcm"};
   CHECK_THROWS_WITH(open_output(config),
-                    "alsa:compressed: takes neither 32-bit samples (S32_LE) nor 24-bit ones (S24_3LE)");
+                    "alsa:compressed: accepts neither 32-bit samples (S32_LE) nor 24-bit samples (S24_3LE)");
 }
 
 TEST_CASE("a device with more channels than the stream is opened with its own", "[drive][alsa]") {

@@ -41,7 +41,7 @@ TEST_CASE("a burst outside the limits is refused with the reason, never clipped"
   Burst burst = one_tone(20000, 0.5);
   burst.tones.tones[0].channel = 2;
   CHECK_THROWS_WITH(prepare(burst, format),
-                    "burst refused: tone on channel 2; the output has channels 0 to 1");
+                    "burst refused: tone on channel 2; the output has only channels 0 to 1");
   burst = one_tone(20000, 0.5);
   burst.ramp.frames = burst.length_frames / 2 + 1;
   CHECK_THROWS_AS(prepare(burst, format), BurstRefused);

@@ -116,8 +116,9 @@ TEST_CASE("a burst too late, one too many, or too loud beside another is refused
   stream->advance(1000);
   Burst burst = one_tone(20000, 0.4);
   burst.start_frame = 999;
-  CHECK_THROWS_WITH(stream->schedule(burst),
-                    "burst refused: frame 999 is already past; the earliest possible is 1000");
+  CHECK_THROWS_WITH(
+      stream->schedule(burst),
+      "burst refused: start frame 999 is already past; the earliest possible start is frame 1000");
   {
     const auto other = open_synchronous({});
     other->advance(1000);

@@ -225,7 +225,7 @@ void Room::strike_chip() {
   plan(world_.course.seconds(0.1, 20), [this] {
     world_.amplifier.over("lines gone");
     missing_.clear();
-    push(InputKind::notice, {}, "panel: what had gone is back");
+    push(InputKind::notice, {}, "panel: the lost device is connected again");
   });
 }
 

@@ -55,7 +55,8 @@ TEST_CASE("the guard thread drops the enable line on a fault edge and latches it
   CHECK(eventually([&] { return bench.amplifier->state() == AmplifierState::faulted; }));
   CHECK_FALSE(bench.lines->level(0));
   CHECK(bench.amplifier->reaction_ns() >= 0);
-  CHECK(why_not(bench.amplifier->enable()) == "amplifier reports a fault: latched; clear it first");
+  CHECK(why_not(bench.amplifier->enable()) ==
+        "amplifier reports a fault: the fault is latched; clear it first");
   CHECK(why_not(bench.amplifier->clear()) == "amplifier reports a fault");
   bench.lines->set(2, false, system::monotonic_ns());
   CHECK_FALSE(bench.amplifier->clear());  // clear() reads the line's level, even if no edge was seen

@@ -221,7 +221,7 @@ TEST_CASE("presses, contact, lost edges, and a chip lost and back reach the hand
   lines->lose_edges(0, 5);
   lines->set(0, false, now + 100 * ms);
   REQUIRE(reached(faults, 1));
-  CHECK(faults[0] == "line left: 5 edges were lost");
+  CHECK(faults[0] == "line left: 5 edges of the line were lost");
   lines->remove();
   REQUIRE(reached(faults, 2));
   CHECK(faults[1].find("simulated gpio chip") == 0);

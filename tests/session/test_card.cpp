@@ -335,7 +335,7 @@ TEST_CASE("a trial is void a second after a converter should have said that it w
   CHECK(trials[0].outcome == terms::Outcome::answered);
   CHECK(trials[1].outcome == terms::Outcome::fault);
   CHECK(trials[2].level == trials[1].level);
-  CHECK(card.details.back() == "the converter does not say whether a stimulus was played");
+  CHECK(card.details.back() == "the converter does not report whether a stimulus was played");
   const auto stimuli = live_room::events_of(card.setup.database, card.summary, "stimulus");
   const auto faults = live_room::events_of(card.setup.database, card.summary, "fault");
   REQUIRE(stimuli.size() == 3);
@@ -355,7 +355,7 @@ TEST_CASE("a converter that does not say where it is gets no stimulus", "[sessio
   const auto trials = card.runs();
   REQUIRE(trials.size() == 3);
   CHECK(trials[0].outcome == terms::Outcome::fault);
-  CHECK(card.details.back() == "the converter does not say what it is playing");
+  CHECK(card.details.back() == "the converter does not report which frame it is playing");
   CHECK(live_room::events_of(card.setup.database, card.summary, "stimulus").size() == 2);
 }
 

@@ -114,7 +114,7 @@ TEST_CASE("the amplifier's own fault causes a fault page", "[session][live][faul
   };
   const auto page = mishap.runs();
   CHECK(page.fault == FaultKind::amplifier);
-  CHECK(page.detail.find("amplifier off after") == 0);
+  CHECK(page.detail.find("the amplifier was switched off after") == 0);
 }
 
 TEST_CASE("a pressed stop causes a fault page", "[session][live][fault]") {
@@ -130,7 +130,7 @@ TEST_CASE("an enable line that does not follow causes a fault page", "[session][
   mishap.operator_repairs = [&] { mishap.enable_broken = false; };
   const auto page = mishap.runs();
   CHECK(page.fault == FaultKind::enable_line);
-  CHECK(page.detail == "driven high, reads low");
+  CHECK(page.detail == "the line was set high but reads low");
 }
 
 TEST_CASE("lines that are gone have their page", "[session][live][fault]") {
@@ -184,7 +184,7 @@ TEST_CASE("a suspended machine causes a fault page", "[session][live][fault]") {
   mishap.strikes = [&] { mishap.slept_ns = 90'000'000'000; };
   const auto page = mishap.runs();
   CHECK(page.fault == FaultKind::suspended);
-  CHECK(page.detail == "the machine slept for 90.0 s");
+  CHECK(page.detail == "the computer was suspended for 90.0 s");
 }
 
 TEST_CASE("the loss of the sound device causes a fault page", "[session][live][fault]") {

@@ -203,7 +203,8 @@ TEST_CASE("who goes on before the buttons are back is told what is missing", "[s
   CHECK(trials[0].outcome == terms::Outcome::fault);
   CHECK(trials[1].outcome == terms::Outcome::answered);
   CHECK(trials[1].response == trials[2].response);
-  CHECK(events_of(setup.database, summary, "notice").back().value == "panel: what had gone is back");
+  CHECK(events_of(setup.database, summary, "notice").back().value ==
+        "panel: the lost device is connected again");
   const auto glitches = events_of(setup.database, summary, "glitch");
   REQUIRE_FALSE(glitches.empty());
   CHECK(glitches[0].value == "right: edges 2, over 0.003 ms");

@@ -11,7 +11,7 @@ screen_begin
 [ -e /sys/class/drm/card1-Virtual-1 ] || fail "not at the second card: $(ls /sys/class/drm)"
 # Without an operator's code of its own, the station must not start, and must say how to store one.
 systemctl start --no-block turnpoint
-refused() { journal | grep -q 'store your own: sudo turnpoint operator-code'; }
+refused() { journal | grep -q 'store one with: sudo turnpoint operator-code'; }
 eventually 30 refused
 echo 7391 | turnpoint operator-code
 systemctl stop turnpoint

@@ -77,16 +77,16 @@ spoilt "a sound in an unused channel" $((18 * 48000 + 6)) 1 1
 
 refused() { fails 1 synth "$1" alsa:hw:Loopback,0; has refusal.txt "$2" || fail "the message does not say \"$2\""; }
 card S32_LE 6
-refused two.toml "does not take 2 channels; it takes 6 (the rig's device_channels)"
+refused two.toml "does not accept 2 channels; it accepts 6 (set device_channels in the rig file)"
 synth six.toml alsa:hw:Loopback,0
 no_card
 card S24_3LE 2
-refused deep.toml "takes samples of 24 bits, but the rig file says 32"
-refused six.toml "does not take 6 channels; it takes 2 (the rig's device_channels)"
+refused deep.toml "accepts samples of 24 bits, but the rig file says 32"
+refused six.toml "does not accept 6 channels; it accepts 2 (set device_channels in the rig file)"
 synth two.toml alsa:hw:Loopback,0
 no_card
 card S16_LE 2
-refused two.toml "takes neither 32-bit samples (S32_LE) nor 24-bit ones (S24_3LE)"
+refused two.toml "accepts neither 32-bit samples (S32_LE) nor 24-bit samples (S24_3LE)"
 no_card
 
 # `turnpoint doctor` prints the line "converter mute" only for a card that has a mixer switch named Auto Mute.

@@ -4,7 +4,7 @@ loopback
 drive_stream alsa:hw:Loopback,0 1920 8 >events.txt & stream=$!
 eventually 10 grep -q started events.txt
 drive_stream alsa:hw:Loopback,0 1920 1 2>second.txt && fail "two streams on one card"
-grep -q "in use by another program" second.txt || { cat second.txt; fail "the message does not say that the card is in use"; }
+grep -q "the device is in use by another program" second.txt || { cat second.txt; fail "the message does not say that the card is in use"; }
 kill -STOP $stream; sleep 0.8; kill -CONT $stream
 eventually 5 grep -q underrun events.txt
 wait $stream || fail "the stream failed"
