@@ -13,15 +13,16 @@ Window {
     required property ReportModel report
     property OperatorController operating: null
     required property OperatorLock operatorLock
-    /// The operator's page is locked until somebody has typed the code.
+    /// True while the operator's page is locked, until somebody has typed the code.
     property bool locked: false
     required property real pixelsPerMm
     property bool leftHanded: false
     readonly property bool asking: start.stage === StartController.Language || start.stage === StartController.Consent
                                    || start.stage === StartController.Code
 
-    /// The action on the participant's screen that requires the operator's code: "view" the running session,
-    /// "arm" the amplifier, read the "report", "leave" for the operator's page, "unlock" it.
+    /// What the operator wants to do on the participant's screen, once the code has been typed: "view" the
+    /// running session, "arm" the amplifier, read the "report", "leave" for the operator's page, or "unlock"
+    /// that page.
     property string wish
     function ask(what: string) {
         wish = what
@@ -34,17 +35,19 @@ Window {
         if (wish === "leave") start.close()
         if (wish === "unlock") locked = false
         if (wish !== "view") return
-        // The operator's view would cover a trial, so pause first; the trial is repeated later.
+        // The operator's view would cover a running trial, so pause the session first; the trial is repeated
+        // later.
         if (participant.inTrial) bridge.pause()
         liveView.wanted = true
     }
-    /// Without an operator's page, leaving closes the page.
+    /// Leaves the participant's pages. If there is no operator's page, this closes the window.
     function leave() {
         if (operating !== null) ask("leave")
         else start.close()
     }
 
-    /// The first page does not wait for the session's pages: they are created once it is on the screen.
+    /// The session's pages are created only after the first page is on the screen, so that the first page
+    /// appears early.
     property bool begun: false
     readonly property ParticipantView participant: session.item as ParticipantView
     onFrameSwapped: begun = true
@@ -141,7 +144,8 @@ Window {
         }
     }
 
-    // Created when first needed, so that the station's first page does not wait for them.
+    // Pages that are created when they are first needed, so that the station's first page does not wait for
+    // them.
     Loader {
         id: liveView
         property bool wanted: false
@@ -155,7 +159,8 @@ Window {
             closable: true
             onClosed: liveView.wanted = false
         }
-        // Continuing closes it, because nothing of it may be visible in a trial.
+        // Closes the operator's view when the session continues, because nothing of that view may be visible
+        // in a trial.
         Connections {
             target: root.bridge
             function onShown() { if (root.participant?.inTrial ?? false) liveView.wanted = false }

@@ -102,12 +102,13 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
       {FaultKind::audio_silent, ""},
       {FaultKind::session_silent, ""},
       {FaultKind::page_silent, ""},
-      {FaultKind::suspended, "the machine slept for 5421.3 s"},
-      {FaultKind::amplifier, "amplifier off after 85 us"},
-      {FaultKind::enable_line, "driven low, reads high"},
-      {FaultKind::stop_pressed, "amplifier off after 85 us"},
+      {FaultKind::suspended, "the computer was suspended for 5421.3 s"},
+      {FaultKind::amplifier, "the amplifier was switched off after 85 us"},
+      {FaultKind::enable_line, "the line was set low but reads high"},
+      {FaultKind::stop_pressed, "the amplifier was switched off after 85 us"},
       {FaultKind::lines_gone,
-       "refused: GPIO lines disconnected: gpio line AMP_EN: no chip has a line of this name: No such file or "
+       "refused: GPIO lines disconnected: gpio line AMP_EN: no GPIO chip has a line with this name: No such "
+       "file or "
        "directory"},
       {FaultKind::touch_gone, "/dev/input/by-id/usb-panel-event: No such device"},
       {FaultKind::disk_full, "lab.sqlite: database or disk is full"},

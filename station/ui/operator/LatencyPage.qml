@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Measures the touch panel's latency, for the operator: each tap on the dark field makes it flash. In
-// English, like the command line.
+// Measures the touch panel's latency, for the operator: each tap on the dark field makes it flash. The texts
+// are in English, like those of the command line.
 Rectangle {
     id: root
     required property LatencyController controller
@@ -31,8 +31,8 @@ Rectangle {
         PlainText {
             width: parent.width
             text: root.controller.byButton
-                ? "Hold the button against the fingertip, so that each tap on the dark field also presses it. This measures input latency: from the finger to the time stamp of its answer."
-                : "Fix the photodiode on the square at the left, and tap the dark field. This measures display latency: from the time stamp of a touch to light."
+                ? "Hold the button against the fingertip, so that each tap on the dark field also presses it. This measures input latency: the time from the press of the finger to the time stamp of the answer."
+                : "Fix the photodiode on the square at the left, and tap the dark field. This measures display latency: the time from the time stamp of a touch until the square lights up."
             color: look.ink
             font.pixelSize: look.textBody
             wrapMode: Text.Wrap

@@ -1,9 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// A running session for the operator: what is being presented, the progress of the procedure, how much the
-// limits still allow, and the available actions. In English, like the command line. The model delays updates
-// while a stimulus runs; during an adjustment only the texts are updated.
+// Shows a running session to the operator: what is being presented, the progress of the procedure, how much
+// the limits still allow, and the available actions. The texts are in English, like those of the command
+// line. The model delays updates while a stimulus runs; during an adjustment only the texts are updated.
 Rectangle {
     id: root
     required property LiveModel live
@@ -50,8 +50,7 @@ Rectangle {
         height: look.controlHeight
         PlainText {
             anchors { left: parent.left; right: buttons.left; verticalCenter: parent.verticalCenter; rightMargin: look.unit }
-            // Only this page says "LIVE": the participant's pages of a live session show nothing that
-            // participants need not see.
+            // Only this page shows the word "LIVE"; the participant's pages of a live session leave it out.
             text: (root.bridge.page.runMode === "live" ? "LIVE   " : "") + (root.live.heading !== "" ? root.live.heading : "No trial yet")
             color: look.ink
             font { pixelSize: look.textBody; weight: Font.Bold }
@@ -141,7 +140,8 @@ Rectangle {
         id: pictures
         anchors { left: surfaces.left; right: surfaces.right; top: surfaces.bottom; bottom: parent.bottom; topMargin: 0.6 * look.unit; bottomMargin: frame.edge + look.unit }
         // Show three figures if there is enough room for each; otherwise one, with buttons to choose it.
-        readonly property real cell: 0.45 * (height - 0.6 * look.unit)  // the lower two have legends
+        // the figures in the lower row have legends
+        readonly property real cell: 0.45 * (height - 0.6 * look.unit)
         readonly property bool single: cell < 12.5 * root.small
         readonly property real half: (width - 0.6 * look.unit) / 2
         Row {
@@ -213,7 +213,7 @@ Rectangle {
                     objectName: "picturesLater"
                     visible: root.bridge.page.kind === PageModel.Adjust
                     width: parent.width
-                    text: "The words follow the slider. The pictures follow after the trial."
+                    text: "During the trial only the texts are updated; the figures follow afterwards."
                     color: look.ink
                     font.pixelSize: look.textSmall
                     wrapMode: Text.Wrap
@@ -235,7 +235,7 @@ Rectangle {
             anchors { fill: parent; margins: 2 * look.unit }
             spacing: look.unit
             PlainText {
-                text: "A note, kept with the session"
+                text: "A note to be stored with the session"
                 color: look.ink
                 font { pixelSize: look.textTitle; weight: Font.Bold }
             }
@@ -286,7 +286,7 @@ Rectangle {
                     objectName: "keepNote"
                     theme: look
                     enabled: note.text !== ""
-                    text: "Keep the note"
+                    text: "Save the note"
                     onActivated: root.keep(note.text)
                 }
                 ActionButton {

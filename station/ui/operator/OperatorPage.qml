@@ -1,8 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// The operator's start page: choose protocol (with its check on this rig), participant, language, live or
-// pilot, and arming, or continue an interrupted session. In English, like the command line.
+// The operator's start page: choose a protocol (which is checked on this rig), participant, language, live or
+// pilot mode and arming, or continue an interrupted session. The texts are in English, like those of the
+// command line.
 Rectangle {
     id: root
     required property OperatorController operating
@@ -253,8 +254,8 @@ Rectangle {
         id: footer
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom; margins: look.margin }
         height: 2 * look.controlHeight + root.gap
-        // The software renderer does not clip symbols that scroll out of the sheet above, so this covers
-        // them.
+        // The software renderer does not clip symbols that scroll out of the sheet above, so this strip
+        // covers them.
         Rectangle {
             anchors { fill: parent; topMargin: 1 - root.gap }
             color: look.paper

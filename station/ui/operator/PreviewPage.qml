@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Shows any scene of a protocol without a session: sliders for its factors; surface, profile, friction and
-// spectrum; model, error and cues. In English, like the command line.
+// Shows any scene of a protocol without a session: sliders for its factors; figures of surface, profile,
+// friction and spectrum; model, error and cues. The texts are in English, like those of the command line.
 Rectangle {
     id: root
     required property PreviewController controller
@@ -125,7 +125,7 @@ Rectangle {
     PlainText {
         visible: root.controller.knobs.length === 0
         anchors { left: parent.left; top: tabs.bottom; margins: look.margin; topMargin: 0.8 * look.unit }
-        text: "This scene depends on no factor."
+        text: "This scene does not depend on any factor."
         color: look.quiet
         font.pixelSize: look.textSmall
     }

@@ -9,7 +9,7 @@ namespace turnpoint::ui {
 namespace {
 
 constexpr double kMargin = 6;
-constexpr double kDrawnText_px = 12;  // text size of every drawing
+constexpr double kDrawnText_px = 12;  // text size for which all figures are drawn, before they are scaled
 
 }  // namespace
 
@@ -26,7 +26,7 @@ void FigureView::set_picture(const QVariant& picture) {
 void FigureView::paint(QPainter* painter) {
   const QRectF card(0, 0, width(), height()), inside = card.adjusted(kMargin, kMargin, -kMargin, -kMargin);
   if (!picture_.draw || inside.width() < 1 || inside.height() < 1) return;
-  // A card in the figures' white background, so that figures of other proportions fill the page.
+  // Draws a card in the figures' white background, so that figures of other proportions still fill the item.
   painter->setPen(Qt::NoPen);
   painter->setBrush(Qt::white);
   painter->drawRoundedRect(card, kMargin, kMargin);

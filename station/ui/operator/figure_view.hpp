@@ -5,7 +5,7 @@
 
 namespace turnpoint::ui {
 
-/// A drawing in a form that QML can pass on.
+/// A drawing in a form that can be a QML property.
 struct Picture {
   Q_GADGET
 
@@ -13,7 +13,7 @@ struct Picture {
   desk::Drawing draw;
 };
 
-/// Converts a drawing to a property's value.
+/// Converts a drawing to the value of a QML property.
 QVariant to_variant(const desk::Drawing& drawing);
 
 /// Shows one figure, laid out for this item's size with text of `textPixels`. It draws each figure only once.
@@ -26,7 +26,7 @@ class FigureView : public QQuickPaintedItem {
  public:
   explicit FigureView(QQuickItem* parent = nullptr);
   QVariant picture() const { return QVariant::fromValue(picture_); }
-  void set_picture(const QVariant& picture);  // NOLINT: the setter of a QML property
+  void set_picture(const QVariant& picture);  // the name is that of a QML property's setter (NOLINT)
   void paint(QPainter* painter) override;
 
  signals:

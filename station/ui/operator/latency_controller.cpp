@@ -5,7 +5,7 @@
 namespace turnpoint::ui {
 
 namespace {
-/// How long a tap waits for its kernel time, because the touch reader may be slower than Qt.
+/// How long to wait for the kernel's time of a tap, because the touch reader may be slower than Qt.
 constexpr int kClaim_ms = 100;
 }  // namespace
 

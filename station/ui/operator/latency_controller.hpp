@@ -22,8 +22,10 @@ class LatencyController : public QObject {
   Q_PROPERTY(int taps READ taps NOTIFY changed)
   Q_PROPERTY(int edges READ edges NOTIFY changed)
   Q_PROPERTY(int pairs READ pairs NOTIFY changed)
-  Q_PROPERTY(int wanted READ wanted CONSTANT)            ///< smallest number of pairs that may be kept
-  Q_PROPERTY(QString result READ result NOTIFY changed)  ///< "" with fewer than two pairs
+  /// smallest number of pairs with which a result may be accepted
+  Q_PROPERTY(int wanted READ wanted CONSTANT)
+  /// median and jitter in words; "" with fewer than two pairs
+  Q_PROPERTY(QString result READ result NOTIFY changed)
   Q_PROPERTY(QString quality READ quality NOTIFY changed)
 
  public:
@@ -31,10 +33,10 @@ class LatencyController : public QObject {
 
   explicit LatencyController(calibration::LatencyReference reference, QObject* parent = nullptr);
 
-  /// From now on taps get the kernel's time; a tap without one is ignored.
+  /// Uses the kernel's time stamps for taps from now on; a tap without one is ignored.
   void set_kernel_time(KernelTime kernel_time) { kernel_time_ = std::move(kernel_time); }
 
-  /// May be called on any thread: an edge of the reference line.
+  /// Adds an edge of the reference line. May be called on any thread.
   void edge(std::int64_t time_ns);
 
   bool by_button() const { return reference_ == calibration::LatencyReference::button; }
@@ -45,16 +47,16 @@ class LatencyController : public QObject {
   QString result() const;
   QString quality() const { return kernel_time_ ? "kernel" : "toolkit"; }
 
-  /// A finger came down at (x, y), each 0 ... 1 of the window.
+  /// Reports that a finger came down at (x, y), each from 0 to 1 of the window.
   Q_INVOKABLE void tap(double x, double y);
   Q_INVOKABLE void again();
-  /// The operator accepts this result; works only with enough pairs.
+  /// Accepts the current result, for the operator; does nothing with too few pairs.
   Q_INVOKABLE void keep();
   std::optional<calibration::PanelLatency> kept() const { return kept_; }
 
  signals:
   void changed();
-  /// The page is finished.
+  /// Emitted when the page is finished.
   void finished();
 
  private:

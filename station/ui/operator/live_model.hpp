@@ -29,7 +29,7 @@ class LiveModel : public QObject {
  public:
   explicit LiveModel(SessionBridge& bridge, QObject* parent = nullptr);
 
-  /// May be called on any thread; returns at once.
+  /// Takes the newest state of the session. May be called on any thread; returns at once.
   void take(desk::LiveState state);
 
   QString heading() const { return QString::fromStdString(state_.heading); }
@@ -40,7 +40,7 @@ class LiveModel : public QObject {
   QVariant profile() const { return to_variant(state_.profile); }
   QVariant trace() const { return to_variant(state_.trace); }
   QVariant times() const { return to_variant(state_.times); }
-  /// A stimulus runs or answers are open: no new figure is shown.
+  /// True while a stimulus runs or answers are open; no new figure is shown then.
   bool held() const { return held_; }
 
   Q_INVOKABLE void pause() { bridge_.pause(); }

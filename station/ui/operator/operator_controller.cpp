@@ -14,7 +14,8 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// A placeholder for the code that the keypad will ask for, so that everything else can be checked before.
+/// Used instead of the code that the participant will type later, so that everything else can be checked
+/// before.
 constexpr const char* kCodeToCome = "keypad";
 /// Number of simulated sessions for trials and duration on the start page: fast, and accurate to some
 /// minutes.
@@ -60,7 +61,7 @@ void OperatorController::refresh() {
   }
   emit changed();
   if (selected_ < 0 && !protocols_.empty()) return select(0);
-  if (checking_) check_selected();  // its check was abandoned because of the session
+  if (checking_) check_selected();  // the check was stopped when the session began
 }
 
 void OperatorController::look_at_backup() {
@@ -69,8 +70,8 @@ void OperatorController::look_at_backup() {
   emit changed();
 }
 
-/// The job runs on the worker thread; the function that it returns runs here, unless a newer job was started
-/// meanwhile.
+/// Starts a job on the worker thread. The function that the job returns runs on this thread, unless a newer
+/// job was started meanwhile.
 void OperatorController::work(std::function<Then(const std::stop_token&)> job,
                               void (OperatorController::*failed)(std::vector<std::string>)) {
   worker_.start([this, failed, job = std::move(job)](const std::stop_token& stop) -> Then {
@@ -90,7 +91,7 @@ void OperatorController::fail(std::vector<std::string> problems) {
   emit changed();
 }
 
-/// The current choice cannot begin, but another choice for the same protocol may.
+/// Shows why the current choice cannot begin. Another choice for the same protocol may still be possible.
 void OperatorController::refuse(std::vector<std::string> reasons) {
   refused_ = std::move(reasons);
   stay();
@@ -99,7 +100,7 @@ void OperatorController::refuse(std::vector<std::string> reasons) {
 /// Returns to the page without a session.
 void OperatorController::stay() {
   preparing_ = false;
-  if (checking_) check_selected();  // its check was abandoned because of the session
+  if (checking_) check_selected();  // the check was stopped when the session began
   emit changed();
 }
 

@@ -20,8 +20,9 @@ namespace turnpoint::ui {
 /// A session that an operator has chosen and that has passed every check.
 struct ChosenSession {
   session::Setup setup;
-  bool ask_language = false, ask_code = false;  ///< ask the participant on the screen
-  bool arm = false;                             ///< arm the amplifier as soon as it is open
+  /// whether the participant is asked for the language and the code on the screen
+  bool ask_language = false, ask_code = false;
+  bool arm = false;  ///< arm the amplifier as soon as the session has opened it
 };
 
 /// The operator's start page: protocols with their check, participant, language, run mode, arming, and the
@@ -31,22 +32,26 @@ class OperatorController : public QObject {
   Q_OBJECT
   QML_ELEMENT
   QML_UNCREATABLE("made by the program")
-  Q_PROPERTY(QVariantList protocols READ protocols NOTIFY changed)  ///< {id, title, problem}
+  Q_PROPERTY(QVariantList protocols READ protocols NOTIFY changed)  ///< protocols as {id, title, problem}
   Q_PROPERTY(int selected READ selected NOTIFY changed)
   Q_PROPERTY(bool checking READ checking NOTIFY changed)
   Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
-  Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)  ///< {name, says, leaks}
+  /// cues of the checked protocol as {name, says, leaks}
+  Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
   Q_PROPERTY(QStringList problems READ problems NOTIFY changed)
   Q_PROPERTY(QStringList warnings READ warnings NOTIFY changed)
   Q_PROPERTY(QStringList languages READ languages NOTIFY changed)
-  Q_PROPERTY(int language READ language NOTIFY changed)  ///< -1: the participant is asked on the screen
+  /// index of the chosen language; -1 if the participant is asked on the screen
+  Q_PROPERTY(int language READ language NOTIFY changed)
   Q_PROPERTY(QString participant READ participant NOTIFY changed)
   Q_PROPERTY(bool participantKnown READ participant_known NOTIFY changed)
   Q_PROPERTY(QStringList participants READ participants NOTIFY changed)
   Q_PROPERTY(bool live READ live NOTIFY changed)
   Q_PROPERTY(bool armed READ armed NOTIFY changed)
-  Q_PROPERTY(QString interrupted READ interrupted NOTIFY changed)  ///< "" if there is none
-  Q_PROPERTY(QVariantMap backup READ backup NOTIFY changed)  ///< {state: none | recent | old | ahead, hours}
+  /// description of the interrupted session; "" if there is none
+  Q_PROPERTY(QString interrupted READ interrupted NOTIFY changed)
+  /// age of the last backup as {state: none | recent | old | ahead, hours}
+  Q_PROPERTY(QVariantMap backup READ backup NOTIFY changed)
   Q_PROPERTY(bool mayBegin READ may_begin NOTIFY changed)
   Q_PROPERTY(bool preparing READ preparing NOTIFY changed)
   Q_PROPERTY(QString rig READ rig CONSTANT)
@@ -114,7 +119,7 @@ class OperatorController : public QObject {
   QStringList participants_;
   std::optional<desk::InterruptedNote> interrupted_;
   desk::BackupNote backup_;
-  QTimer minutes_;  ///< updates ages, because the page may be open for days
+  QTimer minutes_;  ///< updates the ages on the page, because the page may be open for days
   desk::CheckWords words_;
   std::vector<std::string> refused_;  ///< why the last chosen session did not begin
   int selected_ = -1, language_ = -1;

@@ -49,8 +49,8 @@ void OperatorLock::judge(bool right) {
     return;
   }
   back_off_.wrong(clock_());
-  qWarning("operator's code: wrong, %d in a row; the next is taken in %d s", back_off_.wrong_tries(),
-           wait_s());
+  qWarning("operator's code: %d wrong codes in a row; the next code is accepted in %d s",
+           back_off_.wrong_tries(), wait_s());
   if (wait_s() > 0) second_.start();
   emit changed();
   emit refused();

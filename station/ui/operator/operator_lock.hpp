@@ -19,10 +19,10 @@ class OperatorLock : public QObject {
   QML_UNCREATABLE("made by the program")
   Q_PROPERTY(int digits READ digits CONSTANT)  ///< largest number of digits of a code
   Q_PROPERTY(bool checking READ checking NOTIFY changed)
-  Q_PROPERTY(int waitS READ wait_s NOTIFY changed)  ///< seconds until it accepts the next code
+  Q_PROPERTY(int waitS READ wait_s NOTIFY changed)  ///< number of seconds until the next code is accepted
 
  public:
-  using Clock = std::function<double()>;  ///< seconds, monotonic
+  using Clock = std::function<double()>;  ///< a monotonic clock, in seconds
 
   explicit OperatorLock(desk::OperatorCode code, QObject* parent = nullptr);
   OperatorLock(desk::OperatorCode code, Clock clock, QObject* parent = nullptr);
@@ -31,7 +31,8 @@ class OperatorLock : public QObject {
   bool checking() const { return checking_; }
   int wait_s() const;
 
-  /// Then emits opened() or refused(). Ignored while it checks a code or waits.
+  /// Checks a typed code, then emits opened() or refused(). Ignored while a code is being checked or the
+  /// waiting time has not ended.
   Q_INVOKABLE void enter(const QString& typed);
 
  signals:

@@ -28,7 +28,7 @@ class PainterCanvas : public plot::Canvas {
 
   QPainter& painter_;
   QRectF into_;
-  int saved_ = 0;  ///< states of the painter to restore
+  int saved_ = 0;  ///< number of saved states of the painter that must be restored
 };
 
 }  // namespace turnpoint::ui

@@ -16,7 +16,7 @@ PreviewController::PreviewController(const desk::PreviewRequest& request, QObjec
   if (!request.scene.empty()) {
     const auto found = std::find(scenes_.begin(), scenes_.end(), request.scene);
     if (found == scenes_.end())
-      throw terms::UsageError("--scene " + request.scene + ": the protocol has no such scene");
+      throw terms::UsageError("--scene " + request.scene + ": the protocol has no scene with this name");
     scene_ = static_cast<int>(found - scenes_.begin());
   }
   worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
@@ -84,7 +84,7 @@ void PreviewController::work(const std::stop_token& stop) {
   }
 }
 
-/// Worker thread: only it uses the planner once it runs.
+/// Runs on the worker thread. Once that thread runs, only this function uses the planner.
 PreviewController::Drawn PreviewController::draw(const Wanted& wanted) {
   Drawn drawn;
   try {

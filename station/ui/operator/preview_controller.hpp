@@ -24,7 +24,8 @@ class PreviewController : public QObject {
   Q_PROPERTY(QString rig READ rig CONSTANT)
   Q_PROPERTY(QStringList scenes READ scenes CONSTANT)
   Q_PROPERTY(int scene READ scene NOTIFY sceneChanged)
-  Q_PROPERTY(QVariantList knobs READ knobs NOTIFY sceneChanged)  ///< {name, low, high, levels, value}
+  /// sliders as {name, low, high, levels, value}
+  Q_PROPERTY(QVariantList knobs READ knobs NOTIFY sceneChanged)
   Q_PROPERTY(bool busy READ busy NOTIFY changed)
   Q_PROPERTY(QString problem READ problem NOTIFY changed)
   Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
@@ -59,7 +60,7 @@ class PreviewController : public QObject {
   void changed();
 
  private:
-  /// A look with its figures, as the worker makes it.
+  /// A scene with its figures, as made on the worker thread.
   struct Drawn {
     desk::SceneLook look;
     QVariant surface, profile, spectrum;

@@ -25,7 +25,7 @@ class ReportModel : public QObject {
  public:
   using QObject::QObject;
 
-  /// May be called on any thread.
+  /// Takes the finished report. May be called on any thread.
   void take(desk::ReportPages pages);
   void clear();
 

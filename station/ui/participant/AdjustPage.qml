@@ -1,8 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// Adjustment: a slider with steps, and Done. It shows neither a number nor the boundary, because only the
-// finger should tell. Its length on the screen has no relation to the drawing of the surface above it.
+// Adjustment task: a slider with steps, and Done. It shows neither a number nor the boundary, because the
+// participant should judge only by touch. The slider's length has no relation to the drawing of the surface
+// above it.
 Item {
     id: root
     required property Theme theme
@@ -12,7 +13,7 @@ Item {
     property bool leftHanded: false
     readonly property PageModel page: bridge.page
     readonly property real span: page.sliderMax - page.sliderMin
-    /// The tones have ended: a setting made now could not be felt.
+    /// True if the tones have ended, so that a setting made now could not be felt.
     readonly property bool silent: page.answersOpen
     readonly property real step: page.sliderStep > 0 ? page.sliderStep : span / 100
     property real value: page.slider

@@ -9,9 +9,9 @@ Item {
     required property Texts texts
     property bool leftHanded: false
     property bool known: false
-    /// False if an operator types, who need not be asked twice.
+    /// True if a known code must be confirmed. False if an operator types, who need not be asked twice.
     property bool confirms: true
-    /// The participant may choose the hand that taps. This changes the layout, but not the scoring.
+    /// True if the participant may choose which hand taps. This changes the layout, but not the scoring.
     property bool asksHand: false
     signal handChosen(left: bool)
     signal edited(code: string)

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// A fault or a pause: what happened, what is safe, what to do next. If the amplifier has to be armed first,
-// only an operator can continue. Ending the session requires a confirmation.
+// Page for a fault or a pause: what happened, what is safe, what to do next. If the amplifier has to be armed
+// first, only an operator can continue. Ending the session requires a confirmation.
 Item {
     id: root
     required property Theme theme
@@ -83,8 +83,8 @@ Item {
         }
     }
 
-    // Symbol, heading and text side by side, so that the three parts are found at a glance. A heading never
-    // breaks.
+    // Symbol, heading and text side by side, so that each of them is found at a glance. A heading is never
+    // broken into two lines.
     component Line: Row {
         id: line
         property string glyph

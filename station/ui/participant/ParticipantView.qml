@@ -10,13 +10,13 @@ Rectangle {
     property bool leftHanded: false
     /// True if the end page can open the report of the finished session.
     property bool hasReport: false
-    /// Whether the end page shows the session's numbers, which it does while there is no report.
+    /// True if the end page shows the session's numbers, which it can do while there is no report.
     property alias counting: endPage.counting
     signal closed()
     signal reportWanted()
-    /// Somebody held the progress bar for a long time, so it is an operator.
+    /// Emitted when somebody has held the progress bar for a long time, as only an operator does.
     signal operatorWanted()
-    /// An operator wants to arm the amplifier; `armable` means that the code has been entered.
+    /// Emitted when an operator wants to arm the amplifier; `armable` means that the code has been entered.
     signal armingWanted()
     property bool armable: false
 
@@ -40,7 +40,7 @@ Rectangle {
         id: texts
         language: root.page.language
     }
-    // Ignore taps for this time after a page change, because they were meant for the previous page.
+    // Ignores taps for a short time after a page change, because they were meant for the previous page.
     Timer {
         id: arming
         interval: 350
@@ -160,7 +160,7 @@ Rectangle {
         anchors { right: parent.right; bottom: parent.bottom }
         width: 12 * theme.unit
         height: Math.max(progress.height + 2 * theme.unit, 4 * theme.unit)
-        // Touches during a trial belong to the trial. The button can wait for the trial's end.
+        // Touches during a trial belong to the trial, so the pause button is disabled until the trial's end.
         enabled: !root.inTrial || root.kind === PageModel.Interval
         pressAndHoldInterval: 2000
         onPressAndHold: root.operatorWanted()

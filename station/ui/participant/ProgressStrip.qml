@@ -2,7 +2,7 @@ import QtQuick
 import Turnpoint
 
 // The progress of the session: a bar and two numbers. It changes only between trials, because the session
-// counts then.
+// counts finished trials.
 Item {
     id: root
     required property Theme theme

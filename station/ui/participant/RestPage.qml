@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// A break: shows the remaining time, then Continue, whenever the participant likes.
+// A break: shows the remaining time, then a Continue button, which the participant presses when ready.
 Item {
     id: root
     required property Theme theme
@@ -9,8 +9,8 @@ Item {
     required property SessionBridge bridge
     property bool armed: true
     readonly property PageModel page: bridge.page
-    /// The session sends the length when the break begins and 0 when it is over; in between, this counts
-    /// down.
+    /// Remaining seconds of the break. The session sends the length when the break begins and 0 when it is
+    /// over; in between, this page counts down.
     property int secondsLeft: 0
 
     function read() { secondsLeft = Math.ceil(page.remainingSeconds) }

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Shows nothing in a live session. Otherwise it draws a band across the top and a frame around everything, so
-// that no page, and no photograph of one, can be mistaken for the real thing.
+// Shows nothing in a live session. In all others it draws a band across the top and a frame around
+// everything, so that no page, and no photograph of one, can be mistaken for a live session.
 Item {
     id: root
     required property Theme theme

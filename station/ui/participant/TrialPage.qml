@@ -35,7 +35,7 @@ Item {
         accent: root.theme.action
     }
 
-    // Intervals: one place for each interval, with the current one filled.
+    // One dot for each interval, with the current one filled.
     Row {
         visible: root.counted && !root.feedback && root.page.kind !== PageModel.Interval
         anchors { horizontalCenter: parent.horizontalCenter; verticalCenter: surface.verticalCenter }

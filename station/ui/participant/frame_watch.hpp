@@ -9,14 +9,14 @@
 
 namespace turnpoint::ui {
 
-/// Computes how late a screen was. Pure; times are CLOCK_MONOTONIC. Spans may overlap: no frame is counted
-/// twice.
+/// Counts how many frames late the screen was. Pure; times are CLOCK_MONOTONIC. Time spans may overlap: no
+/// frame is counted twice.
 class LateFrames {
  public:
   /// `refresh_Hz` at or below 0 counts as 60.
   explicit LateFrames(double refresh_Hz) : refresh_Hz_(refresh_Hz > 0 ? refresh_Hz : 60) {}
 
-  /// From `from_ns` to `to_ns` nothing new could be shown.
+  /// Reports a time span in which nothing new could be shown.
   void waited(std::int64_t from_ns, std::int64_t to_ns);
   int count() const { return count_; }
 
@@ -25,7 +25,7 @@ class LateFrames {
 
  private:
   double refresh_Hz_;
-  std::int64_t counted_ns_ = 0;  ///< everything up to here has been counted
+  std::int64_t counted_ns_ = 0;  ///< end of the time that has been counted
   int count_ = 0;
 };
 
@@ -43,17 +43,17 @@ class FrameWatch : public QObject {
   /// Follows this window; `refresh_Hz` at or below 0 counts as 60.
   void follow(QQuickWindow* window, double refresh_Hz);
 
-  /// Something new is to be shown. The next frame shows it; a frame is drawn even if it looks the same, so
-  /// that a later frame is never mistaken for this one. The first call begins the count.
+  /// Call this when something new is to be shown. The next frame shows it; a frame is drawn even if it looks
+  /// the same, so that a later frame is never mistaken for this one. The first call begins the count.
   void asked();
 
-  /// Ends the count and returns it; 0 if none had begun.
+  /// Ends the count and returns the number of late frames; 0 if no count had begun.
   int end();
 
  private:
   void begin();
   void beat();
-  void swapped();  ///< on the rendering thread
+  void swapped();  ///< called on the rendering thread when a frame is on the screen
   void waited(std::int64_t from_ns);
 
   Clock clock_;
@@ -61,7 +61,8 @@ class FrameWatch : public QObject {
   double refresh_Hz_ = 60;
   QTimer timer_;
   std::int64_t beat_ns_ = 0;
-  std::atomic<std::int64_t> asked_ns_{0};  ///< time of the request; 0: none
+  /// time at which something new was requested; 0 if nothing is waiting
+  std::atomic<std::int64_t> asked_ns_{0};
   std::mutex mutex_;
   LateFrames late_{60};  ///< guarded by the mutex
 };

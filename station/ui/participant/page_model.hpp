@@ -47,7 +47,7 @@ class PageModel : public QObject {
   Q_PROPERTY(QStringList summaryValues READ summary_values NOTIFY changed)
 
  public:
-  /// session::PageKind with the names that QML shows.
+  /// The values of session::PageKind under names that QML can use.
   enum class Kind {
     Instructions,
     Cue,
@@ -64,7 +64,7 @@ class PageModel : public QObject {
     Failed
   };
   Q_ENUM(Kind)
-  /// What a feedback page says; Message has only its text (after a late answer).
+  /// What a feedback page says; Message shows only the page's own text (after a late answer).
   enum class Verdict { Message, Right, Wrong };
   Q_ENUM(Verdict)
 
@@ -100,7 +100,7 @@ class PageModel : public QObject {
   QString safe() const { return QString::fromStdString(page_.safe); }
   QString to_do() const { return QString::fromStdString(page_.to_do); }
   QString detail() const { return QString::fromStdString(page_.detail); }
-  /// Only an operator who arms the amplifier can continue from here.
+  /// True if only an operator who arms the amplifier can continue from this page.
   bool awaits_arming() const { return page_.amplifier == "disarmed" || page_.amplifier == "faulted"; }
   QStringList summary_labels() const;
   QStringList summary_values() const;

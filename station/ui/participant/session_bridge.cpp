@@ -92,7 +92,7 @@ void SessionBridge::annotate(const QString& text) {
 
 void SessionBridge::frames_lost(int frames) {
   if (frames <= 0) return;
-  session::Input input;  // not by push(), because nobody has pressed anything
+  session::Input input;  // push() is not used here, because this is not an input of a person
   input.time_ns = clock_();
   input.kind = session::InputKind::frames_lost;
   input.value = frames;

@@ -25,22 +25,22 @@ class SessionBridge : public QObject, public session::Display {
   Q_PROPERTY(turnpoint::ui::PageModel* page READ page CONSTANT)
 
  public:
-  /// The id under which mouse presses are stamped; touch ids are not negative.
+  /// The touch id for mouse presses; real touch ids are not negative.
   static constexpr int kMouse = -1;
 
   using Clock = std::function<std::int64_t()>;
   using Sink = std::function<void(session::Input)>;
-  /// The kernel's time of a touch at (x, y), each from 0 to 1 in the window, that arrived at `seen_ns`; empty
-  /// if unknown.
+  /// A function that returns the kernel's time of a touch at (x, y), each from 0 to 1 in the window, that
+  /// arrived at `seen_ns`; empty if unknown.
   using KernelTime = std::function<std::optional<std::int64_t>(double x, double y, std::int64_t seen_ns)>;
 
   SessionBridge(Clock clock, Sink sink, QObject* parent = nullptr);
 
-  /// From now on touches get the kernel's time if `kernel_time` knows it, with the corresponding quality. The
-  /// window must fill the panel.
+  /// Uses `kernel_time` for the times of touches from now on. A touch that it knows gets the quality
+  /// `kernel`. The window must fill the panel.
   void set_kernel_time(KernelTime kernel_time) { kernel_time_ = std::move(kernel_time); }
 
-  /// May be called on any thread; returns at once. Pages appear in the order of the calls.
+  /// Shows a page. May be called on any thread; returns at once. Pages appear in the order of the calls.
   void show(const session::Page& page) override;
 
   /// Stamps each touch and mouse press on the window, whatever it hits. Those that do not become an answer
@@ -54,25 +54,27 @@ class SessionBridge : public QObject, public session::Display {
   /// seen.
   std::int64_t began_ns(int touch_id) const;
 
-  /// A touch has just pressed an answer's button; the next frame must show that.
+  /// Reports that a touch has just pressed an answer's button; the next frame must show that.
   void pressed() { emit acknowledged(); }
 
-  /// An answer accepted by the touch field: the touch that began at `time_ns` chose the answer `index`.
+  /// Reports an answer that the touch field accepted: the touch that began at `time_ns` chose the answer
+  /// `index`.
   void answer(int index, std::int64_t time_ns);
 
   Q_INVOKABLE void next();
   Q_INVOKABLE void moveSlider(double value);
   Q_INVOKABLE void pause();
   Q_INVOKABLE void stop();
-  /// For the operator: void the current trial and present it again; arm the amplifier; store a note.
+  /// These are for the operator: void the current trial and present it again; arm the amplifier; store a
+  /// note.
   Q_INVOKABLE void repeat();
   Q_INVOKABLE void arm();
   Q_INVOKABLE void annotate(const QString& text);
-  /// The number of frames that the screen lost during the finished trial; 0 is not logged.
+  /// Reports the number of frames that the screen lost during the finished trial; 0 is not logged.
   void frames_lost(int frames);
 
  signals:
-  /// A page has been applied (even if it equals the previous one).
+  /// Emitted when a page has been applied (even if it equals the previous one).
   void shown();
   void acknowledged();
 
@@ -83,8 +85,8 @@ class SessionBridge : public QObject, public session::Display {
   /// A touch that may still become an answer.
   struct Pending {
     int id = 0;
-    std::int64_t time_ns = 0;  ///< the toolkit's time
-    double x = 0, y = 0;       ///< from 0 to 1 in the window
+    std::int64_t time_ns = 0;  ///< time stamp by Qt
+    double x = 0, y = 0;       ///< position from 0 to 1 in the window
   };
 
   void note_touch(int id, QPointF position, const QObject* window);

@@ -11,10 +11,11 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Several reports within the two seconds after which the amplifier's guard switches off.
+/// Interval of the page's life signs: several fit into the two seconds after which the amplifier's guard
+/// switches off.
 constexpr int kLife_ms = 250;
 
-/// Pages on which a late frame would matter, so that it is counted.
+/// True for pages on which a late frame would matter, so that late frames are counted.
 bool is_trial(PageModel::Kind kind) {
   using Kind = PageModel::Kind;
   return kind == Kind::Cue || kind == Kind::Stimulus || kind == Kind::Pause || kind == Kind::Response ||
@@ -34,7 +35,8 @@ SessionRunner::SessionRunner(QObject* parent)
     const auto kind = bridge_.page()->kind();
     if (is_trial(kind)) return frames_.asked();
     const int lost = frames_.end();
-    // Each counted trial ends in an interval; a trial that a fault or a pause interrupted is repeated.
+    // Late frames are reported when a trial's last interval ends. A trial that a fault or a pause interrupted
+    // is repeated and not counted.
     if (kind == PageModel::Kind::Interval) bridge_.frames_lost(lost);
   });
   connect(&bridge_, &SessionBridge::acknowledged, this, [this] {
@@ -67,7 +69,7 @@ void SessionRunner::begin(session::Setup setup) {
   thread_ = std::jthread([this] { run(); });
 }
 
-/// Session thread.
+/// Runs on the session thread.
 void SessionRunner::run() {
   try {
     summary_ = session::run(setup_, &bridge_, inputs_, view_.get());
@@ -105,7 +107,8 @@ void SessionRunner::open_touch() {
       [this](double x, double y, std::int64_t seen_ns) { return touch_->claim(x, y, seen_ns); });
 }
 
-/// Session thread: shows on the screen what ended the session, because nobody may be looking at a terminal.
+/// Runs on the session thread. Shows on the screen what ended the session, because nobody may be looking at a
+/// terminal.
 void SessionRunner::show_failure() {
   session::Page page;
   page.kind = session::PageKind::failed;
@@ -124,7 +127,7 @@ void SessionRunner::ask_to_stop() {
   session::Input input;
   input.time_ns = system::monotonic_ns();
   input.kind = session::InputKind::stop;
-  input.text = "the program was asked to end (by a signal, or its window was closed)";
+  input.text = "the program was stopped by a signal, or its window was closed";
   inputs_.push(std::move(input));
 }
 

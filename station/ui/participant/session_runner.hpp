@@ -42,11 +42,12 @@ class SessionRunner : public QObject {
   bool running() const { return thread_.joinable() && !over_; }
   void ask_to_stop();
 
-  /// Waits for the session's end. Throws what ended it; empty if no session was begun.
+  /// Waits for the session's end and returns its summary; empty if no session was begun. Throws the exception
+  /// that ended the session, if any.
   std::optional<session::Summary> finish();
 
  signals:
-  /// The session is over and its end page is on the screen.
+  /// Emitted when the session is over and its end page is on the screen.
   void over();
 
  private:

@@ -23,10 +23,10 @@ class StartController : public QObject {
  public:
   enum class Stage { Operator, Language, Consent, Code, Session };
   Q_ENUM(Stage)
-  /// True for a participant code that is already in the database.
+  /// Returns true for a participant code that is already in the database.
   using Known = std::function<bool(const QString& code)>;
 
-  /// What to ask. "" asks for language and participant, but for no consent.
+  /// What to ask: language and participant if they are "", consent if its version is not "".
   struct Questions {
     QStringList languages;
     QString language, participant, consent_version;
@@ -51,15 +51,15 @@ class StartController : public QObject {
   Q_INVOKABLE void chooseLanguage(int index);
   Q_INVOKABLE bool isKnown(const QString& code) const { return known_(code); }
   Q_INVOKABLE void consent();
-  /// The participant does not consent, or leaves the last page.
+  /// Call this if the participant does not consent, or leaves the last page.
   Q_INVOKABLE void close() { emit closed(); }
   Q_INVOKABLE void enterCode(const QString& code);
 
  signals:
   void changed();
-  /// Everything has been answered: the session may begin.
+  /// Emitted when everything has been answered and the session may begin.
   void ready();
-  /// These pages are no longer needed.
+  /// Emitted when these pages are no longer needed.
   void closed();
 
  private:

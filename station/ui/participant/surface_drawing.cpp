@@ -13,7 +13,7 @@ namespace {
 /// A much slimmer strip would be just a line on a small panel, so it is drawn wider than to scale.
 constexpr double kSlimmest = 1.0 / 11;
 constexpr double kTick_mm = 10, kLabel_mm = 50;
-constexpr double kFinger = 5;  // width in units
+constexpr double kFinger = 5;  // width of the drawn finger, in units of Layout::unit
 
 QColor mixed(const QColor& a, const QColor& b, double part_of_b) {
   return QColor::fromRgbF(static_cast<float>(a.redF() + (b.redF() - a.redF()) * part_of_b),
@@ -31,12 +31,13 @@ QFont font_of(double pixels) {
 
 /// The layout in pixels. x grows from the wide end, in either orientation.
 struct SurfaceDrawing::Layout {
-  double left = 0, right = 0;  ///< ends of the strip
-  double axis_y = 0;           ///< centre line
-  double px_per_mm = 1;        ///< along the strip
+  double left = 0, right = 0;  ///< x of the two ends of the strip
+  double axis_y = 0;           ///< y of the strip's centre line
+  double px_per_mm = 1;        ///< scale along the strip
   double wide_half = 0, narrow_half = 0;
   double scale_text = 0, flag_text = 0, flag_height = 0;
-  double unit = 1;  ///< height / 20: strokes and gaps follow the item's size
+  /// 1/20 of the height: strokes and gaps are multiples of it, so that they follow the item's size
+  double unit = 1;
   double length_mm = 1;
   bool wide_left = true;
 
@@ -135,13 +136,14 @@ void SurfaceDrawing::paint_scale(QPainter& painter, const Layout& at) const {
   }
 }
 
-/// A half-covered number would be misread.
+/// True if the finger covers part of this number of the scale, which must then be left out: half a number
+/// would be misread.
 bool SurfaceDrawing::behind_finger(const Layout& at, double mm, double width_px) const {
   if (!show_finger_) return false;
   return std::abs(at.x(mm) - finger_x(at)) < 0.5 * (width_px + kFinger * at.unit) + 0.4 * at.unit;
 }
 
-/// Below the mark and symmetric to it: the position of the finger must not favour an answer.
+/// The finger is below the mark and symmetric to it, because its position must not favour an answer.
 double SurfaceDrawing::finger_x(const Layout& at) const {
   return at.x(has_mark_ ? mark_mm_ : 0.5 * length_mm_);
 }

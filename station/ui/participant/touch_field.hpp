@@ -25,7 +25,7 @@ class TouchField : public QQuickItem {
   explicit TouchField(QQuickItem* parent = nullptr);
 
   bool is_open() const { return judge_.is_open(); }
-  void set_open(bool open);  // NOLINT: the setter of a QML property
+  void set_open(bool open);  // the name is that of a QML property's setter (NOLINT)
   int pressed() const { return pressed_; }
 
  signals:

@@ -9,7 +9,7 @@ namespace turnpoint::ui {
 /// A finger that came down on the panel. Times are CLOCK_MONOTONIC.
 struct Touch {
   std::int64_t time_ns = 0;
-  int target = -1;         ///< index of the answer under it; -1 if there is none
+  int target = -1;         ///< index of the answer button under the finger; -1 if there is none
   double diameter_mm = 0;  ///< diameter of the contact; 0 if the panel does not report it
 };
 
@@ -23,7 +23,8 @@ class TouchJudge {
  public:
   struct Rules {
     std::int64_t settle_ns = terms::kOneTouch_ns;
-    double palm_mm = 24;  ///< a thumb pressed flat makes about 18 mm, a palm 30 or more
+    /// larger contacts are palms: a thumb pressed flat makes about 18 mm, a palm 30 or more
+    double palm_mm = 24;
   };
   struct Answer {
     int target = 0;
@@ -33,21 +34,21 @@ class TouchJudge {
   TouchJudge() = default;
   explicit TouchJudge(const Rules& rules) : rules_(rules) {}
 
-  void open();   ///< Answers open now. Touches that are already down can never answer.
-  void close();  ///< answers close
+  void open();   ///< Opens the answers. Touches that are already down can never answer.
+  void close();  ///< Closes the answers.
   bool is_open() const { return open_; }
 
-  /// A finger came down. Lifting does not matter: a quick tap is over before it has settled, and lifting does
-  /// not withdraw an answer.
+  /// Reports that a finger came down. Lifting it does not matter: a quick tap is over before it has settled,
+  /// and lifting does not withdraw an answer.
   void down(const Touch& touch);
-  /// The toolkit cancelled all touches (a gesture of the system, a lost device).
+  /// Reports that Qt has cancelled all touches (because of a system gesture or a lost device).
   void cancel();
 
   /// The answer, if one has settled by now. Each answer is returned only once.
   std::optional<Answer> decide(std::int64_t now_ns);
-  /// When to ask decide() next, if a touch is settling.
+  /// The time at which to call decide() next, if a touch is settling.
   std::optional<std::int64_t> due_ns() const;
-  /// The target to show as pressed, because it is settling or was accepted; -1: none.
+  /// Index of the target to show as pressed, because a touch on it is settling or was accepted; -1 if none.
   int pressed() const;
 
  private:

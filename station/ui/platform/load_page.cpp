@@ -11,7 +11,7 @@ QQuickWindow& load_page(QQmlApplicationEngine& engine, const QString& page, cons
   auto* window =
       engine.rootObjects().isEmpty() ? nullptr : qobject_cast<QQuickWindow*>(engine.rootObjects().first());
   if (window == nullptr)
-    throw std::runtime_error("the pages of the touchscreen do not load: " + page.toStdString());
+    throw std::runtime_error("the pages of the touchscreen could not be loaded: " + page.toStdString());
   return *window;
 }
 

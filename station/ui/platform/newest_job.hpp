@@ -9,21 +9,22 @@
 
 namespace turnpoint::ui {
 
-/// Runs slow jobs for a page on its own thread. Only the newest counts: starting another asks the running one
-/// to stop, and drops one that has not begun. The GUI thread never waits for a job, except in the destructor.
+/// Runs slow jobs for a page on its own thread. Only the newest job counts: starting another asks the running
+/// one to stop, and drops one that has not begun. The GUI thread never waits for a job, except in the
+/// destructor.
 class NewestJob {
  public:
-  /// Runs on the worker thread. The function that it returns runs on the owner's thread, unless another job
-  /// was started meanwhile. Must not throw.
+  /// A job runs on the worker thread. The function that it returns runs on the owner's thread, unless another
+  /// job was started meanwhile. Must not throw.
   using Job = std::function<std::function<void()>(const std::stop_token&)>;
 
-  /// The owner must outlive it.
+  /// The owner must outlive this object.
   explicit NewestJob(QObject& owner);
   ~NewestJob();  ///< asks the running job to stop, and waits for it
 
-  /// Owner's thread; returns at once.
+  /// Starts a job. Call this on the owner's thread; it returns at once.
   void start(Job job);
-  /// For the owner's thread; returns at once. Results of all jobs started so far are dropped.
+  /// Drops the results of all jobs started so far. Call this on the owner's thread; it returns at once.
   void abandon();
 
  private:
@@ -34,7 +35,7 @@ class NewestJob {
   void run(const std::stop_token& stop);
 
   QObject& owner_;
-  int newest_ = 0;  ///< owner's thread only
+  int newest_ = 0;  ///< number of the newest job; used on the owner's thread only
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<Wanted> wanted_;

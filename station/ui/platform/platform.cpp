@@ -18,27 +18,28 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// eglfs uses the first card, which may have no connector. This writes a file that tells it which card has
-/// one. Returns nothing if the user has set it already.
+/// eglfs uses the first graphics card, which may have no connector. This writes a configuration file that
+/// names a card with a connector. Returns nothing if the user has already chosen a configuration.
 std::unique_ptr<QTemporaryFile> eglfs_config(const std::string& card) {
   if (qEnvironmentVariableIsSet("QT_QPA_EGLFS_KMS_CONFIG")) return nullptr;
   auto file = std::make_unique<QTemporaryFile>();
   if (!file->open())
-    throw std::runtime_error("screen: a temporary file: " + file->errorString().toStdString());
+    throw std::runtime_error("screen: cannot make a temporary file: " + file->errorString().toStdString());
   file->write(QByteArray("{\"device\": \"") + card.c_str() + "\"}\n");
   file->close();
   qputenv("QT_QPA_EGLFS_KMS_CONFIG", file->fileName().toUtf8());
   return file;
 }
 
-/// Hides the mouse pointer, which would be out of place on a participant's page. 0 in the environment shows
-/// it, for work with a mouse.
+/// Hides the mouse pointer, which would be out of place on a participant's page, unless the environment
+/// variable is already set (0 shows the pointer).
 void hide_pointer() {
   for (const char* variable : {"QT_QPA_EGLFS_HIDECURSOR", "QT_QPA_FB_HIDECURSOR"})
     if (!qEnvironmentVariableIsSet(variable)) qputenv(variable, "1");
 }
 
-/// Returns the file that the platform reads while it starts.
+/// Chooses Qt's platform plug-in. Returns a configuration file that must exist while the plug-in starts; may
+/// be null.
 std::unique_ptr<QTemporaryFile> choose_platform() {
   const auto wanted = qgetenv("QT_QPA_PLATFORM");
   const bool desktop = qEnvironmentVariableIsSet("DISPLAY") || qEnvironmentVariableIsSet("WAYLAND_DISPLAY");
@@ -47,22 +48,23 @@ std::unique_ptr<QTemporaryFile> choose_platform() {
     if (wanted.isEmpty()) qputenv("QT_QPA_PLATFORM", "eglfs");
     return eglfs_config(card);
   }
-  if (!wanted.isEmpty()) return nullptr;  // another kind of eglfs finds its screen by itself
+  if (!wanted.isEmpty()) return nullptr;  // other kinds of eglfs find their screen by themselves
   if (!std::filesystem::exists("/dev/fb0"))
     throw terms::UsageError(
-        "no screen: no DISPLAY, no WAYLAND_DISPLAY, no graphics card with a connector and no /dev/fb0; give "
-        "--headless --observer sim, or --buttons-only (turnpoint preview: --out DIR)");
+        "no screen: no DISPLAY, no WAYLAND_DISPLAY, no graphics card with a connector and no /dev/fb0; use "
+        "--headless --observer sim, or --buttons-only (for turnpoint preview use --out DIR)");
   qputenv("QT_QPA_PLATFORM", "linuxfb");
   qputenv("QT_QUICK_BACKEND", "software");
   return nullptr;
 }
 
-/// Qt says nothing about a device that it cannot open, so this does.
+/// Qt does not report an input device that it cannot open, so this function does.
 void tell_refused_input() {
   const QString platform = QGuiApplication::platformName();
   if (platform != "eglfs" && platform != "linuxfb") return;
   for (const auto& device : lines::try_input_devices().refused)
-    std::cerr << "input: " << device << "; its touches and keys do not arrive (see turnpoint doctor)\n";
+    std::cerr << "input: " << device
+              << "; touches and keys of this device are not received (see turnpoint doctor)\n";
 }
 
 }  // namespace
@@ -70,7 +72,7 @@ void tell_refused_input() {
 Application::Application() {
   hide_pointer();
   const auto read_at_start = choose_platform();
-  qputenv("QT_QPA_NO_SIGNAL_HANDLER", "1");  // we handle the stop signals, see there
+  qputenv("QT_QPA_NO_SIGNAL_HANDLER", "1");  // StopSignals handles the stop signals instead of Qt
   application_ = std::make_unique<QGuiApplication>(argc_, argv_);
   tell_refused_input();
   set_fonts();

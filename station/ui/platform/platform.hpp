@@ -8,12 +8,12 @@
 
 namespace turnpoint::ui {
 
-/// Size of the window on a desktop.
+/// Size of the window if the program runs on a desktop.
 constexpr QSize kWindow{1280, 800};
 
-/// The application object with a suitable back end: as QT_QPA_PLATFORM says, or a desktop's, or eglfs, or
-/// else the bare frame buffer. Qt kills the process if it finds no screen; this throws terms::UsageError
-/// before that.
+/// The application object with a suitable Qt platform plug-in: the one in QT_QPA_PLATFORM, or a desktop's, or
+/// eglfs, or else linuxfb, which needs only a frame buffer. Qt kills the process if it finds no screen; this
+/// class throws terms::UsageError before that.
 class Application {
  public:
   Application();
@@ -32,7 +32,7 @@ class Application {
   char name_[13] = "turnpoint-ui";
   char* argv_[2] = {name_, nullptr};
   std::unique_ptr<QGuiApplication> application_;
-  // Both run in the application's event loop.
+  // The watchdog and the stop signals both run in the application's event loop.
   std::unique_ptr<ServiceWatchdog> watchdog_;
   std::unique_ptr<StopSignals> stop_signals_;
 };

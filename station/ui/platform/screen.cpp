@@ -19,7 +19,7 @@ double pixels_per_mm(const QScreen& screen) {
     bool is_number = false;
     const double dpi = stated.toDouble(&is_number);
     if (!is_number || !believable(dpi)) {
-      throw terms::UsageError("TURNPOINT_DPI: " + stated.toStdString() + " dpi; allowed: 60 to 500");
+      throw terms::UsageError("TURNPOINT_DPI: " + stated.toStdString() + " dpi; allowed are 60 to 500 dpi");
     }
     return dpi / kInch_mm;
   }

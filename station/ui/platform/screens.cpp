@@ -15,8 +15,8 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// A placeholder for the code that the keypad will ask for, so that everything else can be checked before a
-/// window opens.
+/// Used instead of the code that the participant will type later, so that everything else can be checked
+/// before a window opens.
 constexpr const char* kCodeToCome = "keypad";
 
 StationWindow::Place place_on(const Application& application) {
@@ -31,7 +31,8 @@ void stop_in_order(const Application& application, const QQuickWindow& window) {
       static_cast<Qt::ConnectionType>(Qt::AutoConnection | Qt::SingleShotConnection));
 }
 
-/// A session may begin before any page was on the screen.
+/// Like the other stop_in_order(), for a station window: a session may begin before any page was on the
+/// screen.
 void stop_in_order(const Application& application, StationWindow& window) {
   stop_in_order(application, window.window());
   QObject::connect(&window, &StationWindow::beginning, &application.stop_signals(), &StopSignals::take_over);
@@ -62,7 +63,7 @@ session::Summary run_on_screen(setup::RunRequest request, std::optional<session:
   if (chosen.ask_code) request.participant = kCodeToCome;
   chosen.setup = prepared ? std::move(*prepared) : setup::prepare(request);
   chosen.ask_language = !prepared && request.language.empty() && chosen.setup.protocol.languages.size() > 1;
-  chosen.arm = true;  // the operator gave this command
+  chosen.arm = true;  // the operator has asked for arming on the command line
   const Application application;
   StationWindow window(place_on(application), {nullptr, desk::operator_code()}, chosen.setup.database);
   use_second_screen(application, window);

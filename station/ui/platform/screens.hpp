@@ -18,10 +18,10 @@ namespace turnpoint::ui {
 /// session: then nothing is asked, and `request` is ignored.
 session::Summary run_on_screen(setup::RunRequest request, std::optional<session::Setup> prepared);
 
-/// The operator's start page, and the sessions started from it.
+/// Shows the operator's start page, and runs the sessions started from it.
 void run_station(const setup::StationRequest& request);
 
-/// The scenes of a protocol with sliders for their factors.
+/// Shows the scenes of a protocol with sliders for their factors.
 void show_preview(const desk::PreviewRequest& request);
 
 /// Measures taps on the panel against the rig's reference line. Returns the result that the operator accepts;

@@ -19,7 +19,7 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// `QT_LOGGING_RULES=turnpoint.startup=true` logs how long the first page took.
+/// Logging of how long the first page took, which `QT_LOGGING_RULES=turnpoint.startup=true` switches on.
 Q_LOGGING_CATEGORY(startup, "turnpoint.startup", QtWarningMsg)
 
 /// Milliseconds since the kernel started this process, with a resolution of 10 ms.
@@ -28,7 +28,7 @@ double process_age_ms() {
   const std::string line{std::istreambuf_iterator<char>(stat), {}};
   std::istringstream fields(line.substr(line.rfind(')') + 1));
   std::string field;
-  for (int i = 3; i <= 22; ++i) fields >> field;  // 22: start time in ticks since boot
+  for (int i = 3; i <= 22; ++i) fields >> field;  // field 22 is the start time in ticks since boot
   timespec now{};
   ::clock_gettime(CLOCK_BOOTTIME, &now);
   const double started_s = std::stod(field) / static_cast<double>(::sysconf(_SC_CLK_TCK));

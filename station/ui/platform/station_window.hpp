@@ -14,8 +14,8 @@
 
 namespace turnpoint::ui {
 
-/// The station's only window: the participant's pages, before them the operator's if there is one, and the
-/// sessions behind them, one after another. GUI thread only.
+/// The station's only window. It shows the operator's page, if there is one, and then the participant's
+/// pages, and runs the sessions behind them one after another. GUI thread only.
 class StationWindow : public QObject {
   Q_OBJECT
 
@@ -23,13 +23,14 @@ class StationWindow : public QObject {
   struct Place {
     double pixels_per_mm = 4;
     QSize size;
-    bool bare_panel = false;  ///< the window fills the screen
+    bool bare_panel = false;  ///< true if the window fills the screen
   };
 
   struct Operator {
-    OperatorController* page = nullptr;  ///< must outlive the window; null: no operator's page
-    desk::OperatorCode code;             ///< opens the operator's view from the participant's pages
-    bool locked = false;                 ///< lock the operator's page from the beginning
+    /// the operator's page, which must outlive the window; null if there is none
+    OperatorController* page = nullptr;
+    desk::OperatorCode code;  ///< the code that opens the operator's view from the participant's pages
+    bool locked = false;      ///< true if the operator's page is locked from the beginning
   };
 
   StationWindow(const Place& place, const Operator& allowed, const std::string& database);
@@ -37,17 +38,18 @@ class StationWindow : public QObject {
   /// Asks the participant what is missing, then runs the session.
   void ask(const ChosenSession& chosen);
 
-  /// Shows the operator's view on its own screen during the lifetime of this object.
+  /// Shows the operator's view on this screen during the lifetime of this object.
   QQuickWindow& show_live_window(QScreen& screen);
 
-  /// Runs until the window is closed. Throws what ended the last session; empty if no session was begun.
+  /// Runs until the window is closed and returns the last session's summary; empty if no session was begun.
+  /// Throws the exception that ended the last session, if any.
   std::optional<session::Summary> run();
 
   QQuickWindow& window() { return *window_; }
   SessionRunner& runner() { return runner_; }
 
  signals:
-  /// A session is about to begin.
+  /// Emitted when a session is about to begin.
   void beginning();
 
  private:

@@ -6,19 +6,16 @@
 
 namespace turnpoint::ui {
 
-/// The stop signals of a program with a screen (see system::StopSignals): before the first page they end the
-/// process at once, since no amplifier is armed and nothing is half written that a cut of the power would not
-/// leave as well, so that there is nothing to wait for. After take_over() the first of them ends the event
-/// loop, and with it in order whatever runs behind the pages.
-///
-/// Made on the GUI thread, and living no longer than the application object. Qt's own handlers on eglfs and
-/// linuxfb must be off (Application sees to that): they wait for an event loop from the start on, and then
-/// leave without unwinding.
+/// The stop signals of a program with a screen (see system::StopSignals). Before the first page they end the
+/// process at once, because no amplifier is armed and no data are being written. After take_over() the first
+/// signal ends the event loop, and so everything behind the pages ends cleanly. Create this object on the GUI
+/// thread and destroy it before the application object. Qt's own handlers on eglfs and linuxfb must be off
+/// (Application does that), because they would end the program without running destructors.
 class StopSignals : public QObject {
  public:
   /// Throws std::system_error if no descriptor for waking the event loop can be created.
   StopSignals();
-  ~StopSignals() override;  ///< restores the signal handling from before take_over()
+  ~StopSignals() override;  ///< restores the signal handlers that were in force before take_over()
 
   /// From now on a signal ends the event loop. Call this before beginning anything that must be ended
   /// cleanly; further calls have no effect.

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// A button for everything but answers. It acts only if a press both begins and ends on it while it is armed,
-// so that a tap meant for the previous page never triggers it.
+// A button for everything except answers. It acts only if a press both begins and ends on it while the button
+// is armed, so that a tap meant for the previous page never triggers it.
 Rectangle {
     id: root
     required property Theme theme
@@ -12,7 +12,7 @@ Rectangle {
     property bool armed: true
     property bool primary: true
     property bool quiet: false
-    /// If above 0, the button must be held for this time, and fills up meanwhile.
+    /// If above 0, the button must be held for this many milliseconds, and fills up meanwhile.
     property int holdMs: 0
     signal activated()
 
@@ -68,7 +68,8 @@ Rectangle {
     }
     MouseArea {
         id: area
-        /// The press has acted. Its action may have changed this into a button that need not be held.
+        /// True if this press has already triggered the action, which may have changed the button into one
+        /// that need not be held.
         property bool done: false
         anchors.fill: parent
         enabled: root.enabled && root.armed

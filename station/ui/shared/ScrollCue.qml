@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Beside a scrolling area: shows that there is more than is visible, and the current position. It takes no
-// touches.
+// A bar beside a scrolling area, which shows that there is more than is visible, and the current position. It
+// takes no touches.
 Rectangle {
     id: root
     required property Theme theme

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// The station's own texts from the catalogue of this language; the protocol brings its own. An unsupported
-// language falls back to English.
+// The station's own texts from the catalogue of this language; texts of the protocol come from its file. An
+// unsupported language falls back to English.
 QtObject {
     required property string language
 
@@ -26,11 +26,12 @@ QtObject {
         const hiragana = /[\u3041-\u309f]/, begins = /[\u30a1-\u30fa\u3400-\u9fff\u300c\u300e\uff08]/
         const polite = at => /[おご]/.test(text[at]) && /[\u3400-\u9fff]/.test(text[at + 1] ?? "")
         if (/[、。・!?]/.test(text[i])) return true
-        if (/[」』)]/.test(text[i])) return !hiragana.test(text[i + 1])  // otherwise its particle follows
+        // a closing bracket ends the phrase, unless a particle in hiragana follows it
+        if (/[」』)]/.test(text[i])) return !hiragana.test(text[i + 1])
         return hiragana.test(text[i]) && !polite(i) && (begins.test(text[i + 1]) || polite(i + 1))
     }
 
-    // {state: none | recent | old | ahead, hours}
+    // `backup` is {state: none | recent | old | ahead, hours}
     function lastBackup(backup) {
         if (backup.state === "none") return text("backup_none")
         if (backup.state === "ahead")

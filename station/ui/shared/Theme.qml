@@ -6,8 +6,8 @@ QtObject {
     required property real width
     required property real height
     required property real pixelsPerMm
-    /// For the operator's pages: more content per page, read from a shorter distance by somebody who knows
-    /// them.
+    /// True for the operator's pages: more content per page, read from a shorter distance by somebody who
+    /// knows these pages.
     property bool dense: false
 
     readonly property real unit: Math.min(width / 80, height / 48)

@@ -4,7 +4,7 @@
 
 namespace turnpoint::ui {
 
-/// The station's own texts for pages: texts::text.
+/// Gives pages the station's own texts, from texts::text().
 class Catalogue : public QObject {
   Q_OBJECT
   QML_ELEMENT

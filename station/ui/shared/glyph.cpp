@@ -10,7 +10,7 @@ namespace turnpoint::ui {
 
 namespace {
 
-constexpr double kUnits = 24;  // side of the square in which the strokes are given
+constexpr double kUnits = 24;  // side of the square in which the coordinates of the strokes are given
 
 using Stroke = std::initializer_list<QPointF>;
 
@@ -37,7 +37,7 @@ QPainterPath shield() {
   return path;
 }
 
-/// A dot is a stroke so short that only its round ends are seen.
+/// The outline of a symbol. A dot is drawn as a stroke so short that only its round ends are seen.
 QPainterPath outline(const QString& name) {
   static const QHash<QString, QPainterPath> outlines{
       {"tick", lines({{{4, 13}, {10, 19}, {20, 6}}})},
