@@ -18,7 +18,7 @@ void apply(const Calibration::Transducer& measured, rig::Rig& rig) {
                                   [&](const auto& t) { return t.name == measured.name; });
   if (found == rig.transducers.end())
     throw terms::UsageError(
-        fmt::format("the calibration has a transducer \"{}\", the rig does not", measured.name));
+        fmt::format("the calibration has a transducer \"{}\", but the rig does not", measured.name));
   found->m_per_full_scale.reset();
   found->response.clear();
   for (const auto& point : measured.response.points)
@@ -27,8 +27,9 @@ void apply(const Calibration::Transducer& measured, rig::Rig& rig) {
   found->high_Hz = std::min(found->high_Hz, measured.response.high_Hz);
   if (!(found->low_Hz < found->high_Hz))
     throw terms::UsageError(fmt::format(
-        "transducer \"{}\": the calibrated band, {} to {} kHz, is outside the rig's", measured.name,
-        text::number(measured.response.low_Hz * 1e-3), text::number(measured.response.high_Hz * 1e-3)));
+        "transducer \"{}\": the calibrated band, {} to {} kHz, is outside the band in the rig file",
+        measured.name, text::number(measured.response.low_Hz * 1e-3),
+        text::number(measured.response.high_Hz * 1e-3)));
 }
 
 std::string stem_of(const std::string& rig_path) {
@@ -61,7 +62,7 @@ std::string newest_for(const std::string& rig_path) {
   std::error_code unreadable;
   for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
     const auto name = entry.path().filename().string();
-    // Dates in this form sort chronologically.
+    // Dates in this form sort in the order of time.
     if (name.starts_with(begins) && name.ends_with(".toml") && name.size() == begins.size() + 15)
       newest = std::max(newest, name);
   }

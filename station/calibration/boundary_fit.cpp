@@ -57,12 +57,15 @@ std::optional<double> curvature(const std::vector<BoundaryPoint>& points,
 void check(const std::vector<BoundaryPoint>& points, bool law_known) {
   const std::size_t needed = law_known ? 2 : 3;
   if (points.size() < needed)
-    throw terms::UsageError(fmt::format("{} measured boundaries; {} or more are needed{}", points.size(),
-                                        needed, law_known ? "" : " to tell a membrane from a plate"));
+    throw terms::UsageError(fmt::format("there are {} measured boundaries, but {} or more are needed{}",
+                                        points.size(), needed,
+                                        law_known ? "" : " to tell a membrane from a plate"));
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!(points[i].frequency_Hz > 0) || !std::isfinite(points[i].boundary_m) || !(points[i].sd_m >= 0))
-      throw terms::UsageError(fmt::format("boundary at {} m for {} Hz; allowed finite, above 0 Hz",
-                                          points[i].boundary_m, points[i].frequency_Hz));
+      throw terms::UsageError(
+          fmt::format("boundary at {} m for {} Hz; the position must be finite, the frequency above 0 and "
+                      "the SD not negative",
+                      points[i].boundary_m, points[i].frequency_Hz));
     for (std::size_t j = 0; j < i; ++j)
       if (points[i].frequency_Hz == points[j].frequency_Hz && points.size() < 3)
         throw terms::UsageError(

@@ -37,8 +37,8 @@ Calibration fit_measurements(const Measurements& measurements) {
   std::vector<std::vector<ResponsePoint>> sweeps;
   for (const auto& sweep : measurements.sweeps) {
     if (!(sweep.full_scale > 0 && sweep.full_scale <= 1))
-      throw terms::UsageError(
-          fmt::format("sweep at {} of full scale; allowed above 0 to 1", sweep.full_scale));
+      throw terms::UsageError(fmt::format(
+          "the sweep was measured at {} of full scale; it must be above 0 and at most 1", sweep.full_scale));
     sweeps.emplace_back();
     for (const auto& row : table(sweep.csv, {"frequency_Hz", "displacement_um", "phase_deg"}))
       sweeps.back().push_back({row[0], row[1] * 1e-6 / sweep.full_scale, row[2] * kDegree_rad});
@@ -69,7 +69,8 @@ Calibration fit_measurements(const Measurements& measurements) {
 int days_left(const Calibration& calibration, const std::string& today) {
   const auto made = parsed_date(calibration.made_on), now = parsed_date(today);
   if (!made || !now)
-    throw terms::UsageError("dates '" + calibration.made_on + "' and '" + today + "'; allowed YYYY-MM-DD");
+    throw terms::UsageError("dates '" + calibration.made_on + "' and '" + today +
+                            "'; dates must have the form YYYY-MM-DD");
   return calibration.valid_days - static_cast<int>((*now - *made).count());
 }
 
@@ -77,16 +78,17 @@ std::vector<std::string> problems(const Calibration& calibration, const std::str
                                   const std::string& today) {
   std::vector<std::string> found;
   if (calibration.rig_sha256 != rig_sha256)
-    found.push_back(fmt::format("the calibration is of '{}' as it was then; the rig file is another",
+    found.push_back(fmt::format("the calibration was made for another version of the rig file '{}'",
                                 calibration.rig_name));
   const int left = days_left(calibration, today);
   if (left < 0)
     found.push_back(fmt::format("the calibration of {} expired {} days ago", calibration.made_on, -left));
   if (left > calibration.valid_days)
     found.push_back(
-        fmt::format("the calibration of {} lies in the future of this clock", calibration.made_on));
+        fmt::format("the date of the calibration, {}, is in the future according to this computer's clock",
+                    calibration.made_on));
   if (calibration.transducers.empty() && !calibration.panel)
-    found.push_back("the calibration holds no transducer's response");
+    found.push_back("the calibration does not contain the response of any transducer");
   return found;
 }
 

@@ -80,7 +80,7 @@ std::optional<Delay> read_delay(text::TableReader& reader, const std::string& na
 PanelLatency read_panel(const text::Value& table, text::Findings& findings) {
   text::TableReader reader(table, "panel", findings);
   PanelLatency panel;
-  panel.made_on = reader.string("made_on", "the date, YYYY-MM-DD");
+  panel.made_on = reader.string("made_on", "write the date as YYYY-MM-DD");
   panel.quality = reader.word("quality", {"kernel", "toolkit"});
   panel.touch = read_delay(reader, "response_offset");
   panel.flash = read_delay(reader, "flash");
@@ -91,14 +91,15 @@ PanelLatency read_panel(const text::Value& table, text::Findings& findings) {
 // Reports a problem unless the columns have equal length.
 bool same_length(text::TableReader& reader, const char* key, std::size_t length, std::size_t wanted) {
   if (length == wanted) return true;
-  reader.problem(key, fmt::format("{} values", length), fmt::format("{}, as in the other columns", wanted));
+  reader.problem(key, fmt::format("{} values", length),
+                 fmt::format("there must be {} values, as in the other columns", wanted));
   return false;
 }
 
 Calibration::Transducer read_transducer(const text::Value& table, text::Findings& findings) {
   text::TableReader reader(table, text::titled("transducer", table), findings);
   Calibration::Transducer transducer;
-  transducer.name = reader.string("name", "the transducer's name in the rig file");
+  transducer.name = reader.string("name", "write the transducer's name in the rig file");
   if (const auto band = reader.maybe_interval("band_kHz", {0, 1000, Ends::open_low, "kHz"})) {
     transducer.response.low_Hz = band->first * 1e3;
     transducer.response.high_Hz = band->second * 1e3;
@@ -111,7 +112,8 @@ Calibration::Transducer read_transducer(const text::Value& table, text::Findings
   if (same_length(reader, "um_per_full_scale", response.size(), frequency.size()) &&
       same_length(reader, "phase_deg", phase.size(), frequency.size()))
     for (std::size_t k = 0; k < frequency.size(); ++k) {
-      if (k > 0 && frequency[k] <= frequency[k - 1]) reader.problem("frequency_Hz", "the values do not rise");
+      if (k > 0 && frequency[k] <= frequency[k - 1])
+        reader.problem("frequency_Hz", "the values are not in ascending order");
       transducer.response.points.push_back({frequency[k], response[k] * 1e-6, phase[k] * kDegree_rad});
     }
   reader.finish();
@@ -201,9 +203,9 @@ Calibration parse(const std::string& source, const std::string& path) {
   text::TableReader reader(document, "", findings);
   Calibration calibration;
   reader.word("format", {"friction-calibration/1"});
-  calibration.rig_name = reader.string("rig", "the rig's name");
-  calibration.rig_sha256 = reader.string("rig_sha256", "the rig file's SHA-256");
-  calibration.made_on = reader.string("made_on", "the date, YYYY-MM-DD");
+  calibration.rig_name = reader.string("rig", "write the rig's name");
+  calibration.rig_sha256 = reader.string("rig_sha256", "write the rig file's SHA-256");
+  calibration.made_on = reader.string("made_on", "write the date as YYYY-MM-DD");
   calibration.valid_days = reader.integer("valid_days", 1, 3650);
   calibration.note = reader.maybe_string("note").value_or("");
   calibration.quality_factor = reader.maybe_number("quality_factor", {0, 1e9, Ends::open_low});

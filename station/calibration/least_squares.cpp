@@ -22,8 +22,9 @@ LeastSquares least_squares(const std::vector<std::vector<double>>& rows, const s
   matrix.array().rowwise() /= scale.array();
 
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
-  qr.setThreshold(3e-7);  // below this part of its length no column counts as independent of the others
-  if (qr.rank() < n) throw terms::UsageError("the measured points do not determine the fit");
+  // a column whose independent part is below this share of its length counts as dependent on the others
+  qr.setThreshold(3e-7);
+  if (qr.rank() < n) throw terms::UsageError("the measured points are not enough to determine the fit");
   const Eigen::VectorXd solution = qr.solve(right);
   // The covariance is (R'R)^-1, in the order of the pivots.
   const Eigen::MatrixXd inverse =

@@ -17,15 +17,16 @@ constexpr double least_turn_rad = std::numbers::pi / 4;
 
 void check(const std::vector<ResponsePoint>& sweep, int window) {
   if (sweep.size() < 5 || window < 3)
-    throw terms::UsageError(
-        fmt::format("sweep of {} points, window {}; 5 points and a window of 3 or more are needed",
-                    sweep.size(), window));
+    throw terms::UsageError(fmt::format(
+        "sweep of {} points with window {}; at least 5 points and a window of 3 or more are needed",
+        sweep.size(), window));
   for (std::size_t k = 0; k < sweep.size(); ++k) {
     const bool rising = k == 0 || sweep[k].frequency_Hz > sweep[k - 1].frequency_Hz;
     if (!rising || !(sweep[k].frequency_Hz > 0) || !(sweep[k].m_per_full_scale > 0) ||
         !std::isfinite(sweep[k].phase_rad))
-      throw terms::UsageError(fmt::format("sweep at {} Hz: frequencies must rise, displacements be above 0",
-                                          sweep[k].frequency_Hz));
+      throw terms::UsageError(
+          fmt::format("sweep at {} Hz: frequencies must be in ascending order, and displacements above 0",
+                      sweep[k].frequency_Hz));
   }
 }
 
@@ -140,8 +141,10 @@ FrictionFit fit_friction(std::vector<FrictionPoint> measured) {
   std::vector<std::size_t> pool_size;
   for (const FrictionPoint& point : measured) {
     if (!(point.displacement_m >= 0 && point.relative_friction > 0 && point.relative_friction <= 1.5))
-      throw terms::UsageError(fmt::format("friction {} at {} m; allowed above 0 to 1.5, displacement from 0",
-                                          point.relative_friction, point.displacement_m));
+      throw terms::UsageError(
+          fmt::format("friction {} at {} m; friction must be above 0 and at most 1.5, and displacement must "
+                      "not be negative",
+                      point.relative_friction, point.displacement_m));
     pools.push_back({point.relative_friction, 1});
     while (pools.size() > 1) {
       const Pool last = pools.back(), before = pools[pools.size() - 2];
@@ -161,7 +164,8 @@ FrictionFit fit_friction(std::vector<FrictionPoint> measured) {
       fit.points.push_back({measured[k].displacement_m, value});
     }
   fit.residual = std::sqrt(fit.residual);
-  if (fit.points.size() < 2) throw terms::UsageError("friction was measured at fewer than two displacements");
+  if (fit.points.size() < 2)
+    throw terms::UsageError("friction was measured at fewer than two different displacements");
   return fit;
 }
 

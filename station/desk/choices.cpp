@@ -121,8 +121,8 @@ CheckWords words_of(const simulation::Check& check) {
   for (const auto& cue : check.cues.reports) {
     const bool leaks = cue.above_chance();
     words.cues.push_back({cue.cue,
-                          fmt::format("{} % right by it alone (chance {} %)", std::lround(100 * cue.accuracy),
-                                      std::lround(100 * cue.chance)),
+                          fmt::format("{} % right with this cue alone (chance {} %)",
+                                      std::lround(100 * cue.accuracy), std::lround(100 * cue.chance)),
                           leaks});
   }
   std::stable_sort(words.cues.begin(), words.cues.end(),

@@ -12,7 +12,7 @@ namespace turnpoint::desk {
 struct ProtocolEntry {
   std::string path, id, version, title;
   std::vector<std::string> languages;
-  std::string problem;  ///< why it cannot be used; then all other fields but `path` are empty
+  std::string problem;  ///< why the file cannot be used; then all other fields except `path` are empty
 };
 
 /// The protocol files of a folder by name, including unusable ones. Throws std::system_error if the folder

@@ -54,7 +54,7 @@ bool is_hash(const std::string& text) {
 }
 
 text::BadInput bad_file(const std::string& file, const std::string& what) {
-  return text::BadInput({{{file, 1, 1}, what, "`turnpoint operator-code` stores one"}});
+  return text::BadInput({{{file, 1, 1}, what, "store a code with `turnpoint operator-code`"}});
 }
 
 }  // namespace
@@ -62,9 +62,9 @@ text::BadInput bad_file(const std::string& file, const std::string& what) {
 OperatorCode OperatorCode::of_digits(const std::string& digits) {
   const bool only_digits = digits.find_first_not_of("0123456789") == std::string::npos;
   if (!only_digits || digits.size() < shortest || digits.size() > longest)
-    throw terms::UsageError("an operator's code has " + std::to_string(shortest) + " to " +
-                            std::to_string(longest) + " digits; the keypad has nothing else");
-  if (digits == built_in) throw terms::UsageError("2468 is the built-in code; choose another");
+    throw terms::UsageError("an operator's code must have " + std::to_string(shortest) + " to " +
+                            std::to_string(longest) + " digits, because the keypad has only digits");
+  if (digits == built_in) throw terms::UsageError("2468 is the built-in code; choose another code");
   char setting[CRYPT_GENSALT_OUTPUT_SIZE];
   if (::crypt_gensalt_rn("$y$", 0, nullptr, 0, setting, sizeof setting) == nullptr)
     fail("salt for the operator's code");
@@ -74,7 +74,7 @@ OperatorCode OperatorCode::of_digits(const std::string& digits) {
 }
 
 OperatorCode OperatorCode::of_hash(const std::string& hash) {
-  if (!is_hash(hash)) throw terms::UsageError("holds no operator's code");
+  if (!is_hash(hash)) throw terms::UsageError("this file does not contain an operator's code");
   OperatorCode code;
   code.hash_ = hash;
   return code;
@@ -103,7 +103,8 @@ OperatorCode operator_code(const std::vector<std::string>& files) {
       if (errno == ENOENT || errno == ENOTDIR) continue;
       fail("operator's code in " + file);
     }
-    if ((status.st_mode & 0007) != 0) throw bad_file(file, "everybody may read this operator's code");
+    if ((status.st_mode & 0007) != 0)
+      throw bad_file(file, "every user of this computer may read this operator's code");
     std::ifstream in(file);
     std::string hash;
     if (!in || !std::getline(in, hash))

@@ -57,7 +57,7 @@ void describe(SceneLook& look) {
   look.facts = {{"Boundary", in_mm(plan.boundary_m) + " (" + physics::format(plan.scene.edge) + ")"},
                 {"Model", plan.reason.empty() ? std::string(physics::name(plan.model)) : plan.reason},
                 {"Model error", "at most " + number(1e3 * plan.error_bound_m, 3) + " mm" +
-                                    (plan.inside_tolerance ? "" : ", OUTSIDE the scene's tolerance")},
+                                    (plan.inside_tolerance ? "" : ", EXCEEDS the scene's tolerance")},
                 {"Parameter uncertainty", number(1e3 * plan.uncertainty_m, 3) + " mm"}};
   for (const auto& tone : plan.tones)
     look.facts.emplace_back("Tone", number(1e-3 * tone.frequency_Hz, 6) + " kHz, drive " +
@@ -118,7 +118,8 @@ SceneLook Preview::look(const std::string& scene, const protocol::Factors& facto
   SceneLook look;
   look.scene = scene;
   look.factors = factors;
-  if (!protocol_.scenes.count(scene)) throw std::out_of_range("no scene named \"" + scene + "\"");
+  if (!protocol_.scenes.count(scene))
+    throw std::out_of_range("the protocol has no scene named \"" + scene + "\"");
   try {
     return look_at(planner_.plan(protocol::resolve(protocol_, scene, factors, 0)), factors, planner_);
   } catch (const scene::Unreachable& error) {
@@ -142,14 +143,14 @@ protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vec
       std::string known;
       for (const auto& [factor, value] : factors) known += (known.empty() ? "" : ", ") + factor;
       throw terms::UsageError(
-          fmt::format("--set {}: factor=value is allowed, with one of the factors {}", text, known));
+          fmt::format("--set {}: write factor=value, with one of the factors {}", text, known));
     }
     const auto value = text.substr(equals + 1);
     char* end = nullptr;
     const double number = std::strtod(value.c_str(), &end);
     if (std::holds_alternative<double>(found->second)) {
       if (value.empty() || *end != '\0' || !std::isfinite(number))
-        throw terms::UsageError(fmt::format("--set {}: {} is a number", text, name));
+        throw terms::UsageError(fmt::format("--set {}: the value of {} must be a number", text, name));
       found->second = number;
     } else {
       found->second = value;

@@ -11,15 +11,15 @@ namespace turnpoint::desk {
 
 /// The options of `turnpoint preview`.
 struct PreviewRequest {
-  std::string protocol, rig, scene;  ///< scene "": the first
+  std::string protocol, rig, scene;  ///< name of the scene; "" for the first one
   std::vector<std::string> set;      ///< "factor=value"
 };
 
 /// A factor that a scene depends on, as an adjustable value.
 struct Knob {
   std::string name;
-  double low = 0, high = 0;    ///< limits of its range, or of its levels
-  std::vector<double> levels;  ///< empty: any value within the range
+  double low = 0, high = 0;    ///< limits of the factor's range, or of its levels
+  std::vector<double> levels;  ///< possible values; empty if any value within the range is allowed
   double value = 0;            ///< first level, or else the middle of the range
 };
 

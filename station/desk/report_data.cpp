@@ -37,21 +37,21 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
   int attempts = 0;
   for (const auto& block : stored.blocks) attempts += block.start.attempt > 0;
   const auto& start = stored.session.start;
-  data.health = {
-      {"Trials stored", std::to_string(trials)},
-      {"Underruns and overruns", std::to_string(xruns)},
-      {"Touches that were not answers", std::to_string(extra)},
-      {"Late screen frames", late_frames(stored.events)},
-      {"Times the session was resumed", std::to_string(stored.session.segments - 1)},
-      {"Blocks begun again", std::to_string(attempts)},
-      {"Response times by", qualities.empty() ? "none" : qualities},
-      {"Response offset (not subtracted)", text::number(offset_s, 4) + " s"},
-      {"Calibration", start.calibration_id.value_or("none")},
-      {"Real-time rights", start.realtime_rights},
-      {"Kernel", start.kernel},
-      {"Checksum of the data",
-       stored.session.checksum.empty() ? "none: recorded by an earlier release" : stored.session.checksum},
-      {"Software", start.software_version}};
+  data.health = {{"Trials stored", std::to_string(trials)},
+                 {"Underruns and overruns", std::to_string(xruns)},
+                 {"Touches that were not answers", std::to_string(extra)},
+                 {"Late screen frames", late_frames(stored.events)},
+                 {"Times the session was resumed", std::to_string(stored.session.segments - 1)},
+                 {"Blocks that were restarted", std::to_string(attempts)},
+                 {"Response times stamped by", qualities.empty() ? "none" : qualities},
+                 {"Response offset (not subtracted)", text::number(offset_s, 4) + " s"},
+                 {"Calibration", start.calibration_id.value_or("none")},
+                 {"Real-time rights", start.realtime_rights},
+                 {"Kernel", start.kernel},
+                 {"Checksum of the data", stored.session.checksum.empty()
+                                              ? "none, because an earlier release recorded the session"
+                                              : stored.session.checksum},
+                 {"Software", start.software_version}};
 }
 
 }  // namespace
@@ -85,7 +85,8 @@ std::string session_to_report(const std::string& database, const store::SessionF
   for (const auto& session : sessions)
     if (session.trials > 0 && (!newest || session.last_trial_id > newest->last_trial_id)) newest = &session;
   if (!newest)
-    throw store::StoreError(store::ErrorKind::missing, database + ": no session with trials to report");
+    throw store::StoreError(store::ErrorKind::missing,
+                            database + ": there is no session with trials to report");
   return newest->session_id;
 }
 

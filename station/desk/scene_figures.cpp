@@ -30,7 +30,8 @@ constexpr double kCaptionFrom_px = 165;
 
 void require_plan(const SceneLook& look) {
   if (!look.problem.empty() || look.profile.x_m.size() < 2)
-    throw std::invalid_argument("scene " + look.scene + " has no plan to draw: " + look.problem);
+    throw std::invalid_argument("scene " + look.scene +
+                                " cannot be drawn, because it has no plan: " + look.problem);
 }
 
 std::optional<double> mark_of(const SceneLook& look) {
@@ -121,7 +122,8 @@ void draw_mark(plot::Canvas& canvas, const SceneLook& look, const Place& at) {
               to_left ? plot::Anchor::end : plot::Anchor::start, kInk);
 }
 
-/// The lower end of the boundary's name. If it would collide with the mark and its name, it goes above them.
+/// The y of the lower end of the boundary's name. If the name would collide with the mark and the mark's
+/// name, it goes above them.
 double boundary_name_y(const SceneLook& look, const Place& at, const std::string& name) {
   const double boundary = *look.plan.boundary_m, own = at.above(boundary).second;
   const auto mark = mark_of(look);
@@ -160,7 +162,7 @@ void draw_surface(plot::Canvas& canvas, const SceneLook& look, const rig::Rig& r
   draw_mark(canvas, look, at);
   draw_boundary(canvas, look, at);
   if (height_px < kCaptionFrom_px) return;
-  canvas.text({width_px / 2, height_px - 10}, "mm from the wide end; darker moves more", 12,
+  canvas.text({width_px / 2, height_px - 10}, "mm from the wide end; darker places move more", 12,
               plot::Anchor::middle, kQuiet);
 }
 
@@ -194,7 +196,7 @@ std::string surface_svg(const SceneLook& look, const rig::Rig& rig, double width
 }
 
 plot::Figure profile_figure(const std::vector<SceneLook>& looks) {
-  if (looks.empty()) throw std::invalid_argument("no scene to draw");
+  if (looks.empty()) throw std::invalid_argument("there is no scene to draw");
   plot::Figure figure;
   figure.title = "Displacement and friction";
   plot::Chart displacement{"Displacement", {}, {"Displacement (\u00b5m)", 0, 1}, {}};

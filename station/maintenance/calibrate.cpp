@@ -142,7 +142,7 @@ Calibration calibrate(const rig::Rig& rig, const Measurements& measurements, int
   calibration.made_on = calibration::today();
   calibration.valid_days = valid_days;
   calibration.note = note;
-  // throws if no session could use the calibration
+  // throws if the rig cannot use this calibration
   static_cast<void>(calibration::applied(calibration, rig));
   return calibration;
 }

@@ -39,13 +39,11 @@ lines::Finding measured_clock(drive::Stream& stream) {
       return {"converter clock", good ? Status::ok : Status::failed,
               fmt::format("{:.2f} Hz, {:+.1f} ppm (standard error {:.1f} ppm)", rate->rate_Hz,
                           rate->deviation_ppm, rate->standard_error_ppm),
-              good ? ""
-                   : "something resamples behind the device, or its clock is wrong: another cable, port or "
-                     "device"};
+              good ? "" : "the device resamples, or its clock is wrong: try another cable, port or device"};
     }
   }
-  return {"converter clock", Status::failed, "no time stamps came from the device",
-          "another device or kernel driver"};
+  return {"converter clock", Status::failed, "the device delivered no time stamps",
+          "use another device or kernel driver"};
 }
 
 // The name that amixer uses for the card of alsa:hw:CARD=NAME,DEV=0, or of alsa:hw:NAME,0.
@@ -64,7 +62,7 @@ void converter_mute(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
       {"converter mute", *on ? Status::failed : Status::ok,
        *on ? "Auto Mute is on: the converter mutes itself between stimuli, and each onset unmutes it"
            : "Auto Mute is off",
-       *on ? fmt::format("amixer -c {} sset 'Auto Mute' off, then sudo alsactl store",
+       *on ? fmt::format("run amixer -c {} sset 'Auto Mute' off, then sudo alsactl store",
                          card_of(rig.output.uri))
            : ""});
 }
@@ -77,28 +75,30 @@ void converter(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
   try {
     const auto stream = drive::open_realtime(session::stream_of(rig));
     checks.push_back({"converter", Status::ok,
-                      fmt::format("{} at {} Hz, {} bits, hardware, no conversion", rig.output.uri,
-                                  rig.output.rate_Hz, rig.output.bits),
+                      fmt::format("{} at {} Hz, {} bits, directly on the hardware, without conversion",
+                                  rig.output.uri, rig.output.rate_Hz, rig.output.bits),
                       ""});
     checks.push_back(measured_clock(*stream));
     const auto underruns = stream->counters().underruns;
     checks.push_back(
         {"converter stream", underruns == 0 ? Status::ok : Status::failed,
          fmt::format("{} underruns", underruns),
-         underruns == 0 ? "" : "larger period_frames, real-time rights, a kernel with less latency"});
+         underruns == 0
+             ? ""
+             : "set a larger period_frames, grant real-time rights, or use a kernel with less latency"});
   } catch (const std::exception& error) {
     checks.push_back({"converter", Status::failed, error.what(),
                       "correct [output] in the rig file (aplay -l lists devices), plug the device in, or end "
-                      "what uses it"});
+                      "the program that uses it"});
   }
 }
 
-// A new rig file has a simulated panel, which is easily forgotten when a real converter is added.
+// A new rig file has a simulated touch panel, which is easily forgotten when a real converter is added.
 lines::Finding touch(const rig::Rig& rig) {
   auto check = lines::check_touch("touch", *rig.touch_uri);
   if (check.status == Status::ok && *rig.touch_uri == "sim:" && rig.output.uri.starts_with("alsa:"))
-    return {"touch", Status::warning, "simulated: answers by touch have no kernel time",
-            "[touch] uri = \"evdev:NAME\", the panel's name in /proc/bus/input/devices"};
+    return {"touch", Status::warning, "the touch panel is simulated, so answers by touch have no kernel time",
+            "write uri = \"evdev:NAME\" in [touch], with the panel's name in /proc/bus/input/devices"};
   return check;
 }
 
@@ -110,25 +110,27 @@ void rights(std::vector<lines::Finding>& checks) {
   const bool fifo = root || priority.rlim_cur >= 75;
   checks.push_back(
       {"real-time priority", fifo ? Status::ok : Status::failed,
-       root ? "granted to root" : fmt::format("up to {} (75 is needed)", priority.rlim_cur),
-       fifo ? "" : "LimitRTPRIO=80 in the service, or @audio - rtprio 80 in /etc/security/limits.d"});
+       root ? "granted to root" : fmt::format("only up to {} (75 is needed)", priority.rlim_cur),
+       fifo ? "" : "set LimitRTPRIO=80 in the service, or \"@audio - rtprio 80\" in /etc/security/limits.d"});
   const bool locked = root || memory.rlim_cur == RLIM_INFINITY || memory.rlim_cur >= (256u << 20);
   checks.push_back(
       {"locked memory", locked ? Status::ok : Status::failed,
        memory.rlim_cur == RLIM_INFINITY || root ? "unlimited" : fmt::format("{} KiB", memory.rlim_cur >> 10),
-       locked ? "" : "LimitMEMLOCK=infinity in the service, or @audio - memlock unlimited in limits.d"});
+       locked ? ""
+              : "set LimitMEMLOCK=infinity in the service, or \"@audio - memlock unlimited\" in limits.d"});
 }
 
 void display(std::vector<lines::Finding>& checks) {
   std::error_code ignored;
   const bool session = std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY");
   const bool direct = !setup::screen_card().empty() || std::filesystem::exists("/dev/fb0", ignored);
-  checks.push_back(
-      {"display", session || direct ? Status::ok : Status::warning,
-       session  ? "a desktop session"
-       : direct ? "the kernel has a display"
-                : "no display",
-       session || direct ? "" : "sessions need a screen, --buttons-only or a simulated observer"});
+  checks.push_back({"display", session || direct ? Status::ok : Status::warning,
+                    session  ? "a desktop session"
+                    : direct ? "the kernel has a display"
+                             : "no display",
+                    session || direct
+                        ? ""
+                        : "connect a screen, or run sessions with --buttons-only or a simulated observer"});
 }
 
 // On a desktop, its display server passes touches on; on a bare screen the program must read the devices.
@@ -139,14 +141,16 @@ void input(std::vector<lines::Finding>& checks) {
     checks.push_back(
         {"input devices", Status::failed,
          fmt::format("cannot be opened for reading and writing: {}", fmt::join(devices.refused, ", ")),
-         "touches on them do not reach the screen: put the user into the group input; in a service "
-         "that limits devices, DeviceAllow=char-input rw"});
+         "the screen receives no touches from these devices: put the user into the group input; in a service "
+         "that limits devices, add DeviceAllow=char-input rw"});
   else if (devices.opened == 0)
-    checks.push_back({"input devices", Status::warning, "none", "answers by touch need a touch panel"});
-  else
     checks.push_back(
-        {"input devices", Status::ok,
-         fmt::format("{} open for reading and writing, as the screen needs them", devices.opened), ""});
+        {"input devices", Status::warning, "none", "connect a touch panel if participants answer by touch"});
+  else
+    checks.push_back({"input devices", Status::ok,
+                      fmt::format("{} devices can be opened for reading and writing, as the screen requires",
+                                  devices.opened),
+                      ""});
 }
 
 void disk(const std::string& path, std::vector<lines::Finding>& checks) {
@@ -165,9 +169,9 @@ void disk(const std::string& path, std::vector<lines::Finding>& checks) {
   checks.push_back(
       {"disk", free_MiB >= 200 && writable ? Status::ok : Status::failed,
        fmt::format("{:.0f} MiB free in {}{}", free_MiB, existing.string(), writable ? "" : ", not writable"),
-       free_MiB < 200 ? "make room: 200 MiB are wanted before a session"
+       free_MiB < 200 ? "free some space: a session needs 200 MiB"
        : writable     ? ""
-                      : "give the user the right to write there"});
+                      : "give the user permission to write to this folder"});
 }
 
 void clock(std::vector<lines::Finding>& checks) {
@@ -177,20 +181,21 @@ void clock(std::vector<lines::Finding>& checks) {
   timex state{};
   const bool steered = ::adjtimex(&state) != -1 && !(state.status & STA_UNSYNC);
   const bool plausible = std::time(nullptr) > 1'700'000'000;
-  checks.push_back({"clock", plausible ? (steered ? Status::ok : Status::warning) : Status::failed,
-                    fmt::format("source {}, {}{}", source, steered ? "synchronised" : "not synchronised",
-                                plausible ? "" : ", the date is impossible"),
-                    !plausible ? "set the date; a board without a battery-backed clock needs a time service"
-                    : steered
-                        ? ""
-                        : "dates of records may be off; durations are not: systemd-timesyncd or chrony"});
+  checks.push_back(
+      {"clock", plausible ? (steered ? Status::ok : Status::warning) : Status::failed,
+       fmt::format("source {}, {}{}", source, steered ? "synchronised" : "not synchronised",
+                   plausible ? "" : ", the date cannot be right"),
+       !plausible ? "set the date; a board without a battery-backed clock needs a time service"
+       : steered
+           ? ""
+           : "dates of records may be wrong (durations are not affected): run systemd-timesyncd or chrony"});
 }
 
 }  // namespace
 
 lines::Finding check_swap(const std::string& swaps) {
   std::ifstream file(swaps);
-  if (!file) return {"swap", Status::warning, swaps + " cannot be read", "look with: swapon --show"};
+  if (!file) return {"swap", Status::warning, swaps + " cannot be read", "check with: swapon --show"};
   std::string line, active;
   std::getline(file, line);  // skip the heading
   while (std::getline(file, line))
@@ -210,8 +215,8 @@ lines::Finding check_watchdog(const std::string& folder) {
   std::ifstream file(folder + "/watchdog0/state");
   std::string state;
   if (!(file >> state))
-    return {"hardware watchdog", Status::warning, "the kernel has none",
-            "on a Raspberry Pi: dtparam=watchdog=on in config.txt; a PC may have none"};
+    return {"hardware watchdog", Status::warning, "the kernel has no hardware watchdog",
+            "on a Raspberry Pi, set dtparam=watchdog=on in config.txt; a PC may have no watchdog"};
   if (state != "active") return {"hardware watchdog", Status::warning, state, mend};
   return {"hardware watchdog", Status::ok, state, ""};
 }

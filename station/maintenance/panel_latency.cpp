@@ -25,9 +25,8 @@ std::optional<calibration::Calibration> in_force(const rig::Rig& rig) {
 LatencyDevices::LatencyDevices(const rig::Rig& rig, OnEdge on_edge) {
   if (!rig.buttons_uri || *rig.buttons_uri == "sim:")
     throw terms::UsageError(
-        "the panel's latency is measured against a button or a photodiode, and the rig's "
-        "[buttons] are " +
-        rig.buttons_uri.value_or("absent") + "; allowed gpio:NAME=LINE");
+        "the panel's latency is measured against a button or a photodiode, but the rig's [buttons] are " +
+        rig.buttons_uri.value_or("absent") + "; they must be gpio:NAME=LINE");
   touch_ = setup::open_touch(rig, [](touch::TouchPanelState) {});
   lines::ButtonsHandlers handlers;
   handlers.press = [edge = std::move(on_edge)](const lines::Press& press) { edge(press.time_ns); };

@@ -27,14 +27,15 @@ constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // time limit for the fir
 std::string trouble_of(const drive::Event& event, const drive::OutputConfig& output) {
   switch (event.kind) {
     case drive::EventKind::underrun:
-      return fmt::format("{}: {} frames were lost; begin again", output.uri, event.frames);
+      return fmt::format("{}: {} frames were lost; start the command again", output.uri, event.frames);
     case drive::EventKind::device_lost:
       return output.uri + ": the sound device was disconnected";
     case drive::EventKind::burst_missed:
-      return output.uri + ": a tone came too late to be played; begin again";
+      return output.uri + ": a tone came too late to be played; start the command again";
     case drive::EventKind::rate_wrong:
-      return fmt::format("{}: runs at {:.1f} Hz, not at {} Hz: nothing that was played had its frequency",
-                         output.uri, 1e-3 * static_cast<double>(event.frames), output.rate_Hz);
+      return fmt::format(
+          "{}: the device runs at {:.1f} Hz instead of {} Hz, so all tones were played at wrong frequencies",
+          output.uri, 1e-3 * static_cast<double>(event.frames), output.rate_Hz);
     case drive::EventKind::burst_started:
     case drive::EventKind::burst_ended:
     case drive::EventKind::burst_heard:
@@ -59,7 +60,8 @@ void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::funct
     if (amplifier.state() == drive::AmplifierState::faulted)
       throw std::runtime_error("amplifier: " + terms::describe(amplifier.fault()));
     if (const auto signal = system::StopSignals::told(); !signal.empty())
-      throw std::runtime_error("the program was asked to end (" + signal + "); not all was played");
+      throw std::runtime_error("the program was stopped by a signal (" + signal +
+                               ") before everything was played");
     if (last) return;
     system::sleep_until_ns(system::monotonic_ns() + kPoll_ns);
   }
@@ -88,7 +90,8 @@ std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier,
   const auto due_ns = system::monotonic_ns() + left * 1'000'000'000 / rate_Hz + kHeard_ns;
   attend(stream, amplifier, [&] {
     if (system::monotonic_ns() > due_ns)
-      throw std::runtime_error(stream.config().output.uri + ": the device does not say what it has played");
+      throw std::runtime_error(stream.config().output.uri +
+                               ": the device does not report which frame it has played");
     return stream.counters().heard >= end;
   });
   return onset;

@@ -37,14 +37,16 @@ void render(drive::SynchronousStream& stream, const std::vector<drive::Burst>& b
 }  // namespace
 
 std::vector<SweepStep> sweep_plan(const rig::Rig& rig, const SweepOptions& options) {
-  if (options.points < 5) throw terms::UsageError("sweep: fewer than 5 points; 5 or more are allowed");
+  if (options.points < 5) throw terms::UsageError("sweep: there must be at least 5 points");
   if (!(options.full_scale > 0 && options.full_scale <= 1))
-    throw terms::UsageError(
-        fmt::format("sweep: amplitude {}; above 0 to 1 of full scale is allowed", options.full_scale));
+    throw terms::UsageError(fmt::format(
+        "sweep: the amplitude must be above 0 and at most 1 (full scale), not {}", options.full_scale));
   if (!(options.length_s >= 0.2 && options.pause_s >= 0.2))
-    throw terms::UsageError("sweep: tones and pauses of 0.2 s or more are allowed");
+    throw terms::UsageError("sweep: tones and pauses must last 0.2 s or more");
   if (options.length_s > rig.limits.duty * (options.length_s + options.pause_s))
-    throw terms::UsageError(fmt::format("sweep: the rig's duty of {} wants longer pauses", rig.limits.duty));
+    throw terms::UsageError(
+        fmt::format("sweep: the pauses must be longer, because the rig's limit on the duty cycle is {}",
+                    rig.limits.duty));
   std::vector<SweepStep> steps;
   for (const auto& transducer : rig.transducers)
     for (int k = 0; k < options.points; ++k) {

@@ -39,7 +39,8 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
   try {
     bytes = text::read_text_file(path);
   } catch (const std::system_error& error) {
-    findings.add(needed_by, "cannot read " + std::string(error.what()), "a path relative to the rig file");
+    findings.add(needed_by, "cannot read " + std::string(error.what()),
+                 "write a path relative to the rig file");
     return {};
   }
   std::istringstream lines(bytes);
@@ -52,7 +53,8 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
     if (!header_seen) {
       header_seen = true;
       if (cells != columns)
-        findings.add({path, number, 1}, "the first line is \"" + line + "\"", "needed: " + joined(columns));
+        findings.add({path, number, 1}, "the first line is \"" + line + "\"",
+                     "the column names must be: " + joined(columns));
       continue;
     }
     std::vector<double> row(columns.size());
@@ -62,9 +64,10 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
       rows.push_back(std::move(row));
     else
       findings.add({path, number, 1}, "\"" + line + "\" is not a row of numbers",
-                   std::to_string(columns.size()) + " numbers are needed: " + joined(columns));
+                   std::to_string(columns.size()) + " numbers are needed in each row: " + joined(columns));
   }
-  if (rows.size() < 2) findings.add({path, 0, 0}, "fewer than two rows", "at least two are needed");
+  if (rows.size() < 2)
+    findings.add({path, 0, 0}, "the file has fewer than two rows of numbers", "at least two rows are needed");
   return rows;
 }
 

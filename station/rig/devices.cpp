@@ -39,7 +39,7 @@ void check_gpio(TableReader& reader, const std::string& uri, const std::vector<s
     const auto name = part.substr(0, equals);
     const bool known = std::find(all.begin(), all.end(), name) != all.end();
     if (!known || equals == std::string::npos || equals + 1 == part.size() || !seen.insert(name).second)
-      return reader.problem("uri", "\"" + part + "\" in \"" + uri + "\" is not a line",
+      return reader.problem("uri", "\"" + part + "\" in \"" + uri + "\" does not name a line",
                             "each of " + text::quoted_list(all) + " once, as name=LINE");
   }
   for (const auto& name : needed)
@@ -64,7 +64,7 @@ std::optional<std::string> read_device(TableReader& file, const std::string& key
 }  // namespace
 
 void read_devices(TableReader& file, Rig& rig) {
-  if (!file.has("amplifier")) file.require("amplifier", "a table [amplifier] with uri");
+  if (!file.has("amplifier")) file.require("amplifier", "add a table [amplifier] with uri");
   rig.amplifier_uri =
       read_device(file, "amplifier", {"sim:", "gpio:*"},
                   "\"sim:\" or \"gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE\"", {"enable"},

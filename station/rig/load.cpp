@@ -30,8 +30,8 @@ void read_response(TableReader& reader, const std::string& rig_path, Transducer&
   const auto file = reader.maybe_string("response_csv");
   const auto um = reader.maybe_number("um_per_full_scale", {0, 1000, Ends::open_low, "um"});
   if (reader.has("response_csv") == reader.has("um_per_full_scale"))
-    reader.findings().add(reader.place(), reader.title() + " needs one response",
-                          "exactly one of \"um_per_full_scale\" or \"response_csv\"");
+    reader.findings().add(reader.place(), reader.title() + " needs exactly one response",
+                          "give either \"um_per_full_scale\" or \"response_csv\"");
   if (um) transducer.m_per_full_scale = 1e-6 * *um;
   if (!file) return;
   const auto csv = beside(rig_path, *file);
@@ -41,9 +41,9 @@ void read_response(TableReader& reader, const std::string& rig_path, Transducer&
   for (const auto& row : rows) {
     const auto& points = transducer.response;
     if (row[0] <= (points.empty() ? 0 : points.back().frequency_Hz) || row[1] <= 0)
-      return reader.findings().add(place,
-                                   csv + " has a row " + text::number(row[0]) + " Hz that is not in order",
-                                   "frequencies rising, above 0; um_per_full_scale above 0");
+      return reader.findings().add(
+          place, csv + " has a row " + text::number(row[0]) + " Hz with a value that is not allowed",
+          "frequencies must be above 0 and in ascending order; um_per_full_scale must be above 0");
     transducer.response.push_back({row[0], 1e-6 * row[1], row[2] * pi / 180});
   }
 }
@@ -51,9 +51,9 @@ void read_response(TableReader& reader, const std::string& rig_path, Transducer&
 Transducer read_transducer(const text::Value& table, const std::string& rig_path, Findings& findings) {
   TableReader reader(table, titled("transducer", table), findings);
   Transducer transducer;
-  transducer.name = reader.string("name", "a name for messages");
+  transducer.name = reader.string("name", "give the transducer a name, which messages use");
   transducer.channel = reader.integer("channel", 0, kLastChannel);
-  reader.require("band_kHz", "the usable band: [low, high] in kHz");
+  reader.require("band_kHz", "give the usable band as [low, high] in kHz");
   if (const auto band = reader.maybe_interval("band_kHz", {0, 1000, Ends::open_low, "kHz"})) {
     transducer.low_Hz = 1e3 * band->first;
     transducer.high_Hz = 1e3 * band->second;
@@ -63,8 +63,8 @@ Transducer read_transducer(const text::Value& table, const std::string& rig_path
   if (response.size() >= 2 && transducer.high_Hz > 0 &&
       (transducer.low_Hz < response.front().frequency_Hz ||
        transducer.high_Hz > response.back().frequency_Hz))
-    reader.problem("band_kHz", "the band goes beyond the measured response",
-                   "from " + text::number(1e-3 * response.front().frequency_Hz) + " to " +
+    reader.problem("band_kHz", "the band extends beyond the measured response",
+                   "it must lie within " + text::number(1e-3 * response.front().frequency_Hz) + " to " +
                        text::number(1e-3 * response.back().frequency_Hz) + " kHz");
   reader.finish();
   return transducer;
@@ -73,25 +73,25 @@ Transducer read_transducer(const text::Value& table, const std::string& rig_path
 void read_transducers(TableReader& file, Rig& rig) {
   const auto tables = file.tables("transducer");
   if (tables.empty() && !file.has("transducer"))
-    file.findings().add({rig.path, 0, 0}, "the file needs a [[transducer]]",
-                        "one table for each drive element");
+    file.findings().add({rig.path, 0, 0}, "the file has no [[transducer]] table",
+                        "add one table for each drive element");
   std::set<std::string> names;
   std::set<int> channels;
   for (const auto* table : tables) {
     rig.transducers.push_back(read_transducer(*table, rig.path, file.findings()));
     const auto& transducer = rig.transducers.back();
     if (!transducer.name.empty() && !names.insert(transducer.name).second)
-      file.findings().add(table->place, "a second transducer named \"" + transducer.name + "\"",
-                          "names must differ");
+      file.findings().add(table->place, "there is already a transducer named \"" + transducer.name + "\"",
+                          "each transducer needs a different name");
     if (table->find("channel") && !channels.insert(transducer.channel).second)
       file.findings().add(table->find("channel")->value.place,
-                          "channel " + std::to_string(transducer.channel) + " drives two transducers",
-                          "one channel each");
+                          "channel " + std::to_string(transducer.channel) + " is used by two transducers",
+                          "give each transducer its own channel");
   }
 }
 
 void read_output(TableReader& file, Rig& rig) {
-  const auto* table = file.table("output", "a table [output] with uri and rate_Hz");
+  const auto* table = file.table("output", "add a table [output] with uri and rate_Hz");
   if (!table) return;
   TableReader reader(*table, "output", file.findings());
   auto& output = rig.output;
@@ -105,8 +105,8 @@ void read_output(TableReader& file, Rig& rig) {
   if (const double period_s = static_cast<double>(output.period_frames) / std::max(output.rate_Hz, 1);
       output.rate_Hz > 0 && period_s > longest_period_s)
     reader.problem("period_frames",
-                   "a period of " + text::number(1e3 * period_s, 3) +
-                       " ms; the amplifier's guard would take the audio thread for dead",
+                   "a period lasts " + text::number(1e3 * period_s, 3) +
+                       " ms; the amplifier's guard would conclude that the audio thread has stopped",
                    "at most " + text::number(1e3 * longest_period_s) +
                        " ms: " + text::number(std::floor(longest_period_s * output.rate_Hz)) + " frames");
   if (!reader.has("allow_plugin")) reader.defaulted("allow_plugin", "[]");
@@ -118,8 +118,9 @@ void check_device_channels(TableReader& file, const Rig& rig) {
   const auto* table = file.maybe_table("output");
   const auto* given = table == nullptr ? nullptr : table->find("device_channels");
   if (given == nullptr || rig.output.device_channels >= channels(rig)) return;
-  file.findings().add(given->value.place, "device_channels is " + std::to_string(rig.output.device_channels),
-                      "at least " + std::to_string(channels(rig)) + ", the channels that the rig uses");
+  file.findings().add(
+      given->value.place, "device_channels is " + std::to_string(rig.output.device_channels),
+      "at least " + std::to_string(channels(rig)) + ", the number of channels that the rig uses");
 }
 
 void check_bands(TableReader& file, const Rig& rig) {
@@ -129,9 +130,9 @@ void check_bands(TableReader& file, const Rig& rig) {
   for (const auto* table : file.tables("transducer")) {
     const auto* band = table->find("band_kHz");
     if (!band || band->value.items.size() != 2 || band->value.items[1].number * 1e3 <= limit_Hz) continue;
-    file.findings().add(band->value.place,
-                        "the band ends at " + text::number(band->value.items[1].number) + " kHz",
-                        "at most 0.45 of rate_Hz: " + text::number(1e-3 * limit_Hz) + " kHz");
+    file.findings().add(
+        band->value.place, "the band ends at " + text::number(band->value.items[1].number) + " kHz",
+        "it may extend at most to 0.45 of rate_Hz, which is " + text::number(1e-3 * limit_Hz) + " kHz");
   }
 }
 
@@ -144,9 +145,10 @@ void read_friction_table(TableReader& reader, const std::string& file, Rig& rig)
     const double displacement_m = 1e-6 * row[0];
     const bool rises = table.empty() ? row[0] >= 0 : displacement_m > table.back().first;
     if (!rises || row[1] <= 0 || row[1] > 1 || (!table.empty() && row[1] > table.back().second))
-      return reader.findings().add(place,
-                                   csv + " has a row " + text::number(row[0]) + " um that is not in order",
-                                   "displacements rising from 0; friction above 0, at most 1, never growing");
+      return reader.findings().add(
+          place, csv + " has a row " + text::number(row[0]) + " um with a value that is not allowed",
+          "displacements must be in ascending order from 0; friction must be above 0, at most 1, and never "
+          "increase");
     table.emplace_back(displacement_m, row[1]);
   }
   rig.friction.measured = true;
@@ -164,8 +166,8 @@ void read_friction(TableReader& file, Rig& rig) {
   if (reader.has("table_csv")) {
     for (const auto* key : {"model", "pressure_kPa", "floor"})
       if (reader.take(key))
-        reader.problem(key, std::string("\"") + key + "\" beside \"table_csv\"",
-                       "the measured table says it all");
+        reader.problem(key, std::string("\"") + key + "\" is not allowed together with \"table_csv\"",
+                       "leave it out: the measured table replaces it");
     if (csv) read_friction_table(reader, *csv, rig);
   } else {
     reader.word("model", {"load-sharing"}, "load-sharing");
@@ -177,7 +179,7 @@ void read_friction(TableReader& file, Rig& rig) {
 }
 
 void read_limits(TableReader& file, Rig& rig) {
-  const auto* table = file.table("limits", "a table [limits] with displacement_um");
+  const auto* table = file.table("limits", "add a table [limits] with displacement_um");
   if (!table) return;
   TableReader reader(*table, "limits", file.findings());
   rig.limits.displacement_m = 1e-6 * reader.number("displacement_um", {0, 1000, Ends::open_low, "um"});
@@ -196,7 +198,7 @@ Rig parse(const std::string& source, const std::string& path) {
   rig.path = path, rig.source = source, rig.sha256 = text::sha256(source);
   TableReader file(document, "", findings);
   file.word("format", {"friction-rig/1"});
-  rig.name = file.string("name", "a name that people recognise");
+  rig.name = file.string("name", "give the rig a name that people recognise");
   rig.reproduction = file.boolean("reproduction", "false");
   if (const auto* surface = file.table("surface", "a table [surface]"))
     rig.surface = read_surface(*surface, findings);

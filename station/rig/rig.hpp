@@ -11,8 +11,8 @@ namespace turnpoint::rig {
 
 /// The taper of the surface as given in the file; exactly one form is set. Half-widths, SI units.
 struct Taper {
-  double half_width_m = 0;               ///< at the driven wide end; for a profile, taken from its table
-  std::optional<double> slope;           ///< linear taper: W(x) = half_width_m - slope x
+  double half_width_m = 0;      ///< half-width at the driven wide end; for a profile, taken from its table
+  std::optional<double> slope;  ///< linear taper: W(x) = half_width_m - slope x
   std::optional<double> decay_length_m;  ///< exponential taper: W(x) = half_width_m exp(-x / decay_length_m)
   std::vector<std::pair<double, double>> profile_m;  ///< tabulated taper: (x, W) with monotone interpolation
 };
@@ -23,15 +23,16 @@ enum class WideEnd { left, right };
 
 /// The vibrating surface: material, tension (as a stress), geometry and loss.
 struct Surface {
-  std::string material;  ///< "" if the file gives the constants itself
+  std::string material;  ///< name of the material; "" if the file gives the constants itself
   double density_kg_m3 = 0;
   std::optional<double> modulus_Pa;
   std::optional<double> poisson;
   std::optional<double> yield_Pa;
-  double tension_Pa = 0;  ///< as a stress; 0 means a plate
+  double tension_Pa = 0;  ///< tension as a stress; 0 means a plate
   double thickness_m = 0;
   double length_m = 0;
-  double quality_factor = std::numeric_limits<double>::infinity();  ///< infinity means lossless
+  /// quality factor; infinity means no loss
+  double quality_factor = std::numeric_limits<double>::infinity();
   Edges edges = Edges::supported;
   Bending bending = Bending::automatic;
   WideEnd wide_end = WideEnd::left;
@@ -75,7 +76,7 @@ struct Marker {
   enum class Kind { pulse, tone };
   int channel = 1;
   Kind kind = Kind::pulse;
-  double amplitude = 0.5;  ///< 1 is full scale
+  double amplitude = 0.5;  ///< amplitude of the marker; 1 is full scale
   double duration_s = 1e-3;
   double frequency_Hz = 1000;  ///< frequency, if the marker is a tone
 };
@@ -83,13 +84,13 @@ struct Marker {
 /// Headphones that mask the audible part of a stimulus, for protocols that require it.
 struct MaskingNoise {
   int channel = 1;
-  double rms = 0;  ///< 1 is full scale
+  double rms = 0;  ///< level of the noise; 1 is full scale
   double low_Hz = 100, high_Hz = 8000;
 };
 
 /// The map from amplitude to relative friction: the illustrative load-sharing curve or a measured table.
 struct Friction {
-  bool stated = false;    ///< the file has a [friction] table
+  bool stated = false;    ///< true if the file has a [friction] table
   bool measured = false;  ///< true for a measured table; false for load sharing, which live mode refuses
   double pressure_Pa = 5000;
   double floor = 0.1;

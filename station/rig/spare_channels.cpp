@@ -16,7 +16,7 @@ void check_spare(TableReader& reader, int channel, const Rig& rig) {
   for (const auto& transducer : rig.transducers)
     if (transducer.channel == channel)
       reader.problem("channel", "channel " + std::to_string(channel) + " drives \"" + transducer.name + "\"",
-                     "a channel without a transducer");
+                     "use a channel without a transducer");
 }
 
 double highest_Hz(const Rig& rig) { return terms::kHighestShareOfRate * std::max(rig.output.rate_Hz, 8000); }
@@ -42,8 +42,8 @@ MaskingNoise read_noise(const text::Value& table, const Rig& rig, text::Findings
   noise.channel = reader.integer("channel", 0, kLastChannel);
   check_spare(reader, noise.channel, rig);
   if (rig.marker && rig.marker->channel == noise.channel)
-    reader.problem("channel", "channel " + std::to_string(noise.channel) + " carries the marker",
-                   "a channel of its own");
+    reader.problem("channel", "channel " + std::to_string(noise.channel) + " is used by the marker",
+                   "use a channel of its own");
   noise.rms = reader.number("rms", {0, 0.25, Range::Ends::open_low});
   if (const auto band = reader.maybe_interval("band_Hz", {0, highest_Hz(rig), Range::Ends::open_low, "Hz"}))
     noise.low_Hz = band->first, noise.high_Hz = band->second;

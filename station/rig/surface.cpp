@@ -44,8 +44,9 @@ void read_material(text::TableReader& reader, Surface& surface) {
   const auto bending = reader.word("bending", words, "auto");
   surface.bending = bending == "on" ? Bending::on : bending == "off" ? Bending::off : Bending::automatic;
   if (surface.tension_Pa == 0 && surface.bending == Bending::off)
-    reader.problem("bending", "\"bending\" is off without tension: nothing would hold the surface",
-                   "a \"tension_Pa\" above 0, or bending \"auto\" or \"on\"");
+    reader.problem("bending",
+                   "\"bending\" is off although there is no tension, so nothing would hold the surface",
+                   "set \"tension_Pa\" above 0, or \"bending\" to \"auto\" or \"on\"");
   const bool needs_bending = surface.tension_Pa == 0 || surface.bending == Bending::on;
   const Range modulus{1e-6, 2000, Ends::closed, "GPa"}, poisson{-1, 0.5, Ends::open_low};
   if (filled || needs_bending || reader.has("modulus_GPa")) {
@@ -68,7 +69,8 @@ double read_quality_factor(text::TableReader& reader) {
 
 void read_profile(const text::Value& list, text::TableReader& reader, Taper& taper) {
   const char* allowed =
-      "a list of [x, half-width] pairs in mm, x rising from 0, half-widths above 0 and not growing";
+      "write a list of [x, half-width] pairs in mm, with x in ascending order from 0 and half-widths above 0 "
+      "that never increase";
   const auto bad = [&](const text::Place& place, const std::string& what) {
     reader.findings().add(place, what, allowed);
   };
@@ -79,13 +81,14 @@ void read_profile(const text::Value& list, text::TableReader& reader, Taper& tap
     for (const auto& x : item.items)
       if ((x.kind != text::Value::Kind::number && x.kind != text::Value::Kind::integer) ||
           !std::isfinite(x.number))
-        return bad(x.place, "a point of \"profile_mm\" holds " + describe(x));
+        return bad(x.place, "a point of \"profile_mm\" contains " + describe(x));
     const double x_m = 1e-3 * item.items[0].number, w_m = 1e-3 * item.items[1].number;
     const auto& points = taper.profile_m;
     if (points.empty() ? x_m != 0 : x_m <= points.back().first)
-      return bad(item.place, "x does not rise from 0");
+      return bad(item.place, "the x values of \"profile_mm\" are not in ascending order from 0");
     if (w_m <= 0 || (!points.empty() && w_m > points.back().second))
-      return bad(item.place, "a half-width of \"profile_mm\" is not above 0 or grows");
+      return bad(item.place,
+                 "a half-width of \"profile_mm\" is not above 0, or is larger than the one before");
     taper.profile_m.emplace_back(x_m, w_m);
   }
   if (taper.profile_m.size() < 2) return bad(list.place, "\"profile_mm\" has fewer than two points");
@@ -97,11 +100,11 @@ void check_length(const Surface& surface, text::TableReader& reader) {
   if (taper.slope && taper.half_width_m - *taper.slope * surface.length_m < -1e-9)
     reader.problem("slope",
                    "the half-width reaches 0 at " + std::to_string(1e3 * taper.half_width_m / *taper.slope) +
-                       " mm, before the surface's end",
-                   "\"length_mm\" at most half_width_mm / slope");
+                       " mm, before the end of the surface",
+                   "\"length_mm\" must be at most half_width_mm / slope");
   if (!taper.profile_m.empty() && taper.profile_m.back().first < surface.length_m - 1e-9)
     reader.problem("profile_mm", "the profile ends before the surface does",
-                   "a last point at \"length_mm\" or beyond");
+                   "the last point must be at \"length_mm\" or beyond");
 }
 
 void read_taper(const text::Value& table, Surface& surface, text::Findings& findings) {
@@ -113,10 +116,11 @@ void read_taper(const text::Value& table, Surface& surface, text::Findings& find
   const int forms = reader.has("slope") + reader.has("decay_length_mm") + reader.has("profile_mm");
   if (forms != 1)
     findings.add(reader.place(), "[surface.taper] has " + std::to_string(forms) + " forms",
-                 "exactly one of \"slope\", \"decay_length_mm\" or \"profile_mm\" is needed");
+                 "give exactly one of \"slope\", \"decay_length_mm\" and \"profile_mm\"");
   const Range half_width{0.5, 1000, Ends::closed, "mm"};
   if (profile && reader.has("half_width_mm"))
-    reader.problem("half_width_mm", "\"half_width_mm\" beside \"profile_mm\"", "the profile says it already");
+    reader.problem("half_width_mm", "\"half_width_mm\" is not allowed together with \"profile_mm\"",
+                   "leave it out: the profile already contains it");
   if (!profile) taper.half_width_m = 1e-3 * reader.number("half_width_mm", half_width);
   reader.take("half_width_mm");
   taper.slope = slope;
@@ -155,7 +159,7 @@ Surface read_surface(const text::Value& table, text::Findings& findings) {
       reader.maybe_number("density_sd_kg_m3", {0, 30000, Ends::closed, "kg/m3"}).value_or(0);
   surface.modulus_sd_Pa =
       1e9 * reader.maybe_number("modulus_sd_GPa", {0, 2000, Ends::closed, "GPa"}).value_or(0);
-  if (const auto* taper = reader.table("taper", "a table [surface.taper]"))
+  if (const auto* taper = reader.table("taper", "add a table [surface.taper]"))
     read_taper(*taper, surface, findings);
   reader.finish();
   return surface;

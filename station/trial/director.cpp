@@ -40,7 +40,7 @@ void Director::State::enter_block() {
 const procedure::Spec* Director::State::find_spec(const std::string& name) const {
   for (const auto& spec : protocol.procedures)
     if (spec.name == name) return &spec;
-  throw std::out_of_range("no procedure named \"" + name + "\"");
+  throw std::out_of_range("the protocol has no procedure named \"" + name + "\"");
 }
 
 procedure::Context Director::State::context_for(const procedure::Spec& spec) const {
@@ -105,7 +105,8 @@ std::optional<TrialSpec> Director::next() {
 
 void Director::record(const TrialEnd& end) {
   auto& s = *state_;
-  if (!s.current) throw std::logic_error("director: nothing was given that could have ended");
+  if (!s.current)
+    throw std::logic_error("director: record() was called although no trial had been given out");
   if (end.outcome == terms::Outcome::fault || end.outcome == terms::Outcome::aborted) return;
   const auto type = s.current->type;
   s.current.reset();

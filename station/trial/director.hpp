@@ -14,19 +14,20 @@ namespace turnpoint::trial {
 /// A trial to present, completely decided before anything sounds.
 struct TrialSpec {
   int block_index = 0, attempt = 0;
-  int trial_in_block = 0;  ///< key of its random draws; repeating a void trial uses the same key
+  int trial_in_block = 0;  ///< key of the trial's random draws; repeating a void trial uses the same key
   terms::TrialType type = terms::TrialType::experimental;
-  std::string procedure;  ///< "" outside procedures
+  std::string procedure;  ///< name of the procedure; "" for trials outside procedures
   std::optional<double> level;
   protocol::Factors factors;
   std::vector<std::vector<std::string>> intervals;  ///< scene names in the order of presentation
-  std::vector<double> rove_dB;                      ///< one value per interval
+  std::vector<double> rove_dB;                      ///< roving of each interval
   /// index of the right choice; empty if no answer is right
   std::optional<int> correct;
-  std::optional<SliderSpan> slider;  ///< for an adjustment only
+  std::optional<SliderSpan> slider;  ///< the slider; only for an adjustment
   double iti_s = 0, foreperiod_s = 0;
   double deadline_s = 0;
-  bool timeouts_are_data = false;  ///< the deadline is part of the design (instructions)
+  /// true if the deadline is part of the design (instructions), so that a timeout counts as a result
+  bool timeouts_are_data = false;
 };
 
 /// The result of a trial, as far as the next trials depend on it.
@@ -34,7 +35,7 @@ struct TrialEnd {
   terms::Outcome outcome = terms::Outcome::answered;
   std::optional<int> response;
   std::optional<bool> correct;
-  std::optional<double> setting = {};  ///< for an adjustment that was answered
+  std::optional<double> setting = {};  ///< the setting; only for an adjustment that was answered
 };
 
 struct ProcedureEstimate {

@@ -34,7 +34,8 @@ double Director::State::deadline() const {
   return protocol.timing.deadline_s.value_or(0);
 }
 
-/// Draws the factors with levels that nothing else sets. Text factors of the block keep the block's value.
+/// Draws those factors with levels that nothing else sets. Text factors that the block fixes keep their
+/// value.
 protocol::Factors Director::State::drawn_factors() const {
   auto factors = now()->fixed;
   auto draw = draws(Stream::factor_level, trial);
@@ -138,7 +139,7 @@ TrialSpec Director::State::catch_trial() const {
   auto spec = blank(terms::TrialType::catch_trial);
   const auto& wanted = *now()->catch_trials;
   auto draw = draws(Stream::catch_trial, trial);
-  draw.uniform();  // skip the draw that decided that this is a catch trial
+  draw.uniform();  // skip the number that decided that this is a catch trial
   spec.level = wanted.levels[draw.below(wanted.levels.size())];
   spec.factors[wanted.factor] = *spec.level;
   complete(spec);

@@ -12,24 +12,27 @@ namespace {
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 
 void check(const Timing& plan) {
-  if (plan.intervals.empty()) throw std::invalid_argument("trial: no interval; at least one is needed");
-  if (plan.answers < 1) throw std::invalid_argument("trial: no answers; at least one is needed");
+  if (plan.intervals.empty())
+    throw std::invalid_argument("trial: there is no interval; at least one is needed");
+  if (plan.answers < 1) throw std::invalid_argument("trial: there are no answers; at least one is needed");
   for (const auto time : {plan.cue_ns, plan.gap_ns, plan.deadline_ns, plan.anticipation_ns, plan.feedback_ns,
                           plan.late_ns, plan.iti_ns, plan.watermark_ns})
-    if (time < 0) throw std::invalid_argument("trial: a negative time; times are 0 or more");
+    if (time < 0) throw std::invalid_argument("trial: a time is negative; all times must be 0 or more");
   for (const auto& interval : plan.intervals) {
     std::int64_t last = 0;
     for (const auto start : interval.scene_starts_ns) {
       if (start < last || start > interval.duration_ns)
-        throw std::invalid_argument("trial: a scene outside its interval; starts ascend within the duration");
+        throw std::invalid_argument("trial: scene starts must be in ascending order and within the interval");
       last = start;
     }
-    if (interval.duration_ns <= 0) throw std::invalid_argument("trial: an interval needs a duration above 0");
+    if (interval.duration_ns <= 0)
+      throw std::invalid_argument("trial: the duration of an interval must be above 0");
   }
   if (plan.correct && (*plan.correct < 0 || *plan.correct >= plan.answers))
-    throw std::invalid_argument("trial: the right answer is none of the answers");
+    throw std::invalid_argument("trial: the index of the right answer is not one of the answers");
   if (plan.response_zero == ResponseZero::change && plan.intervals.back().scene_starts_ns.empty())
-    throw std::invalid_argument("trial: response_zero is the change, but the last interval has one scene");
+    throw std::invalid_argument(
+        "trial: response_zero is the change of scene, but the last interval has only one scene");
 }
 
 }  // namespace
@@ -42,7 +45,7 @@ Machine::Machine(Timing plan)
 }
 
 std::vector<Action> Machine::start(std::int64_t now_ns) {
-  if (phase_ != Phase::idle) throw std::logic_error("trial: started twice");
+  if (phase_ != Phase::idle) throw std::logic_error("trial: start() was called twice");
   result_.started_ns = now_ns_ = now_ns;
   enter(Phase::cue, kNever);
   actions_.push_back({ActionKind::present, 0, now_ns + plan_.cue_ns});
@@ -91,7 +94,7 @@ std::vector<Action> Machine::handle(const Event& event) {
 
 std::optional<std::int64_t> Machine::wake_ns() const {
   if (phase_ == Phase::idle || phase_ == Phase::done) return std::nullopt;
-  // the interval ends with the last heard event
+  // while this interval lasts without an outcome, it ends with the last heard event, not at a time
   if (phase_ == Phase::interval && !decided()) return std::nullopt;
   const bool answering = phase_ == Phase::stimulus || phase_ == Phase::response;
   const auto deadline = answering ? deadline_at() : kNever;

@@ -12,10 +12,10 @@ namespace turnpoint::trial {
 using terms::ResponseZero;
 
 enum class Phase {
-  idle,      ///< not started
+  idle,      ///< the trial has not started
   cue,       ///< the participant gets ready; the surface is silent, and all intervals are scheduled
   stimulus,  ///< an interval is being presented
-  gap,       ///< between two intervals
+  gap,       ///< silence between two intervals
   response,  ///< silence; an answer is accepted
   feedback,  ///< the page says whether the answer was right
   late,      ///< the page shows a message after a timeout or an anticipation
@@ -41,8 +41,8 @@ struct Timing {
   ResponseZero response_zero = ResponseZero::go_cue;
   std::int64_t deadline_ns = 0;      ///< counted from response_zero
   std::int64_t anticipation_ns = 0;  ///< an answer sooner than this after response_zero is an anticipation
-  std::int64_t feedback_ns = 0;      ///< 0: no feedback phase
-  std::int64_t late_ns = 0;          ///< 0: no message
+  std::int64_t feedback_ns = 0;      ///< length of the feedback; 0 for none
+  std::int64_t late_ns = 0;          ///< length of the message after a late answer; 0 for none
   std::int64_t iti_ns = 0;
   /// How long a time stamp may take to arrive. Deadlines are decided this much later, by the stamps.
   std::int64_t watermark_ns = 20'000'000;
@@ -51,15 +51,16 @@ struct Timing {
 };
 
 enum class EventKind {
-  tick,     ///< time has passed
-  onset,    ///< value: interval; time_ns: when its first frame reaches the surface (may be in the future)
-  heard,    ///< value: interval; all of it has been played as scheduled
+  tick,  ///< time has passed
+  /// value: index of the interval; time_ns: when its first frame reaches the surface (may be in the future)
+  onset,
+  heard,    ///< value: index of the interval, all of which has been played as scheduled
   answer,   ///< value: index of the answer
   touch,    ///< a touch outside all answers
   contact,  ///< value 1: finger on the surface; 0: finger lifted
   xrun,     ///< the drive lost frames; value 1: in an interval of this trial, 0: in silence
   fault,    ///< drive, amplifier or panel cannot continue
-  abort,    ///< stopped by the participant or the operator
+  abort,    ///< the participant or the operator stops the trial
 };
 
 struct Event {
@@ -73,7 +74,7 @@ enum class ActionKind {
   /// schedule all intervals at the plan's distances, the first no earlier than time_ns; reply with an onset
   /// event for each interval, and with a heard event once it has been played
   present,
-  silence,  ///< ramp down what sounds now, and cancel what has not begun
+  silence,  ///< ramp down what is playing now, and cancel what has not begun
 };
 
 struct Action {
@@ -87,7 +88,7 @@ struct Result {
   Outcome outcome = Outcome::aborted;
   std::optional<int> response;
   std::optional<bool> correct;
-  std::optional<std::int64_t> zero_ns;  ///< when response_zero happened
+  std::optional<std::int64_t> zero_ns;  ///< time at which response_zero happened
   std::optional<std::int64_t> response_time_ns, decision_time_ns, movement_time_ns;
   std::vector<std::int64_t> onsets_ns;
   std::int64_t started_ns = 0, ended_ns = 0;

@@ -9,8 +9,8 @@ namespace turnpoint::trial {
 
 namespace {
 
-/// The factor to which the trial's level belongs: its procedure's, else that of the first trials that have
-/// one.
+/// The factor that the trial's level sets: the one of its procedure, or else the one of the protocol's first
+/// trials with a level.
 std::string level_factor(const TrialSpec& spec, const protocol::Protocol& protocol) {
   if (const auto* procedure = protocol::find_procedure(protocol, spec.procedure)) return procedure->level;
   if (!protocol.procedures.empty()) return protocol.procedures.front().level;

@@ -9,7 +9,7 @@ namespace turnpoint::trial {
 /// finger can tell.
 struct SliderSpan {
   double low = 0, high = 1;  ///< limits of the settings that the surface follows, in the unit of the factor
-  double step = 0;           ///< settings are low + k step
+  double step = 0;           ///< possible settings are low + k * step
   double shown_low = 0, shown_high = 1;
 };
 

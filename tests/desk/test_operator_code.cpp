@@ -91,8 +91,9 @@ TEST_CASE("a file that holds no code, or that everybody may read, is refused by 
   for (const auto* text : {"7391\n", "\n", "$y$\n", "$9$abc$def\n"}) {
     write(file, text, 0600);
     CAPTURE(text);
-    CHECK(problem_with(file) ==
-          file + ":1:1: holds no operator's code; `turnpoint operator-code` stores one");
+    CHECK(problem_with(file) == file +
+                                    ":1:1: this file does not contain an operator's code; store a code with "
+                                    "`turnpoint operator-code`");
   }
   write(file, desk::OperatorCode::of_digits("7391").hash() + "\n", 0640);
   CHECK(problem_with(file).empty());

@@ -99,9 +99,10 @@ TEST_CASE("all mistakes of a rig file come at once, each with its line", "[rig]"
 }
 
 TEST_CASE("what a rig file may not say is refused with what is allowed", "[rig]") {
-  CHECK(contains(problems("rate_Hz = 192000", "rate_Hz = 96000"), "at most 0.45 of rate_Hz: 43.2 kHz"));
+  CHECK(contains(problems("rate_Hz = 192000", "rate_Hz = 96000"),
+                 "it may extend at most to 0.45 of rate_Hz, which is 43.2 kHz"));
   CHECK(contains(problems("\"null:\"", "\"pulse:\""), "allowed: \"null:\", \"wav:FILE\" or \"alsa:DEVICE\""));
-  CHECK(contains(problems("length_mm = 300", "length_mm = 500"), "before the surface's end"));
+  CHECK(contains(problems("length_mm = 300", "length_mm = 500"), "before the end of the surface"));
   CHECK(contains(problems("slope = 0.03", "slope = 0.03\ndecay_length_mm = 300"), "has 2 forms"));
   CHECK(contains(problems("slope = 0.03", ""), "has 0 forms"));
   CHECK(contains(problems("quality_factor = 60", "quality_factor = nan"), "\"quality_factor\" is nan"));
@@ -135,7 +136,7 @@ TEST_CASE("a device may have more channels than the rig uses, not fewer", "[rig]
   CHECK(rig::parse(replaced(source(), "rate_Hz = 192000", "rate_Hz = 192000\ndevice_channels = 10"), "r.toml")
             .output.device_channels == 10);
   CHECK(contains(problems("rate_Hz = 192000", "rate_Hz = 192000\ndevice_channels = 1"),
-                 "device_channels is 1; at least 2, the channels that the rig uses"));
+                 "device_channels is 1; at least 2, the number of channels that the rig uses"));
   CHECK(contains(problems("rate_Hz = 192000", "rate_Hz = 192000\ndevice_channels = 65"), "1 to 64"));
 }
 
@@ -143,8 +144,8 @@ TEST_CASE("a spare channel is one that nothing else drives", "[rig]") {
   const auto taken = problems(
       "[limits]", "[marker]\nchannel = 0\nkind = \"pulse\"\n[noise]\nchannel = 0\nrms = 0.5\n[limits]");
   CHECK(contains(taken, "channel 0 drives"));
-  CHECK(contains(taken, "a channel without a transducer"));
-  CHECK(contains(taken, "channel 0 carries the marker"));
+  CHECK(contains(taken, "use a channel without a transducer"));
+  CHECK(contains(taken, "channel 0 is used by the marker"));
   CHECK(contains(taken, "\"rms\""));
   CHECK(contains(problems("[limits]", "[marker]\nchannel = 8\nkind = \"click\"\n[limits]"), "\"click\""));
 }
