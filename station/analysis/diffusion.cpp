@@ -9,17 +9,18 @@ namespace turnpoint::analysis {
 
 namespace {
 
-constexpr double kNearChance = 1e-3;  ///< distance of Pc from 1/2 below which L^3 loses precision
+constexpr double kNearChance = 1e-3;  ///< if Pc is nearer than this to 1/2, L^3 loses precision
 
-/// The variance of the decision time is (a / s)^4 h(L).
+/// The function h(L) in the variance of the decision time, which is (a / s)^4 h(L).
 double h(double L) {
   L = std::abs(L);
-  if (L < 0.02) return (1 - L * L / 10) / 24;  // Taylor series, because the closed form cancels here
+  // use the Taylor series, because the closed form loses digits by cancellation here
+  if (L < 0.02) return (1 - L * L / 10) / 24;
   const double e = std::exp(-L);
   return (1 - 2 * L * e - e * e) / (2 * L * L * L * (1 + e) * (1 + e));
 }
 
-/// The mean of the decision time is (a / s)^2 m(L).
+/// The function m(L) in the mean of the decision time, which is (a / s)^2 m(L).
 double m(double L) { return std::abs(L) < 1e-4 ? 0.25 : std::tanh(L / 2) / (2 * L); }
 
 double corrected(const EzMoments& moments) {

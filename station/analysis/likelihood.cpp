@@ -22,7 +22,7 @@ bool solve(const std::array<std::array<double, 4>, 4>& a, const std::array<doubl
   }
   const Eigen::LLT<Eigen::Matrix4d> factor(system);
   if (factor.info() != Eigen::Success || !factor.matrixLLT().allFinite())
-    return false;  // NaN passes for positive
+    return false;  // written so that NaN also counts as not positive
   Eigen::Map<Eigen::Vector4d>(x.data()) = factor.solve(right);
   return true;
 }

@@ -9,7 +9,7 @@ namespace turnpoint::analysis {
 Marginal::Marginal(const Cells& cells, std::vector<double> mass)
     : cells_(cells), mass_(std::move(mass)), cumulative_{0} {
   if (mass_.empty() || static_cast<int>(mass_.size()) != cells_.count)
-    throw std::invalid_argument("marginal: one mass for each of one or more cells");
+    throw std::invalid_argument("marginal: there must be at least one cell, and one mass for each cell");
   for (const double value : mass_) cumulative_.push_back(cumulative_.back() + value);
 }
 

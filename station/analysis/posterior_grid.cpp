@@ -77,7 +77,8 @@ void PosteriorGrid::evaluate(const Box& box) {
     }
 }
 
-/// For each pair of asymptotes, computed from the function's core at each level.
+/// Adds the log-likelihood of the data for each pair of asymptotes, computed from the function's core at each
+/// level.
 void PosteriorGrid::add_log_likelihoods(const std::vector<double>& between) {
   for (const auto& ends : ends_) {
     double sum = 0;
@@ -118,7 +119,7 @@ Box PosteriorGrid::narrowed() const {
   return box;
 }
 
-/// Relative prior density; 1 on its flat part.
+/// Prior density of the parameter, relative to the flat part of the prior, where it is 1.
 double PosteriorGrid::prior_density(Parameter parameter, int cell, double falling_share) const {
   const double falling = falling_share * extent(prior_[parameter]), at = box_[parameter].centre(cell);
   const double inside = std::min(at - prior_[parameter].low, prior_[parameter].high - at);

@@ -15,9 +15,10 @@ namespace {
 void check(int successes, int trials, double confidence) {
   if (trials < 1 || successes < 0 || successes > trials)
     throw std::invalid_argument("proportion " + std::to_string(successes) + " of " + std::to_string(trials) +
-                                ": needs at least one trial and 0 to all successes");
+                                ": there must be at least one trial, and no more successes than trials");
   if (!(confidence > 0 && confidence < 1))
-    throw std::invalid_argument("confidence " + text::number(confidence) + ": above 0 and below 1");
+    throw std::invalid_argument("confidence " + text::number(confidence) +
+                                ": it must be above 0 and below 1");
 }
 
 }  // namespace
@@ -30,7 +31,7 @@ double normal_density(double z) {
 
 double normal_quantile(double p) {
   if (!(p > 0 && p < 1))
-    throw std::invalid_argument("normal quantile of " + text::number(p) + ": above 0 and below 1");
+    throw std::invalid_argument("normal quantile of " + text::number(p) + ": it must be above 0 and below 1");
   return -std::numbers::sqrt2 * boost::math::erfc_inv(2 * p);
 }
 
@@ -40,7 +41,7 @@ Interval wilson(int successes, int trials, double confidence) {
   const double z = normal_quantile(0.5 + confidence / 2), z2 = z * z;
   const double centre = (p + z2 / (2 * n)) / (1 + z2 / n);
   const double half = z / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
-  // At 0 and at n the limit is exact; rounding must not push it outside [0, 1].
+  // With 0 or n successes one limit is exactly 0 or 1; rounding must not move it outside [0, 1].
   return {successes == 0 ? 0 : centre - half, successes == trials ? 1 : centre + half, confidence};
 }
 

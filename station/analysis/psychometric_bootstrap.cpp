@@ -188,7 +188,8 @@ Replicates replicate(const Replicator& base, const BootstrapOptions& options, do
 
 PsychometricIntervals bootstrap(const PsychometricFit& fit, const BootstrapOptions& options) {
   if (options.replicates < 40 || !(options.confidence > 0 && options.confidence < 1))
-    throw std::invalid_argument("bootstrap: at least 40 replicates and a confidence inside (0, 1)");
+    throw std::invalid_argument(
+        "bootstrap: there must be at least 40 replicates, and the confidence must be between 0 and 1");
   PsychometricIntervals result;
   result.confidence = options.confidence;
   if (!fit.parameters) {

@@ -16,9 +16,10 @@ void check(const std::vector<LevelCount>& data, const FitOptions& options) {
   for (const auto& point : data)
     if (!(std::isfinite(point.level) || point.level == kNoise) || point.trials < 0 || point.positive < 0 ||
         point.positive > point.trials)
-      throw std::invalid_argument("level " + text::number(point.level) + ": " +
-                                  std::to_string(point.positive) + " of " + std::to_string(point.trials) +
-                                  " trials; needs a finite level and 0 to all positive");
+      throw std::invalid_argument(
+          "level " + text::number(point.level) + ": " + std::to_string(point.positive) + " of " +
+          std::to_string(point.trials) +
+          " trials; the level must be finite, and there cannot be more positive answers than trials");
   const auto inside = [](double low, double high, double most) {
     return low >= 0 && low <= high && high < most + 1e-12;
   };
@@ -26,10 +27,11 @@ void check(const std::vector<LevelCount>& data, const FitOptions& options) {
       !inside(options.guess_low, options.guess_high, 0.9) ||
       (options.guess == Guess::fitted && options.guess_high + options.lapse_high >= 1))
     throw std::invalid_argument(
-        "bounds of lapse and guess: 0 <= low <= high, a lapse up to 0.5, a guess up to 0.9, below 1 "
-        "together");
+        "bounds of lapse and guess: they must meet 0 <= low <= high, with a lapse of at most 0.5, a guess of "
+        "at most 0.9, and a sum below 1");
   if (options.guess == Guess::fixed && !(options.guess_value >= 0 && options.guess_value < 1))
-    throw std::invalid_argument("guess " + text::number(options.guess_value) + ": from 0 to below 1");
+    throw std::invalid_argument("guess " + text::number(options.guess_value) +
+                                ": it must be at least 0 and below 1");
 }
 
 /// Sorts the levels, merges equal ones and drops those without trials.

@@ -41,7 +41,7 @@ double core_derivative(Function function, double z) {
 double core_inverse(Function function, double p) {
   if (!(p > 0 && p < 1))
     throw std::invalid_argument("inverse of a psychometric function at " + text::number(p) +
-                                ": above 0 and below 1");
+                                ": it must be above 0 and below 1");
   switch (function) {
     case Function::weibull:
       return std::log(-std::log1p(-p));
@@ -56,7 +56,7 @@ double core_inverse(Function function, double p) {
 double axis_position(Function function, Scale scale, double level) {
   if (scale == Scale::linear) return level;
   if (!(level > 0))
-    throw std::invalid_argument("level " + text::number(level) + " on a log10 scale: above 0");
+    throw std::invalid_argument("level " + text::number(level) + " on a log10 scale: it must be above 0");
   return (function == Function::weibull ? 20 : 1) * std::log10(level);
 }
 

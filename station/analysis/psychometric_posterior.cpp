@@ -12,9 +12,9 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// In units of rate times the range of the levels.
+/// Flattest and steepest rate of the prior, in units of 1 / range of the levels.
 constexpr double kShallow = 1.5, kSteep = 24;
-/// Estimates in this share of the prior's range at either end get a statement.
+/// An estimate within this share of the prior's range, at either end, gets a statement in the report.
 constexpr double kOuter = 0.25;
 /// The falling part of a prior at either end, as a share of its flat part and of the whole range.
 constexpr double kBeyond = 0.25, kFallingShare = kBeyond / (1 + 2 * kBeyond);

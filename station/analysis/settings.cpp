@@ -62,9 +62,10 @@ void estimate(Settings& s) {
   }
   s.start_slope = slope_on_starts(s);
   if (s.start_slope && s.start_slope->interval.low > 0)
-    s.statements.push_back({"follows-start", "Settings follow where the slider started (by " +
-                                                 text::number(100 * s.start_slope->value, 2) +
-                                                 " % of the way): their mean leans on the starts."});
+    s.statements.push_back(
+        {"follows-start", "Settings follow where the slider started (by " +
+                              text::number(100 * s.start_slope->value, 2) +
+                              " % of the way), so their mean depends on the starting positions."});
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ std::optional<double> d_prime_forced_choice(double proportion_correct) {
 std::optional<double> log_linear_proportion(int successes, int trials) {
   if (successes < 0 || successes > trials)
     throw std::invalid_argument(std::to_string(successes) + " of " + std::to_string(trials) +
-                                ": from 0 to the number of trials");
+                                ": it must be from 0 to the number of trials");
   if (trials == 0) return std::nullopt;
   return (successes + 0.5) / (trials + 1.0);
 }
@@ -74,7 +74,7 @@ void estimate(Detection& detection, double scale) {
 }
 
 struct Collected {
-  YesNoCounts noise;  ///< noise trials of all levels together
+  YesNoCounts noise;  ///< counts of the noise trials, all levels together
   std::map<double, YesNoCounts> levels;
 };
 
@@ -118,7 +118,8 @@ std::optional<Roc> roc(const std::vector<int>& noise, const std::vector<int>& si
       std::any_of(noise.begin(), noise.end(), negative) ||
       std::any_of(signal.begin(), signal.end(), negative))
     throw std::invalid_argument(
-        "ROC: two ratings or more, as many of noise as of signal, no negative counts");
+        "ROC: there must be two or more ratings, the same number for noise and signal, and no negative "
+        "counts");
   const double n = std::accumulate(noise.begin(), noise.end(), 0),
                s = std::accumulate(signal.begin(), signal.end(), 0);
   if (n == 0 || s == 0) return std::nullopt;

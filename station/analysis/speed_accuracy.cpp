@@ -21,7 +21,8 @@ double absolute_deviation(const std::vector<double>& times_s, double median) {
 
 double lisas(double mean_correct_s, double proportion_error, double sd_time_s, double sd_error) {
   if (!(sd_error >= 0) || !(sd_time_s >= 0) || !(proportion_error >= 0 && proportion_error <= 1))
-    throw std::invalid_argument("LISAS: standard deviations not below 0, errors from 0 to 1");
+    throw std::invalid_argument(
+        "LISAS: standard deviations must not be negative, and proportions of errors must be from 0 to 1");
   return sd_error == 0 ? mean_correct_s : mean_correct_s + proportion_error * sd_time_s / sd_error;
 }
 
@@ -33,7 +34,7 @@ std::optional<double> inverse_efficiency(double mean_correct_s, double proportio
 std::optional<std::vector<double>> balanced_integration(const std::vector<double>& proportion_correct,
                                                         const std::vector<double>& mean_correct_s) {
   if (proportion_correct.size() != mean_correct_s.size())
-    throw std::invalid_argument("balanced integration: as many times as proportions");
+    throw std::invalid_argument("balanced integration: there must be as many times as proportions");
   if (proportion_correct.size() < 3) return std::nullopt;
   const double sd_accuracy = std::sqrt(variance(proportion_correct));
   const double sd_time = std::sqrt(variance(mean_correct_s));
@@ -48,7 +49,8 @@ std::optional<std::vector<double>> balanced_integration(const std::vector<double
 std::vector<CafBin> conditional_accuracy(const std::vector<double>& times_s, const std::vector<bool>& correct,
                                          int bins) {
   if (bins < 4 || bins > 6 || times_s.size() != correct.size())
-    throw std::invalid_argument("conditional accuracy function: 4 to 6 bins, as many scores as times");
+    throw std::invalid_argument(
+        "conditional accuracy function: there must be 4 to 6 bins, and as many scores as times");
   const std::size_t n = times_s.size(), wanted = static_cast<std::size_t>(bins);
   if (n < 5 * wanted) return {};
   std::vector<std::size_t> order(n);

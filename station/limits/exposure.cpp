@@ -14,7 +14,8 @@ Exposure::Exposure(const ExposureLimits& limits, double session_start_s, const s
   if (!(limits.displacement_m > 0 && limits.continuous_s > 0 && limits.session_s > 0 && limits.duty > 0 &&
         limits.duty <= 1))
     throw std::invalid_argument(
-        fmt::format("limits of {} m, {} s continuous, duty {}, {} s a session; allowed above 0, duty up to 1",
+        fmt::format("limits of {} m, {} s continuous, duty {}, {} s a session; all must be above 0, and the "
+                    "duty at most 1",
                     limits.displacement_m, limits.continuous_s, limits.duty, limits.session_s));
   for (const Exposed& exposed : history) add(exposed);
 }
@@ -22,7 +23,7 @@ Exposure::Exposure(const ExposureLimits& limits, double session_start_s, const s
 void Exposure::add(const Exposed& exposed) {
   if (!(exposed.end_s >= exposed.start_s) || (!recent_.empty() && exposed.start_s < recent_.back().start_s))
     throw std::invalid_argument(
-        fmt::format("exposure from {} to {} s is out of order", exposed.start_s, exposed.end_s));
+        fmt::format("an exposure from {} to {} s is not in order of time", exposed.start_s, exposed.end_s));
   recent_.push_back(exposed);
   const double kept = window_s + limits_.continuous_s;
   while (recent_.front().end_s < exposed.start_s - kept) recent_.pop_front();
@@ -93,7 +94,9 @@ double Exposure::earliest_start_s(double wanted_s, std::span<const Exposed> tria
     if (late_s <= 1e-6) return start_s;
     start_s += late_s;
   }
-  throw LimitExceeded("the intervals of a trial never keep the rig's limits together; shorten them");
+  throw LimitExceeded(
+      "the intervals of a trial are together too long for the rig's limits, however long the pauses are; "
+      "shorten them");
 }
 
 namespace {

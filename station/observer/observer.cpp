@@ -185,13 +185,13 @@ void check(const Parameters& p) {
   require(!p.threshold || *p.threshold != 0, "threshold must not be 0");
   require(p.slope > 0, "slope must be above 0");
   require(p.lapse >= 0 && p.lapse <= 1 && p.anticipation >= 0 && p.anticipation <= 1,
-          "lapse and anticipation are probabilities from 0 to 1");
+          "lapse and anticipation must be probabilities from 0 to 1");
   require(p.bound > 0 && p.residual_s >= 0 && p.travel_s >= 0,
-          "bound is above 0, residual and travel are 0 or more");
+          "bound must be above 0, and residual and travel 0 or more");
   require(p.drift_sd >= 0 && p.start_range >= 0 && p.start_range < 1,
-          "drift_sd is 0 or more, start_range from 0 to below 1");
+          "drift_sd must be 0 or more, and start_range at least 0 and below 1");
   require(p.residual_range_s >= 0 && p.residual_range_s <= 2 * p.residual_s,
-          "residual_range is from 0 to twice the residual");
+          "residual_range must be from 0 to twice the residual");
 }
 
 }  // namespace
@@ -226,7 +226,7 @@ Parameters parse(const std::string& text) {
     const auto [last, error] = std::from_chars(first, part.data() + part.size(), value);
     if (found == known.end() || error != std::errc{} || last != part.data() + part.size() ||
         !std::isfinite(value))
-      throw terms::UsageError("--observer: \"" + part + "\" is not understood; allowed is " + allowed);
+      throw terms::UsageError("--observer: \"" + part + "\" is not understood; write " + allowed);
     *found->second = value;
     if (found->first == "threshold") p.threshold = value;
     at = end;

@@ -21,9 +21,9 @@ bool differ(double low, double high) {
 void check(const Axis& axis) {
   const bool positive = axis.scale == AxisScale::linear || axis.low > 0;
   if (!differ(axis.low, axis.high) || !std::isfinite(axis.low) || !std::isfinite(axis.high) || !positive)
-    throw std::invalid_argument("axis \"" + axis.label + "\" from " + text::number(axis.low) + " to " +
-                                text::number(axis.high) +
-                                ": needs finite limits, the low one below, above 0 on a log axis");
+    throw std::invalid_argument(
+        "axis \"" + axis.label + "\" from " + text::number(axis.low) + " to " + text::number(axis.high) +
+        ": the limits must be finite and in ascending order, and above 0 on a log axis");
 }
 
 /// A label with a typographic minus sign.

@@ -53,7 +53,7 @@ struct Draw {
 
   void operator()(const Band& band) const {
     check(band.x.size() == band.low.size() && band.x.size() == band.high.size(),
-          "band lists differ in length");
+          "the lists of a band must have the same length");
     std::vector<Point> outline;
     for (std::size_t i = 0; i < band.x.size(); ++i) outline.push_back(frame.at(band.x[i], band.low[i]));
     for (std::size_t i = band.x.size(); i-- > 0;) outline.push_back(frame.at(band.x[i], band.high[i]));
@@ -61,7 +61,7 @@ struct Draw {
   }
 
   void operator()(const Histogram& bars) const {
-    check(bars.edges.size() == bars.heights.size() + 1, "a histogram needs one edge more than heights");
+    check(bars.edges.size() == bars.heights.size() + 1, "a histogram must have one more edge than heights");
     for (std::size_t i = 0; i < bars.heights.size(); ++i) {
       if (bars.heights[i] == 0) continue;
       const auto from = frame.at(bars.edges[i], bars.heights[i]), to = frame.at(bars.edges[i + 1], 0);
@@ -73,7 +73,7 @@ struct Draw {
   void operator()(const HeatMap& map) const {
     const std::size_t columns = map.x_edges.size() - 1, rows = map.y_edges.size() - 1;
     check(!map.x_edges.empty() && !map.y_edges.empty() && map.values.size() == columns * rows,
-          "a heat map needs columns x rows values");
+          "a heat map needs one value for each column and row");
     check(map.low < map.high, "a heat map needs a range of values");
     for (std::size_t row = 0; row < rows; ++row)
       for (std::size_t column = 0; column < columns; ++column) {
@@ -96,7 +96,8 @@ struct Draw {
   }
 
   void operator()(const Line& curve) const {
-    check(curve.x.size() == curve.y.size(), "line \"" + curve.name + "\": lists differ in length");
+    check(curve.x.size() == curve.y.size(),
+          "line \"" + curve.name + "\": the lists of x and y must have the same length");
     const auto look = style(curve.series);
     std::vector<Point> run;
     const auto flush = [&] {
@@ -117,7 +118,7 @@ struct Draw {
     const auto fits = [n](std::size_t size) { return size == 0 || size == n; };
     check(dots.y.size() == n && fits(dots.low.size()) && dots.low.size() == dots.high.size() &&
               fits(dots.weight.size()) && fits(dots.open.size()),
-          "points \"" + dots.name + "\": lists differ in length");
+          "points \"" + dots.name + "\": the lists must have the same length");
     const auto look = style(dots.series);
     const auto radii = marker_radii_px(dots);
     for (std::size_t i = 0; i < dots.low.size(); ++i)
@@ -327,7 +328,7 @@ std::vector<std::string> caption_lines(const std::string& caption, double width)
 
 void draw(Canvas& canvas, const Figure& figure) {
   check(!figure.charts.empty(), "a figure needs a chart");
-  check(figure.columns > 0, "columns: at least 1");
+  check(figure.columns > 0, "the number of columns must be at least 1");
   const int count = static_cast<int>(figure.charts.size());
   const int columns = std::min(figure.columns, count), rows = (count + columns - 1) / columns;
   const double width = columns * figure.chart_width_px, charts = rows * figure.chart_height_px;
@@ -360,7 +361,7 @@ std::string render(const Figure& figure) {
 }
 
 Figure laid_out(Figure figure, double width_px, double height_px) {
-  check(width_px > 0 && height_px > 0, "a figure needs a size above 0");
+  check(width_px > 0 && height_px > 0, "the size of a figure must be above 0");
   constexpr double best = 1.5, least_width = 200, least_height = 165;
   const auto count = static_cast<int>(figure.charts.size());
   Figure chosen = figure;
@@ -383,7 +384,8 @@ Figure laid_out(Figure figure, double width_px, double height_px) {
 }
 
 Histogram histogram(const std::vector<double>& values, double low, double high, int bins) {
-  check(low < high && bins > 0, "a histogram needs low < high and at least one bin");
+  check(low < high && bins > 0,
+        "a histogram needs at least one bin, and its low limit must be below the high one");
   Histogram result;
   for (int i = 0; i <= bins; ++i) result.edges.push_back(low + (high - low) * i / bins);
   result.heights.assign(static_cast<std::size_t>(bins), 0);

@@ -11,8 +11,8 @@ namespace turnpoint::report {
 
 namespace {
 
-/// For a cell with fewer trials only the interval is shown. If there are more cells than kMostJoined, no line
-/// joins them.
+/// A cell with fewer trials than this is left out of the figure. If there are more cells than kMostJoined, no
+/// line joins them.
 constexpr int kFewestOfCell = 5;
 constexpr std::size_t kMostJoined = 8;
 
@@ -128,8 +128,8 @@ std::optional<plot::Figure> trace_figure(const Summary& summary) {
     panel.title = or_default(trace.procedure, "all trials");
     panel.x = plot::fitted("Trial (number in the session)", line.x, 0.03);
     panel.y = plot::fitted(summary.data.level_label, line.y, 0.1);
-    // A line through shuffled levels would only zigzag, so lines are drawn for procedures that move step by
-    // step.
+    // Draw lines only for procedures that move step by step: a line through shuffled levels would just
+    // zigzag.
     double steps = 0;
     for (std::size_t i = 1; i < line.y.size(); ++i) steps += std::abs(line.y[i] - line.y[i - 1]);
     const bool smooth = line.y.size() > 1 &&
@@ -240,7 +240,7 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
     bin_line.x = bins.x, bin_line.y = bins.y;
     cell_line.x = by_difficulty.x, cell_line.y = by_difficulty.y;
     caf.layers.insert(caf.layers.end(), {bin_line, bins});
-    // An adaptive procedure leaves many levels. A line through them would only zigzag.
+    // An adaptive procedure presents many levels, and a line through all of them would just zigzag.
     if (cell_line.x.size() <= kMostJoined) cells.layers.push_back(cell_line);
     cells.layers.push_back(by_difficulty);
   }

@@ -75,7 +75,7 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
   json["replicates"] = named.intervals.replicates;
   json["intervals"] = describe_intervals(named, data);
   json["prior"] = prior_json(named);
-  json["levels"] = Json::array();  // without a number: noise
+  json["levels"] = Json::array();  // a noise trial has no level, so its level is null
   for (const auto& point : named.fit.data)
     json["levels"].push_back(
         {{"level", value(point.level)}, {"trials", point.trials}, {"positive", point.positive}});

@@ -149,7 +149,7 @@ std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, cons
       for (const double slope : spec.slope.values) widen(slopes, {slope, slope});
   }
   if (!levels) return std::nullopt;
-  // For yes/no only the magnitude of the level counts.
+  // In a yes/no task only the magnitude of the level counts.
   if (data.design == report::Design::yes_no)
     levels = Range{0, std::max(std::fabs(levels->first), std::fabs(levels->second))};
   if (data.scale == analysis::Scale::log10)

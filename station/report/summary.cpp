@@ -35,7 +35,7 @@ int rising_choice(const std::vector<TrialRecord>& trials) {
   return best;
 }
 
-/// Noise trials are counted below every level.
+/// Noise trials are counted as a level below all others.
 std::vector<analysis::LevelCount> count_yes(const std::vector<TrialRecord>& trials, int positive) {
   auto marked = trials;
   for (auto& trial : marked)

@@ -314,7 +314,7 @@ void Planner::State::refuse_beyond_limits(const DrivePlan& plan) const {
                                   number(plan.peak_displacement_m * 1e6, 4),
                                   number(rig.limits.displacement_m * 1e6, 4)));
   if (plan.peak_full_scale > 1)
-    throw Unreachable(fmt::format("the drive would need {} of full scale; at most 1 can be had",
+    throw Unreachable(fmt::format("the drive would need {} of full scale, but at most 1 is possible",
                                   number(plan.peak_full_scale, 4)));
 }
 

@@ -21,10 +21,10 @@ using text::Problem;
 void check_participant(const std::string& code, std::vector<Problem>& problems) {
   static const std::regex allowed("[A-Za-z0-9][A-Za-z0-9_-]{0,31}");
   if (!std::regex_match(code, allowed))
-    problems.push_back(
-        {{},
-         "--participant \"" + code + "\" is not a code",
-         "1 to 32 letters, digits, - and _ are allowed, the first a letter or digit; no names"});
+    problems.push_back({{},
+                        "--participant \"" + code + "\" is not a code",
+                        "a code has 1 to 32 letters, digits, - and _, and begins with a letter or digit; "
+                        "never use a person's name"});
 }
 
 std::string choose_language(const std::string& wanted, const protocol::Protocol& protocol,
@@ -34,7 +34,8 @@ std::string choose_language(const std::string& wanted, const protocol::Protocol&
   if (std::find(known.begin(), known.end(), wanted) != known.end()) return wanted;
   std::string list;
   for (const auto& language : known) list += (list.empty() ? "" : ", ") + language;
-  problems.push_back({{}, "--language " + wanted + ": the protocol does not have it", "it has " + list});
+  problems.push_back(
+      {{}, "--language " + wanted + ": the protocol does not have this language", "it has " + list});
   return wanted;
 }
 
@@ -68,11 +69,12 @@ void check_live(const session::Setup& setup, const protocol::Survey& survey, std
   };
   if (!rig.friction.measured)
     add("the rig's friction is the illustrative curve",
-        "give [friction] a measured table_csv, or run with --mode pilot");
+        "set table_csv in [friction] to a measured table, or run with --mode pilot");
   if (rig.reproduction)
-    add("this rig reproduces a historical one", "live sessions need a rig with reproduction = false");
+    add("this rig is marked as the reproduction of a historical one",
+        "live sessions need a rig with reproduction = false");
   if (!has_response(setup) && rig.amplifier_uri != "sim:")
-    add("the rig has no calibration in force", "turnpoint calibrate --rig " + rig.path + " makes one");
+    add("the rig has no valid calibration", "turnpoint calibrate --rig " + rig.path + " makes one");
   for (const auto& sight : survey.sights) {
     // Check only that a level was measured. Whether it is allowed depends on each tone's amplitude and is
     // checked in the trial.
@@ -88,10 +90,10 @@ void check_buttons_only(const session::Setup& setup, std::vector<Problem>& probl
   const auto& task = setup.protocol.task;
   if (!setup.rig.buttons_uri)
     problems.push_back(
-        {{setup.rig.path, 0, 0}, "--buttons-only: the rig has no buttons", "a rig with [buttons]"});
+        {{setup.rig.path, 0, 0}, "--buttons-only: the rig has no buttons", "use a rig with [buttons]"});
   if (task.device == protocol::Device::touch)
     problems.push_back({task.device_place, "--buttons-only: the task is answered by touch",
-                        "device = \"buttons\" or \"either\""});
+                        "set device to \"buttons\" or \"either\""});
 }
 
 }  // namespace
@@ -122,7 +124,7 @@ void find_calibration(const RunRequest& request, session::Setup& setup, std::vec
   if (faults.empty()) return take_calibration(source, path, setup);
   if (request.calibration.empty() && !live) return;
   for (const auto& fault : faults)
-    problems.push_back({{path, 0, 0}, fault, "calibrate again, or give another file with --calibration"});
+    problems.push_back({{path, 0, 0}, fault, "calibrate again, or name another file with --calibration"});
 }
 
 }  // namespace

@@ -156,7 +156,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   } catch (const protocol::Abandoned&) {
     throw;
   } catch (const std::exception& error) {
-    // A procedure that cannot work must stop the session before it begins.
+    // A procedure that cannot work must be reported here, before a session begins.
     check.problems.push_back({{protocol_path, 0, 0}, error.what(), ""});
   }
   if (!check.cues.not_compared.empty())

@@ -33,7 +33,7 @@ struct CueKind {
   double scale;
   Source source;
   double scene::Cues::*cue;
-  bool follows_strength;  ///< true if roving always changes it
+  bool follows_strength;  ///< true if roving always changes this cue
 };
 
 constexpr CueKind cue_kinds[] = {
@@ -54,7 +54,7 @@ constexpr double smallest_difference = 1e-3, smallest_difference_dB = 0.01;
 constexpr double precision = 0.01;
 constexpr int first_sessions = 30, most_sessions = 1000;
 
-/// There are trials whose cues cannot be known.
+/// Thrown if there are trials whose cues cannot be known.
 struct NotPlanned : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -68,8 +68,8 @@ struct Interval {
 struct Presentation {
   std::vector<Interval> intervals;
   int correct = 0;
-  double share = 0;   ///< share of the trials in its cell
-  double turn = 0.5;  ///< starting point for its draws of the strength
+  double share = 0;   ///< share of this presentation among the trials of its cell
+  double turn = 0.5;  ///< starting point for the draws of its strength
 };
 
 /// All cells of the census, each with its presentations and its number of trials.
@@ -179,7 +179,7 @@ const std::vector<Presentation>& Guard::presentations(const protocol::Factors& c
   for (const auto& factors : combinations)
     for (const auto& order : orders) {
       const auto correct = order.correct ? order.correct : trial::correct_choice(protocol_.task, factors);
-      if (!correct) continue;  // no answer is right, so it does not count
+      if (!correct) continue;  // in this trial no answer is right, so it does not count
       turn_ += 0.7548776662466927;
       Presentation presentation;
       presentation.correct = *correct, presentation.turn = turn_;
@@ -290,7 +290,7 @@ std::optional<Reached> Guard::same_everywhere(const CueKind& kind, const Strateg
   return Reached{std::max(0.5 * (low + high), by_guessing), by_guessing, 0.5 * (high - low)};
 }
 
-// The number of sessions is determined only by the first ones, not by the results of the others.
+// The number of sessions depends only on the first ones, not on the results of the others.
 Reached Guard::by_itself(const CueKind& kind, const Strategy& strategy, const Cells& all) {
   if (const auto same = same_everywhere(kind, strategy, all)) return *same;
   for (const auto& known : own_sessions_)

@@ -20,7 +20,7 @@ double banded(const Rule& rule, const std::array<double, 3>& x) {
   return rule.statistic == Statistic::value ? x[0] : std::fabs(x[1] - x[0]);
 }
 
-// The evidence for each interval.
+// How strongly the cue speaks for each interval.
 std::array<double, 3> scores(const Rule& rule, std::size_t intervals, const std::array<double, 3>& x) {
   const auto difference = [&](double a, double b) {
     const auto& grain = rule.grain;
@@ -49,7 +49,7 @@ struct Weighed {
   double weight = 0;
 };
 
-// Values that cannot be told apart, and how much more often the one answer is right there than the other.
+// Cue values that cannot be told apart, and how much more often the one answer is right there than the other.
 struct Group {
   double first = 0, last = 0, excess = 0;
 };

@@ -142,7 +142,7 @@ Recovery& entry_for(const Finding& finding, std::vector<Recovery>& recoveries) {
   return entry;
 }
 
-/// The true value of each number, by source and parameter.
+/// The true value of each estimated number, by source and parameter.
 class Truths {
  public:
   Truths(const protocol::Protocol& protocol, const PowerOptions& options,
@@ -200,7 +200,8 @@ class Truths {
         };
         add_gap("proportion correct", generating.share_correct(names[a]), generating.share_correct(names[b]));
         add_gap("boundary", generating.boundary(names[a], observer), generating.boundary(names[b], observer));
-        add(source, "time outside the decision", 0);  // an observer has the same one in all conditions
+        // a simulated observer has the same time outside the decision in all conditions
+        add(source, "time outside the decision", 0);
       }
   }
 
@@ -261,8 +262,8 @@ Power power(const protocol::Protocol& protocol, const PowerOptions& options) {
   if (options.observers < 1 || options.interval_sessions < 0 || options.replicates < 40 ||
       options.threads < 1)
     throw std::invalid_argument(
-        "power: at least 1 observer and thread, 40 replicates, and no negative number of sessions with "
-        "intervals are allowed");
+        "power: there must be at least 1 observer, 1 thread and 40 replicates, and the number of sessions "
+        "with intervals must not be negative");
   std::vector<Outcome> outcomes(static_cast<std::size_t>(options.observers));
   in_parallel(options.observers, options.threads, options.progress, [&](int session) {
     outcomes[static_cast<std::size_t>(session)] = simulate(protocol, options, session);

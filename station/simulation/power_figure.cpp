@@ -15,7 +15,7 @@ plot::Chart panel_of(const Recovery& recovery) {
   panel.title = recovery.source + ": " + recovery.parameter;
   auto sorted = recovery.estimates;
   std::sort(sorted.begin(), sorted.end());
-  // Leave out the outermost hundredth on either side, which may lie anywhere.
+  // The axis leaves out the outermost hundredth of the values on either side, because they may lie anywhere.
   const auto at = [&](double share) {
     return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
   };

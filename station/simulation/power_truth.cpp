@@ -15,7 +15,7 @@ namespace turnpoint::simulation {
 
 namespace {
 
-/// Probability of a 1 by level; empty if it depends on more than the level.
+/// Probability that the answer is 1, as a function of the level; empty if it depends on more than the level.
 std::function<double(double)> share_of_ones(const protocol::Protocol& protocol, const procedure::Spec& spec,
                                             const observer::Observer& observer) {
   trial::TrialSpec trial;
@@ -58,7 +58,7 @@ Reach reach_of(const observer::Question& question) {
   return {question.decides == observer::Decides::side ? -1e6 : 0, 1e6};
 }
 
-/// The last digits of a bisection are rounding errors: treat less than 1e-12 of the threshold as 0.
+/// The last digits of a bisection are rounding errors, so less than 1e-12 of the threshold counts as 0.
 std::optional<double> without_rounding(const std::optional<double>& level, double threshold) {
   return level && std::fabs(*level) < 1e-9 * std::fabs(threshold) ? 0 : level;
 }

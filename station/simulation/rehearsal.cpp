@@ -38,8 +38,8 @@ std::int64_t zero_after_onset_ns(const protocol::Protocol& protocol, const Trial
   }
 }
 
-/// One trial on a clock that only its trial machine advances. Intervals sound when the machine asks for them,
-/// and the answer comes when the observer gives it.
+/// Runs one trial on a clock that only the trial's state machine advances. Intervals begin when the machine
+/// asks for them, and the answer comes when the observer gives it.
 class Bench {
  public:
   Bench(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec,
@@ -60,7 +60,7 @@ class Bench {
       } else if (wake_ns) {
         handle({*wake_ns, trial::EventKind::tick, 0}, reply);
       } else {
-        throw std::logic_error("rehearsal: a trial waits for an event that nobody sends");
+        throw std::logic_error("rehearsal: a trial waits for an event that never comes");
       }
     }
     return machine_.result();
@@ -114,7 +114,7 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
   if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}};
   const auto set = rehearser.adjust(spec, trial::adjustment_of(spec, seed));
   trial::Slider slider(*spec.slider, spec.level.value_or(spec.slider->low));
-  // A setting made in silence cannot be felt.
+  // The slider is set only while the surface vibrates, because a setting made in silence cannot be felt.
   const double sounds_s = trial::interval_times(protocol, spec).back().length_s;
   for (const auto& move : set.moves)
     if (move.time_s < sounds_s) slider.move(move.value);

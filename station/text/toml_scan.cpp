@@ -71,7 +71,7 @@ class Scanner {
       throw BadInput(
           {{{path_, line_, column_},
             "not valid TOML: the character " + printed("U+%04X", character.code) + " outside of quotes",
-            "keys without quotes take A-Z a-z 0-9 _ -"}});
+            "keys without quotes may contain only A-Z a-z 0-9 _ -"}});
     const char c = source_[at_];
     if (c == '#') comment_ = true;
     count_parts(c);
@@ -113,7 +113,7 @@ class Scanner {
       throw BadInput(
           {{{path_, line_, column_},
             "not valid TOML: a backslash before the character " + printed("U+%04X", character.code),
-            "\\\\ for a backslash, or a line's end after it"}});
+            "write \\\\ for a backslash, or end the line directly after it"}});
     if (trimming_ && character.code >= 0x80) {
       out_ += printed("\\U%08X", character.code);
       at_ += character.bytes;

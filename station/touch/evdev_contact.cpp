@@ -25,7 +25,7 @@ namespace {
 EvdevDevice found(const std::string& name) {
   if (auto device = EvdevDevice::find(name)) return std::move(*device);
   throw std::system_error(errno, std::generic_category(),
-                          "touch sensor '" + name + "': no input device of this name can be opened");
+                          "touch sensor '" + name + "': no input device with this name can be opened");
 }
 
 }  // namespace

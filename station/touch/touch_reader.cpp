@@ -73,7 +73,8 @@ OpenPanel open_now(const std::string& device) {
   if (auto found = EvdevDevice::find(device)) return OpenPanel(std::move(*found));
   if (device.starts_with('/'))
     throw std::system_error(errno, std::generic_category(), "touch panel: cannot open " + device);
-  throw terms::UsageError("touch panel: no device is called \"" + device + "\"; see /proc/bus/input/devices");
+  throw terms::UsageError("touch panel: no device is called \"" + device +
+                          "\"; the names of devices are listed in /proc/bus/input/devices");
 }
 
 }  // namespace
