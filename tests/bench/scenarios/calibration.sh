@@ -35,7 +35,7 @@ PYTHON
 
 # Without a calibration a live session must be refused.
 fails 2 live </dev/null
-has refusal.txt "no calibration in force" || fail "a live session without a calibration"
+has refusal.txt "no valid calibration" || fail "a live session without a calibration"
 
 # true_um FREQUENCY: the transducer's true response in um at full scale, with a resonance that is not in the
 # rig file.
