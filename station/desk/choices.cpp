@@ -21,7 +21,7 @@ namespace {
 
 using text::number;
 
-/ std::string range(const simulation::Spread& spread, double unit) {
+std::string range(const simulation::Spread& spread, double unit) {
   const auto shown = [&](double value) { return number(std::round(value / unit * 10) / 10, 4); };
   const auto low = shown(spread.low), median = shown(spread.median), high = shown(spread.high);
   return low == high ? median : median + " (" + low + " to " + high + ")";
