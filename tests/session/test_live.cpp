@@ -207,7 +207,7 @@ TEST_CASE("who goes on before the buttons are back is told what is missing", "[s
         "panel: the lost device is connected again");
   const auto glitches = events_of(setup.database, summary, "glitch");
   REQUIRE_FALSE(glitches.empty());
-  CHECK(glitches[0].value == "right: edges 2, over 0.003 ms");
+  CHECK(glitches[0].value == "right: 2 edges within 0.003 ms");
 }
 
 TEST_CASE("the operator's disarming voids the trial; arming again goes on", "[session][live]") {
