@@ -99,7 +99,7 @@ void check(const Surface& surface, const MapOptions& options) {
 
 std::optional<double> edge_at(const Surface& surface, const MapOptions& options, double f, Model model) {
   const Wave wave = model == Model::modes ? Wave::as_modelled : Wave::exact;
-  return edge_position_m(surface, f, *make_feature_line(surface, f, model, wave, Losses::kept), options);
+  return solve_edge_m(surface, options, f, model, wave);
 }
 
 std::optional<double> first_mode_frequency_Hz(const Surface& surface, const MapOptions& options, double x,

@@ -1,5 +1,6 @@
 #include "physics/centre_line.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -49,6 +50,21 @@ double CentreLine::drive_conditioning(double k) const {
   const Scaled v0 = value(0);
   const double magnitude = std::abs(v0.mantissa);
   return magnitude > 0 ? std::hypot(magnitude, std::abs(slope(0).mantissa) / k) / magnitude : 1e300;
+}
+
+Surface moving_part(const Surface& surface, double frequency_Hz) {
+  const Taper taper(surface);
+  const double k = wavenumber_per_m(surface, frequency_Hz);
+  const auto turning = taper.position_continued_m(cut_off_half_width_m(surface, frequency_Hz));
+  double x = std::clamp(turning.value_or(0), 0.0, surface.length_m), decay = 0;
+  while (x < surface.length_m && decay < 45) {
+    const double w = taper.half_width_m(x), across = pi / (2 * w);
+    decay += 0.5 * w * std::sqrt(std::max(0.0, across * across - k * k));
+    x += 0.5 * w;
+  }
+  Surface part = surface;
+  part.length_m = std::min(x, surface.length_m);
+  return part;
 }
 
 MarchEquation march_equation(const Surface& surface, double frequency_Hz, Model model, Losses losses) {

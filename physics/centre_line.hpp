@@ -42,6 +42,10 @@ std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double freq
 // length_m].
 std::optional<double> turning_point_m(const Surface& surface, double frequency_Hz);
 
+// The surface up to where the first mode has decayed by e^-45 from its turning point: all that matters for
+// edges and resonances. A long exponential taper would take millions of steps from its tip.
+Surface moving_part(const Surface& surface, double frequency_Hz);
+
 // The equation that the models `seed` and `mode` solve step by step.
 MarchEquation march_equation(const Surface& surface, double frequency_Hz, Model model, Losses losses);
 

@@ -1,5 +1,6 @@
 #include "physics/edge_feature.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -16,14 +17,27 @@ constexpr std::array kNodes{-0.9061798459386640, -0.5384693101056831, 0.0, 0.538
 constexpr std::array kWeights{0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                               0.2369268850561891};
 
+// A mode's last maximum and the levels beyond it lie in a small part of a long or finely tabulated taper.
+std::optional<double> marched_edge_m(const Surface& surface, const Edge& edge, double f) {
+  const TaylorMarch march(Taper(surface), best_equation(surface, f, Losses::kept),
+                          moving_part(surface, f).length_m);
+  return edge.kind == Edge::Kind::peak ? march.last_peak_m() : march.level_m(edge.level);
+}
+
 }  // namespace
 
-std::unique_ptr<CentreLine> make_feature_line(const Surface& surface, double frequency_Hz, Model model,
-                                              Wave wave, Losses losses) {
-  if (wave == Wave::as_modelled) return make_centre_line(surface, frequency_Hz, model, losses);
-  if (Dispersion(surface).clamped_bending())
-    return make_centre_line(surface, frequency_Hz, Model::mode, losses);
-  return make_marched_line(surface, best_equation(surface, frequency_Hz, losses));
+std::optional<double> solve_edge_m(const Surface& surface, const MapOptions& options, double f, Model model,
+                                   Wave wave) {
+  if (options.edge.kind == Edge::Kind::turning) return turning_point_m(surface, f);
+  if (wave == Wave::as_modelled || Dispersion(surface).clamped_bending()) {
+    const auto line = make_centre_line(surface, f, wave == Wave::as_modelled ? model : Model::mode);
+    return edge_position_m(surface, f, *line, options);
+  }
+  const auto apex = Taper(surface).apex_m();
+  const bool pointed = apex && *apex <= surface.length_m * (1 + 1e-9);
+  if (options.edge.kind != Edge::Kind::friction && !pointed) return marched_edge_m(surface, options.edge, f);
+  const auto line = make_marched_line(surface, best_equation(surface, f, Losses::kept));
+  return edge_position_m(surface, f, *line, options);
 }
 
 std::optional<double> friction_edge_m(double length_m, const CentreLine& line, const FrictionContext& context,

@@ -15,9 +15,10 @@ enum class Wave {
   as_modelled  // the chosen model's own equation
 };
 
-// The centre line, with or without loss, on which positions are found.
-std::unique_ptr<CentreLine> make_feature_line(const Surface& surface, double frequency_Hz, Model model,
-                                              Wave wave, Losses losses);
+// The edge's position for a frequency, with loss; empty if it does not exist on the surface. Throws
+// std::domain_error if the model has no answer here. `model` matters for Wave::as_modelled only.
+std::optional<double> solve_edge_m(const Surface& surface, const MapOptions& options, double frequency_Hz,
+                                   Model model, Wave wave);
 
 // The edge's position on a solved centre line; empty if it does not exist on the surface.
 std::optional<double> edge_position_m(const Surface& surface, double frequency_Hz, const CentreLine& line,

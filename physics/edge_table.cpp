@@ -15,16 +15,23 @@ namespace {
 
 using Piece = EdgeTable::Piece;
 constexpr int degree = EdgeTable::degree;
-// How often a range of frequencies may be halved; fewer for edges whose positions are found by integrals and
-// searches, which take long.
-int deepest(const MapOptions& options) { return options.edge.kind == Edge::Kind::friction ? 5 : 9; }
+// How often a range of frequencies may be halved; fewer where positions take long: those found by integrals
+// and searches, and those on a taper of many points, where each solution takes a step from point to point.
+int deepest(const Surface& surface, const MapOptions& options) {
+  const auto* table = std::get_if<TabulatedTaper>(&surface.taper);
+  if (table != nullptr && table->points.size() > 200) return 3;
+  return options.edge.kind == Edge::Kind::friction ? 5 : 9;
+}
 
 // The error to which the table is refined. Elements and fingertip integrals are themselves only this
-// accurate; asking for more would tabulate their rounding errors.
-double tolerance_m(const Dispersion& dispersion, const MapOptions& options) {
+// accurate; asking for more would tabulate their rounding errors. The curvature of a tabulated taper jumps at
+// its points, which no number of pieces would follow exactly.
+double tolerance_m(const Surface& surface, const MapOptions& options) {
   if (options.edge.kind == Edge::Kind::friction) return 2e-6;
+  const Dispersion dispersion(surface);
   if (dispersion.theory != PlateTheory::kirchhoff) return 2e-6;
-  return dispersion.clamped_bending() ? 3e-7 : 1e-11;
+  if (dispersion.clamped_bending()) return 3e-7;
+  return std::holds_alternative<TabulatedTaper>(surface.taper) ? 1e-8 : 1e-11;
 }
 
 double clenshaw(const Piece& piece, double ln_f) noexcept {
@@ -46,8 +53,7 @@ class Builder {
   std::optional<double> position(double f) const {
     try {
       const auto wave = model_ == Model::edge || model_ == Model::modes ? Wave::exact : Wave::as_modelled;
-      const auto line = make_feature_line(surface_, f, model_, wave, Losses::kept);
-      return edge_position_m(surface_, f, *line, options_);
+      return solve_edge_m(surface_, options_, f, model_, wave);
     } catch (const std::domain_error&) {  // the model does not apply at this frequency
       return std::nullopt;
     }
@@ -79,10 +85,11 @@ class Builder {
 
   // The frequency at which the edge stops existing, between one with the edge and one without.
   double limit(double with, double without) const {
-    // A plate's solutions take long, and the table covers the edge only up to the limit that was found, so a
-    // rough limit is enough.
+    // Plates and fine tables take long, and the table covers the edge only up to the limit that was found, so
+    // a rough limit is enough.
     const bool thick = dispersion_.theory != PlateTheory::kirchhoff;
-    const double enough = thick ? 1e-6 : dispersion_.clamped_bending() ? 1e-9 : 1e-14;
+    const bool dear = dispersion_.clamped_bending() || std::holds_alternative<TabulatedTaper>(surface_.taper);
+    const double enough = thick ? 1e-6 : dear ? 1e-9 : 1e-14;
     return bisect(
                {with, without}, [this](double f) { return ratio(f).has_value(); },
                [enough](const Bracket& b) { return b.width() <= enough * b.above; }, 60)
@@ -95,7 +102,7 @@ class Builder {
     const bool complete = sample(piece, value);
     double worst = std::numeric_limits<double>::infinity();
     if (complete) worst = miss(piece);
-    if (worst > tolerance_m(dispersion_, options_) && depth < deepest(options_)) {
+    if (worst > tolerance_m(surface_, options_) && depth < deepest(surface_, options_)) {
       const double middle = 0.5 * (low + high);
       fill(table, low, middle, depth + 1);
       fill(table, middle, high, depth + 1);
@@ -136,7 +143,7 @@ class Builder {
       const auto w = taper_.position_continued_m(clenshaw(piece, ln_f) * dispersion_.cut_off_half_width_m(f));
       if (!x || !w) return std::numeric_limits<double>::infinity();
       worst = std::max(worst, std::abs(*x - *w));
-      if (worst > 100 * tolerance_m(dispersion_, options_)) return worst;  // this piece will be halved anyway
+      if (worst > 100 * tolerance_m(surface_, options_)) return worst;  // this piece will be halved anyway
     }
     return worst;
   }

@@ -90,14 +90,20 @@ Reference reference(const Solved& s, const Tone& tone, Normalise normalise, doub
   return {phase, unit.ln_magnitude() - (weight > 0 ? std::log(weight) : -700.0)};
 }
 
+// std::abs() guards against overflow at ten times the cost.
+double magnitude(std::complex<double> v) {
+  const double square = std::norm(v);
+  return square > 1e-280 && square < 1e280 ? std::sqrt(square) : std::abs(v);
+}
+
 void sum_tones(Field& field, std::size_t points) {
   field.amplitude.resize(points);
-  field.ln_amplitude.resize(points);
   if (field.tones.size() == 1) {
     field.ln_amplitude = field.tones[0].ln_amplitude;
-    for (std::size_t i = 0; i < points; ++i) field.amplitude[i] = std::abs(field.tones[0].v[i]);
+    for (std::size_t i = 0; i < points; ++i) field.amplitude[i] = magnitude(field.tones[0].v[i]);
     return;
   }
+  field.ln_amplitude.resize(points);
   for (std::size_t i = 0; i < points; ++i) {
     double most = ln_zero;
     for (const ToneField& tone : field.tones) most = std::max(most, tone.ln_amplitude[i]);
@@ -184,24 +190,27 @@ Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<co
   field.model = model;
   field.normalise = normalise;
   field.tones = evaluate_tones(surface, tones, x, model, normalise);
-  double conditioning = 1;
-  for (ToneField& one : field.tones) {
-    conditioning = std::max(conditioning, one.info.conditioning);
-    one.info.nearest_resonance_Hz = nearest_resonance_Hz(surface, one.info.frequency_Hz);
-  }
   sum_tones(field, x.size());
-  const PlanRequest request{{tones.begin(), tones.end()}, static_cast<int>(x.size()), {}, normalise, {}};
-  field.error_bound = estimate(surface, request, model).amplitude_bound;
-  field.validity = validity_of(surface, model);
-  field.warnings = surface_warnings(surface);
-  for (Warning& warning : tone_warnings(surface, tones)) field.warnings.push_back(std::move(warning));
+  return field;
+}
+
+FieldNotes describe(const Surface& surface, std::span<const Tone> tones, const Field& field) {
+  FieldNotes notes;
+  const PlanRequest request{
+      {tones.begin(), tones.end()}, static_cast<int>(field.amplitude.size()), {}, field.normalise, {}};
+  notes.error_bound = estimate(surface, request, field.model).amplitude_bound;
+  notes.validity = validity_of(surface, field.model);
+  notes.warnings = surface_warnings(surface);
+  for (Warning& warning : tone_warnings(surface, tones)) notes.warnings.push_back(std::move(warning));
+  double conditioning = 1;
+  for (const ToneField& one : field.tones) conditioning = std::max(conditioning, one.info.conditioning);
   if (conditioning > 100) {
     std::ostringstream text;
     text << "a tone lies near a zero of v(0): the division by it amplifies errors " << conditioning
          << " times";
-    field.warnings.push_back({"ill-conditioned", text.str()});
+    notes.warnings.push_back({"ill-conditioned", text.str()});
   }
-  return field;
+  return notes;
 }
 
 ToneInfo tone_info(const Surface& surface, double frequency_Hz, Model model) {

@@ -38,8 +38,9 @@ struct ToneInfo {
   double gain = 0;
   // factor by which the division by v(0) amplifies rounding errors; 1 for `peak`
   double conditioning = 1;
-  std::optional<double> nearest_resonance_Hz;  // frequency at which v(0) of the mode without loss is zero
-  std::string no_peak_reason;                  // why last_peak_m is empty; otherwise ""
+  // frequency at which v(0) of the mode without loss is zero; only tone_info() finds it
+  std::optional<double> nearest_resonance_Hz;
+  std::string no_peak_reason;  // why last_peak_m is empty; otherwise ""
 };
 
 struct ToneField {
@@ -56,10 +57,6 @@ struct Field {
   std::vector<ToneField> tones;
   std::vector<double> amplitude;     // root of the summed squares of |v| over tones, one value per point
   std::vector<double> ln_amplitude;  // logarithm of `amplitude`
-  // error of any tone's |v|, relative to that tone's largest |v| on the surface
-  double error_bound = 0;
-  std::string validity;  // what the model leaves out for this surface, in words
-  std::vector<Warning> warnings;
 };
 
 // Evaluates the field at `x_m` (any order, each in [0, length_m]; throws std::invalid_argument otherwise, and
@@ -67,8 +64,16 @@ struct Field {
 Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<const double> x_m, Model model,
                Normalise normalise);
 
-// Only the tones of evaluate(), without bounds, warnings and nearest resonances, for callers that need those
-// once and profiles often.
+// How far a field can be trusted. It takes several solutions more than the field itself.
+struct FieldNotes {
+  // error of any tone's |v|, relative to that tone's largest |v| on the surface
+  double error_bound = 0;
+  std::string validity;  // what the model leaves out for this surface, in words
+  std::vector<Warning> warnings;
+};
+FieldNotes describe(const Surface& surface, std::span<const Tone> tones, const Field& field);
+
+// Only the tones of evaluate().
 std::vector<ToneField> evaluate_tones(const Surface& surface, std::span<const Tone> tones,
                                       std::span<const double> x_m, Model model, Normalise normalise);
 

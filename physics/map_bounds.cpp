@@ -14,11 +14,9 @@ namespace {
 
 constexpr double strong_loss_below = 30;  // quality factor below which loss counts as strong
 
-std::optional<double> position(const Surface& surface, const MapOptions& options, double f, Model model,
-                               Wave wave, Losses losses) {
+std::optional<double> first_mode_edge(const Surface& surface, const MapOptions& options, double f) {
   try {
-    const auto line = make_feature_line(surface, f, model, wave, losses);
-    return edge_position_m(surface, f, *line, options);
+    return solve_edge_m(surface, options, f, Model::edge, Wave::exact);
   } catch (const std::domain_error&) {
     return std::nullopt;
   }
@@ -69,9 +67,9 @@ Surface fitted(Surface s) {
 double uncertainty(const Surface& surface, const MapOptions& options, double f) {
   double variance = 0;
   for (const auto& [up, down] : moved(surface)) {
-    const auto above = position(fitted(up), options, f, Model::edge, Wave::exact, Losses::kept);
-    const auto below = position(fitted(down), options, f, Model::edge, Wave::exact, Losses::kept);
-    const auto here = position(surface, options, f, Model::edge, Wave::exact, Losses::kept);
+    const auto above = first_mode_edge(fitted(up), options, f);
+    const auto below = first_mode_edge(fitted(down), options, f);
+    const auto here = first_mode_edge(surface, options, f);
     if (above && below) {
       variance += std::pow(0.5 * (*above - *below), 2);
     } else if (here && (above || below)) {
@@ -90,7 +88,7 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
     bounds.reason = ": local cut-off of the first transverse mode";
     return bounds;
   }
-  const auto exact = position(surface, options, f, Model::edge, Wave::exact, Losses::kept);
+  const auto exact = first_mode_edge(surface, options, f);
   bounds.equation_m = exact ? std::abs(*exact - x) : 0.25 * surface.length_m;
   if (bounds.equation_m < 1e-10) bounds.equation_m = 0;
   // The mode of a wedge is exact, so its equation has no error; on every other taper the best equation has
@@ -99,7 +97,7 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
   if (surface.quality_factor < strong_loss_below) {
     MapOptions peak = options;
     peak.edge = Edge::peak();
-    drawn_peak_m = position(surface, peak, f, Model::edge, Wave::exact, Losses::kept);
+    drawn_peak_m = first_mode_edge(surface, peak, f);
   }
   const ModeBound mode = mode_bound(surface, f, 1, drawn_peak_m);
   const bool wedge =

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/taper.hpp"
 #include "physics/taylor_march.hpp"
@@ -49,7 +50,9 @@ MarchEquation equation(const Surface& surface, double f, int n) {
 }
 
 // Largest amplitude of a higher mode on the surface divided by its amplitude at the drive edge.
-double amplification(const Surface& surface, const Taper& taper, double f, int n) {
+double amplification(const Surface& surface, double f, int n) {
+  const bool linear = std::holds_alternative<LinearTaper>(surface.taper);
+  const Taper taper(linear ? surface : moving_part(surface, f));
   const double k = wavenumber_per_m(surface, f);
   const auto turning = taper.position_continued_m((2 * n - 1) * cut_off_half_width_m(surface, f));
   const double reach = std::clamp(turning.value_or(taper.length_m()), 0.0, taper.length_m());
@@ -116,7 +119,7 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
                                      : plate_piston);
   double modes = coupled;
   for (int n = 2; membrane && 2 * n - 1 < ratio; ++n) {
-    modes = std::max(modes, coupled / (n - 1) * amplification(surface, taper, f, n));
+    modes = std::max(modes, coupled / (n - 1) * amplification(surface, f, n));
   }
   const double drift = membrane ? 0 : plate_drift * dispersion.wavenumber_per_m(f) * x0;
   if (!membrane && ratio > plate_second_mode) modes *= plate_amplification(surface, taper, f);

@@ -130,10 +130,9 @@ RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, c
   e.usable = request.points == 0 && !request.tolerance.level_dB && !request.tolerance.amplitude;
   e.reason = e.usable ? "positions of the first mode with loss" : "has no profile";
   if (request.edge.kind == Edge::Kind::turning || !e.usable) return e;
-  const auto line = make_feature_line(surface, reference.f, Model::edge, Wave::exact, Losses::kept);
   const MapOptions options{
       request.edge.kind == Edge::Kind::friction ? Edge::peak() : request.edge, {}, {}, {}};
-  const auto x = edge_position_m(surface, reference.f, *line, options);
+  const auto x = solve_edge_m(surface, options, reference.f, Model::edge, Wave::exact);
   e.boundary_bound_m = reference.bound.position_m();
   if (x.has_value() != reference.mode.edge.has_value()) e.boundary_bound_m += surface.length_m;
   return e;

@@ -1,5 +1,6 @@
 #include "physics/taper.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace turnpoint::physics {
@@ -74,12 +75,10 @@ std::optional<double> Taper::apex_m() const {
 }
 
 double Taper::previous_knot_m(double x) const {
-  double knot = 0;
-  for (const Cubic& piece : table_.pieces()) {
-    if (piece.x0 >= x) break;
-    knot = piece.x0;
-  }
-  return knot;
+  const auto& pieces = table_.pieces();
+  const auto next =
+      std::partition_point(pieces.begin(), pieces.end(), [x](const Cubic& piece) { return piece.x0 < x; });
+  return next == pieces.begin() ? 0 : std::max(0.0, (next - 1)->x0);
 }
 
 }  // namespace turnpoint::physics

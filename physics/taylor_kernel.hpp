@@ -18,6 +18,7 @@ struct TaylorStep {
   double ln_scale;  // logarithm of the factor that multiplies the coefficients
   double re[taylor_order + 1];
   double im[taylor_order + 1];
+  int order = taylor_order;  // of the last coefficient that is not negligible
 };
 
 // Evaluates the step's polynomial at n points.

@@ -13,8 +13,9 @@
 namespace turnpoint::physics {
 namespace {
 
-// Number of samples per step when searching for extrema and zeros. A step covers at most about 4 radians.
-constexpr int samples = 16;
+// Largest number of samples per step when searching for extrema and zeros. A step covers at most about 4
+// radians.
+constexpr int most_samples = 16;
 
 struct Local {
   std::complex<double> g;
@@ -23,9 +24,9 @@ struct Local {
 
 Local at(const TaylorStep& step, double x) {
   const double tau = (step.x_start - x) / step.scale;
-  double re = step.re[taylor_order], im = step.im[taylor_order];
+  double re = step.re[step.order], im = step.im[step.order];
   double dre = 0, dim = 0;
-  for (int k = taylor_order - 1; k >= 0; --k) {
+  for (int k = step.order - 1; k >= 0; --k) {
     dre = dre * tau + re;
     dim = dim * tau + im;
     re = re * tau + step.re[k];
@@ -45,18 +46,24 @@ struct TaylorMarch::State {
   Taper taper;
   MarchEquation equation;
   std::optional<ApexSeries> apex;  // the solution for x > apex->inner_m()
-  std::vector<TaylorStep> steps;   // from the tip to x = 0
+  std::vector<TaylorStep> steps;   // from the tip to x = 0, or to the last maximum
+  double held_m;                   // where v is zero
 
-  void march(TaylorState from);
+  enum class Until { drive_edge, last_peak };
+  void march(TaylorState from, Until until);
   const TaylorStep* step_at(double x) const;
   Local local(double x, double& ln_scale) const;
   double rise(const Local& g, double x) const;
-  std::optional<double> peak_in(const TaylorStep& step) const;
+  std::optional<double> peak_in(const TaylorStep& step, double outermost) const;
+  bool hidden_by_loss(double x) const;
+  double outermost_maximum() const;
+  int samples(const TaylorStep& step) const;
   void run(const TaylorStep& step, std::span<const double> x, double* re, double* im) const;
 };
 
-void TaylorMarch::State::march(TaylorState state) {
+void TaylorMarch::State::march(TaylorState state, Until until) {
   const SeriesMaker maker(taper, equation);
+  const double outermost = outermost_maximum();
   while (state.x > 0) {
     TaylorStep& step = steps.emplace_back();
     maker.fill(state, step);
@@ -66,7 +73,21 @@ void TaylorMarch::State::march(TaylorState state) {
     state.g = end.g;
     state.dg = end.dg;
     state.normalise(step.scale);
+    if (until == Until::last_peak && (peak_in(step, outermost) || hidden_by_loss(state.x))) return;
   }
+}
+
+// Whether loss has damped the reflected wave so far that |v| rises all the way from here to the drive edge.
+// With k = k1 - i a the reflected wave is e^-2as of the arriving one at a distance s from the turning point,
+// so that the ripple of d ln|v|^2/dx is at most 4 k1 e^-2as, beside 2a for loss and W'/W for the width, which
+// nowhere grows towards the drive edge unless the taper is a table.
+bool TaylorMarch::State::hidden_by_loss(double x) const {
+  if (equation.a.imag() == 0 || std::holds_alternative<TabulatedTaper>(taper.form())) return false;
+  const std::complex<double> k = std::sqrt(equation.a);
+  const double loss = -k.imag(), width = -taper.slope(x) / taper.half_width_m(x);
+  const auto turning = taper.position_continued_m(std::sqrt(equation.b) / k.real());
+  if (!turning || !(loss > 2 * width)) return false;
+  return 2 * loss * (*turning - x) > std::log(8 * k.real() / loss);
 }
 
 const TaylorStep* TaylorMarch::State::step_at(double x) const {
@@ -95,13 +116,27 @@ double TaylorMarch::State::rise(const Local& g, double x) const {
   return (std::conj(g.g) * g.dg).real() - bend;
 }
 
+// On a linear taper the evanescent zone holds no maximum of |v|: where Re p < 0, |g|^2 is convex and starts
+// from zero, so that it grows at least as fast as the distance from the tip, and W does not.
+double TaylorMarch::State::outermost_maximum() const {
+  const auto* linear = std::get_if<LinearTaper>(&taper.form());
+  if (linear == nullptr || linear->slope == 0) return taper.length_m();
+  const double b = equation.b + equation.c * linear->slope * linear->slope;
+  return std::max(0.0, (linear->half_width_m - std::sqrt(b / equation.a.real())) / linear->slope);
+}
+
+int TaylorMarch::State::samples(const TaylorStep& step) const {
+  return std::clamp(static_cast<int>(4 * std::sqrt(std::abs(equation.a)) * step.length) + 1, 1, most_samples);
+}
+
 // Position of the outermost maximum of |v| within a step.
-std::optional<double> TaylorMarch::State::peak_in(const TaylorStep& step) const {
-  double outer = step.x_start;
+std::optional<double> TaylorMarch::State::peak_in(const TaylorStep& step, double outermost) const {
+  double outer = std::min(step.x_start, outermost);
   double f_outer = rise(at(step, outer), outer);
-  for (int i = 1; i <= samples; ++i) {
-    double inner =
-        i == samples ? std::max(0.0, step.x_start - step.length) : step.x_start - step.length * i / samples;
+  const int n = samples(step);
+  for (int i = 1; i <= n; ++i) {
+    double inner = i == n ? std::max(0.0, step.x_start - step.length) : step.x_start - step.length * i / n;
+    if (inner >= outer) continue;
     double f_inner = rise(at(step, inner), inner);
     if (!(f_inner > 0 && f_outer <= 0)) {
       outer = inner;
@@ -116,15 +151,23 @@ std::optional<double> TaylorMarch::State::peak_in(const TaylorStep& step) const 
 }
 
 TaylorMarch::TaylorMarch(const Taper& taper, const MarchEquation& equation) {
-  auto state = std::make_unique<State>(State{taper, equation, {}, {}});
+  auto state = std::make_unique<State>(State{taper, equation, {}, {}, taper.length_m()});
   state->steps.reserve(64);
   const auto apex = taper.apex_m();
   if (apex && *apex <= taper.length_m() * (1 + 1e-9)) {
     state->apex.emplace(taper, equation);
-    if (state->apex->inner_m() > 0) state->march(state->apex->at(state->apex->inner_m()));
+    if (state->apex->inner_m() > 0)
+      state->march(state->apex->at(state->apex->inner_m()), State::Until::drive_edge);
   } else {
-    state->march({taper.length_m(), 0.0, -1.0, 0.0, 0});
+    state->march({taper.length_m(), 0.0, -1.0, 0.0, 0}, State::Until::drive_edge);
   }
+  state_ = std::move(state);
+}
+
+TaylorMarch::TaylorMarch(const Taper& taper, const MarchEquation& equation, double held_m) {
+  auto state = std::make_unique<State>(State{taper, equation, {}, {}, held_m});
+  state->steps.reserve(64);
+  state->march({held_m, 0.0, -1.0, 0.0, 0}, State::Until::last_peak);
   state_ = std::move(state);
 }
 
@@ -159,8 +202,10 @@ Scaled TaylorMarch::slope(double x) const {
 }
 
 std::optional<double> TaylorMarch::last_peak_m() const {
+  const double outermost = state_->outermost_maximum();
   for (const TaylorStep& step : state_->steps) {
-    if (const auto peak = state_->peak_in(step)) return peak;
+    if (step.x_start - step.length > outermost) continue;
+    if (const auto peak = state_->peak_in(step, outermost)) return peak;
   }
   return std::nullopt;
 }
@@ -170,7 +215,7 @@ std::optional<double> TaylorMarch::level_m(double level) const {
   if (!peak) return std::nullopt;
   const double target = value(*peak).ln_magnitude() + std::log(level);
   double inner = *peak;
-  double outer = state_->apex ? state_->apex->inner_m() : state_->taper.length_m();
+  double outer = state_->apex ? state_->apex->inner_m() : state_->held_m;
   if (state_->apex && value(outer).ln_magnitude() > target) {
     inner = outer;
     outer = state_->taper.length_m();
@@ -202,9 +247,10 @@ int TaylorMarch::zeros() const {
   int count = 0;
   int sign = 0;
   for (const TaylorStep& step : state_->steps) {
-    for (int i = 0; i <= samples; ++i) {
+    const int n = state_->samples(step);
+    for (int i = 0; i <= n; ++i) {
       const double x =
-          i == samples ? std::max(0.0, step.x_start - step.length) : step.x_start - step.length * i / samples;
+          i == n ? std::max(0.0, step.x_start - step.length) : step.x_start - step.length * i / n;
       const double g = at(step, x).g.real();
       const int now = (g > 0) - (g < 0);
       if (now != 0 && sign != 0 && now != sign) ++count;

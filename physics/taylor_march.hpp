@@ -36,6 +36,9 @@ struct Scaled {
 class TaylorMarch {
  public:
   TaylorMarch(const Taper& taper, const MarchEquation& equation);
+  // The part that holds the last maximum and the levels beyond it: from a point `held_m` in the evanescent
+  // zone, where v is taken as zero, to the last maximum. Nothing may be asked about the rest.
+  TaylorMarch(const Taper& taper, const MarchEquation& equation, double held_m);
   ~TaylorMarch();
   TaylorMarch(TaylorMarch&&) noexcept;
   TaylorMarch& operator=(TaylorMarch&&) noexcept;

@@ -135,6 +135,8 @@ int SeriesMaker::potential_series(double x, double knot, double scale,
       sum += static_cast<double>(n + k) * w[k] * r[n - k];
     }
     r[n] = -sum / (static_cast<double>(n) * w[0]);
+    if (std::max(std::abs(r[n]), std::abs(r[n - 1])) < 1e-22 * r[0])
+      break;  // as on the short pieces of a table
   }
   int count = 1;
   double size = 0;
@@ -154,7 +156,16 @@ void SeriesMaker::convolved(double x, double knot, TaylorStep& step) const {
   double* re = step.re;
   double* im = step.im;
   q[0] += equation_.a.real();
+  const double size = std::abs(re[0]) + std::abs(im[0]) + std::abs(re[1]) + std::abs(im[1]);
+  const bool tabulated = !taper_.table().pieces().empty();
+  const auto small = [&](int n) { return std::abs(re[n]) + std::abs(im[n]) < 1e-19 * size; };
   for (int n = 0; n + 2 <= taylor_order; ++n) {
+    if (n > 2 && tabulated && small(n + 1) && small(n) && small(n - 1)) {
+      step.order = n + 1;
+      std::fill(re + n + 2, re + taylor_order + 1, 0.0);
+      std::fill(im + n + 2, im + taylor_order + 1, 0.0);
+      break;
+    }
     double sum_re = -ai * im[n];
     double sum_im = ai * re[n];
     for (int j = 0; j <= std::min(n, count - 1); ++j) {
@@ -171,6 +182,7 @@ void SeriesMaker::fill(const TaylorState& from, TaylorStep& step) const {
   const double knot = taper_.previous_knot_m(from.x);
   step.x_start = from.x;
   step.scale = trial_scale(from.x);
+  if (from.x - knot < step.scale && !taper_.table().pieces().empty()) step.scale = from.x - knot;
   step.ln_scale = from.ln_scale();
   // tau points towards the drive edge, opposite to x.
   const std::complex<double> dg = -from.dg * step.scale;
@@ -184,7 +196,7 @@ void SeriesMaker::fill(const TaylorState& from, TaylorStep& step) const {
   } else {
     convolved(from.x, knot, step);
   }
-  step.length = exact_length(step);
+  step.length = step.order < taylor_order ? step.scale : exact_length(step);
   // End exactly on the knot: if rounding put the inner end just outside of it, another, tiny step would
   // follow.
   if (step.length > (from.x - knot) * (1 - 1e-9)) step.length = from.x - knot;

@@ -95,7 +95,8 @@ std::vector<Warning> tone_warnings(const Surface& s, std::span<const Tone> tones
            << " mm wide at the turning point, narrower than a finger (14 mm)";
       add(list, "narrow-strip", text);
     }
-    const auto line = make_centre_line(s, f, Model::mode);
+    const bool linear = std::holds_alternative<LinearTaper>(s.taper);
+    const auto line = make_centre_line(linear ? s : moving_part(s, f), f, Model::mode);
     const auto peak = line->last_peak_m();
     if (!peak) continue;
     const double ln_gain = line->value(*peak).ln_magnitude() - line->value(0).ln_magnitude();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "physics/centre_line.hpp"
 #include "physics/field.hpp"
 #include "physics/planner.hpp"
 #include "station/cli/command.hpp"
@@ -44,7 +45,7 @@ Choice choose(const physics::Surface& surface, const std::vector<physics::Tone>&
   return {choice.model, choice.reason};
 }
 
-Json tones_json(const physics::Field& field) {
+Json tones_json(const physics::Surface& surface, const physics::Field& field) {
   Json list = Json::array();
   for (const auto& tone : field.tones) {
     Json re = Json::array(), im = Json::array();
@@ -55,44 +56,45 @@ Json tones_json(const physics::Field& field) {
                     {"turning_point_mm", json_number(tone.info.turning_point_m, 1e3)},
                     {"last_peak_mm", json_number(tone.info.last_peak_m, 1e3)},
                     {"gain", json_number(tone.info.gain)},
-                    {"nearest_resonance_Hz", json_number(tone.info.nearest_resonance_Hz)},
+                    {"nearest_resonance_Hz",
+                     json_number(physics::nearest_resonance_Hz(surface, tone.info.frequency_Hz))},
                     {"conditioning", json_number(tone.info.conditioning)},
                     {"no_peak_reason", tone.info.no_peak_reason}});
   }
   return list;
 }
 
-Json to_json(const physics::Field& field, const Choice& choice, const std::vector<double>& x_m,
-             const std::vector<double>& friction) {
+Json to_json(const physics::Surface& surface, const physics::Field& field, const physics::FieldNotes& notes,
+             const Choice& choice, const std::vector<double>& x_m, const std::vector<double>& friction) {
   Json document = {{"model", physics::name(field.model)},
-                   {"error_bound", json_number(field.error_bound)},
+                   {"error_bound", json_number(notes.error_bound)},
                    {"why", choice.why},
-                   {"validity", field.validity},
+                   {"validity", notes.validity},
                    {"normalise", physics::name(field.normalise)},
                    {"unit", field.normalise == physics::Normalise::none ? "m" : "relative"},
                    {"x_mm", json_numbers(x_m, 1e3)}};
-  const auto tones = tones_json(field);
+  const auto tones = tones_json(surface, field);
   if (field.tones.size() == 1) document["re"] = tones[0]["re"], document["im"] = tones[0]["im"];
   document["amplitude"] = json_numbers(field.amplitude);
   document["ln_amplitude"] = json_numbers(field.ln_amplitude);
   document["friction"] = json_numbers(friction);
   document["tones"] = tones;
-  document["warnings"] = json_warnings(field.warnings);
+  document["warnings"] = json_warnings(notes.warnings);
   return document;
 }
 
-void print(std::ostream& out, const physics::Field& field, const Choice& choice,
-           const std::vector<double>& x_m, const std::vector<double>& friction) {
+void print(std::ostream& out, const physics::Field& field, const physics::FieldNotes& notes,
+           const Choice& choice, const std::vector<double>& x_m, const std::vector<double>& friction) {
   using text::number;
   fmt::print(out, "model {} ({}); error bound {} of the largest amplitude\n", physics::name(field.model),
-             choice.why, number(field.error_bound, 3));
+             choice.why, number(notes.error_bound, 3));
   for (const auto& tone : field.tones)
     fmt::print(
         out, "{} Hz: turning point {} mm, last maximum {} mm, gain {}\n", number(tone.info.frequency_Hz, 8),
         tone.info.turning_point_m ? number(*tone.info.turning_point_m * 1e3) : "none",
         tone.info.last_peak_m ? number(*tone.info.last_peak_m * 1e3) : "none: " + tone.info.no_peak_reason,
         number(tone.info.gain, 4));
-  for (const auto& warning : field.warnings) fmt::print(out, "warning: {}\n", warning.text);
+  for (const auto& warning : notes.warnings) fmt::print(out, "warning: {}\n", warning.text);
   fmt::print(out, "{:>10} {:>14} {:>12} {:>9}\n", "x mm", "amplitude", "ln", "friction");
   for (std::size_t i = 0; i < x_m.size(); ++i)
     fmt::print(out, "{:>10} {:>14.6g} {:>12.6g} {:>9.4f}\n", number(x_m[i] * 1e3), field.amplitude[i],
@@ -112,14 +114,15 @@ void field(const Options& options, Context& context) {
   const auto result =
       physics::evaluate(surface, tones, x_m, choice.model, physics::parse_normalise(options.normalise));
   // The friction model needs displacements in metres, whatever the profile is normalised to.
-  const auto metres = physics::evaluate(surface, tones, x_m, choice.model, physics::Normalise::none);
+  const auto metres = physics::amplitude_profile(surface, tones, x_m, choice.model);
   const auto map = scene::friction_of(rig);
   std::vector<double> friction;
-  for (const double a : metres.amplitude) friction.push_back(map.relative_friction(a));
+  for (const double a : metres) friction.push_back(map.relative_friction(a));
+  const auto notes = physics::describe(surface, tones, result);
   if (context.json)
-    context.out << to_json(result, choice, x_m, friction).dump() << "\n";
+    context.out << to_json(surface, result, notes, choice, x_m, friction).dump() << "\n";
   else
-    print(context.out, result, choice, x_m, friction);
+    print(context.out, result, notes, choice, x_m, friction);
 }
 
 }  // namespace field_command

@@ -4,6 +4,7 @@
 
 #include "physics/boundary_map.hpp"
 #include "physics/centre_line.hpp"
+#include "physics/field.hpp"
 #include "tests/support/catch.hpp"
 
 namespace {
@@ -12,13 +13,13 @@ thread_local long allocations = 0;
 
 }  // namespace
 
-void* operator new(std::size_t size) {
+[[gnu::noinline]] void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
   throw std::bad_alloc();
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 using namespace turnpoint::physics;
 
@@ -45,6 +46,28 @@ TEST_CASE("no model allocates per point of a profile", "[physics]") {
       CAPTURE(plate, name(model));
       CHECK(allocated_by(*line, 2000) == allocated_by(*line, 20));
     }
+  }
+}
+
+TEST_CASE("a field of one tone takes one solution of its model", "[physics]") {
+  Surface surface = seed_brass();
+  surface.quality_factor = 60;
+  const Tone tone{30e3, 1, 0};
+  const double x = 0.1;
+  const auto allocated = [](const auto& call) {
+    const long before = allocations;
+    call();
+    return allocations - before;
+  };
+  for (const Model model : {Model::mode, Model::modes}) {
+    const long solution = allocated([&] { make_centre_line(surface, 30e3, model); });
+    const long field = allocated([&] { evaluate(surface, {&tone, 1}, {&x, 1}, model, Normalise::peak); });
+    const long notes = allocated([&] {
+      describe(surface, {&tone, 1}, evaluate(surface, {&tone, 1}, {&x, 1}, model, Normalise::peak));
+    });
+    CAPTURE(name(model), solution, field, notes);
+    CHECK(field <= solution + 8);                                            // its own vectors
+    CHECK(notes > field + 3 * solution / (model == Model::mode ? 1 : 100));  // negative control
   }
 }
 

@@ -197,6 +197,38 @@ TEST_CASE("a frequency solved for by modes puts the edge of that field at the po
   }
 }
 
+TEST_CASE("maps of long and of finely tabulated tapers are those of the plain ones", "[physics]") {
+  // An edge is solved for on the part of the surface that moves, so that neither the far end of a hundred
+  // decay lengths nor points beyond it take any steps.
+  Surface exponential = seed_brass();
+  exponential.quality_factor = 60;
+  exponential.taper = ExponentialTaper{0.03, 0.1};
+  Surface endless = exponential;
+  endless.length_m = 10;
+  Surface table = seed_brass();
+  table.quality_factor = 60;
+  TabulatedTaper points;
+  for (int i = 0; i <= 1000; ++i) points.points.push_back({3e-4 * i, 0.03 * std::exp(-3e-3 * i)});
+  table.taper = points;
+  const BoundaryMap plain(exponential, edge("p50")), long_map(endless, edge("p50")),
+      table_map(table, edge("p50"));
+  for (const double f : {15e3, 25e3, 40e3}) {
+    CAPTURE(f);
+    CHECK(std::abs(plain.boundary_m(f).value() - long_map.boundary_m(f).value()) < 1e-10);
+    // The table's cubics differ from the exponential by what they are.
+    CHECK(std::abs(plain.boundary_m(f).value() - table_map.boundary_m(f).value()) < 1e-7);
+    CHECK(long_map.at_frequency(f).error_bound_m ==
+          Approx(plain.at_frequency(f).error_bound_m).epsilon(1e-3));
+    const auto whole = make_centre_line(exponential, f, Model::mode);
+    CHECK(std::abs(whole->level_m(0.5).value() - plain.boundary_m(f).value()) < 1e-10);
+  }
+  const auto steps = [&](double held_m, double f) {
+    return TaylorMarch(Taper(endless), best_equation(endless, f, Losses::kept), held_m).steps();
+  };
+  CHECK(steps(moving_part(endless, 25e3).length_m, 25e3) < 40);
+  CHECK(steps(0.6, 25e3) > 100);  // negative control: from further out it takes many
+}
+
 TEST_CASE("a map of a band is the whole map there", "[physics]") {
   MapOptions options;
   options.edge = Edge::percent(0.5);
