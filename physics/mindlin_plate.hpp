@@ -6,7 +6,7 @@ namespace turnpoint::physics {
 
 // Mindlin's shear factor for a Poisson's ratio: 5/(6 - nu) + 0.12 (nu / (1 - nu))^2. With the first term, the
 // long waves of a free plate agree with the Rayleigh-Lamb equation to the next order in k h (N. Stephen, J.
-// Sound Vib. 202 (1997) 539; J. Hutchinson, J. Appl. Mech. 51 (1984) 898). The second term describes the
+// Sound Vib. 202 (1997) 539; J. Hutchinson, J. Appl. Mech. 51 (1984) 581). The second term describes the
 // clamp, which prevents the contraction across the thickness, nu / (1 - nu) of the bending strain, and so
 // stiffens the strip over half a thickness from the clamp. Its constant is fitted to plane-strain finite
 // elements; the cut-off half-width is then within 0.2 % of theirs (h/W to 0.4, nu 0 to 0.4; 0.4 % to nu =

@@ -29,6 +29,7 @@ constexpr double plate_second_mode =
     // cut-off half-width of the second symmetric mode divided by the first's
     2.3246;
 constexpr double plate_shift = 1.2e-3;      // shift of an edge, in cut-off half-widths
+constexpr double thick_shift = 2.5e-3;      // the same for Mindlin's and the elastic section's shapes
 constexpr double plate_slope_shift = 0.15;  // shift of an edge per W'^2
 constexpr double end_shift = 0.15;          // shift by a clamped end just beyond the turning point, per W'^2
 // shift of an edge per share of higher modes, in cut-off half-widths
@@ -138,7 +139,8 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   const double end = taper.half_width_m(taper.length_m()) > 0.5 * cut ? end_shift * steepest * steepest : 0;
   bound.drive_m = cut * (end + std::min(1.0, polluted));
   bound.equation_m = cut * (curvature_shift * bend + slope_shift * std::pow(steepest, 3));
-  if (!membrane) bound.equation_m += cut * (plate_shift + plate_slope_shift * steepest * steepest);
+  const double shift = surface.theory == PlateTheory::kirchhoff ? plate_shift : thick_shift;
+  if (!membrane) bound.equation_m += cut * (shift + plate_slope_shift * steepest * steepest);
   return bound;
 }
 

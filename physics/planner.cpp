@@ -83,6 +83,9 @@ Difference compare(const Surface& surface, const PlanRequest& request, const Pro
 double cost_s(const Surface& surface, double f, Model model, int points) {
   const double kl = wavenumber_per_m(surface, f) * surface.length_m;
   const bool plate = Dispersion(surface).clamped_bending();
+  const bool mindlin = surface.theory == PlateTheory::mindlin;
+  if (surface.theory != PlateTheory::kirchhoff && model == Model::mode) return mindlin ? 1e-2 : 4e-2;
+  if (mindlin && model == Model::modes) return 1e-2 * kl;
   switch (model) {
     case Model::edge:
       return 5e-8;
@@ -144,6 +147,8 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
   e.cost_s = cost_s(surface, reference.f, model, request.points);
   e.reason = "compared with mode at probe points";
   const bool drive = request.normalise != Normalise::peak;
+  if (model == Model::modes && surface.theory == PlateTheory::elastic)
+    throw std::domain_error("model modes is not available for plate theory elastic");
   if (model == Model::modes) {
     e.amplitude_bound = modes_accuracy * (drive ? reference.conditioning : 1);
     e.level_bound_dB = 20 * std::log10(1 + modes_accuracy * reference.conditioning);
@@ -237,8 +242,9 @@ PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
                              [&](const RungEstimate& e) { return inside(e, request.tolerance); });
   choice.inside = chosen != rungs.end();
   if (!choice.inside) {
-    chosen = std::find_if(rungs.begin(), rungs.end(),
-                          [](const RungEstimate& e) { return e.model == Model::modes; });
+    chosen = std::find_if(rungs.begin(), rungs.end(), [&](const RungEstimate& e) {
+      return e.model == (surface.theory == PlateTheory::elastic ? Model::mode : Model::modes);
+    });
   }
   choice.model = chosen->model;
   choice.bound = *chosen;

@@ -140,6 +140,22 @@ std::array<double, 3> shape_widths(const Surface& surface, double f) {
   return {drive, turning, 0.75 * turning};
 }
 
+// k_x^2 of the first mode's travelling wave at the drive edge, by Mindlin's strip: the largest root; 0 if
+// there is none.
+double travelling2(const Surface& surface, double f) {
+  const MindlinPlate plate(surface);
+  const double w = half_width_m(surface, 0), highest = plate.waves(f).bending;
+  constexpr int steps = 200;
+  double above = plate.characteristic(f, w, highest * (1 - 0.5 / steps));
+  for (int i = 1; i < steps; ++i) {
+    const double along2 = highest * (1 - (i + 0.5) / steps);
+    const double value = plate.characteristic(f, w, along2);
+    if ((value > 0) != (above > 0)) return along2 + 0.5 * highest / steps;
+    above = value;
+  }
+  return 0;
+}
+
 // The columns cross, along and stretched of one half-width, scaled so that `cross` moves the centre line by
 // 1.
 SectionMatrix columns(const SectionShapes& shapes, double centre) {
@@ -160,12 +176,16 @@ SectionMatrix mindlin_columns(const SectionBasis& full, double half_width, Eigen
 SectionBasis mindlin_shapes(const Surface& surface, double f) {
   constexpr int each = 12;
   const SectionBasis full = mindlin_section(MindlinPlate(surface), each);
-  SectionMatrix shapes(full.count(), 9);
+  SectionMatrix shapes(full.count(), 12);
   Eigen::Index at = 0;
   for (const double w : shape_widths(surface, f)) {
     shapes.middleCols(at, 3) = mindlin_columns(full, w, each);
     at += 3;
   }
+  const double drive = half_width_m(surface, 0);
+  const SectionShapes wave =
+      section_shapes_of(mindlin_pencil(full, drive, each), 2 * std::numbers::pi * f, travelling2(surface, f));
+  shapes.middleCols(at, 3) = columns(wave, wave.cross.dot(full.centre.tail(full.count() - each)));
   SectionBasis basis;
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) basis.stiff[i][j] = shapes.transpose() * full.stiff[i][j] * shapes;
@@ -232,6 +252,13 @@ SectionBasis elastic_shapes(const Surface& surface, double f) {
       centre.segment(j * z.even.rows(), z.even.rows()) = y.even_start[j] * z.even_start;
     const SectionShapes found = section_shapes_of(section.pencil);
     SectionMatrix shapes = columns(found, found.cross.tail(nc).dot(centre));
+    if (i == 0) {
+      const double in_units = widths[0] / std::sqrt(speed2);
+      const SectionShapes wave = section_shapes_of(section.pencil, 2 * std::numbers::pi * f * in_units,
+                                                   travelling2(surface, f) * widths[0] * widths[0]);
+      shapes.conservativeResize(Eigen::NoChange, 6);
+      shapes.rightCols(3) = columns(wave, wave.cross.tail(nc).dot(centre));
+    }
     if (i == 1) {
       const Eigen::VectorXd thickening = section.thickening(shapes.col(1).head(na));
       shapes.conservativeResize(Eigen::NoChange, 4);

@@ -27,10 +27,10 @@ struct SectionBasis {
 // two-dimensional field.
 SectionBasis mindlin_polynomials(const Surface& surface, int each);
 
-// Makes functions from the cut-off's shapes at three half-widths: for each the motion in the cross-section,
-// and two functions for the motion along x that belongs to it. They describe both of the strip's branches,
-// propagating and evanescent, and are exact at the turning point to first order in k_x^2. Source:
-// Kantorovich's method.
+// Makes functions from the cut-off's shapes at three half-widths and the travelling wave's at the drive edge:
+// for each the motion in the cross-section, and two functions for the motion along x that belongs to it. They
+// describe both of the strip's branches, propagating and evanescent, and are exact at the turning point to
+// first order in k_x^2. Source: Kantorovich's method.
 SectionBasis section_shapes(const Surface& surface, double frequency_Hz);
 
 }  // namespace turnpoint::physics

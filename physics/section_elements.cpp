@@ -187,4 +187,18 @@ SectionShapes section_shapes_of(const SectionPencil& p) {
   return {at.shape, along.solve(-p.coupling * at.shape), along.solve(-p.stretching * at.shape)};
 }
 
+SectionShapes section_shapes_of(const SectionPencil& p, double omega, double along2) {
+  const double o2 = omega * omega;
+  const Eigen::LDLT<MatrixXd> along(p.shear + along2 * p.along - o2 * p.along_mass);
+  // A eliminated
+  const Eigen::PartialPivLU<MatrixXd> cross(p.plane + along2 * p.cross - o2 * p.mass -
+                                            along2 * p.coupling.transpose() * along.solve(p.coupling));
+  Eigen::VectorXd x = section_cut_off(p).shape;
+  for (int i = 0; i < 4; ++i) {
+    x = cross.solve(p.mass * x);
+    x /= std::sqrt(x.dot(p.mass * x));
+  }
+  return {x, along.solve(-p.coupling * x), along.solve(-p.stretching * x)};
+}
+
 }  // namespace turnpoint::physics

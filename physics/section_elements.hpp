@@ -29,6 +29,9 @@ struct SectionShapes {
 };
 SectionShapes section_shapes_of(const SectionPencil& pencil);
 
+// The same for the wave of `omega` whose k^2 is nearest to `along2`.
+SectionShapes section_shapes_of(const SectionPencil& pencil, double omega, double along2);
+
 // Functions of one coordinate at quadrature points, with one row per function and one column per point.
 struct LineFunctions {
   Eigen::MatrixXd even, even_slope, odd, odd_slope;

@@ -28,6 +28,7 @@ Json to_json(const physics::MapAnswer& answer) {
           {"error_bound_mm", json_number(answer.error_bound_m * 1e3)},
           {"uncertainty_mm", json_number(answer.uncertainty_m * 1e3)},
           {"mm_per_Hz", json_number(answer.m_per_Hz * 1e3)},
+          {"shear_shift_mm", json_number(answer.shear_shift_m, 1e3)},
           {"reason", answer.reason},
           {"warnings", json_warnings(answer.warnings)}};
 }

@@ -60,6 +60,8 @@ Json to_json(const scene::DrivePlan& plan, const protocol::Factors& factors,
           {"level_bound_dB", json_number(plan.level_bound_dB)},
           {"amplitude_bound", json_number(plan.amplitude_bound)},
           {"uncertainty_mm", json_number(plan.uncertainty_m * 1e3)},
+          {"plate_theory", physics::name(plan.theory)},
+          {"shear_shift_mm", json_number(plan.shear_shift_m, 1e3)},
           {"tones", tones_json(plan)},
           {"zone_friction", json_number(plan.zone_friction)},
           {"residual", json_number(plan.residual)},
@@ -88,6 +90,10 @@ void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<
   fmt::print(out, "  model error at most {} mm, parameter uncertainty {} mm{}\n",
              number(plan.error_bound_m * 1e3, 3), number(plan.uncertainty_m * 1e3, 3),
              plan.inside_tolerance ? "" : "; EXCEEDS the scene's tolerance");
+  if (plan.shear_shift_m)
+    fmt::print(out, "  plate theory {}; {} would move the boundary by {} mm\n", physics::name(plan.theory),
+               plan.theory == physics::PlateTheory::kirchhoff ? "shear" : "an elastic cross-section",
+               number(*plan.shear_shift_m * 1e3, 3));
   for (const auto& tone : plan.tones)
     fmt::print(out, "  {} Hz, drive {} um at {} deg on {} ({} of full scale), {} um at its last maximum{}\n",
                number(tone.frequency_Hz, 8), number(tone.amplitude_m * 1e6, 4),

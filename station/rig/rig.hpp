@@ -20,6 +20,8 @@ struct Taper {
 enum class Edges { supported, clamped };
 enum class Bending { automatic, on, off };
 enum class WideEnd { left, right };
+/// The theory of a clamped plate; `automatic` is the simplest that meets a scene's tolerance.
+enum class PlateTheory { kirchhoff, mindlin, elastic, automatic };
 
 /// The vibrating surface: material, tension (as a stress), geometry and loss.
 struct Surface {
@@ -35,6 +37,7 @@ struct Surface {
   double quality_factor = std::numeric_limits<double>::infinity();
   Edges edges = Edges::supported;
   Bending bending = Bending::automatic;
+  PlateTheory plate_theory = PlateTheory::kirchhoff;
   WideEnd wide_end = WideEnd::left;
   Taper taper;
   /// Standard uncertainties of measured values, from the optional keys `*_sd`; 0 if not given.

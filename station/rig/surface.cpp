@@ -133,6 +133,19 @@ void read_taper(const text::Value& table, Surface& surface, text::Findings& find
   reader.finish();
 }
 
+void read_plate_theory(text::TableReader& reader, Surface& surface) {
+  const auto word = reader.word("plate_theory", {"kirchhoff", "mindlin", "elastic", "auto"}, "kirchhoff");
+  surface.plate_theory = word == "mindlin"   ? PlateTheory::mindlin
+                         : word == "elastic" ? PlateTheory::elastic
+                         : word == "auto"    ? PlateTheory::automatic
+                                             : PlateTheory::kirchhoff;
+  const bool needed = word == "mindlin" || word == "elastic";
+  const double poisson = surface.poisson.value_or(-1);
+  if (needed && (surface.tension_Pa > 0 || surface.edges != Edges::clamped || poisson < 0 || poisson > 0.49))
+    reader.problem("plate_theory", "\"plate_theory\" is \"" + word + "\" on this surface",
+                   "\"edges\" \"clamped\", \"tension_Pa\" 0 and \"poisson\" from 0 to 0.49 with it");
+}
+
 }  // namespace
 
 std::vector<std::string> materials() {
@@ -150,6 +163,7 @@ Surface read_surface(const text::Value& table, text::Findings& findings) {
   surface.quality_factor = read_quality_factor(reader);
   surface.edges = reader.word("edges", {"supported", "clamped"}, "supported") == "clamped" ? Edges::clamped
                                                                                            : Edges::supported;
+  read_plate_theory(reader, surface);
   surface.wide_end =
       reader.word("wide_end", {"left", "right"}, "left") == "left" ? WideEnd::left : WideEnd::right;
   surface.tension_sd_Pa = reader.maybe_number("tension_sd_Pa", {0, 1e12, Ends::closed, "Pa"}).value_or(0);

@@ -24,6 +24,24 @@ physics::Bending bending_of(rig::Bending bending) {
   return physics::Bending::automatic;
 }
 
+/// A rig that leaves the theory open is described by the most exact one that has all models.
+physics::PlateTheory theory_of(rig::PlateTheory theory, const rig::Surface& surface) {
+  switch (theory) {
+    case rig::PlateTheory::kirchhoff:
+      return physics::PlateTheory::kirchhoff;
+    case rig::PlateTheory::mindlin:
+      return physics::PlateTheory::mindlin;
+    case rig::PlateTheory::elastic:
+      return physics::PlateTheory::elastic;
+    case rig::PlateTheory::automatic:
+      break;
+  }
+  const bool clamped_plate = surface.tension_Pa == 0 && surface.edges == rig::Edges::clamped;
+  const double poisson = surface.poisson.value_or(-1);
+  return clamped_plate && poisson >= 0 && poisson <= 0.49 ? physics::PlateTheory::mindlin
+                                                          : physics::PlateTheory::kirchhoff;
+}
+
 }  // namespace
 
 physics::Surface surface_of(const rig::Rig& rig) {
@@ -39,6 +57,7 @@ physics::Surface surface_of(const rig::Rig& rig) {
   surface.bending = bending_of(s.bending);
   surface.modulus_Pa = s.modulus_Pa;
   if (s.poisson) surface.poisson = *s.poisson;
+  surface.theory = theory_of(s.plate_theory, s);
   surface.yield_strength_Pa = s.yield_Pa;
   surface.sd.density_kg_m3 = s.density_sd_kg_m3;
   surface.sd.tension_Pa = s.tension_sd_Pa;

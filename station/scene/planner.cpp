@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -11,6 +12,7 @@
 #include "physics/centre_line.hpp"
 #include "physics/field.hpp"
 #include "physics/planner.hpp"
+#include "physics/plate_theory.hpp"
 #include "physics/warning.hpp"
 #include "physics/zone.hpp"
 #include "station/scene/measures.hpp"
@@ -89,6 +91,7 @@ struct Planner::State {
   std::map<std::string, physics::ZoneDesign> designs;
   std::map<std::string, DrivePlan> plans;
   std::map<std::string, Solution> solutions;
+  std::map<physics::PlateTheory, Planner> by_theory;  ///< of a rig that leaves the theory open
 
   explicit State(const rig::Rig& r) : rig(r), surface(surface_of(r)), friction(friction_of(r)) {}
 
@@ -325,7 +328,29 @@ Planner::Planner(const Planner& other) : state_(std::make_unique<State>(*other.s
 const physics::Surface& Planner::surface() const { return state_->surface; }
 const physics::FrictionMap& Planner::friction() const { return state_->friction; }
 
+/// The planner of this rig with one of the theories.
+Planner& Planner::by_theory(physics::PlateTheory theory) {
+  auto found = state_->by_theory.find(theory);
+  if (found == state_->by_theory.end()) {
+    rig::Rig rig = state_->rig;
+    rig.surface.plate_theory = theory == physics::PlateTheory::kirchhoff ? rig::PlateTheory::kirchhoff
+                               : theory == physics::PlateTheory::mindlin ? rig::PlateTheory::mindlin
+                                                                         : rig::PlateTheory::elastic;
+    found = state_->by_theory.emplace(theory, Planner(rig)).first;
+  }
+  return found->second;
+}
+
 DrivePlan Planner::plan(const Scene& scene) {
+  if (state_->rig.surface.plate_theory == rig::PlateTheory::automatic) {
+    const auto& rig = state_->rig;
+    const std::array band{lowest_frequency(rig, terms::kAudible_Hz),
+                          highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz)};
+    const auto choice = physics::choose_theory(surface(), band, scene.tolerance.boundary_m);
+    DrivePlan plan = by_theory(choice.theory).plan(scene);
+    plan.reason += "; " + choice.reason;
+    return plan;
+  }
   auto& plans = state_->plans;
   const auto key = key_of(scene);
   if (const auto found = plans.find(key); found != plans.end()) return found->second;
@@ -376,6 +401,8 @@ DrivePlan Planner::make(const Scene& scene) {
   plan.warnings = physics::surface_warnings(state_->surface);
   plan.warnings.insert(plan.warnings.end(), solution.warnings.begin(), solution.warnings.end());
   state_->drive(plan, tones, solution);
+  plan.theory = surface().theory;
+  if (!plan.tones.empty()) plan.shear_shift_m = physics::shear_shift_m(surface(), plan.tones[0].frequency_Hz);
   auto fields = solution.fields;
   for (std::size_t i = 0; i < fields.size(); ++i)
     for (auto& v : fields[i].v) v *= tones[i].amplitude_m;
@@ -385,6 +412,8 @@ DrivePlan Planner::make(const Scene& scene) {
 }
 
 Planner::Profile Planner::profile(const DrivePlan& plan, int points) {
+  if (state_->rig.surface.plate_theory == rig::PlateTheory::automatic)
+    return by_theory(plan.theory).profile(plan, points);
   std::vector<Tone> tones;
   for (const auto& tone : plan.tones) tones.push_back({tone.frequency_Hz, tone.amplitude_m, tone.phase_rad});
   Profile profile;

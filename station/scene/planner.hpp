@@ -46,11 +46,14 @@ struct DrivePlan {
   std::vector<DrivenTone> tones;  ///< in order of falling frequency
   physics::Model model = physics::Model::mode;
   bool inside_tolerance = true;
-  double error_bound_m = 0;             ///< model error of the boundary
-  double level_bound_dB = 0;            ///< model error of the level at the last maximum
-  double amplitude_bound = 0;           ///< relative model error of the amplitude
-  double uncertainty_m = 0;             ///< uncertainty of the boundary from the rig's tolerances
-  std::string reason;                   ///< why this model was chosen
+  double error_bound_m = 0;    ///< model error of the boundary
+  double level_bound_dB = 0;   ///< model error of the level at the last maximum
+  double amplitude_bound = 0;  ///< relative model error of the amplitude
+  double uncertainty_m = 0;    ///< uncertainty of the boundary from the rig's tolerances
+  std::string reason;          ///< why this model was chosen
+  physics::PlateTheory theory = physics::PlateTheory::kirchhoff;  ///< of a plate
+  /// How far the next better plate theory would move the boundary; empty for membranes.
+  std::optional<double> shear_shift_m;
   std::optional<double> boundary_m;     ///< predicted boundary
   std::optional<double> zone_friction;  ///< predicted mean over the zone
   std::optional<double> residual;       ///< rms deviation of friction from its mean in the zone
@@ -90,6 +93,7 @@ class Planner {
  private:
   struct State;
   DrivePlan make(const Scene& scene);
+  Planner& by_theory(physics::PlateTheory theory);
   std::unique_ptr<State> state_;
 };
 

@@ -45,6 +45,7 @@ TEST_CASE("the simulated rig loads in SI units", "[rig]") {
   CHECK(rig.surface.modulus_Pa.value() == Approx(69e9));
   CHECK(rig.surface.yield_Pa.value() > 1e8);
   CHECK(rig.surface.edges == rig::Edges::clamped);
+  CHECK(rig.surface.plate_theory == rig::PlateTheory::kirchhoff);
   CHECK(rig.surface.taper.half_width_m == Approx(14e-3));
   CHECK(rig.surface.taper.slope.value() == Approx(0.03));
   REQUIRE(rig.transducers.size() == 1);
@@ -115,6 +116,12 @@ TEST_CASE("what a rig file may not say is refused with what is allowed", "[rig]"
                  "no line \"enable\""));
   CHECK(contains(problems("[surface]", "[surface"), "not valid TOML"));
   CHECK(problems("quality_factor = 60", "quality_factor = inf").empty());
+  const std::string thick = "quality_factor = 60\nplate_theory = \"mindlin\"";
+  CHECK(problems("quality_factor = 60", thick).empty());
+  CHECK(contains(problems("tension_Pa = 0 ", "plate_theory = \"elastic\"\ntension_Pa = 1e8 "),
+                 "\"plate_theory\" is \"elastic\" on this surface"));
+  CHECK(
+      contains(problems("quality_factor = 60", "quality_factor = 60\nplate_theory = \"thick\""), "mindlin"));
 }
 
 TEST_CASE("spare channels carry a marker and masking noise", "[rig]") {

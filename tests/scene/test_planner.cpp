@@ -94,3 +94,32 @@ TEST_CASE("a tone's level is that of the chosen model, whatever the rove", "[sce
   const auto plan = planner.plan(scene);
   CHECK(plan.tones.at(0).displacement_m == Approx(1e-6 * std::pow(10, -0.1)).epsilon(1e-6));
 }
+
+TEST_CASE("a plan on a rig that leaves the theory open is Kirchhoff's only within the tolerance", "[scene]") {
+  auto rig = simulated();
+  auto scene = edge_at(0.150, "p50");
+  scene.tolerance = {20e-3, {}, {}};
+  Planner thin(rig);
+  const auto as_shipped = thin.plan(scene);
+  CHECK(as_shipped.theory == physics::PlateTheory::kirchhoff);
+  CHECK(as_shipped.shear_shift_m.value() == Approx(12.2e-3).margin(0.2e-3));
+
+  rig.surface.plate_theory = rig::PlateTheory::automatic;
+  Planner planner(rig);
+  const auto coarse = planner.plan(scene);
+  CHECK(coarse.theory == physics::PlateTheory::kirchhoff);
+  CHECK(coarse.tones.at(0).frequency_Hz == as_shipped.tones.at(0).frequency_Hz);
+  scene.tolerance.boundary_m = 1e-3;
+  const auto fine = planner.plan(scene);
+  CHECK(fine.theory == physics::PlateTheory::mindlin);
+  CHECK(fine.inside_tolerance);
+  CHECK(std::abs(fine.shear_shift_m.value()) < 0.5e-3);
+  CHECK(fine.reason.find("shear moves the thin plate's boundary by") != std::string::npos);
+  // The same boundary is a lower tone's: a shear-soft plate has it further out.
+  CHECK(fine.tones.at(0).frequency_Hz < 0.95 * coarse.tones.at(0).frequency_Hz);
+  auto mindlin = planner.surface();
+  mindlin.theory = physics::PlateTheory::mindlin;
+  const auto line = physics::make_centre_line(mindlin, fine.tones.at(0).frequency_Hz, physics::Model::mode);
+  CHECK(std::abs(line->level_m(0.5).value() - 0.150) < 0.03e-3);
+  CHECK(planner.profile(fine, 50).displacement_m.size() == 50);
+}
