@@ -98,7 +98,7 @@ TEST_CASE("a file that holds no code, or that everybody may read, is refused by 
   write(file, desk::OperatorCode::of_digits("7391").hash() + "\n", 0640);
   CHECK(problem_with(file).empty());
   write(file, desk::OperatorCode::of_digits("7391").hash() + "\n", 0644);
-  CHECK(problem_with(file).find("everybody may read") != std::string::npos);
+  CHECK(problem_with(file).find("every user of this computer may read") != std::string::npos);
 }
 
 TEST_CASE("wrong codes are taken ever more slowly, and the right one ends that", "[code]") {
