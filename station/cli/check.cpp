@@ -182,7 +182,7 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
 
 void check(const Options& options, Context& context) {
   const auto rig = setup::rig_or_default(options.rig, context.err);
-  const auto result = simulation::check(options.protocol, rig, {options.sessions});
+  const auto result = simulation::check(options.protocol, rig, {options.sessions, true});
   if (!result.problems.empty()) context.exit_code = 2;
   for (const auto& problem : result.problems) fmt::print(context.err, "{}\n", format(problem));
   for (const auto& warning : result.warnings) fmt::print(context.err, "warning: {}\n", format(warning));

@@ -151,7 +151,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   try {
     estimate(*protocol, options.sessions, stop, check);
     if (stop.stop_requested()) throw protocol::Abandoned();
-    if (check.problems.empty()) check.sound = loudest(check.survey, *rig, stop);
+    if (options.sound && check.problems.empty()) check.sound = loudest(check.survey, *rig, stop);
     if (check.problems.empty()) check.cues = cue_guard(*protocol, *rig, check.survey, stop);
   } catch (const protocol::Abandoned&) {
     throw;

@@ -36,7 +36,7 @@ struct Check {
   int simulated_sessions = 0;
   protocol::Survey survey;
   CueGuard cues;
-  /// of the loudest combination; empty if the bound is not known for this rig
+  /// of the loudest combination; empty if not asked for, or if no bound is known for this rig
   std::optional<scene::SoundBound> sound;
   std::vector<std::string> protocol_defaults, rig_defaults;
 };
@@ -44,6 +44,7 @@ struct Check {
 /// The number of sessions to simulate for the number of trials and the duration; 0: none.
 struct CheckOptions {
   int sessions = 21;
+  bool sound = false;  ///< also the bound of the airborne sound, some 10 ms for each tone
 };
 
 /// Reads and checks both files as `run` would. Throws std::system_error if one cannot be read, and
