@@ -54,7 +54,7 @@ date -s "+2 hours" >/dev/null
 say "the stop"
 stimulus
 near "stop to enable low (us)" "$(($(gpio_line until-low "$(pull_file STOP)" "$(line_of AMP_EN)/value") / 1000))" 0 1000
-says "^fault: The stop"
+says "^fault: The emergency stop"
 eventually 20 stored 2
 off || fail "on while the stop is pressed"
 pull STOP down
@@ -64,7 +64,7 @@ say "the sound card is unplugged, and comes back"
 stimulus
 echo snd_aloop.0 >/sys/bus/platform/drivers/snd_aloop/unbind
 eventually 1 off
-says "^fault: .*converter"
+says "^fault: The sound device"
 eventually 20 stored 3
 operator arm; sleep 0.5; off || fail "on without a sound card"
 kill $recorder 2>/dev/null || true; wait $recorder || true
