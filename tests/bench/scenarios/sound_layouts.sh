@@ -101,7 +101,7 @@ add_switch hw:Loopback "Auto Mute Switch"
 doctor
 has doctor.txt "^converter mute *failed *Auto Mute is on" || fail "Auto Mute was not seen"
 [ $status = 1 ] || fail "the doctor ended with $status"
-advice=$(sed -n 's/.*-> \(amixer .*\), then sudo alsactl store/\1/p' doctor.txt)
+advice=$(sed -n 's/.*-> run \(amixer .*\), then sudo alsactl store/\1/p' doctor.txt)
 say "$advice"
 eval "$advice"
 doctor
