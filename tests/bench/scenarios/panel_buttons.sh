@@ -33,4 +33,4 @@ pull BTN_L up; pull BTN_L down
 eventually 5 grep -q "^fault line left: .*lost" events.txt
 grep ^fault events.txt
 echo 0 >/sys/kernel/config/gpio-sim/bench/live
-eventually 5 grep -q "fault.*chip is gone" events.txt
+eventually 5 grep -q "fault.*chip was removed" events.txt
