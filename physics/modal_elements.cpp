@@ -1,6 +1,7 @@
 #include "physics/modal_elements.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace turnpoint::physics {
 namespace {
@@ -23,6 +24,13 @@ double second_derivative(const Taper& taper, double x) {
 }
 
 }  // namespace
+
+double take_out_size(Eigen::VectorXcd& unknowns) {
+  const double size = unknowns.cwiseAbs().maxCoeff();
+  if (!(size > 0)) return 0;
+  unknowns /= size;
+  return std::log(size);
+}
 
 ModalAssembler::ModalAssembler(const Taper& taper, const TransverseBasis& across, const ElementBasis& along,
                                const ModalEquation& equation, double slope_unit_m)

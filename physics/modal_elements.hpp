@@ -28,6 +28,10 @@ struct ModalElement {
   Eigen::VectorXcd centre;    // each basis function's coefficient at the centre line, after solving
 };
 
+// Divides by the largest magnitude and returns its logarithm, so that fields of any size stay in range. Leaves
+// a zero vector as it is and returns 0.
+double take_out_size(Eigen::VectorXcd& unknowns);
+
 class ModalAssembler {
  public:
   ModalAssembler(const Taper& taper, const TransverseBasis& across, const ElementBasis& along,

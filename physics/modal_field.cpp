@@ -39,11 +39,7 @@ void substitute(const ModalSetup& s, const ModalAssembler& assembler, const Eige
   u.head(elements.front().left) = drive.head(elements.front().left).cast<std::complex<double>>();
   double ln_scale = 0;
   for (ModalElement& e : elements) {
-    const double size = u.cwiseAbs().maxCoeff();
-    if (size > 0) {
-      u /= size;
-      ln_scale += std::log(size);
-    }
+    ln_scale += take_out_size(u);
     e.ln_scale = ln_scale;
     const Eigen::VectorXcd rest = e.transfer * u;
     e.centre = Eigen::VectorXcd::Zero(s.along.count());

@@ -79,11 +79,7 @@ void solve_section_elements(const Surface& surface, double f, Losses losses,
   Eigen::VectorXcd u = section.drive.cast<std::complex<double>>();
   double ln_scale = 0;
   for (ModalElement& e : elements) {
-    const double size = u.cwiseAbs().maxCoeff();
-    if (size > 0) {
-      u /= size;
-      ln_scale += std::log(size);
-    }
+    ln_scale += take_out_size(u);
     e.ln_scale = ln_scale;
     Eigen::VectorXcd all = Eigen::VectorXcd::Zero(inner + n);
     const Eigen::VectorXcd beyond = e.transfer * u;

@@ -90,7 +90,9 @@ void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<
   fmt::print(out, "  model error at most {} mm, parameter uncertainty {} mm{}\n",
              number(plan.error_bound_m * 1e3, 3), number(plan.uncertainty_m * 1e3, 3),
              plan.inside_tolerance ? "" : "; EXCEEDS the scene's tolerance");
-  if (plan.shear_shift_m)
+  if (plan.theory == physics::PlateTheory::elastic)
+    fmt::print(out, "  plate theory elastic\n");
+  else if (plan.shear_shift_m)
     fmt::print(out, "  plate theory {}; {} would move the boundary by {} mm\n", physics::name(plan.theory),
                plan.theory == physics::PlateTheory::kirchhoff ? "shear" : "an elastic cross-section",
                number(*plan.shear_shift_m * 1e3, 3));

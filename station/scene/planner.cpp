@@ -14,8 +14,8 @@
 #include "physics/planner.hpp"
 #include "physics/plate_theory.hpp"
 #include "physics/warning.hpp"
-#include "physics/zone.hpp"
 #include "station/scene/measures.hpp"
+#include "station/scene/tone_designer.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
@@ -28,17 +28,7 @@ using text::number;
 
 namespace {
 
-static_assert(terms::kAudible_Hz == physics::audible_limit_Hz);
-
 constexpr std::size_t kRemembered = 512, kSolutions = 128;
-
-// Planned tones are rounded to a grid, because processors and C libraries differ in the last bits of sines
-// and logarithms, and the same session must give the same samples everywhere. The grid is far finer than what
-// matters: 1 uHz, 1 fm (-180 dB re 1 um), 1 nrad.
-constexpr double kGridPerHz = 1e6, kGridPerMetre = 1e15, kGridPerRadian = 1e9;
-double on_grid(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
-
-double mm(double m) { return m * 1e3; }
 
 /// A text with everything in a scene that affects its plan, used as the cache key.
 std::string key_of(const Scene& scene) {
@@ -58,15 +48,6 @@ std::string key_of(const Scene& scene) {
   return key;
 }
 
-/// A tone that a scene asks for, before a model is chosen. The frequency is the first mode's.
-struct WantedTone {
-  double frequency_Hz = 0;
-  double displacement_m = 0;  ///< at its last maximum
-  double phase_rad = 0;
-  physics::Edge edge;
-  std::optional<double> boundary_m;  ///< where the tone's own edge shall lie; empty for tones of a zone
-};
-
 /// The displacement that a set of tones causes on this rig's surface, independent of their strength, so
 /// roving does not change it. `fields` are per metre at the drive edge. They use the chosen model, but at
 /// least `mode`: a limit must not be checked with a coarse model.
@@ -83,26 +64,13 @@ Model at_least_mode(Model chosen) { return chosen == Model::modes ? Model::modes
 
 }  // namespace
 
-struct Planner::State {
-  rig::Rig rig;
-  physics::Surface surface;
-  physics::FrictionMap friction;
-  std::map<std::string, std::shared_ptr<const physics::BoundaryMap>> maps;
-  std::map<std::string, physics::ZoneDesign> designs;
+struct Planner::State : ToneDesigner {
   std::map<std::string, DrivePlan> plans;
   std::map<std::string, Solution> solutions;
   std::map<physics::PlateTheory, Planner> by_theory;  ///< of a rig that leaves the theory open
 
-  explicit State(const rig::Rig& r) : rig(r), surface(surface_of(r)), friction(friction_of(r)) {}
+  using ToneDesigner::ToneDesigner;
 
-  const physics::BoundaryMap& map_for(const physics::Edge& edge);
-  physics::MapOptions edge_options(const physics::Edge& edge, double displacement_m) const;
-  double frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m);
-  double target_displacement(const Scene& scene) const;
-  std::vector<WantedTone> single(const Scene& scene);
-  std::vector<WantedTone> explicit_tones(const Scene& scene);
-  std::vector<WantedTone> zone(const Scene& scene, DrivePlan& plan);
-  std::vector<WantedTone> tones_for(const Scene& scene, DrivePlan& plan);
   physics::PlanChoice choose(const Scene& scene, const std::vector<Tone>& tones,
                              std::optional<Model> placed_by) const;
   bool place_by_field(const std::vector<WantedTone>& wanted, std::vector<double>& frequencies_Hz) const;
@@ -111,109 +79,6 @@ struct Planner::State {
   void drive(DrivePlan& plan, const std::vector<Tone>& tones, const Solution& solution) const;
   void refuse_beyond_limits(const DrivePlan& plan) const;
 };
-
-/// Percent, peak and turning edges depend only on the surface, so one map for each is enough. It covers the
-/// tones that this rig can play.
-const physics::BoundaryMap& Planner::State::map_for(const physics::Edge& edge) {
-  const auto key = physics::format(edge);
-  auto found = maps.find(key);
-  if (found == maps.end()) {
-    physics::MapOptions options;
-    options.edge = edge;
-    options.band = {lowest_frequency(rig, 0),
-                    highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz)};
-    found = maps.emplace(key, std::make_shared<const physics::BoundaryMap>(surface, options)).first;
-  }
-  return *found->second;
-}
-
-physics::MapOptions Planner::State::edge_options(const physics::Edge& edge, double displacement_m) const {
-  physics::MapOptions options;
-  options.edge = edge;
-  if (edge.kind == physics::Edge::Kind::friction)
-    options.friction = physics::FrictionContext{friction, displacement_m, rig.friction.fingertip_m};
-  return options;
-}
-
-double Planner::State::frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m) {
-  const auto options = edge_options(edge, displacement_m);
-  if (edge.kind == physics::Edge::Kind::friction) {
-    // An edge defined by friction depends on the displacement, which roving changes in every trial, so a map
-    // would be used only once.
-    if (const auto frequency = physics::solve_frequency_Hz(surface, options, boundary_m)) return *frequency;
-  } else if (const auto frequency = map_for(edge).frequency_Hz(boundary_m)) {
-    return *frequency;
-  }
-  // The position is out of the rig's range. A map over all frequencies tells the user what would be possible.
-  const physics::BoundaryMap whole(surface, options);
-  if (const auto frequency = whole.frequency_Hz(boundary_m)) return *frequency;
-  throw Unreachable(fmt::format("no frequency puts the {} edge at {} mm: {}", physics::format(edge),
-                                number(mm(boundary_m)), whole.at_boundary(boundary_m).reason));
-}
-
-double Planner::State::target_displacement(const Scene& scene) const {
-  if (scene.displacement_m) return *scene.displacement_m;
-  const double wanted = scene.friction.value_or(1.0);
-  if (const auto displacement = friction.displacement_m(wanted)) return *displacement;
-  throw Unreachable(fmt::format("relative friction {} is below the lowest that this surface gives, {}",
-                                number(wanted), number(friction.lowest_friction())));
-}
-
-std::vector<WantedTone> Planner::State::single(const Scene& scene) {
-  const double displacement = target_displacement(scene) * std::pow(10.0, scene.rove_dB / 20);
-  const double frequency = frequency_for(*scene.boundary_m, scene.edge, displacement);
-  return {{frequency, displacement, 0, scene.edge, scene.boundary_m}};
-}
-
-std::vector<WantedTone> Planner::State::explicit_tones(const Scene& scene) {
-  std::vector<WantedTone> tones;
-  for (const auto& target : scene.tones) {
-    const double displacement = target.displacement_m * std::pow(10.0, scene.rove_dB / 20);
-    const double frequency = target.frequency_Hz
-                                 ? *target.frequency_Hz
-                                 : frequency_for(*target.boundary_m, target.edge, displacement);
-    tones.push_back({frequency, displacement, target.phase_rad, target.edge, target.boundary_m});
-  }
-  return tones;
-}
-
-std::vector<WantedTone> Planner::State::zone(const Scene& scene, DrivePlan& plan) {
-  const auto& wanted = *scene.zone;
-  const double designed_for = wanted.design_friction.value_or(wanted.friction);
-  const auto key = fmt::format("{} {} {} {} {}", *scene.boundary_m, physics::format(scene.edge),
-                               wanted.from_m, designed_for, wanted.tones);
-  auto found = designs.find(key);
-  if (found == designs.end()) {
-    physics::ZoneRequest request;
-    request.from_m = wanted.from_m;
-    request.boundary_m = *scene.boundary_m;
-    request.edge = scene.edge;
-    request.friction = designed_for;
-    request.tones = wanted.tones;
-    request.fingertip_m = rig.friction.fingertip_m;
-    request.band.low_Hz = lowest_frequency(rig, terms::kAudible_Hz);
-    request.band.high_Hz = highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz);
-    found = designs.emplace(key, physics::design_zone(surface, friction, request)).first;
-  }
-  auto tones = found->second.tones;
-  plan.boundary_m = found->second.boundary_m;
-  double scale = 1;
-  if (wanted.friction != designed_for) scale = scale_to_friction(surface, friction, rig, tones, scene);
-  scale *= std::pow(10.0, scene.rove_dB / 20);
-  std::vector<WantedTone> list;
-  for (const auto& tone : tones) {
-    const double frequency_Hz = on_grid(tone.frequency_Hz, kGridPerHz);
-    const double drive_m = physics::drive_amplitude_m(surface, frequency_Hz, 1);
-    list.push_back({frequency_Hz, scale * tone.amplitude_m / drive_m, tone.phase_rad, scene.edge, {}});
-  }
-  return list;
-}
-
-std::vector<WantedTone> Planner::State::tones_for(const Scene& scene, DrivePlan& plan) {
-  if (scene.zone) return zone(scene, plan);
-  if (!scene.tones.empty()) return explicit_tones(scene);
-  return single(scene);
-}
 
 physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector<Tone>& tones,
                                            std::optional<Model> placed_by) const {

@@ -30,7 +30,7 @@ by_touch() { stimulus stored; touch_do tap 200 370; eventually 5 off; eventually
 by_button() { stimulus stored; gpio_line press "$(pull_file BTN_R)" 50 >/dev/null; eventually 5 off; eventually 10 stored "$1"; }
 # What the operator does: taps "for the experimenter", enters the code, and arms by a long press.
 asked() { keypad || { tap 536 400; sleep 0.5; return 1; }; }   # a page ignores taps in its first moments, so try again
-arm() { eventually 15 asked; operator_code; hold 536 400; }
+arm() { eventually 15 asked; operator_code; sleep 1; hold 536 400; }   # a page ignores presses in its first moments
 carry_on() { sleep 0.7; tap 535 395; }
 
 systemctl start turnpoint
@@ -138,7 +138,7 @@ near "sessions" "$(rows "SELECT count(*) FROM session WHERE run_mode = 'live'")"
   "left right fault fault left fault right left left right left right left" ] || fail "$(rows "SELECT * FROM trial")"
 near "answers with the kernel's time" "$(rows "SELECT count(*) FROM trial WHERE response_time_quality = 'kernel'")" 10 0
 near "presses" "$(rows "SELECT count(*) FROM event WHERE kind = 'button'")" 4 0
-near "refused armings" "$(rows "SELECT count(*) FROM event WHERE kind = 'arm' AND value LIKE 'refused: amplifier: its lines are gone%'")" 1 0
+near "refused armings" "$(rows "SELECT count(*) FROM event WHERE kind = 'arm' AND value LIKE 'refused: GPIO lines disconnected%'")" 1 0
 near "armings" "$(rows "SELECT count(*) FROM event WHERE kind = 'arm' AND value = 'armed'")" 5 0
 
 # Only splits the recording into bursts; NAME.after checks them outside the guest, where that is faster.

@@ -1,0 +1,120 @@
+#include "station/scene/tone_designer.hpp"
+
+#include <fmt/format.h>
+
+#include "physics/field.hpp"
+#include "station/scene/measures.hpp"
+#include "station/scene/transducer.hpp"
+#include "station/terms/limits.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::scene {
+
+using text::number;
+
+static_assert(terms::kAudible_Hz == physics::audible_limit_Hz);
+
+/// Percent, peak and turning edges depend only on the surface, so one map for each is enough. It covers the
+/// tones that this rig can play.
+const physics::BoundaryMap& ToneDesigner::map_for(const physics::Edge& edge) {
+  const auto key = physics::format(edge);
+  auto found = maps_.find(key);
+  if (found == maps_.end()) {
+    physics::MapOptions options;
+    options.edge = edge;
+    options.band = {lowest_frequency(rig, 0),
+                    highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz)};
+    found = maps_.emplace(key, std::make_shared<const physics::BoundaryMap>(surface, options)).first;
+  }
+  return *found->second;
+}
+
+physics::MapOptions ToneDesigner::edge_options(const physics::Edge& edge, double displacement_m) const {
+  physics::MapOptions options;
+  options.edge = edge;
+  if (edge.kind == physics::Edge::Kind::friction)
+    options.friction = physics::FrictionContext{friction, displacement_m, rig.friction.fingertip_m};
+  return options;
+}
+
+double ToneDesigner::frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m) {
+  const auto options = edge_options(edge, displacement_m);
+  if (edge.kind == physics::Edge::Kind::friction) {
+    // An edge defined by friction depends on the displacement, which roving changes in every trial, so a map
+    // would be used only once.
+    if (const auto frequency = physics::solve_frequency_Hz(surface, options, boundary_m)) return *frequency;
+  } else if (const auto frequency = map_for(edge).frequency_Hz(boundary_m)) {
+    return *frequency;
+  }
+  // The position is out of the rig's range. A map over all frequencies tells the user what would be possible.
+  const physics::BoundaryMap whole(surface, options);
+  if (const auto frequency = whole.frequency_Hz(boundary_m)) return *frequency;
+  throw Unreachable(fmt::format("no frequency puts the {} edge at {} mm: {}", physics::format(edge),
+                                number(1e3 * boundary_m), whole.at_boundary(boundary_m).reason));
+}
+
+double ToneDesigner::target_displacement(const Scene& scene) const {
+  if (scene.displacement_m) return *scene.displacement_m;
+  const double wanted = scene.friction.value_or(1.0);
+  if (const auto displacement = friction.displacement_m(wanted)) return *displacement;
+  throw Unreachable(fmt::format("relative friction {} is below the lowest that this surface gives, {}",
+                                number(wanted), number(friction.lowest_friction())));
+}
+
+std::vector<WantedTone> ToneDesigner::single(const Scene& scene) {
+  const double displacement = target_displacement(scene) * std::pow(10.0, scene.rove_dB / 20);
+  const double frequency = frequency_for(*scene.boundary_m, scene.edge, displacement);
+  return {{frequency, displacement, 0, scene.edge, scene.boundary_m}};
+}
+
+std::vector<WantedTone> ToneDesigner::explicit_tones(const Scene& scene) {
+  std::vector<WantedTone> tones;
+  for (const auto& target : scene.tones) {
+    const double displacement = target.displacement_m * std::pow(10.0, scene.rove_dB / 20);
+    const double frequency = target.frequency_Hz
+                                 ? *target.frequency_Hz
+                                 : frequency_for(*target.boundary_m, target.edge, displacement);
+    tones.push_back({frequency, displacement, target.phase_rad, target.edge, target.boundary_m});
+  }
+  return tones;
+}
+
+std::vector<WantedTone> ToneDesigner::zone(const Scene& scene, DrivePlan& plan) {
+  const auto& wanted = *scene.zone;
+  const double designed_for = wanted.design_friction.value_or(wanted.friction);
+  const auto key = fmt::format("{} {} {} {} {}", *scene.boundary_m, physics::format(scene.edge),
+                               wanted.from_m, designed_for, wanted.tones);
+  auto found = designs_.find(key);
+  if (found == designs_.end()) {
+    physics::ZoneRequest request;
+    request.from_m = wanted.from_m;
+    request.boundary_m = *scene.boundary_m;
+    request.edge = scene.edge;
+    request.friction = designed_for;
+    request.tones = wanted.tones;
+    request.fingertip_m = rig.friction.fingertip_m;
+    request.band.low_Hz = lowest_frequency(rig, terms::kAudible_Hz);
+    request.band.high_Hz = highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz);
+    found = designs_.emplace(key, physics::design_zone(surface, friction, request)).first;
+  }
+  auto tones = found->second.tones;
+  plan.boundary_m = found->second.boundary_m;
+  double scale = 1;
+  if (wanted.friction != designed_for) scale = scale_to_friction(surface, friction, rig, tones, scene);
+  scale *= std::pow(10.0, scene.rove_dB / 20);
+  std::vector<WantedTone> list;
+  for (const auto& tone : tones) {
+    const double frequency_Hz = on_grid(tone.frequency_Hz, kGridPerHz);
+    const double drive_m = physics::drive_amplitude_m(surface, frequency_Hz, 1);
+    list.push_back({frequency_Hz, scale * tone.amplitude_m / drive_m, tone.phase_rad, scene.edge, {}});
+  }
+  return list;
+}
+
+std::vector<WantedTone> ToneDesigner::tones_for(const Scene& scene, DrivePlan& plan) {
+  if (scene.zone) return zone(scene, plan);
+  if (!scene.tones.empty()) return explicit_tones(scene);
+  return single(scene);
+}
+
+}  // namespace turnpoint::scene
