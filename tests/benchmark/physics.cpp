@@ -196,11 +196,11 @@ void bench_map(const std::string& name, const physics::Surface& surface, double 
   double worst = 0;
   std::vector<double> x, f;
   for (int i = 0; i < look_ups; ++i) {
-    const double at = surface.length_m * (0.3 + 0.4 * i / look_ups);
-    const auto frequency = map.frequency_Hz(at);
-    if (!frequency) continue;
-    x.push_back(at), f.push_back(*frequency);
-    worst = std::max(worst, std::abs(map.boundary_m(*frequency).value_or(0) - at));
+    const double frequency = 20e3 + 25.0 * i;
+    const auto at = map.boundary_m(frequency);
+    if (!at) continue;
+    x.push_back(*at), f.push_back(frequency);
+    worst = std::max(worst, std::abs(map.boundary_m(map.frequency_Hz(*at).value_or(0)).value_or(0) - *at));
   }
   double sum = 0;
   const double forward = best_time(budget_s, [&] {
@@ -210,7 +210,8 @@ void bench_map(const std::string& name, const physics::Surface& surface, double 
     for (const double one : x) sum += map.frequency_Hz(one).value_or(0);
   });
   const int n = static_cast<int>(x.size());
-  rows.push_back({Task::look_up, name, "position of a frequency", "", n, sum > 0 ? forward : 0, worst});
+  if (!(sum > 0)) throw std::runtime_error(name + ": the map presents no boundary from 20 to 45 kHz");
+  rows.push_back({Task::look_up, name, "position of a frequency", "", n, forward, worst});
   rows.push_back({Task::look_up, name, "frequency of a position", "", n, backward, worst});
   rows.push_back({Task::look_up, name, "building the map", "", 1, best_time(0, build), -1});
 }
