@@ -1,13 +1,13 @@
 #pragma once
-// The Airy function Ai and its derivative for real arguments, accurate to rounding; the exponential factor is
-// kept separate.
+// The Airy function Ai and its derivative for real arguments, accurate to rounding. The result keeps the
+// exponential factor separate, so that it does not underflow.
 
 namespace turnpoint::physics {
 
 // Ai(t) = ai exp(ln_scale) and Ai'(t) = dai exp(ln_scale), with ln_scale = -2/3 t^(3/2) for t above 10, else
-// 0. The error is below 1e-14 of the local envelope (oscillatory side) or of the value. Uses the series DLMF
-// 9.7 and, between -10 and 10, a table of Taylor polynomials, made by solving y'' = t y from 10 downwards,
-// which is its stable direction.
+// 0. The error is below 1e-14 of the local envelope (oscillatory side) or of the value. For |t| above 10 the
+// function uses the series in DLMF 9.7; otherwise a table of Taylor polynomials, made by solving y'' = t y
+// from 10 downwards, the direction in which the solution is stable.
 struct Airy {
   double ai;
   double dai;

@@ -1,13 +1,13 @@
 #pragma once
-// The model `airy`: the closed profile of the 1998 paper (eqs. 20-22).
+// The model `airy`: the displacement profile in closed form from the 1998 paper (eqs. 20-22).
 #include <memory>
 
 #include "physics/centre_line.hpp"
 
 namespace turnpoint::physics {
 
-// The profile Ai(k0 (x - x0)) with k0^3 = -dp/dx at the turning point x0 of p = k^2 - (local cut-off)^2; on a
-// linear taper this is the paper's k0^3 = (4 d omega^3/pi)(rho/T)^(3/2). Without loss. Throws
+// The profile Ai(k0 (x - x0)), without loss. At the turning point x0, p = k^2 - (pi / 2W)^2 is zero and k0^3
+// = -dp/dx. On a linear taper of slope d this is the paper's k0^3 = (4 d omega^3/pi)(rho/T)^(3/2). Throws
 // std::domain_error if there is no turning point on the taper or its continuation.
 std::unique_ptr<CentreLine> make_airy_line(const Surface& surface, double frequency_Hz);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The centre-line displacement of one tone, with one interface for every model that has a profile.
+// The centre-line displacement of one tone. Every model that has a profile implements this interface.
 #include <complex>
 #include <memory>
 #include <optional>
@@ -18,7 +18,8 @@ class CentreLine {
   virtual ~CentreLine() = default;
   virtual Scaled value(double x_m) const = 0;
   virtual Scaled slope(double x_m) const = 0;  // the derivative dv/dx
-  // Values at many points, as in TaylorMarch::evaluate; the default calls value() for each point.
+  // Computes values at many points; see TaylorMarch::evaluate for the arguments. This default version calls
+  // value() for each point.
   virtual void evaluate(std::span<const double> x_m, std::complex<double> phase_reference,
                         double ln_reference, std::span<std::complex<double>> v,
                         std::span<double> ln_amplitude) const;
@@ -42,22 +43,24 @@ std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double freq
 // length_m].
 std::optional<double> turning_point_m(const Surface& surface, double frequency_Hz);
 
-// The surface up to where the first mode has decayed by e^-45 from its turning point: all that matters for
-// edges and resonances. A long exponential taper would take millions of steps from its tip.
+// Cuts the surface off where the first mode has decayed by e^-45 beyond its turning point. Edges and
+// resonances depend on nothing farther out, and starting at the tip of a long exponential taper would take
+// millions of steps.
 Surface moving_part(const Surface& surface, double frequency_Hz);
 
 // The equation that the models `seed` and `mode` solve step by step.
 MarchEquation march_equation(const Surface& surface, double frequency_Hz, Model model, Losses losses);
 
-// The most exact single equation for the first transverse mode: on a linear taper the one solved by J_nu(k
-// s), nu = pi / (2 atan d), the two-dimensional mode of the wedge; on other tapers that of `mode`.
+// The most exact single equation for the first transverse mode. On a linear taper of slope d its solution is
+// the two-dimensional mode of the wedge, J_nu(k s) with nu = pi / (2 atan d). On other tapers it is the
+// equation of the model `mode`.
 MarchEquation best_equation(const Surface& surface, double frequency_Hz, Losses losses);
 
 // Makes a centre line by solving this equation.
 std::unique_ptr<CentreLine> make_marched_line(const Surface& surface, const MarchEquation& equation);
 
-// The resonance nearest to a frequency, that is, a zero of v(0) of the mode without loss; empty if there is
-// none above zero frequency.
+// The resonance nearest to a frequency. A resonance is a frequency at which v(0) of the lossless mode is
+// zero. Empty if there is none above 0 Hz.
 std::optional<double> nearest_resonance_Hz(const Surface& surface, double frequency_Hz);
 
 // All resonances in [low_Hz, high_Hz], ascending.

@@ -14,8 +14,8 @@ using std::numbers::pi;
 constexpr double longest_period_s = 0.05;
 constexpr std::size_t most_descended = 12;  // with more tones than this, Schroeder's phases are not improved
 
-// Period of the envelope: 1 divided by the greatest common divisor of the frequency differences, in whole
-// hertz.
+// Period of the envelope: 1 divided by the greatest common divisor of the differences between the
+// frequencies, which are rounded to whole hertz.
 double beat_period_s(std::span<const Tone> tones) {
   long divisor = 0;
   for (const Tone& tone : tones) {
@@ -146,8 +146,8 @@ std::vector<Product> audible_products(std::span<const Tone> tones, double below_
     for (std::size_t j = 0; j < tones.size(); ++j) {
       if (i < j) add(tones[i].frequency_Hz - tones[j].frequency_Hz, 2);
       for (std::size_t k = 0; k < tones.size(); ++k) {
-        // The products f_i + f_j - f_k; i = j gives 2 f_i - f_k. With k = i or k = j the result would be one
-        // of the tones.
+        // The products f_i + f_j - f_k, which include 2 f_i - f_k for i = j. With k = i or k = j the result
+        // would be one of the tones, not a product.
         if (i <= j && k != i && k != j)
           add(tones[i].frequency_Hz + tones[j].frequency_Hz - tones[k].frequency_Hz, 3);
       }

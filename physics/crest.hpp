@@ -1,5 +1,6 @@
 #pragma once
-// Finds phases for a low crest factor, and the audible products of several tones.
+// Finds phases that give the sum of several tones a low crest factor, and lists the audible products of the
+// tones.
 #include <span>
 #include <vector>
 
@@ -7,22 +8,24 @@
 
 namespace turnpoint::physics {
 
-// Sets Schroeder's phases -pi n (n - 1)/N in order of frequency (Schroeder 1970), then improves them by a
-// deterministic descent on the sampled waveform. Keeps amplitudes and order of the tones.
+// Sets the phases of the tones for a low crest factor; amplitudes and order stay as they are. It starts with
+// Schroeder's phases -pi n (n - 1)/N in order of frequency (Schroeder 1970), then lowers the peak of the
+// sampled waveform step by step. The result is deterministic.
 void assign_phases(std::span<Tone> tones);
 
-// Peak divided by root-mean-square of the summed waveform. It is sampled over its beat period (at most 50
-// ms), and the peak is interpolated between samples.
+// Crest factor: the peak of the summed waveform divided by its root mean square. The waveform is sampled over
+// its beat period (at most 50 ms), and the peak is interpolated between samples.
 double crest_factor(std::span<const Tone> tones);
 
-// A frequency that arises as a difference product of two or three tones.
+// A frequency that nonlinearity produces from two tones (f1 - f2) or from three (f1 + f2 - f3, or 2 f1 - f2
+// from two of them).
 struct Product {
   double frequency_Hz;
   int order;  // 2 or 3
 };
 
-// All products n1 f1 + n2 f2 + ... of order 2 and 3 between 0 and below_Hz, ascending; products within 1 Hz
-// are merged.
+// All products of order 2 and 3 between 0 and below_Hz, ascending. Products within 1 Hz of each other are
+// merged.
 std::vector<Product> audible_products(std::span<const Tone> tones, double below_Hz = 20000);
 
 }  // namespace turnpoint::physics

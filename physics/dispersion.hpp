@@ -1,25 +1,27 @@
 #pragma once
-// Wavenumbers and local cut-offs, as they depend on tension, bending and the support of the sides.
+// Computes wavenumbers and local cut-off frequencies from tension, bending stiffness and the support of the
+// sides.
 #include "physics/elastic_section.hpp"
 #include "physics/mindlin_plate.hpp"
 #include "physics/surface.hpp"
 
 namespace turnpoint::physics {
 
-// The dispersion of one surface, prepared for repeated use: plain numbers, no allocation, no exceptions for
-// arguments above zero. The free functions below do the same and check their arguments.
+// The dispersion relation of one surface, prepared for many calls. Its functions neither allocate nor throw,
+// and expect arguments above zero. The free functions below compute the same and check their arguments.
 struct Dispersion {
   explicit Dispersion(const Surface& surface);
 
-  // Free plane wave: D k^4 + N k^2 = rho h omega^2, or omega/c where bending is not modelled. Lossless; loss
-  // enters as k (1 - i/2Q). Plate theories mindlin and elastic: Mindlin's, with the shear factor 5/(6 - nu)
-  // for elastic, which agrees with the Rayleigh-Lamb equation within 0.1 % for k h to 1.
+  // Wavenumber k of a free plane wave without loss; with loss, k becomes k (1 - i/2Q). It solves D k^4 + N
+  // k^2 = rho h omega^2, or is omega/c if bending is not modelled. Plate theories mindlin and elastic use
+  // Mindlin's equation. For elastic the shear factor is 5/(6 - nu), which agrees with the Rayleigh-Lamb
+  // equation within 0.1 % up to k h = 1.
   double wavenumber_per_m(double frequency_Hz) const noexcept;
   double frequency_Hz(double wavenumber_per_m) const noexcept;
-  // Local cut-off of the first transverse mode of a strip of half-width W. Membrane, or simply supported
-  // sides: k W = pi/2 (the seed's eq. 17). Clamped sides with bending: k tan(k W) + k2 tanh(k2 W) = 0, k2^2 =
-  // k^2 + N/D, the root in pi/2 < k W < pi (2.36502 without tension). Plate theories mindlin and elastic: see
-  // MindlinPlate and ElasticCutOff.
+  // Cut-off of the first transverse mode in a strip of half-width W. For a membrane, or simply supported
+  // sides: k W = pi/2 (eq. 17 of the 1998 paper). For clamped sides with bending: the root in pi/2 < k W < pi
+  // of k tan(k W) + k2 tanh(k2 W) = 0 with k2^2 = k^2 + N/D (2.36502 without tension). For the plate theories
+  // mindlin and elastic see MindlinPlate and ElasticCutOff.
   double cut_off_frequency_Hz(double half_width_m) const noexcept;
   double cut_off_half_width_m(double frequency_Hz) const noexcept;
   bool clamped_bending() const noexcept { return bending && clamped; }

@@ -5,11 +5,12 @@
 
 namespace turnpoint::physics {
 
-// A boundary's definition.
-//   turning   where the first transverse mode's local cut-off equals the tone's frequency (the seed's eq. 17)
-//   peak      last maximum of centre-line |v|
-//   percent   outermost point at exactly `level` of that maximum, 0 < level < 1
-//   friction  outermost point where friction averaged over the fingertip crosses `level`, 0 < level < 1
+// The ways to define where a zone ends, by the tone's displacement v along the centre line:
+//   turning   where the local cut-off of the first transverse mode equals the tone's frequency (1998 paper,
+//             eq. 17)
+//   peak      last maximum of |v|
+//   percent   outermost point at which |v| is `level` times its last maximum, 0 < level < 1
+//   friction  outermost point where friction, averaged over the fingertip, crosses `level`, 0 < level < 1
 struct Edge {
   enum class Kind { turning, peak, percent, friction };
   Kind kind = Kind::turning;

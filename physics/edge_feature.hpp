@@ -7,16 +7,17 @@
 
 namespace turnpoint::physics {
 
-// Which equation for the first transverse mode a boundary map uses.
+// The equation for the first transverse mode that a boundary map uses.
 enum class Wave {
-  // the two-dimensional mode of a linear taper (a wedge: J_nu(k r), nu = pi / 2 atan d); on other tapers
-  // `mode`
+  // on a linear taper the two-dimensional mode of the wedge, J_nu(k r) with nu = pi / (2 atan d); on other
+  // tapers the equation of the model `mode`
   exact,
   as_modelled  // the chosen model's own equation
 };
 
-// The edge's position for a frequency, with loss; empty if it does not exist on the surface. Throws
-// std::domain_error if the model has no answer here. `model` matters for Wave::as_modelled only.
+// The edge's position for a frequency, with loss. Empty if the edge does not exist on the surface. Throws
+// std::domain_error if the model does not apply to this surface and frequency. Only Wave::as_modelled uses
+// `model`.
 std::optional<double> solve_edge_m(const Surface& surface, const MapOptions& options, double frequency_Hz,
                                    Model model, Wave wave);
 

@@ -15,17 +15,17 @@ namespace {
 
 using Piece = EdgeTable::Piece;
 constexpr int degree = EdgeTable::degree;
-// How often a range of frequencies may be halved; fewer where positions take long: those found by integrals
-// and searches, and those on a taper of many points, where each solution takes a step from point to point.
+// How often a range of frequencies may be halved. The number is lower where a position takes long to compute:
+// for friction edges, and on a taper with many points, where the solution needs a step for every point.
 int deepest(const Surface& surface, const MapOptions& options) {
   const auto* table = std::get_if<TabulatedTaper>(&surface.taper);
   if (table != nullptr && table->points.size() > 200) return 3;
   return options.edge.kind == Edge::Kind::friction ? 5 : 9;
 }
 
-// The error to which the table is refined. Elements and fingertip integrals are themselves only this
-// accurate; asking for more would tabulate their rounding errors. The curvature of a tabulated taper jumps at
-// its points, which no number of pieces would follow exactly.
+// The table is refined to this error. Finite elements and fingertip integrals are not more accurate
+// themselves, so a finer table would only reproduce their rounding errors. On a tabulated taper the curvature
+// jumps at every point, and no number of pieces could follow it exactly.
 double tolerance_m(const Surface& surface, const MapOptions& options) {
   if (options.edge.kind == Edge::Kind::friction) return 2e-6;
   const Dispersion dispersion(surface);
@@ -64,7 +64,7 @@ class Builder {
     return taper_.half_width_m(*x) / dispersion_.cut_off_half_width_m(f);
   }
 
-  // Frequencies whose turning points are spread over the surface, or over the requested band.
+  // Returns frequencies whose turning points are spread over the surface, or over the requested band.
   std::vector<double> survey() const {
     std::vector<double> f;
     const int count = options_.band ? 12 : 48;
@@ -83,10 +83,11 @@ class Builder {
     return f;
   }
 
-  // The frequency at which the edge stops existing, between one with the edge and one without.
+  // Finds the frequency at which the edge stops existing. The edge exists at the frequency `with` and does
+  // not exist at `without`.
   double limit(double with, double without) const {
-    // Plates and fine tables take long, and the table covers the edge only up to the limit that was found, so
-    // a rough limit is enough.
+    // Plates and tabulated tapers take long, so a rough limit has to do. It is safe: the table covers only
+    // frequencies up to the limit that was found.
     const bool thick = dispersion_.theory != PlateTheory::kirchhoff;
     const bool dear = dispersion_.clamped_bending() || std::holds_alternative<TabulatedTaper>(surface_.taper);
     const double enough = thick ? 1e-6 : dear ? 1e-9 : 1e-14;
@@ -155,7 +156,8 @@ class Builder {
   Dispersion dispersion_;
 };
 
-// True on a linear taper that runs to its apex: each feature then has a fixed k s, whatever the loss.
+// True on a linear taper that runs to its apex. There each edge has a fixed k s (wavenumber times distance
+// from the apex) at all frequencies, whatever the loss.
 bool scale_free(const Surface& surface, const MapOptions& options) {
   if (options.edge.kind == Edge::Kind::turning) return true;
   if (options.edge.kind == Edge::Kind::friction) return false;
@@ -174,7 +176,7 @@ std::optional<double> EdgeTable::ratio(double f) const noexcept {
   const double ln_f = std::log(f);
   auto piece =
       std::partition_point(pieces.begin(), pieces.end(), [ln_f](const Piece& p) { return p.high < ln_f; });
-  // The logarithm's rounding may put a frequency just outside the range.
+  // Rounding of the logarithm may put a frequency from the end of the range just outside it.
   if (piece == pieces.end()) piece = pieces.end() - 1;
   const double slack = 1e-12 * std::abs(ln_f);
   if (ln_f < piece->low - slack || ln_f > piece->high + slack) return std::nullopt;

@@ -1,5 +1,6 @@
 #pragma once
-// The table that a BoundaryMap uses: the position of an edge, as a ratio of half-widths, against frequency.
+// The table from which a BoundaryMap reads the position of an edge. It stores a ratio of half-widths as a
+// function of frequency.
 #include <array>
 #include <optional>
 #include <vector>
@@ -8,7 +9,8 @@
 
 namespace turnpoint::physics {
 
-// ratio(f) = W(edge) / (cut-off half-width at f). A constant if `closed`, otherwise Chebyshev pieces in ln f.
+// ratio(f) = W(edge) / (cut-off half-width at f). It is one constant if `closed` is true; otherwise Chebyshev
+// polynomials in ln f, one per piece.
 struct EdgeTable {
   static constexpr int degree = 12;
   struct Piece {

@@ -1,26 +1,27 @@
 #pragma once
-// The cross-section of a clamped strip in three-dimensional elasticity: its cut-off and its waves along x.
+// The cross-section of a clamped strip in three-dimensional elasticity. Computes its cut-off and its waves
+// along x.
 #include <array>
 #include <complex>
 #include <vector>
 
 namespace turnpoint::physics {
 
-// First symmetric bending cut-off, as omega W / c_s with c_s^2 = G / rho, of a strip whose cross-section |y|
-// < W, |z| < h/2 is held at |y| = W over the whole thickness and free at z = +-h/2 (plane strain in y, z). It
-// depends only on h/W and Poisson's ratio. The values come from a table of finite elements, which is made
-// once for each Poisson's ratio (in about 0.15 s) and kept. Const functions are thread-safe and allocate
-// nothing.
+// First symmetric bending cut-off of a clamped strip, as omega W / c_s with c_s^2 = G / rho. The
+// cross-section is |y| < W, |z| < h/2 (plane strain). It is held at |y| = W over the whole thickness and free
+// at z = +-h/2. The result depends only on h/W and Poisson's ratio. It comes from a table computed with
+// finite elements, which is made once for each Poisson's ratio (in about 0.15 s) and kept. Const functions
+// are thread-safe and allocate nothing.
 class ElasticCutOff {
  public:
   // The table for a Poisson's ratio from 0 to 0.49. It stays valid until the program ends.
   static const ElasticCutOff& of(double poisson);
 
   explicit ElasticCutOff(double poisson);
-  // omega W / c_s at this h/W. Tabulated up to h/W = 2; beyond that the last value, which is 4 % above the
-  // limit pi/2.
+  // omega W / c_s at this h/W. The table ends at h/W = 2. Beyond that the function returns the last value,
+  // which is 4 % above the limit pi/2.
   double value(double thickness_per_half_width) const noexcept;
-  // The h/W at which omega h / c_s has this value: the inverse of h/W value(h/W).
+  // Returns the h/W at which omega h / c_s, that is h/W times value(h/W), has this value.
   double thickness_per_half_width(double omega_h_per_speed) const noexcept;
 
  private:
@@ -30,14 +31,16 @@ class ElasticCutOff {
   double kirchhoff_;                         // value divided by h/W for a thin plate
 };
 
-// Computes omega W / c_s for the section itself, without the table. Compared with a mesh graded to the
-// corners, the error is within 2e-4 for Poisson's ratios to 0.33 and h/W to 0.4, and 8e-4 to 0.45 and 0.6.
+// Computes omega W / c_s by finite elements, without the table. The error against a mesh refined towards the
+// corners is within 2e-4 for Poisson's ratios to 0.33 and h/W to 0.4. It is within 8e-4 for Poisson's ratios
+// to 0.45 and h/W to 0.6.
 double elastic_cut_off(double thickness_per_half_width, double poisson);
 
-// Squared wavenumbers along the strip, times W^2, of the waves at omega W / c_s that are symmetric about the
-// centre line and antisymmetric through the thickness, smallest magnitude first; complex where two evanescent
-// branches have met. Semi-analytical finite elements: u = (i k A, b, c) exp(-i k x) with A, b, c elements in
-// y and z makes a pencil that is linear in k^2 (S. Dong & R. Nelson, J. Appl. Mech. 39 (1972) 739).
+// Squared wavenumbers along the strip, times W^2, of the waves at a given omega W / c_s, smallest magnitude
+// first. Only waves that are symmetric about the centre line and antisymmetric through the thickness are
+// included. A value is complex where two evanescent branches have met. The method is semi-analytical finite
+// elements: with u = (i k A, b, c) exp(-i k x) and A, b, c made of elements in y and z, the eigenvalue
+// problem is linear in k^2 (S. Dong & R. Nelson, J. Appl. Mech. 39 (1972) 739).
 std::vector<std::complex<double>> elastic_wavenumbers2(double thickness_per_half_width, double poisson,
                                                        double omega_W_per_speed, int count);
 

@@ -72,7 +72,7 @@ double strongest(std::span<const Tone> tones) {
   return most;
 }
 
-// The complex number by which v is divided, as phase and logarithm.
+// The complex number by which v is divided: its phase factor, and the logarithm of its magnitude.
 struct Reference {
   std::complex<double> phase;
   double ln;
@@ -86,11 +86,12 @@ Reference reference(const Solved& s, const Tone& tone, Normalise normalise, doub
   }
   const double weight = normalise == Normalise::none ? tone.amplitude_m : tone.amplitude_m / most;
   const auto phase = unit.mantissa / std::abs(unit.mantissa) * std::polar(1.0, -tone.phase_rad);
-  // For a tone of amplitude 0 use the smallest normal number, so that its shape can be computed.
+  // A tone of amplitude 0 gets the tiny weight e^-700 instead, so that its shape can still be computed.
   return {phase, unit.ln_magnitude() - (weight > 0 ? std::log(weight) : -700.0)};
 }
 
-// std::abs() guards against overflow at ten times the cost.
+// std::abs() takes ten times as long because it guards against overflow. It is used only where overflow is
+// possible.
 double magnitude(std::complex<double> v) {
   const double square = std::norm(v);
   return square > 1e-280 && square < 1e280 ? std::sqrt(square) : std::abs(v);

@@ -14,21 +14,21 @@
 
 namespace turnpoint::physics {
 
-// What is set to one.
-//   drive  v(0) of the strongest tone (others keep their ratio to it)
-//   peak   last maximum of |v| of each tone, times the tone's amplitude relative to the strongest; a tone
-//   without
-//          a last maximum is divided by its largest value on the surface
-//   none   nothing: metres, for the tones' amplitudes at the drive edge
+// Which value of |v| is set to one:
+//   drive  v(0) of the strongest tone; weaker tones keep their ratio to the strongest one
+//   peak   last maximum of |v| of each tone, times the tone's amplitude relative to the strongest; if a tone
+//          has no last maximum, its largest |v| on the surface is used
+//   none   no value: |v| is in metres, for the tones' amplitudes at the drive edge
 enum class Normalise { drive, peak, none };
 std::string_view name(Normalise normalise);
 Normalise parse_normalise(std::string_view text);
 
-// The value of ln|v| where v is exactly zero (at the clamped end): the lowest finite double, never -infinity.
+// Stands for ln|v| where v is exactly zero, at the clamped end. It is the lowest finite double rather than
+// -infinity.
 inline constexpr double ln_zero = std::numeric_limits<double>::lowest();
 
-// What one tone does on a surface, according to one model. Positions that do not exist on the surface are
-// empty.
+// What one tone does on a surface, according to one model. A position is empty if it does not exist on the
+// surface.
 struct ToneInfo {
   double frequency_Hz = 0;
   // position where the first transverse mode's local cut-off equals the frequency
@@ -59,12 +59,13 @@ struct Field {
   std::vector<double> ln_amplitude;  // logarithm of `amplitude`
 };
 
-// Evaluates the field at `x_m` (any order, each in [0, length_m]; throws std::invalid_argument otherwise, and
-// for Model::edge, which has no profile, or `modes` on clamped plates). Cost: one solution per tone.
+// Evaluates the field at the points `x_m`, in any order. Throws std::invalid_argument if a point is outside
+// [0, length_m], for Model::edge, which has no profile, and for `modes` on clamped plates. The cost is one
+// solution per tone.
 Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<const double> x_m, Model model,
                Normalise normalise);
 
-// How far a field can be trusted. It takes several solutions more than the field itself.
+// How far a field can be trusted. Computing these notes takes several solutions more than the field itself.
 struct FieldNotes {
   // error of any tone's |v|, relative to that tone's largest |v| on the surface
   double error_bound = 0;
@@ -73,20 +74,21 @@ struct FieldNotes {
 };
 FieldNotes describe(const Surface& surface, std::span<const Tone> tones, const Field& field);
 
-// Only the tones of evaluate().
+// Like evaluate(), but returns only the field of each tone, not their sum.
 std::vector<ToneField> evaluate_tones(const Surface& surface, std::span<const Tone> tones,
                                       std::span<const double> x_m, Model model, Normalise normalise);
 
-// Root of the summed squares of |v| over tones at each point (m), for the tones' amplitudes at the drive
-// edge.
+// Amplitude in m at each point, for the tones' amplitudes at the drive edge: the root of the sum of |v|^2
+// over the tones.
 std::vector<double> amplitude_profile(const Surface& surface, std::span<const Tone> tones,
                                       std::span<const double> x_m, Model model);
 
 // Computes where and how strongly one frequency acts, without a profile.
 ToneInfo tone_info(const Surface& surface, double frequency_Hz, Model model = Model::mode);
 
-// The amplitude of the drive edge that gives `displacement_m` (peak) at the last maximum; with it, levels are
-// equal for all boundaries. Throws std::domain_error if there is no last maximum.
+// The amplitude of the drive edge that gives the peak displacement `displacement_m` at the last maximum.
+// Driving with it makes the levels of all boundaries equal. Throws std::domain_error if there is no last
+// maximum.
 double drive_amplitude_m(const Surface& surface, double frequency_Hz, double displacement_m,
                          Model model = Model::mode);
 

@@ -9,14 +9,15 @@
 
 namespace turnpoint::physics {
 
-// Mean overpressure in a squeeze film between parallel plates at infinite squeeze number, in units of the
-// ambient pressure p0, for excursion e = amplitude / gap in [0, 1): sqrt((1 + 3 e^2/2)/(1 - e^2)) - 1
+// Mean overpressure in a squeeze film between parallel plates, at infinite squeeze number and in units of the
+// ambient pressure p0. For an excursion e = amplitude / gap in [0, 1) it is sqrt((1 + 3 e^2/2)/(1 - e^2)) - 1
 // (Langlois 1962; Salbu 1964).
 double squeeze_film_overpressure(double excursion);
 
-// A model in which the fingertip shares its load between skin contacts and the air film (after Wiertlewski,
-// Friesen & Colgate, PNAS 2016): p = P* exp(-u/u_s) + p0 overpressure(a/u); relative friction is P*
-// exp(-u/u_s)/p, limited below by `floor`. An illustrative curve; live sessions need a measured table.
+// A model in which skin contacts and an air film share the load of the fingertip (after Wiertlewski, Friesen
+// & Colgate, PNAS 2016). With amplitude a and gap u, the pressure is p = P* exp(-u/u_s) + p0
+// overpressure(a/u). Relative friction is P* exp(-u/u_s)/p, but never below `floor`. The curve is only an
+// illustration: live sessions need a measured table.
 struct LoadSharing {
   double pressure_Pa = 5000;     // pressure of the finger on the surface
   double floor = 0.1;            // friction that remains at any amplitude; for real skin 0.1 to 0.2
@@ -32,10 +33,11 @@ struct FrictionPoint {
   double sd = 0;  // standard deviation of relative_friction
 };
 
-// A monotone map from peak displacement to friction relative to the surface at rest. The load-sharing model
-// is solved to rounding; its floor f enters as mu^4 = f^4 + (1 - f^4) mu_sharing^4, which stays strictly
-// monotone and hardly changes friction above three times the floor. Measured tables are joined by monotone
-// cubics and keep their last value beyond the last point. A value type; const functions are thread-safe.
+// A monotone map from peak displacement to friction, relative to friction on the surface at rest. The
+// load-sharing model is solved to rounding. Its floor f enters as mu^4 = f^4 + (1 - f^4) mu_sharing^4, so
+// that the map stays strictly monotone; friction above three times the floor hardly changes. The points of a
+// measured table are joined by monotone cubics, and the last value holds beyond the last point. A value type;
+// const functions are thread-safe.
 class FrictionMap {
  public:
   FrictionMap() : FrictionMap(LoadSharing{}) {}
@@ -44,9 +46,11 @@ class FrictionMap {
 
   // Relative friction in (0, 1] for a peak displacement >= 0.
   double relative_friction(double displacement_m) const;
-  // The displacement for a relative friction: 0 for friction 1, empty below the lowest friction of the map.
+  // The displacement that gives this relative friction. It is 0 for friction 1, and empty below the lowest
+  // friction of the map.
   std::optional<double> displacement_m(double relative_friction) const;
-  // Standard deviation of relative_friction at a displacement; 0 for a model without data.
+  // Standard deviation of relative_friction at a displacement; 0 for the load-sharing model, which has no
+  // data.
   double sd(double displacement_m) const;
   // The lowest friction of the map, and the displacement at which it is reached.
   double lowest_friction() const;
@@ -59,8 +63,8 @@ class FrictionMap {
     MonotoneCubic friction;
     MonotoneCubic sd;
   };
-  // The load-sharing model with start values for its solution: ln of the contacts' share at equal steps of
-  // displacement.
+  // The load-sharing model and start values for solving it: the logarithm of the contacts' share, at equal
+  // steps of displacement.
   struct Sharing {
     LoadSharing model;
     double highest_m;
@@ -69,8 +73,9 @@ class FrictionMap {
   std::variant<Sharing, Table> model_;
 };
 
-// Mean of `values` (sampled at ascending `x_m` and joined linearly) over a fingertip of width `fingertip_m`
-// centred at each x. Near an end of the range, the mean is over the part of the fingertip inside it.
+// Averages `values` over a fingertip of width `fingertip_m` centred at each x. The values are samples at
+// ascending `x_m`, joined by straight lines. Near an end of the range, only the part of the fingertip inside
+// the range counts.
 std::vector<double> fingertip_average(std::span<const double> x_m, std::span<const double> values,
                                       double fingertip_m);
 

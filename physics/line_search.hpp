@@ -6,7 +6,8 @@
 
 namespace turnpoint::physics {
 
-// Outermost maximum of |v| at or before `from_m`; looks at samples `spacing_m` apart and refines to rounding.
+// Finds the outermost maximum of |v| at or before `from_m`. It looks at samples `spacing_m` apart and then
+// refines the position to rounding.
 std::optional<double> find_last_peak(const CentreLine& line, double from_m, double spacing_m);
 
 // First point beyond peak_m at which |v| is `level` times its value at peak_m; empty if there is none up to

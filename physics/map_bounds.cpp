@@ -22,8 +22,8 @@ std::optional<double> first_mode_edge(const Surface& surface, const MapOptions& 
   }
 }
 
-// For every parameter that has a standard deviation, the surfaces with that parameter one standard deviation
-// higher and lower.
+// Returns a pair of surfaces for every parameter with a standard deviation. In one the parameter is a
+// standard deviation higher, in the other a standard deviation lower.
 std::vector<std::pair<Surface, Surface>> moved(const Surface& s) {
   std::vector<std::pair<Surface, Surface>> pairs;
   const auto add = [&](double sd, auto apply) {
@@ -55,7 +55,7 @@ std::vector<std::pair<Surface, Surface>> moved(const Surface& s) {
   return pairs;
 }
 
-// Extends a linear taper to its apex, because positions on a changed surface may lie beyond the nominal
+// Ends a linear taper at its apex, because a changed slope or half-width can move the apex inside the nominal
 // length.
 Surface fitted(Surface s) {
   if (const auto* linear = std::get_if<LinearTaper>(&s.taper); linear != nullptr && linear->slope > 0) {
@@ -91,8 +91,8 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
   const auto exact = first_mode_edge(surface, options, f);
   bounds.equation_m = exact ? std::abs(*exact - x) : 0.25 * surface.length_m;
   if (bounds.equation_m < 1e-10) bounds.equation_m = 0;
-  // The mode of a wedge is exact, so its equation has no error; on every other taper the best equation has
-  // one.
+  // On a wedge the first mode is exact, so its equation adds no error. On every other taper even the best
+  // equation has an error.
   std::optional<double> drawn_peak_m;
   if (surface.quality_factor < strong_loss_below) {
     MapOptions peak = options;

@@ -1,6 +1,6 @@
 #pragma once
-// Effects that can move a boundary: the model's equation, the drive edge's higher modes, and uncertain
-// parameters.
+// Estimates how far three effects can move a boundary: errors of the model's equation, higher modes from the
+// drive edge, and uncertain parameters.
 #include <string>
 
 #include "physics/boundary_map.hpp"

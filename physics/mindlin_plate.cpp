@@ -10,8 +10,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// Returns sqrt(s) tan(sqrt(s) w), cos(sqrt(s) w) and sqrt(s) sin(sqrt(s) w), which are real also for s below
-// zero.
+// The functions sqrt(s) tan(sqrt(s) w), cos(sqrt(s) w) and sqrt(s) sin(sqrt(s) w). Their values are real for
+// negative s, too.
 double root_tangent(double s, double w) noexcept {
   if (s > 0) return std::sqrt(s) * std::tan(std::sqrt(s) * w);
   return -std::sqrt(-s) * std::tanh(std::sqrt(-s) * w);
@@ -22,7 +22,7 @@ double root_cosine(double s, double w) noexcept {
 double root_sine(double s, double w) noexcept {
   return s > 0 ? std::sqrt(s) * std::sin(std::sqrt(s) * w) : -std::sqrt(-s) * std::sinh(std::sqrt(-s) * w);
 }
-// tan(sqrt(s) w) / sqrt(s), which is real also for s below zero.
+// Returns tan(sqrt(s) w) / sqrt(s), which is real for negative s, too.
 double tangent_over_root(double s, double w) noexcept {
   return std::abs(s) * w * w < 1e-12 ? w : root_tangent(s, w) / s;
 }
@@ -48,7 +48,7 @@ MindlinPlate::Waves MindlinPlate::waves(double f) const noexcept {
   const double larger = half + std::sqrt(half * half - product);
   Waves waves{};
   waves.bending = larger / (d * s);
-  // from the product of the roots, because their difference would cancel
+  // computed from the product of the two roots, because their difference would cancel
   waves.evanescent = m * (j - s) / larger;
   waves.shear = (j - s) / twist_N_m;
   waves.share_bending = 1 - m / (s * waves.bending);
@@ -65,7 +65,8 @@ double MindlinPlate::frequency_Hz(double k) const noexcept {
   return std::sqrt(s * d * k2 * k2 / (half + std::sqrt(half * half - product))) / (2 * std::numbers::pi);
 }
 
-// Positive below the cut-off, negative above it, for pi/2 < k W < pi, where k^2 is that of the bending wave.
+// Returns a number that is positive below the cut-off and negative above it. This holds for pi/2 < k W < pi,
+// with k of the bending wave.
 double MindlinPlate::below_cut_off(const Waves& w, double half_width) const noexcept {
   const double k = std::sqrt(w.bending), over = w.share_evanescent / (w.share_bending * k);
   return std::sin(k * half_width) - over * root_tangent(w.evanescent, half_width) * std::cos(k * half_width);

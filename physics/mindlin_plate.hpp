@@ -7,24 +7,26 @@ namespace turnpoint::physics {
 // Mindlin's shear factor for a Poisson's ratio: 5/(6 - nu) + 0.12 (nu / (1 - nu))^2. With the first term, the
 // long waves of a free plate agree with the Rayleigh-Lamb equation to the next order in k h (N. Stephen, J.
 // Sound Vib. 202 (1997) 539; J. Hutchinson, J. Appl. Mech. 51 (1984) 581). The second term describes the
-// clamp, which prevents the contraction across the thickness, nu / (1 - nu) of the bending strain, and so
-// stiffens the strip over half a thickness from the clamp. Its constant is fitted to plane-strain finite
-// elements; the cut-off half-width is then within 0.2 % of theirs (h/W to 0.4, nu 0 to 0.4; 0.4 % to nu =
-// 0.49).
+// clamp. A bent plate contracts across its thickness by nu / (1 - nu) of the bending strain; the clamp
+// prevents this and so stiffens the strip within half a thickness of the clamp. The constant 0.12 is fitted
+// to plane-strain finite elements. The cut-off half-width is then within 0.2 % of the finite elements' (h/W
+// to 0.4, nu 0 to 0.4; 0.4 % to nu = 0.49).
 double shear_factor(double poisson);
 
-// S = kappa G h, J = rho h^3 / 12, beta the rotation (in-plane displacement z beta):
+// Mindlin's equations for a plate (R. Mindlin, J. Appl. Mech. 18 (1951) 31). beta is the rotation, so that z
+// beta is the displacement in the plane; S = kappa G h with the shear factor kappa, and J = rho h^3 / 12:
 //   S (lap w + div beta) + rho h omega^2 w = 0
 //   D/2 ((1 - nu) lap beta + (1 + nu) grad div beta) - S (beta + grad w) + J omega^2 beta = 0
-// with w = beta = 0 along a clamped side (R. Mindlin, J. Appl. Mech. 18 (1951) 31). Plain numbers, no
-// allocation, no exceptions for arguments above zero.
+// Along a clamped side w = beta = 0. The functions neither allocate nor throw, and expect arguments above
+// zero.
 struct MindlinPlate {
   MindlinPlate() = default;
   explicit MindlinPlate(const Surface& surface);
 
-  // Squared wavenumbers (1/m^2) of the free plate. Two belong to bending: D S k^4 - (D rho h + S J) omega^2
-  // k^2 + (J omega^2 - S) rho h omega^2 = 0. One belongs to shear in the plane. The last two are below zero
-  // for wavelengths above about three thicknesses. `share` is -beta / grad w of each bending wave.
+  // Squared wavenumbers (1/m^2) of the waves that a free plate carries. Two belong to bending: D S k^4 - (D
+  // rho h + S J) omega^2 k^2 + (J omega^2 - S) rho h omega^2 = 0. One belongs to shear in the plane. The
+  // evanescent bending wave and the shear wave have negative squares for wavelengths above about three
+  // thicknesses. `share` is -beta / grad w of each bending wave.
   struct Waves {
     double bending, evanescent, shear;
     double share_bending, share_evanescent;
@@ -33,12 +35,12 @@ struct MindlinPlate {
 
   double wavenumber_per_m(double frequency_Hz) const noexcept;
   double frequency_Hz(double wavenumber_per_m) const noexcept;
-  // First symmetric cut-off, where a1 k1 tan(k1 W) + a2 g2 tanh(g2 W) = 0 with pi/2 < k1 W < pi; a1 and a2
-  // are the shares, and g2^2 belongs to the evanescent wave.
+  // First symmetric cut-off: the W that solves a1 k1 tan(k1 W) + a2 g2 tanh(g2 W) = 0 with pi/2 < k1 W < pi.
+  // k1 belongs to the travelling bending wave, g2 to the evanescent one, and a1, a2 are their `share`s.
   double cut_off_half_width_m(double frequency_Hz) const noexcept;
   double cut_off_frequency_Hz(double half_width_m) const noexcept;
-  // The dispersion of an infinite strip: zero if the wave exp(-i kx x) with kx^2 = `along_per_m2`, symmetric
-  // about the centre line, can travel in it. `along_per_m2` may be below zero.
+  // The dispersion function of an infinite strip. It is zero if the strip carries a wave exp(-i kx x) that is
+  // symmetric about the centre line and has kx^2 = `along_per_m2`. `along_per_m2` may be below zero.
   double characteristic(double frequency_Hz, double half_width_m, double along_per_m2) const noexcept;
 
   double stiffness_N_m = 0;      // D

@@ -6,7 +6,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// Matrices with a fixed maximum size, so that they are on the stack.
+// A matrix type with a fixed maximum size, so that its storage is on the stack.
 using Small =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, largest_degree + 4, largest_degree + 4>;
 using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, largest_degree + 4, 1>;
@@ -69,8 +69,9 @@ std::vector<ModalAssembler::Point> ModalAssembler::points(const ModalElement& e)
   return list;
 }
 
-// lap v = Y X'' + eta Y' [(2 r^2 - W''/W) X - 2 r X'] + eta^2 Y'' r^2 X + Y'' X / W^2, r = W'/W: a row a part
-// of Y, squared with the parts' integrals.
+// The field is v = X(x) Y(eta). With r = W'/W, lap v = Y X'' + eta Y' [(2 r^2 - W''/W) X - 2 r X'] + eta^2
+// Y'' r^2 X + Y'' X / W^2. This function squares that sum, with the integrals over eta of all products of Y,
+// eta Y', eta^2 Y'' and Y''.
 ModalAssembler::Form ModalAssembler::single_form(double w, double r, double curve) const {
   const double across = 1 / (w * w), stretch = 2 * r * r - curve;
   const auto& m = single_bend_;
@@ -89,8 +90,9 @@ ModalAssembler::Form ModalAssembler::single_form(double w, double r, double curv
   return f;
 }
 
-// With a single transverse function Y the weak form at a point is a symmetric form of (X'', X', X). Plain
-// loops over these few numbers are fast, and a clamped plate's `mode` spends most of its time here.
+// With a single transverse function, the weak form at a point is a quadratic form in X'', X' and X. Plain
+// loops over these few numbers are fast. Speed matters: the model `mode` of a clamped plate spends most of
+// its time here.
 Eigen::MatrixXcd ModalAssembler::single_matrix(const ModalElement& e) const {
   using Rows = std::array<double, largest_degree + 1>;
   const auto n = static_cast<std::size_t>(along_.count());
@@ -166,7 +168,8 @@ Eigen::MatrixXcd ModalAssembler::matrix(const ModalElement& e) const {
   const Small mass = gram(value, weight.cwiseProduct(w), value);
   std::array<std::array<Small, 4>, 4> bend;
   if (equation_.plate()) {
-    // lap v = X'' Y + [(2 r^2 - W''/W) X - 2 r X'] eta Y' + r^2 X eta^2 Y'' + X Y''/W^2
+    // Terms of lap v = X'' Y + [(2 r^2 - W''/W) X - 2 r X'] eta Y' + r^2 X eta^2 Y'' + X Y''/W^2, with r =
+    // W'/W.
     const Column r2 = r.cwiseProduct(r);
     const Column stretch = 2 * r2 - curve;
     const Column across = w.cwiseProduct(w).cwiseInverse();
@@ -179,7 +182,8 @@ Eigen::MatrixXcd ModalAssembler::matrix(const ModalElement& e) const {
       for (std::size_t j = 0; j < 4; ++j) bend[i][j] = gram(part[i], weight.cwiseProduct(w), part[j]);
     }
   }
-  // Indices of the unknowns in use: the right vertex may have fewer transverse functions.
+  // Index pairs of the unknowns that exist. The right vertex may have fewer transverse functions than the
+  // left.
   std::vector<std::pair<int, int>> index;
   for (int a = 0; a < n; ++a) {
     const int functions = a >= n - along_.per_vertex ? e.right : e.left;

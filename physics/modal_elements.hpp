@@ -1,5 +1,5 @@
 #pragma once
-// Element matrices of the two-dimensional field in the coordinates (x, eta = y / W(x)).
+// Computes the finite-element matrices of the two-dimensional field, in the coordinates x and eta = y / W(x).
 #include <Eigen/Dense>
 #include <complex>
 #include <vector>
@@ -10,7 +10,8 @@
 
 namespace turnpoint::physics {
 
-// Factors of the weak form: bending lap v lap w + tension grad v grad w - inertia v w
+// Factors in the weak form bending lap v lap w + tension grad v grad w - inertia v w, with w the test
+// function.
 struct ModalEquation {
   double bending = 0;
   double tension = 1;
@@ -18,27 +19,29 @@ struct ModalEquation {
   bool plate() const { return bending > 0; }
 };
 
-// One interval of x. `left` and `right` are the numbers of transverse functions at its ends; 0 means that the
-// end is held.
+// One finite element, an interval of x. `left` and `right` are the numbers of transverse functions at its
+// ends; 0 means that the end is held.
 struct ModalElement {
   double x0 = 0, h = 0;
   int left = 0, right = 0;
   double ln_scale = 0;
-  Eigen::MatrixXcd transfer;  // gives the unknowns of bubbles and right vertex from those of the left vertex
-  Eigen::VectorXcd centre;    // each basis function's coefficient at the centre line, after solving
+  Eigen::MatrixXcd transfer;  // maps the left vertex's unknowns to all others
+  Eigen::VectorXcd centre;    // coefficient of each basis function at the centre line
 };
 
-// Divides by the largest magnitude and returns its logarithm, so that fields of any size stay in range. Leaves
-// a zero vector as it is and returns 0.
+// Divides the unknowns by their largest magnitude and returns its logarithm, so that fields of any size stay
+// in the range of a double. For a vector of zeros it changes nothing and returns 0.
 double take_out_size(Eigen::VectorXcd& unknowns);
 
 class ModalAssembler {
  public:
   ModalAssembler(const Taper& taper, const TransverseBasis& across, const ElementBasis& along,
                  const ModalEquation& equation, double slope_unit_m);
-  // The symmetric matrix of an element. Unknowns are ordered by basis function, then by transverse function.
+  // The symmetric matrix of an element. Its unknowns are ordered by basis function along x, then by
+  // transverse function.
   Eigen::MatrixXcd matrix(const ModalElement& element) const;
-  // Factor that converts the unknown of a vertex slope (dv/dx slope_unit) to a slope with respect to t.
+  // The unknown for the slope at a vertex is dv/dx times slope_unit. This factor converts it to a slope with
+  // respect to t.
   double slope_factor(const ModalElement& element) const { return 0.5 * element.h / slope_unit_m_; }
 
  private:
@@ -47,7 +50,7 @@ class ModalAssembler {
     BasisValues basis;         // derivatives with respect to x, in units of the slope unknowns
   };
   std::vector<Point> points(const ModalElement& element) const;
-  // A symmetric quadratic form of (X'', X', X) at one point.
+  // Coefficients of a symmetric quadratic form in X'' (s), X' (f) and X (v) at one point.
   struct Form {
     double ss, sf, sv, ff, fv, vv;
   };

@@ -16,11 +16,11 @@ namespace {
 
 using std::numbers::pi;
 
-// Eliminates unknowns from the tip to the drive edge: expresses each element's inner and outer unknowns by
-// those of its inner end.
+// Eliminates unknowns from the tip to the drive edge. For each element, it expresses all other unknowns by
+// those at the end nearer to the drive edge.
 void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
                std::vector<ModalElement>& elements) {
-  Eigen::MatrixXcd tail;  // stiffness at the right vertex of everything beyond it
+  Eigen::MatrixXcd tail;  // stiffness of all elements farther out, seen at the right vertex
   for (auto e = elements.rbegin(); e != elements.rend(); ++e) {
     Eigen::MatrixXcd k = assembler.matrix(*e);
     if (tail.size() > 0) k.bottomRightCorner(tail.rows(), tail.cols()) += tail;
@@ -31,8 +31,8 @@ void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
   }
 }
 
-// Computes the unknowns from the drive edge outwards, with their size kept separately, and stores only the
-// centre line.
+// Computes the unknowns, starting at the drive edge, and stores only the centre line's. The logarithm of
+// their size is kept separately.
 void substitute(const ModalSetup& s, const ModalAssembler& assembler, const Eigen::VectorXd& drive,
                 std::vector<ModalElement>& elements) {
   Eigen::VectorXcd u = Eigen::VectorXcd::Zero(s.along.per_vertex * elements.front().left);
@@ -60,7 +60,8 @@ void substitute(const ModalSetup& s, const ModalAssembler& assembler, const Eige
   }
 }
 
-// The drive edge's displacement as a function of eta: a piston, or the first transverse mode at its cut-off.
+// Returns the displacement of the drive edge as a function of eta: that of a piston, or of the first
+// transverse mode at its cut-off.
 std::function<double(double)> drive_shape(const Surface& surface, const ModalEquation& equation) {
   if (surface.drive == DriveShape::piston) return [](double) { return 1.0; };
   if (!equation.plate()) return [](double eta) { return std::cos(pi / 2 * eta); };
@@ -144,7 +145,8 @@ Scaled ModalLine::at(double x, int derivative) const {
   return {derivative == 0 ? sum : sum * (2 / e->h), e->ln_scale};
 }
 
-// Beyond e^-45, the field is continued from the match point by the decay of the one-mode equation.
+// Beyond the match point, where the field has decayed to e^-45, the one-mode equation supplies the further
+// decay.
 Scaled ModalLine::beyond(double x, int derivative) const {
   const Scaled here = at(match_m_, 0), unit = tail_.value(match_m_);
   const Scaled there = derivative == 0 ? tail_.value(x) : tail_.slope(x);

@@ -1,6 +1,6 @@
 #pragma once
-// The model `modes`, and `mode` of a clamped plate: the field as transverse functions times finite elements
-// along x.
+// Solves the model `modes`, and `mode` for a clamped plate. The field is a sum of transverse functions times
+// finite elements along x.
 #include <functional>
 #include <memory>
 
@@ -13,20 +13,21 @@ struct ModalResolution {
   int degree = 7;           // degree of the polynomials along x
   double radians = 2.5;     // phase (wavenumber times length) per element
   int spare_functions = 3;  // number of transverse functions beyond those that can propagate
-  // Displacement of the drive edge as a function of eta = y/W in [0, 1]; if empty, the surface's `drive` is
-  // used. With the drive displacement of an exactly known field, the solution can be compared with that
-  // field.
+  // Displacement of the drive edge as a function of eta = y/W in [0, 1]. If empty, the surface's `drive` is
+  // used. Tests set it to the drive-edge displacement of a field that is known exactly, and compare the
+  // solution with that field.
   std::function<double(double)> drive;
   // which transverse functions are used
   enum class Across { polynomials, cut_off_shape } across = Across::polynomials;
 };
 
-// Galerkin solution of (plate theories mindlin and elastic: see section_basis.hpp; otherwise membrane or
-// simply supported plate) lap v + k^2 v = 0, or (clamped plate) D lap^2 v - N lap v = (D k^4 + N k^2) v, k
-// lossy, on |y| < W(x), 0 < x < length: v = 0 (and no slope, clamped) on the sides and the far end, v = drive
-// shape (and no slope) at x = 0. Eliminated from the tip to the drive edge, so that the tail keeps its
-// relative accuracy; beyond e^-45 of the last lobe the one-mode decay continues it. The centre line has v(0)
-// = 1. Source: Galerkin's method in the coordinates (x, y/W(x)).
+// Solves for the field on |y| < W(x), 0 < x < length, by Galerkin's method in the coordinates (x, y/W(x)).
+// The equation of a membrane or a simply supported plate is lap v + k^2 v = 0; that of a clamped plate is D
+// lap^2 v - N lap v = (D k^4 + N k^2) v. The wavenumber k includes loss. (For the plate theories mindlin and
+// elastic see section_basis.hpp.) On the sides and at the far end v = 0; at x = 0 v has the drive's shape. A
+// clamped plate also has zero slope at all these edges. The unknowns are eliminated from the tip to the drive
+// edge, so that the decaying tail keeps its relative accuracy. Where the field is below e^-45 of the last
+// lobe, the one-mode decay continues it. The result is scaled to v(0) = 1.
 std::unique_ptr<CentreLine> make_modal_line(const Surface& surface, double frequency_Hz, Losses losses,
                                             const ModalResolution& resolution);
 

@@ -10,13 +10,13 @@ namespace {
 
 using Matrix = Eigen::MatrixXcd;
 
-// The stiffness of the kept unknowns when no force acts on the others (static condensation).
+// Static condensation: the stiffness of the `kept` unknowns when no force acts on the `others`.
 Matrix condensed(const Matrix& kept, const Matrix& coupling, const Matrix& others) {
   return kept - coupling * others.partialPivLu().solve(coupling.transpose());
 }
 
-// For each element, the inverse of the stiffness of the element and of everything on both sides of it.
-// Unknowns that are held, at the drive edge and at the far end, are left out.
+// Returns, for each element, the inverse of the stiffness at its unknowns. That stiffness includes all
+// elements on both sides. Unknowns that are held, at the drive edge and at the far end, are left out.
 std::vector<Matrix> inverses(const ModalSetup& setup, const ModalAssembler& assembler,
                              const std::vector<ModalElement>& elements) {
   const Eigen::Index ends = setup.along.per_vertex;
@@ -29,7 +29,7 @@ std::vector<Matrix> inverses(const ModalSetup& setup, const ModalAssembler& asse
                                   seen[i].bottomRightCorner(rest, rest));
     seen[i - 1].bottomRightCorner(ends, ends) += tail;
   }
-  Matrix head;  // stiffness at the left vertex of everything before it, with the drive edge held
+  Matrix head;  // stiffness at the left vertex of all elements before it, drive edge held
   for (std::size_t i = 0; i < seen.size(); ++i) {
     Matrix before = own[i];
     if (i == 0) {

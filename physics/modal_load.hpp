@@ -1,5 +1,6 @@
 #pragma once
-// The response of a clamped plate to a force, by the elements that solve its `mode`.
+// Computes how a clamped plate responds to a force, with the finite elements that also solve its model
+// `mode`.
 #include <complex>
 #include <vector>
 
@@ -7,10 +8,11 @@
 
 namespace turnpoint::physics {
 
-// G(x, x) in m/N at each position: displacement of the centre line there per unit of a force on it, drive
-// edge held, by the one-shape mode with loss. Each element is seen between what lies beyond it and what lies
-// before it (their stiffnesses, eliminated from the tip and from the drive edge). Right to 1e-3: the force's
-// jump lies inside an element. x_m in [0, length_m].
+// The receptance G(x, x) in m/N at each position x_m in [0, length_m]: a force acts on the centre line at x,
+// and G is the displacement at x divided by this force. The drive edge is held, and the transverse shape is
+// the one of `mode`, with loss. Each element is loaded by the stiffness of all elements before and beyond it,
+// which are eliminated from the drive edge and from the tip. The relative error is about 1e-3, because the
+// force makes the shear jump inside an element.
 std::vector<std::complex<double>> plate_receptance_m_per_N(const Surface& surface, double frequency_Hz,
                                                            const std::vector<double>& x_m);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The preparation of a solution by elements: taper, equation, basis and the elements themselves.
+// Prepares a solution by finite elements: taper, equation, basis functions and the elements themselves.
 #include <vector>
 
 #include "physics/modal_elements.hpp"
@@ -21,8 +21,9 @@ struct ModalSetup {
 ModalSetup make_modal_setup(const Surface& surface, double frequency_Hz, Losses losses,
                             const ModalResolution& resolution);
 
-// Divides the surface from the drive edge to the end into elements, finer at the drive edge's corners, with
-// ends on the taper's knots. match_m is where the one-mode decay is used from then on.
+// Divides the surface from the drive edge to the far end into elements. They are finer near the corners of
+// the drive edge, and elements end at the knots of a tabulated taper. Sets match_m to the position beyond
+// which the one-mode decay is used.
 std::vector<ModalElement> make_modal_elements(const ModalSetup& setup, const ModalResolution& resolution,
                                               double& match_m);
 

@@ -14,15 +14,15 @@ namespace {
 
 using std::numbers::pi;
 
-// These constants were measured; see the header.
-constexpr double coupling = 0.15;         // higher-mode amplitude per slope times width ratio
-constexpr double piston_coupling = 0.55;  // higher-mode amplitude for a stiff bar, at any slope
+// Constants of the bounds, measured on random surfaces as the header describes.
+constexpr double coupling = 0.15;         // amplitude of higher modes per (slope times width ratio)
+constexpr double piston_coupling = 0.55;  // amplitude of higher modes for a piston drive, at any slope
 // unknown phase of a higher mode's standing wave at the drive edge
 constexpr double phase_uncertainty = 0.12;
-constexpr double curvature_shift = 0.2;  // shift of an edge per W'' W, in cut-off half-widths
-constexpr double slope_shift = 0.1;      // shift of an edge per W'^3
-// For a clamped plate's one-shape mode: its shape is exact only at the cut-off, so its phase drifts on the
-// way there.
+constexpr double curvature_shift = 0.2;  // shift of an edge divided by W'' W, in cut-off half-widths
+constexpr double slope_shift = 0.1;      // shift of an edge divided by W'^3
+// On a clamped plate, the transverse shape of `mode` is exact only at the cut-off, so its phase drifts
+// between drive edge and cut-off.
 constexpr double plate_drift = 1.5e-3;  // phase error in radians per radian of k x0
 constexpr double plate_piston = 0.9;
 constexpr double plate_second_mode =
@@ -30,14 +30,14 @@ constexpr double plate_second_mode =
     2.3246;
 constexpr double plate_shift = 1.2e-3;      // shift of an edge, in cut-off half-widths
 constexpr double thick_shift = 2.5e-3;      // the same for Mindlin's and the elastic section's shapes
-constexpr double plate_slope_shift = 0.15;  // shift of an edge per W'^2
-constexpr double end_shift = 0.15;          // shift by a clamped end just beyond the turning point, per W'^2
-// shift of an edge per share of higher modes, in cut-off half-widths
+constexpr double plate_slope_shift = 0.15;  // shift of an edge divided by W'^2
+constexpr double end_shift = 0.15;          // the same, from a clamped end just beyond the turning point
+// shift of an edge in cut-off half-widths, divided by the share of higher modes
 constexpr double shallow = 6;
 constexpr double largest = 2;  // a larger bound has no meaning
 
-// The equation of the n-th symmetric transverse mode, n = 1, 2, ...; on a wedge its order is exact to the
-// second power of the slope.
+// The equation of the n-th symmetric transverse mode, n = 1, 2, ... On a wedge, the order of its Bessel
+// function is exact to the second power of the slope.
 MarchEquation equation(const Surface& surface, double f, int n) {
   const double k = wavenumber_per_m(surface, f);
   const std::complex<double> lossy(1, -0.5 / surface.quality_factor);
@@ -62,12 +62,13 @@ double amplification(const Surface& surface, double f, int n) {
   const double ln_drive = march.value(0).ln_magnitude();
   double most = ln_drive;
   for (int i = 1; i <= 200; ++i) most = std::max(most, march.value(reach * i / 200).ln_magnitude());
-  // Near a resonance, the standing wave at the drive edge is known only up to a phase.
+  // Near a resonance, the amplitude of the standing wave at the drive edge depends on its phase, which is
+  // known only to `phase_uncertainty`.
   const double standing = std::exp(ln_drive - most);
   return 1 / std::max({standing - phase_uncertainty, loss, 1e-3});
 }
 
-// The same ratio for a clamped plate, whose higher modes are not solved for: only loss bounds it.
+// The same ratio for a clamped plate. Its higher modes are not solved for, so only loss bounds the ratio.
 double plate_amplification(const Surface& surface, const Taper& taper, double f) {
   const auto turning = taper.position_continued_m(plate_second_mode * cut_off_half_width_m(surface, f));
   const double reach = std::clamp(turning.value_or(0), 0.0, taper.length_m());
@@ -128,10 +129,11 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   bound.shape = std::min(largest, modes + drift + 0.3 * bend + slope_shift * steepest * steepest);
   const double phase = coupled + bend + 1.5 * drift;  // phase error of the first mode at the drive edge
   bound.drive = std::min(1e6, bound.shape + 2 * (phase + modes) * conditioning);
-  // A part of the wave at the drive edge may add to the first mode or reduce it.
+  // The phase error and the higher modes may raise or lower the wave at the drive edge. Assume that they
+  // lower it.
   bound.level_dB = -20 * std::log10(std::max(1e-6, 1 - (phase + modes) * conditioning));
-  // The outermost maximum is about one Airy length before the turning point. If that is close to the drive
-  // edge, the maximum is shallow, and a small share of higher modes moves it far.
+  // The outermost maximum is about one Airy length before the turning point. If the turning point is close to
+  // the drive edge, the maximum is shallow and a small share of higher modes moves it far.
   const double airy_length = cut * std::cbrt(2 / (pi * pi * std::max(steepest, 1e-6)));
   const double near = std::max(0.0, std::min(x0 - 1.1 * airy_length, last_peak_m.value_or(x0)));
   const double polluted = shallow * bound.higher_modes * higher_mode_decay(surface, f, near);

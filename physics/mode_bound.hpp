@@ -1,34 +1,36 @@
 #pragma once
-// Bounds the difference between the one-mode field and the two-dimensional field without solving the latter.
+// Bounds the difference between the one-mode field and the two-dimensional field, without solving for the
+// two-dimensional field.
 #include <optional>
 
 #include "physics/surface.hpp"
 
 namespace turnpoint::physics {
 
-// Bounds for `mode` (or the exact first mode) compared with `modes`. Their form follows from the wave front's
-// curvature across the straight drive edge; their constants were measured on random surfaces
-// (tests/physics/planner_test.cpp).
+// Bounds on the error of `mode` (or of the exact first mode) compared with `modes`. Their form follows from
+// the curvature of the wave front at the straight drive edge. Their constants were measured on random
+// surfaces (tests/physics/planner_test.cpp).
 struct ModeBound {
   double shape = 0;     // error of |v| if the last maximum is set to one, relative to the largest value
   double drive = 0;     // error of |v| if v(0) is set to one, relative to the largest value
   double level_dB = 0;  // error of the ratio of the last maximum to the drive edge
   // error of an edge's position from the one-mode equation, on a curved or steep taper
   double equation_m = 0;
-  // error of an edge's position from higher modes of the drive edge and a straight clamped end close by
+  // error of an edge's position, caused by higher modes from the drive edge and by a straight clamped end
+  // nearby
   double drive_m = 0;
   double position_m() const { return equation_m + drive_m; }
   double higher_modes = 0;  // the part of `shape` that the drive edge's higher modes cause
 };
 
-// Computes the bounds. `conditioning` is that of the first mode's v(0) (CentreLine::drive_conditioning);
-// `last_peak_m` is the mode's own last maximum, if known: loss moves it towards the drive edge, where higher
-// modes are stronger.
+// Computes the bounds. `conditioning` is CentreLine::drive_conditioning of the first mode. `last_peak_m` is
+// the last maximum of this mode, if known; loss moves it towards the drive edge, where higher modes are
+// stronger.
 ModeBound mode_bound(const Surface& surface, double frequency_Hz, double conditioning,
                      std::optional<double> last_peak_m);
 
-// The displacement of the higher modes at a position divided by that at the drive edge: it falls beyond their
-// own turning points.
+// The displacement of the higher modes at a position, divided by their displacement at the drive edge. It
+// falls beyond their own turning points.
 double higher_mode_decay(const Surface& surface, double frequency_Hz, double x_m);
 
 }  // namespace turnpoint::physics

@@ -10,8 +10,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// The slope at an inner point: Fritsch & Butland's weighted harmonic mean of the neighbouring slopes; zero at
-// an extremum, so that no cubic overshoots.
+// The slope at an inner point is Fritsch & Butland's weighted harmonic mean of the neighbouring slopes. At an
+// extremum it is zero, so that no cubic overshoots.
 double inner_slope(double h0, double h1, double d0, double d1) {
   if (d0 * d1 <= 0) return 0;
   const double w0 = 2 * h1 + h0;
@@ -19,7 +19,7 @@ double inner_slope(double h0, double h1, double d0, double d1) {
   return (w0 + w1) / (w0 / d0 + w1 / d1);
 }
 
-// The slope at an end, from three points, limited so that the end cubic stays monotone.
+// The slope at an end is estimated from three points, and limited so that the end cubic stays monotone.
 double end_slope(double h0, double h1, double d0, double d1) {
   const double slope = ((2 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
   if (slope * d0 <= 0) return d0 == 0 ? 0 : d0 / 3;

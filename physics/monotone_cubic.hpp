@@ -19,8 +19,9 @@ struct Cubic {
   }
 };
 
-// A monotone function with continuous slope through strictly monotone points. Outside the points the end
-// cubics continue. Throws std::invalid_argument for fewer than two points or unsorted x.
+// A monotone function with continuous slope through strictly monotone points. Beyond the first and last
+// point, the first and last cubic continue. Throws std::invalid_argument for fewer than two points or
+// unsorted x.
 class MonotoneCubic {
  public:
   MonotoneCubic() = default;

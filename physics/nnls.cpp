@@ -46,7 +46,8 @@ class Solver {
  private:
   std::span<const double> column(std::size_t j) const { return columns_.subspan(j * rows_, rows_); }
 
-  // The column outside the passive set that reduces the residual fastest; size() if no column reduces it.
+  // Returns the column outside the passive set (the columns with a weight above 0) that reduces the residual
+  // fastest, or size() if no column reduces it.
   std::size_t steepest(double tolerance) {
     std::size_t best = x_.size();
     double most = tolerance;
@@ -61,12 +62,13 @@ class Solver {
     return best;
   }
 
-  // Solves for the passive set. As long as a weight is negative, steps back to the feasible region and
-  // removes columns.
+  // Solves for the weights of the passive set. As long as a weight is negative, it steps back to where all
+  // are 0 or more and removes the columns that reach 0.
   void descend(std::size_t entered) {
     while (!passive_.empty()) {
       std::vector<double> z = solve_passive();
-      // Because of rounding, a column that seemed useful may get a negative weight: exclude it permanently.
+      // Rounding can make a column look useful although its weight comes out negative: exclude this column
+      // for good.
       if (passive_.back() == entered && !(z.back() > 0)) {
         passive_.pop_back();
         blocked_[entered] = true;
@@ -104,8 +106,8 @@ class Solver {
     std::vector<double> z(passive_.size());
     for (std::size_t i = 0; i < z.size(); ++i) z[i] = dot(column(passive_[i]), b_);
     back_substitute(z);
-    // The normal equations square the condition number. One step of iterative refinement restores the
-    // accuracy.
+    // The normal equations square the condition number and so lose accuracy. One step of iterative refinement
+    // restores it.
     std::vector<double> r(b_.begin(), b_.end());
     for (std::size_t i = 0; i < z.size(); ++i) {
       const auto a = column(passive_[i]);
@@ -118,8 +120,8 @@ class Solver {
     return z;
   }
 
-  // Products of columns, computed when first needed: in each iteration the passive set changes by one or two
-  // columns.
+  // The dot product of two columns. It is computed when first needed and kept, because an iteration changes
+  // only one or two columns of the passive set.
   double gram(std::size_t i, std::size_t j) {
     if (i < j) std::swap(i, j);
     double& product = gram_[i * x_.size() + j];

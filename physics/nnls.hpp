@@ -1,5 +1,5 @@
 #pragma once
-// Solves non-negative least squares.
+// Solves least-squares problems whose solution must not be negative (NNLS).
 #include <span>
 #include <vector>
 
@@ -12,9 +12,9 @@ struct NnlsResult {
 };
 
 // Minimises |A x - b| with x >= 0 by the active-set method of Lawson & Hanson (1974, ch. 23). `columns`
-// contains the matrix column by column, with `rows` numbers each; throws std::invalid_argument if the sizes
-// do not fit. The normal equations of the passive set are factorised by Cholesky and refined once, which is
-// accurate enough unless columns are nearly equal.
+// contains the matrix column by column, with `rows` numbers each; std::invalid_argument is thrown if the
+// sizes do not fit. The normal equations are solved by Cholesky factorisation and one step of refinement,
+// which is accurate unless columns are nearly equal.
 NnlsResult nnls(std::span<const double> columns, std::size_t rows, std::span<const double> b,
                 double tolerance = 1e-13);
 

@@ -15,13 +15,13 @@
 namespace turnpoint::physics {
 namespace {
 
-// allows for differences between the probes that are larger than at the probes
+// safety factor: between the probe points, models may differ more than at the points
 constexpr double probe_margin = 1.9;
 constexpr int probes = 160;
 constexpr double unknown = 2, unknown_dB = 120;
 constexpr double modes_accuracy = 5e-4;  // relative error of `modes` at its default resolution
 
-// The profile of one model at the probe points, as logarithms, with its features.
+// The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
 struct Probe {
   std::unique_ptr<CentreLine> line;
   std::vector<double> ln;
@@ -50,7 +50,7 @@ Probe probe(const Surface& surface, const PlanRequest& request, double f, Model 
   return p;
 }
 
-// The difference between two models at the probes, in the quantities of a RungEstimate.
+// How much two models differ at the probe points, in the quantities of a RungEstimate.
 struct Difference {
   double amplitude = 0, level_dB = 0, position_m = 0;
 };
@@ -68,7 +68,7 @@ Difference compare(const Surface& surface, const PlanRequest& request, const Pro
   }
   d.amplitude = probe_margin * worst / most;
   d.level_dB = 8.686 * std::abs((a.ln_peak - a.ln_drive) - (b.ln_peak - b.ln_drive));
-  // the two are normalised differently, so they cannot be compared
+  // only one of the profiles has a last maximum, so the two are normalised differently and cannot be compared
   if (a.peak.has_value() != b.peak.has_value()) {
     d.amplitude += unknown;
     d.level_dB += unknown_dB;
@@ -79,7 +79,8 @@ Difference compare(const Surface& surface, const PlanRequest& request, const Pro
   return d;
 }
 
-// Time for an evaluation on one 3 GHz core, measured by `turnpoint-bench physics`.
+// Time of an evaluation on one 3 GHz core. The formulas are fitted to measurements by `turnpoint-bench
+// physics`.
 double cost_s(const Surface& surface, double f, Model model, int points) {
   const double kl = wavenumber_per_m(surface, f) * surface.length_m;
   const bool plate = Dispersion(surface).clamped_bending();
@@ -112,7 +113,7 @@ void merge(RungEstimate& all, const RungEstimate& one) {
   if (all.reason.empty()) all.reason = one.reason;
 }
 
-// The solution with which every model is compared, computed once per tone.
+// The solution with which every model is compared. It is computed once per tone.
 struct Reference {
   double f;
   Probe mode;
@@ -163,7 +164,7 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
   e.amplitude_bound = drive ? bound.drive : bound.shape;
   e.level_bound_dB = bound.level_dB;
   e.boundary_bound_m = request.edge.kind == Edge::Kind::turning ? 0 : bound.position_m();
-  // The two-dimensional field may have a last maximum although the mode has none.
+  // The two-dimensional field may have a last maximum although the model `mode` has none.
   if (!reference.mode.peak) {
     e.amplitude_bound += unknown;
     e.level_bound_dB += unknown_dB;

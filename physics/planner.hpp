@@ -13,16 +13,16 @@
 
 namespace turnpoint::physics {
 
-// The accuracy that a scene requires. An empty value means no requirement.
+// The errors that a scene tolerates. An empty value means that any error is tolerated.
 struct Tolerance {
   std::optional<double> boundary_m;
   std::optional<double> amplitude;  // error of |v|, relative to its largest value
   std::optional<double> level_dB;   // error of the level at the last maximum
 };
 
-// The error bounds of a model for a set of tones, before it is evaluated. They are relative to the
-// two-dimensional field for membranes and simply supported plates, and to the one-mode equation for clamped
-// plates.
+// The error bounds of a model for a set of tones, estimated before the model is evaluated. For membranes and
+// simply supported plates the error is the difference from the two-dimensional field; for clamped plates it
+// is the difference from the one-mode equation.
 struct RungEstimate {
   Model model = Model::mode;
   bool usable = true;           // false if the model cannot be used here at all (`reason` says why)
@@ -39,8 +39,8 @@ struct PlanRequest {
   Edge edge = Edge::turning();
   Normalise normalise = Normalise::peak;
   Tolerance tolerance;
-  // The model that was used to find the tones' frequencies, if it is not the one to be chosen: the boundary
-  // then has that model's error, whichever model describes the field.
+  // Set this if another model has already found the tones' frequencies. The boundary then has the error of
+  // that model, whichever model the planner chooses for the field.
   std::optional<Model> placed_by = {};
 };
 
@@ -49,7 +49,7 @@ RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model 
 struct PlanChoice {
   Model model = Model::mode;
   RungEstimate bound;  // error bounds of the chosen model
-  bool inside = true;  // false if no model meets the tolerance; this model comes closest
+  bool inside = true;  // false if no model meets the tolerance; the chosen model then comes closest
   std::string reason;  // why this model was chosen: one sentence with numbers
   std::vector<RungEstimate> considered;
 };

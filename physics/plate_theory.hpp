@@ -1,5 +1,6 @@
 #pragma once
-// How far the choice of a plate theory moves a boundary, and which theory is accurate enough.
+// Computes how far the choice of a plate theory moves a boundary, and chooses a theory that is accurate
+// enough.
 #include <optional>
 #include <span>
 #include <string>
@@ -8,24 +9,25 @@
 
 namespace turnpoint::physics {
 
-// Distance (m, positive outward) from this surface's turning point to that of the next better theory at the
-// same frequency, on the taper continued beyond its ends: from Kirchhoff's to Mindlin's, from Mindlin's to
-// the elastic section's; 0 for elastic. An edge that is defined by amplitude moves equally far within 3 %. On
-// the 2 mm reference plate at 22.4 to 45 kHz this is 10.7 to 14.9 mm from Kirchhoff to Mindlin, and -0.3 to
-// -0.1 mm from Mindlin to elastic. Empty for a membrane, for a plate with tension or simply supported sides,
-// and if a table of half-widths ends before the turning point.
+// Distance (m, positive outward) by which the next better theory moves the turning point at this frequency:
+// from Kirchhoff to Mindlin, or from Mindlin to the elastic section; 0 for elastic. The taper is continued
+// beyond its ends. An edge that is defined by amplitude moves equally far within 3 %. On the 2 mm reference
+// plate at 22.4 to 45 kHz, the distance is 10.7 to 14.9 mm from Kirchhoff to Mindlin and -0.3 to -0.1 mm from
+// Mindlin to elastic. Empty for a membrane, for a plate with tension or simply supported sides, and if a
+// table of half-widths ends before the turning point.
 std::optional<double> shear_shift_m(const Surface& surface, double frequency_Hz);
 
 struct TheoryChoice {
   PlateTheory theory = PlateTheory::kirchhoff;
-  // largest distance, over the frequencies, of Kirchhoff's boundary from the elastic section's
+  // distance between the boundaries by Kirchhoff and by the elastic section, at the frequency where it is
+  // largest
   double shift_m = 0;
   std::string reason;  // why this theory was chosen: one sentence with numbers
 };
 
 // Chooses the simplest theory (Kirchhoff, Mindlin, elastic cross-section) whose boundary is within the
-// tolerance at all frequencies. Without a tolerance it chooses elastic, and for a surface to which only
-// Kirchhoff's theory applies, that one.
+// tolerance at all frequencies. Without a tolerance it chooses elastic. On a surface to which only
+// Kirchhoff's theory applies, it chooses Kirchhoff.
 TheoryChoice choose_theory(const Surface& surface, std::span<const double> frequencies_Hz,
                            std::optional<double> tolerance_m);
 

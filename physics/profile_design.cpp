@@ -14,8 +14,8 @@ namespace {
 constexpr double reachable_residual = 0.25;
 constexpr double fit_tolerance = 1e-4;  // stop if another tone reduces the residual by less than this share
 
-// A tone's squared amplitudes at the target's points, relative to its last maximum. `drive_gain` is |v(0)|
-// relative to that maximum.
+// Appends a tone's squared amplitudes at the target's points to `columns`, relative to the tone's last
+// maximum. `drive_gain` is |v(0)| divided by that maximum.
 bool shape(const Surface& surface, double f, std::span<const double> x, std::vector<double>& columns,
            double& drive_gain) {
   const auto line = make_centre_line(surface, f, Model::mode);

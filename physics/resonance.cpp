@@ -1,5 +1,4 @@
-// Finds resonances: the frequencies at which the displacement at the drive edge, of the mode without loss, is
-// zero.
+// Finds resonances. At a resonance, the displacement of the lossless mode is zero at the drive edge.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Pruefer phase of the mode without loss at the drive edge. It is continuous, rises with frequency, and is a
+// The Pruefer phase of the lossless mode at the drive edge. It rises continuously with frequency, and it is a
 // multiple of pi exactly at the resonances.
 class Phase {
  public:
@@ -61,7 +60,7 @@ std::optional<double> resonance(const Phase& phase, int n, double from_Hz, doubl
   return std::nullopt;
 }
 
-// v(0) divided by the last maximum, for the mode of a clamped plate without loss: it changes its sign at a
+// v(0) divided by the last maximum, for the lossless mode of a clamped plate. It changes its sign at a
 // resonance.
 std::optional<double> plate_response(const Surface& surface, double f) {
   const auto line = make_centre_line(surface, f, Model::mode, Losses::left_out);
@@ -72,8 +71,8 @@ std::optional<double> plate_response(const Surface& surface, double f) {
          std::exp(std::min(300.0, drive.ln_scale - top.ln_scale));
 }
 
-// About a fifth of the distance between two resonances. Neighbouring resonances differ by half a wave between
-// drive edge and turning point.
+// About a fifth of the distance between neighbouring resonances. From one resonance to the next, one more
+// half wave fits between drive edge and turning point.
 double plate_step_Hz(const Surface& surface, double f) {
   const double reach = turning_point_m(surface, f).value_or(surface.length_m);
   return 0.5 * f * pi / (wavenumber_per_m(surface, f) * std::max(reach, 0.05 * surface.length_m));
@@ -88,7 +87,7 @@ double plate_zero(const Surface& surface, const Chord& chord) {
       [](const Chord& c) { return c.width() <= 1e-9 * c.right; });
 }
 
-// Moves in steps of frequency and reports each resonance that it passes.
+// Walks along the frequency axis in steps and reports each resonance that it passes.
 struct PlateWalk {
   double f;
   std::optional<double> response;
@@ -107,8 +106,8 @@ std::optional<double> nearest_plate_resonance(const Surface& surface, double f) 
   const double step = plate_step_Hz(surface, f);
   PlateWalk up{f, plate_response(surface, f)}, down = up;
   std::optional<double> above, below;
-  // Both directions take turns. The resonance found first may be the farther one, so the other direction
-  // takes the same step.
+  // Search upwards and downwards in turn. When one direction finds a resonance, the other still takes its
+  // step, because it may find a nearer one.
   for (int i = 0; i < 10 && !above && !below; ++i) {
     above = up.step(surface, step);
     below = down.step(surface, -step);

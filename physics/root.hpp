@@ -1,5 +1,5 @@
-// Finds roots of a function between two points at which its sign differs: by halving, by Newton's steps, or
-// by false position. Only headers, without allocation.
+// Finds a root of a function between two points at which its sign differs: by halving, by Newton steps or by
+// false position. Header only; allocates nothing.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 namespace turnpoint::physics {
 
-// An interval whose ends have different signs of the function: it is above 0 at `above` (which may be the
-// left or the right end), and 0 or below at the other end.
+// An interval in which a function changes its sign. The function is above 0 at the end `above`, which may be
+// left or right, and 0 or below at the other end.
 struct Bracket {
   double above;      // f > 0
   double not_above;  // f <= 0
@@ -20,10 +20,10 @@ struct Bracket {
   void replace(bool is_above, double x) { (is_above ? above : not_above) = x; }
 };
 
-// Each search below also ends if there is no number left between the ends, or after `most` steps. This bounds
-// the work if the root is at 0 or rounding keeps steps from becoming small.
+// Each search below also ends after `most` steps, or when no floating-point number is left between the ends.
+// This limits the work if the root is at 0, or if rounding keeps the steps from becoming small.
 
-// Halves the bracket until done(bracket). For functions of which only the sign is known.
+// Halves the bracket until done(bracket) is true. It needs only the sign of the function.
 template <typename IsAbove, typename Done>
 Bracket bisect(Bracket bracket, IsAbove&& is_above, Done&& done, int most = 200) {
   for (int i = 0; i < most && !done(bracket); ++i) {
@@ -40,14 +40,15 @@ Bracket bisect(Bracket bracket, IsAbove&& is_above) {
   return bisect(bracket, is_above, [](const Bracket&) { return false; });
 }
 
-// The input of a Newton step: the function's value at x, and the point where its tangent there is 0. If the
-// tangent has no such point, the result may be NaN or any number outside the bracket.
+// What a Newton step needs: the function's value at x, and the point where the tangent at x crosses 0. If the
+// tangent never crosses 0, `point` may be NaN or any number outside the bracket.
 struct Tangent {
   double f, meets_0;
 };
 
-// Takes Newton's steps from x; a step that would leave the bracket goes to its middle instead. Ends at a
-// point where the function is 0, or after a step from x to `point` for which close(point, x) is true.
+// Takes Newton steps from x. A step that would leave the bracket goes to the middle of the bracket instead.
+// Ends at a point where the function is 0, or after a step from x to `point` for which close(point, x) is
+// true.
 template <typename Function, typename Close>
 double newton(Bracket bracket, double x, Function&& tangent, Close&& close, int most = 200) {
   for (int i = 0; i < most; ++i) {
@@ -61,7 +62,7 @@ double newton(Bracket bracket, double x, Function&& tangent, Close&& close, int 
   return x;
 }
 
-// The two ends of an interval with the function's values, which differ in sign.
+// An interval with the function's values at its ends, which differ in sign.
 struct Chord {
   double left, f_left, right, f_right;
 
@@ -70,15 +71,15 @@ struct Chord {
   double meets_0() const { return left + (right - left) * f_left / (f_left - f_right); }
 };
 
-// What false position does if it converges slowly because one end never moves.
+// False position converges slowly if one end never moves. These settings say what it does about it.
 struct Creeping {
-  int halve_every;            // after every this many steps, one goes to the middle
-  bool halve_values = false;  // Illinois method: if an end stays a second time, its value is halved
+  int halve_every;            // n: every n-th step goes to the middle of the interval
+  bool halve_values = false;  // Illinois method: halves the value of an end that stays twice
 };
 
 // Searches by false position until |function| is at most `enough`, done(chord) is true, or no number is left
-// between the ends. Returns the point whose value is at most `enough`, otherwise the middle of the last
-// chord.
+// between the ends. Returns the point at which |function| is at most `enough`; if there is none, the middle
+// of the last chord.
 template <typename Function, typename Done>
 double false_position(Chord chord, Function&& f, Creeping creeping, double enough, Done&& done,
                       int most = 100) {

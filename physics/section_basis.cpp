@@ -13,7 +13,8 @@ namespace {
 
 using SectionMatrix = SectionBasis::Matrix;
 
-// Strain or motion of functions at quadrature points: one matrix per component, with one row per function.
+// Strain or motion at the quadrature points, for several functions: one matrix per component, with one row
+// per function.
 using Components = std::vector<SectionMatrix>;
 
 SectionMatrix weighted_gram(const Components& a, const SectionMatrix& law, const Components& b,
@@ -75,7 +76,8 @@ SectionMatrix stacked(const SectionMatrix& a, const SectionMatrix& b, const Sect
   return all;
 }
 
-// The section of a Mindlin plate; its functions are in the order beta_x, beta_y, w.
+// The functions for a Mindlin plate: first those of the rotations beta_x and beta_y, then those of the
+// deflection w.
 SectionBasis mindlin_section(const MindlinPlate& plate, int each) {
   const Quadrature rule = gauss_legendre(2 * each + 6);
   const auto nodes = static_cast<Eigen::Index>(rule.x.size());
@@ -90,7 +92,7 @@ SectionBasis mindlin_section(const MindlinPlate& plate, int each) {
   Components stretched;
   for (const SectionMatrix& one : slope) stretched.push_back(one * eta.asDiagonal());
   const SectionMatrix zero = SectionMatrix::Zero(3 * each, nodes);
-  // the strain's components kappa_xx, kappa_yy, kappa_xy, gamma_x, gamma_y
+  // components of the strain: curvatures kappa_xx, kappa_yy, kappa_xy and shears gamma_x, gamma_y
   const auto by_x = [&](const Components& u) -> Components { return {u[0], zero, u[1], u[2], zero}; };
   const Components by_y{zero, slope[1], slope[0], zero, slope[2]};
   const Components local{zero, zero, zero, motion[0], motion[1]};
@@ -112,7 +114,7 @@ SectionBasis mindlin_section(const MindlinPlate& plate, int each) {
 SectionPencil mindlin_pencil(const SectionBasis& b, double half_width, Eigen::Index each) {
   using B = SectionBasis;
   const Eigen::Index rest = b.count() - each;
-  // The strain of a uniform strip, without the derivative along x, is Y/W + Z.
+  // In a uniform strip, the strain without its term f' X is Y/W + Z (see SectionBasis).
   const SectionMatrix still = b.stiff[B::across][B::across] / (half_width * half_width) +
                               (b.stiff[B::across][B::local] + b.stiff[B::local][B::across]) / half_width +
                               b.stiff[B::local][B::local];
@@ -130,18 +132,18 @@ SectionPencil mindlin_pencil(const SectionBasis& b, double half_width, Eigen::In
   return p;
 }
 
-// The half-widths whose cut-off shapes are the functions of `mode`: that of the drive edge, whose shape
-// drives the strip; that of the tone's turning point, where the shapes are exact; and a narrower one. With
-// several half-widths the parts of a shape that change differently as the strip narrows (deflection,
-// rotation, thickening) can have any proportions.
+// The model `mode` uses the cut-off shapes of strips with these three half-widths. The first is that of the
+// drive edge, whose shape drives the strip. The second is that of the tone's turning point, where the shapes
+// are exact. The third is narrower. With three of them, the solution can follow deflection, rotation and
+// thickening, which change differently as the strip narrows.
 std::array<double, 3> shape_widths(const Surface& surface, double f) {
   const double drive = half_width_m(surface, 0);
   const double turning = std::min(Dispersion(surface).cut_off_half_width_m(f), 0.85 * drive);
   return {drive, turning, 0.75 * turning};
 }
 
-// k_x^2 of the first mode's travelling wave at the drive edge, by Mindlin's strip: the largest root; 0 if
-// there is none.
+// Returns k_x^2 of the first mode's travelling wave at the drive edge, by Mindlin's theory. It is the largest
+// root of the strip's dispersion function; 0 if there is none.
 double travelling2(const Surface& surface, double f) {
   const MindlinPlate plate(surface);
   const double w = half_width_m(surface, 0), highest = plate.waves(f).bending;
@@ -156,8 +158,8 @@ double travelling2(const Surface& surface, double f) {
   return 0;
 }
 
-// The columns cross, along and stretched of one half-width, scaled so that `cross` moves the centre line by
-// 1.
+// The motions `cross`, `along` and `stretched` for one half-width, as columns. They are scaled so that
+// `cross` moves the centre line by 1.
 SectionMatrix columns(const SectionShapes& shapes, double centre) {
   const Eigen::Index na = shapes.along.size(), nb = shapes.cross.size();
   SectionMatrix all = SectionMatrix::Zero(na + nb, 3);
@@ -238,7 +240,7 @@ SectionBasis elastic_shapes(const Surface& surface, double f) {
   const auto widths = shape_widths(surface, f);
   const double layer = std::min(0.5, 1.2 * surface.thickness_m / widths[1]);
   const double speed2 = *surface.modulus_Pa / (2 * (1 + surface.poisson) * surface.density_kg_m3);
-  // for each component of displacement its values, and its derivatives by eta and by z
+  // for each component of displacement: its values and its derivatives with respect to eta and to z
   std::array<std::vector<SectionMatrix>, 9> parts;
   Eigen::VectorXd weight, eta, centres(0);
   double lame = 0;
@@ -291,7 +293,8 @@ SectionBasis elastic_shapes(const Surface& surface, double f) {
   const auto stretched = [&](const SectionMatrix& slope) -> SectionMatrix {
     return slope * eta.asDiagonal();
   };
-  // the strain's components xx, yy, zz, yz, xz, xy; stiffness is divided by the shear modulus
+  // components of the strain in the order xx, yy, zz, yz, xz, xy; the stiffness is divided by the shear
+  // modulus
   const Components by_x{u[0], zero, zero, zero, u[2], u[1]};
   const Components stretch{stretched(u[3]), zero, zero, zero, stretched(u[5]), stretched(u[4])};
   const Components by_y{zero, u[4], zero, u[5], zero, u[3]};

@@ -1,5 +1,6 @@
 #pragma once
-// Functions over the cross-section of a thick clamped strip, with which its motion is described. Needs Eigen.
+// Basis functions over the cross-section of a thick clamped strip. The strip's motion is a sum of these
+// functions, with coefficients that depend on x. Needs Eigen.
 #include <Eigen/Dense>
 #include <array>
 
@@ -7,30 +8,31 @@
 
 namespace turnpoint::physics {
 
-// The motion is u(x, y, z) = sum f_i(x) U_i(y / W(x), z), with all its components at once: deflection and
-// rotations (Mindlin) or displacements (elastic). The strain of one term is f' X + f (-W'/W R + Y/W + Z): X
-// comes from the derivative d/dx of U, R in the same way from eta dU/deta, Y from d/dy of U, and Z from parts
-// without a derivative in x or y. Integrals are over eta in [0, 1], in SI units, for half of the strip.
+// The motion is u(x, y, z) = sum f_i(x) U_i(y / W(x), z). A function U contains all components: deflection
+// and rotations (Mindlin), or three displacements (elastic). The strain of one term is f' X + f (-W'/W R +
+// Y/W + Z). X contains the strains that differentiate u by x, computed from U, and R the same strains
+// computed from eta dU/deta. Y contains the strains that differentiate by y, and Z those without a derivative
+// by x or y. Integrals are over eta in [0, 1], in SI units, for half of the strip.
 struct SectionBasis {
   using Matrix = Eigen::MatrixXd;
   enum Part { along, stretch, across, local };  // X, R, Y, Z
   // integrals of part i of function a times part j of function b
   std::array<std::array<Matrix, 4>, 4> stiff;
   Matrix mass;
-  Eigen::VectorXd centre;  // deflection of the centre line by each function
+  Eigen::VectorXd centre;  // deflection of the centre line in each function
   Eigen::VectorXd drive;   // the drive edge's motion, without motion along x: the shape of
                            // its own cut-off
   Eigen::Index count() const { return mass.rows(); }
 };
 
-// Makes polynomials of eta for deflection and both rotations of Mindlin's plate, which describe its
-// two-dimensional field.
+// Makes polynomials of eta for the deflection and both rotations of a Mindlin plate. They can describe its
+// full two-dimensional field.
 SectionBasis mindlin_polynomials(const Surface& surface, int each);
 
-// Makes functions from the cut-off's shapes at three half-widths and the travelling wave's at the drive edge:
-// for each the motion in the cross-section, and two functions for the motion along x that belongs to it. They
-// describe both of the strip's branches, propagating and evanescent, and are exact at the turning point to
-// first order in k_x^2. Source: Kantorovich's method.
+// Makes functions from four shapes: the cut-off shapes at three half-widths, and the shape of the travelling
+// wave at the drive edge. Each shape gives one function for the motion in the cross-section and two for the
+// motion along x. Together they describe the propagating and the evanescent wave of the strip, and they are
+// exact at the turning point to first order in k_x^2. Source: Kantorovich's method.
 SectionBasis section_shapes(const Surface& surface, double frequency_Hz);
 
 }  // namespace turnpoint::physics

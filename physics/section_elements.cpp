@@ -13,7 +13,7 @@ namespace {
 using Eigen::MatrixXd;
 constexpr Eigen::Index degree_across = 5, degree_through = 11;
 
-// The ends of the elements in y, which are finer in a layer along the clamp.
+// The ends of the elements in y. The elements are finer in a layer along the clamp.
 std::vector<double> element_ends(double layer) {
   std::vector<double> ends{0, 0.5 * (1 - layer), 1 - layer};
   for (const double part : {0.4, 0.15, 0.05, 0.015}) ends.push_back(1 - part * layer);
@@ -21,7 +21,7 @@ std::vector<double> element_ends(double layer) {
   return ends;
 }
 
-// Continuous elements on [0, 1] that vanish at 1; the odd ones also vanish at 0.
+// Continuous, piecewise polynomial functions on [0, 1] that vanish at 1. The odd ones also vanish at 0.
 LineFunctions across_functions(double layer) {
   const std::vector<double> ends = element_ends(layer);
   const ElementBasis basis{degree_across, 1};
@@ -54,7 +54,7 @@ LineFunctions across_functions(double layer) {
   return f;
 }
 
-// The Legendre polynomials of 2z/h on [0, h/2].
+// Legendre polynomials of 2z/h on [0, h/2], even and odd ones separately.
 LineFunctions through_functions(double thickness) {
   constexpr Eigen::Index n = (degree_through + 1) / 2;
   const Quadrature rule = gauss_legendre(degree_through + 2);
@@ -147,8 +147,8 @@ SectionElements::SectionElements(double thickness, double nu, double layer)
 }
 
 Eigen::VectorXd SectionElements::thickening(const Eigen::VectorXd& along) const {
-  // Use only c, without its mean over the thickness, which is the deflection: leave out the first function of
-  // z.
+  // Use only the displacement c. Leave out its first function of z: the mean of c over the thickness is the
+  // deflection, not thickening.
   const Eigen::Index nb = across.odd.rows() * through.odd.rows(), nz = through.even.rows();
   const MatrixXd load =
       lame * tensor(across.even * across.weight.asDiagonal() * across.even.transpose(),
@@ -190,7 +190,7 @@ SectionShapes section_shapes_of(const SectionPencil& p) {
 SectionShapes section_shapes_of(const SectionPencil& p, double omega, double along2) {
   const double o2 = omega * omega;
   const Eigen::LDLT<MatrixXd> along(p.shear + along2 * p.along - o2 * p.along_mass);
-  // A eliminated
+  // the matrix that remains for B after A is eliminated
   const Eigen::PartialPivLU<MatrixXd> cross(p.plane + along2 * p.cross - o2 * p.mass -
                                             along2 * p.coupling.transpose() * along.solve(p.coupling));
   Eigen::VectorXd x = section_cut_off(p).shape;

@@ -1,15 +1,15 @@
 #pragma once
-// Finite elements for the upper right quarter of a clamped strip's cross-section. Needs Eigen.
+// Finite elements for one quarter (y > 0, z > 0) of a clamped strip's cross-section. Needs Eigen.
 #include <Eigen/Dense>
 
 namespace turnpoint::physics {
 
-// The waves exp(-i k x) of a uniform strip with k^2 = L. Their motion is i k A along x and B in the
-// cross-section:
+// Matrices of the equations for waves exp(-i k x) in a uniform strip, with L = k^2. The motion is i k A along
+// x and B in the cross-section:
 //   (shear + L along - omega^2 along_mass) A + coupling B = 0
 //   (plane + L cross - omega^2 mass) B + L coupling^T A = 0
-// `stretching` couples A with the motion eta dB/deta, which a taper adds to the derivative d/dx of B (y = eta
-// W(x)).
+// `stretching` couples A with eta dB/deta. On a taper y = eta W(x), so that the derivative d/dx of B contains
+// this term.
 struct SectionPencil {
   Eigen::MatrixXd shear, along, along_mass, coupling, plane, cross, mass, stretching;
 };
@@ -21,15 +21,16 @@ struct SectionCutOff {
 };
 SectionCutOff section_cut_off(const SectionPencil& pencil);
 
-// The motion at the cut-off: B; A, which follows it in proportion to its derivative along x; and the A that
-// follows its stretching, without which a thin section would be too stiff: its normals could not stay normal
-// to a surface that narrows. One column each.
+// Motions of the section at the cut-off. `cross` is the motion B in the cross-section. `along` is the motion
+// A along x that B causes where its amplitude changes along x. `stretched` is the A that B causes where the
+// strip narrows. Without `stretched`, a thin section would be too stiff, because its normals could not stay
+// normal to the bent surface.
 struct SectionShapes {
   Eigen::VectorXd cross, along, stretched;
 };
 SectionShapes section_shapes_of(const SectionPencil& pencil);
 
-// The same for the wave of `omega` whose k^2 is nearest to `along2`.
+// The same motions for the wave at `omega` whose k^2 is nearest to `along2`.
 SectionShapes section_shapes_of(const SectionPencil& pencil, double omega, double along2);
 
 // Functions of one coordinate at quadrature points, with one row per function and one column per point.
@@ -39,16 +40,18 @@ struct LineFunctions {
   Eigen::VectorXd even_start;  // values of the even functions at 0
 };
 
-// Unit half-width, density and shear modulus; displacements (i k A, b, c), B = (b, c). Functions: products of
-// polynomials, by elements in y that are finer towards the clamp, where the stress at the free face's corner
-// is singular. A and b are odd in z, c even; b is odd in y, A and c even; all vanish at y = 1. Ordered by y,
-// then z.
+// The finite elements for one ratio h/W and Poisson's ratio; half-width, density and shear modulus are 1. The
+// displacements are (i k A, b, c), and B = (b, c). The functions are products of a function of y and a
+// function of z, ordered by y, then by z. Elements in y are finer near the clamp, because the stress is
+// singular at the corner between clamp and free face. A and b are odd in z, and c is even; b is odd in y, and
+// A and c are even. All vanish at y = 1.
 struct SectionElements {
-  // `layer` is the depth of the finer elements; sections with the same layer have the same functions of y.
+  // `layer` is the width in y of the zone of finer elements. Two sections with the same layer have the same
+  // functions of y.
   SectionElements(double thickness_per_half_width, double poisson, double layer);
   SectionElements(double thickness_per_half_width, double poisson);
 
-  // Returns, as a motion B, how the section thickens if it is stretched by A. Without this thickening,
+  // Returns the motion B with which the section thickens or thins when A stretches it. Without this motion,
   // bending along x would be too stiff.
   Eigen::VectorXd thickening(const Eigen::VectorXd& along) const;
 

@@ -17,8 +17,8 @@ SectionBasis make_section(const Surface& surface, double f, const ModalResolutio
   return mindlin_polynomials(surface, setup.across.count());
 }
 
-// The symmetric matrix of an element. Unknowns are ordered by basis function along x, then by function of the
-// section.
+// The symmetric matrix of an element. Its unknowns are ordered by basis function along x, then by function
+// over the cross-section.
 Eigen::MatrixXcd element_matrix(const SectionBasis& section, const ModalSetup& setup,
                                 std::complex<double> omega2, const ModalElement& e) {
   using S = SectionBasis;
@@ -28,7 +28,7 @@ Eigen::MatrixXcd element_matrix(const SectionBasis& section, const ModalSetup& s
   for (std::size_t q = 0; q < rule.x.size(); ++q) {
     const double x = e.x0 + e.h * rule.x[q], w = setup.taper.half_width_m(x);
     const double r = -setup.taper.slope(x) / w, s = 1 / w;
-    // The strain is f' X + f (r R + s Y + Z).
+    // The strain is f' X + f (r R + s Y + Z), as in SectionBasis.
     const Eigen::MatrixXd mixed = r * section.stiff[S::along][S::stretch] +
                                   s * section.stiff[S::along][S::across] + section.stiff[S::along][S::local];
     const Eigen::MatrixXd cross = r * s * section.stiff[S::stretch][S::across] +
@@ -63,7 +63,7 @@ void solve_section_elements(const Surface& surface, double f, Losses losses,
   const std::complex<double> lossy(1, losses == Losses::kept ? -0.5 / surface.quality_factor : 0);
   const std::complex<double> omega2 = std::pow(2 * std::numbers::pi * f, 2) * lossy * lossy * lossy * lossy;
   const Eigen::Index n = section.count(), inner = setup.along.degree * n;
-  Eigen::MatrixXcd tail;  // stiffness of everything beyond this element, with the far end held
+  Eigen::MatrixXcd tail;  // stiffness of all elements beyond this one, far end held
   for (auto e = elements.rbegin(); e != elements.rend(); ++e) {
     Eigen::MatrixXcd k = element_matrix(section, setup, omega2, *e);
     Eigen::Index rest = inner;

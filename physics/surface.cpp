@@ -14,7 +14,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Handbook values; yield strengths are those of hard commercial tempers.
+// Handbook values. The yield strengths are those of hard commercial tempers.
 constexpr std::array materials{
     Material{"aluminium", 2700, 69e9, 0.33, 0.28e9}, Material{"brass", 8110, 100e9, 0.34, 0.75e9},
     Material{"steel", 7850, 205e9, 0.29, 1.0e9},     Material{"stainless", 8000, 193e9, 0.29, 1.0e9},
@@ -146,12 +146,12 @@ bool bending_modelled(const Surface& s) {
   if (s.tension_Pa == 0) return true;
   const auto stiffness = bending_stiffness_N_m(s);
   if (!stiffness) return false;
-  // Half-width at 90 % of the length, taken as the narrowest that is used for boundaries.
+  // Half-width at 90 % of the length. No boundary is expected where the surface is narrower.
   const double w = half_width_m(s, 0.9 * s.length_m);
   const double k = std::numbers::pi / (2 * w);
   const double ratio = *stiffness * k * k / line_tension_N_per_m(s);
-  // With supported sides bending moves the cut-off frequency by ratio/2; with clamped ones the half-width
-  // shrinks by sqrt(D/N).
+  // Bending shifts a cut-off. With simply supported sides, the relative change of frequency is ratio/2; with
+  // clamped sides, the membrane's half-width shrinks by sqrt(D/N).
   return s.edges == Edges::clamped ? std::sqrt(ratio) > 0.0157 : ratio > 0.01;
 }
 

@@ -19,14 +19,14 @@ namespace turnpoint::physics {
 // membrane without bending stiffness there is no difference.
 enum class Edges { supported, clamped };
 
-// Whether bending stiffness is included. `automatic` includes it if it moves a cut-off by more than about
-// half a percent anywhere in the usable 90 % of the surface (see bending_modelled), and always if there is no
-// tension.
+// Whether bending stiffness is included. `automatic` always includes it if there is no tension. With tension,
+// it includes it if it moves a cut-off by more than about half a percent somewhere in the first 90 % of the
+// length (see bending_modelled).
 enum class Bending { automatic, on, off };
 
-// The theory of a clamped plate. Compared with the elastic cross-section, Kirchhoff's cut-off half-width is 3
-// to 6 % too large for a 2 mm aluminium plate at 22 to 45 kHz; Mindlin's is within 0.2 % (h/W to 0.4,
-// Poisson's ratio 0 to 0.4).
+// The theory that describes bending of a clamped plate. For a 2 mm aluminium plate at 22 to 45 kHz,
+// Kirchhoff's cut-off half-width is 3 to 6 % larger than that of the elastic cross-section. Mindlin's is
+// within 0.2 % of it (h/W to 0.4, Poisson's ratio 0 to 0.4).
 enum class PlateTheory {
   kirchhoff,  // thin plate: D lap^2 v = rho h omega^2 v, and tension if there is any
   // includes shear and rotary inertia; the shear factor depends on Poisson's ratio (mindlin_plate.hpp)
@@ -56,7 +56,7 @@ struct TaperPoint {
   double half_width_m;
 };
 
-// Measured half-widths, joined by monotone cubics (Fritsch & Carlson 1980; with continuous slope). The first
+// Measured half-widths, joined by monotone cubics with continuous slope (Fritsch & Carlson 1980). The first
 // point must be at x = 0, the last at or beyond the surface's length; half-widths must fall strictly.
 struct TabulatedTaper {
   std::vector<TaperPoint> points;
@@ -76,7 +76,7 @@ struct ParameterSd {
   double decay_length_m = 0;  // of an exponential taper's decay length
 };
 
-// The shape of the driven edge's displacement across y at x = 0; it is 1 at the centre line.
+// How the displacement of the drive edge (x = 0) varies with y. It is 1 at the centre line.
 enum class DriveShape {
   cosine,  // cos(pi y / 2W), the shape of the first transverse mode, which the 1998 paper assumes
   piston   // 1 everywhere: a stiff bar, which also excites the higher transverse modes
@@ -119,14 +119,14 @@ void validate(const Surface& surface);
 // Half-width (m) and its first derivative at x in [0, length_m]. For many points, make a Taper (taper.hpp).
 double half_width_m(const Surface& surface, double x_m);
 
-// Bending stiffness D = E h^3 / 12 (1 - nu^2) in N m (empty without a modulus), line tension N = T h in N/m,
-// wave speed c = sqrt(T / rho) in m/s.
+// Bending stiffness D = E h^3 / (12 (1 - nu^2)), which is empty without a modulus; line tension N = T h; and
+// wave speed c = sqrt(T / rho).
 std::optional<double> bending_stiffness_N_m(const Surface& surface);
 double line_tension_N_per_m(const Surface& surface);
 double wave_speed_m_s(const Surface& surface);
 
-// Whether bending enters the equations for this surface, according to its `bending` setting. validate()
-// refuses a plate without a modulus or with bending off.
+// Whether the equations for this surface include bending, according to its `bending` setting. validate()
+// rejects a plate without a modulus or with bending off.
 bool bending_modelled(const Surface& surface);
 
 // Reference surfaces for tests and examples: the 1998 paper's brass membrane (30 mm half-width, slope 0.1,

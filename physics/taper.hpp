@@ -1,5 +1,5 @@
 #pragma once
-// The taper as a function, with derived quantities for the solvers.
+// The half-width as a function of x, with the positions and derivatives that the solvers need.
 #include <optional>
 #include <vector>
 
@@ -17,8 +17,8 @@ class Taper {
   double slope(double x_m) const;  // the derivative dW/dx, which is negative
   // Position at which the half-width is W; empty if outside [0, length_m].
   std::optional<double> position_m(double half_width_m) const;
-  // The same position, but linear and exponential tapers are continued beyond the surface; empty outside a
-  // table.
+  // The same, but a linear or exponential taper is continued beyond the ends of the surface. Empty if a
+  // tabulated taper does not contain this half-width.
   std::optional<double> position_continued_m(double half_width_m) const;
   double length_m() const { return length_m_; }
   // Position where the sides of a linear taper meet; empty for other tapers.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-// If compiler and C library support it, the function is compiled for several instruction sets.
+// Compiles a function for several instruction sets, if compiler and C library support this.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define TURNPOINT_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
@@ -19,7 +19,7 @@ constexpr std::size_t lanes = 16;
 
 }  // namespace
 
-// Pads the last, incomplete group of points, because a scalar loop for these points would be slower.
+// The last group of points is padded to full size, because a scalar loop for its few points would be slower.
 TURNPOINT_CLONES
 void horner_real(const TaylorStep& step, const double* x, std::size_t n, double* re) {
   const double inverse = 1 / step.scale;
@@ -86,8 +86,8 @@ void rotate(const double* re, const double* im, std::size_t n, double factor_re,
 
 TURNPOINT_CLONES
 bool half_log_square(const double* re, const double* im, std::size_t n, double offset, double* out) {
-  // ln(m 2^e) with m in [sqrt(1/2), sqrt 2): ln(m) = 2 atanh((m - 1)/(m + 1)) by its series; e is read from
-  // the exponent bits.
+  // Computes ln(m 2^e) with m in [sqrt(1/2), sqrt 2). ln(m) = 2 atanh((m - 1)/(m + 1)) is computed by its
+  // series, and e is read from the exponent bits.
   constexpr double ln2 = 0.693147180559945309417232121458;
   constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcdULL;
   constexpr std::uint64_t small = 0x03d0000000000000ULL;  // the bits of about 1e-289
@@ -96,8 +96,8 @@ bool half_log_square(const double* re, const double* im, std::size_t n, double o
     const double square = re[i] * re[i] + im[i] * im[i];
     any_small |= (std::bit_cast<std::uint64_t>(square) - small) >> 63;
     const std::uint64_t bits = std::bit_cast<std::uint64_t>(square) - sqrt_half;
-    // Converts the exponent to a double without an integer conversion, which few instruction sets can do on
-    // vectors. The result is e + 2047, a small positive number.
+    // Converts the exponent to a double by bit operations, because few instruction sets can convert vectors
+    // of integers. The result is e + 2047, a small positive number.
     const std::uint64_t biased = (bits + 0x7ff0000000000000ULL) >> 52;
     const double e = std::bit_cast<double>(biased | 0x4330000000000000ULL) - (4503599627370496.0 + 2047.0);
     const std::uint64_t mantissa_bits = (bits & 0x000fffffffffffffULL) + sqrt_half;

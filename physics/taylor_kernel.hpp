@@ -1,7 +1,7 @@
 #pragma once
 // The inner loops of a profile, which evaluate one Taylor polynomial at many points. They are plain loops
-// that the compiler vectorises for several instruction sets; the best is chosen when the program starts.
-// Without fused multiply-add, all of them give the same bits.
+// that the compiler vectorises for several instruction sets; the program chooses the best version when it
+// starts. All versions that do not use fused multiply-add give the same bits.
 #include <complex>
 #include <cstddef>
 
@@ -33,8 +33,8 @@ void divide_by_root_width(double half_width, double slope, const double* x, std:
 void rotate(const double* re, const double* im, std::size_t n, double factor_re, double factor_im,
             double* out);
 
-// Computes 0.5 ln(re^2 + im^2) + offset with an absolute error below 1e-15 of 1 + |ln|. Returns false if a
-// square was not above 1e-289; its result is then not valid.
+// Computes 0.5 ln(re^2 + im^2) + offset with an absolute error below 1e-15 (1 + |ln|). Returns false if re^2
+// + im^2 is 1e-289 or less at some point; the result at this point is then not valid.
 bool half_log_square(const double* re, const double* im, std::size_t n, double offset, double* out);
 
 }  // namespace turnpoint::physics

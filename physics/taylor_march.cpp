@@ -13,8 +13,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// Largest number of samples per step when searching for extrema and zeros. A step covers at most about 4
-// radians.
+// Largest number of samples per step in the search for maxima and zeros. One step covers at most about 4
+// radians of phase.
 constexpr int most_samples = 16;
 
 struct Local {
@@ -77,10 +77,10 @@ void TaylorMarch::State::march(TaylorState state, Until until) {
   }
 }
 
-// Whether loss has damped the reflected wave so far that |v| rises all the way from here to the drive edge.
-// With k = k1 - i a the reflected wave is e^-2as of the arriving one at a distance s from the turning point,
-// so that the ripple of d ln|v|^2/dx is at most 4 k1 e^-2as, beside 2a for loss and W'/W for the width, which
-// nowhere grows towards the drive edge unless the taper is a table.
+// True if loss has damped the reflected wave so much that |v| rises all the way from x to the drive edge.
+// With k = k1 - i a, the reflected wave at a distance s from the turning point is e^-2as of the arriving
+// wave. The ripple of d ln|v|^2/dx is then at most 4 k1 e^-2as. It is compared with 2a, from loss, and with
+// W'/W, from the width. Except on a tabulated taper, W'/W nowhere grows towards the drive edge.
 bool TaylorMarch::State::hidden_by_loss(double x) const {
   if (equation.a.imag() == 0 || std::holds_alternative<TabulatedTaper>(taper.form())) return false;
   const std::complex<double> k = std::sqrt(equation.a);
@@ -109,15 +109,16 @@ Local TaylorMarch::State::local(double x, double& ln_scale) const {
   return {state.g, state.dg};
 }
 
-// Half of d|v|^2/dx times W^(2 power): positive where |v| rises with x.
+// Returns half of d|v|^2/dx times W^(2 w_power). It is positive where |v| rises with x.
 double TaylorMarch::State::rise(const Local& g, double x) const {
   const double bend =
       equation.w_power == 0 ? 0 : equation.w_power * std::norm(g.g) * taper.slope(x) / taper.half_width_m(x);
   return (std::conj(g.g) * g.dg).real() - bend;
 }
 
-// On a linear taper the evanescent zone holds no maximum of |v|: where Re p < 0, |g|^2 is convex and starts
-// from zero, so that it grows at least as fast as the distance from the tip, and W does not.
+// The outermost position at which |v| can have a maximum. On a linear taper the evanescent zone, where Re p <
+// 0, has none: |g|^2 is convex there and starts from zero, so it grows at least in proportion to the distance
+// from the tip, while W grows at most in that proportion.
 double TaylorMarch::State::outermost_maximum() const {
   const auto* linear = std::get_if<LinearTaper>(&taper.form());
   if (linear == nullptr || linear->slope == 0) return taper.length_m();
@@ -220,7 +221,8 @@ std::optional<double> TaylorMarch::level_m(double level) const {
     inner = outer;
     outer = state_->taper.length_m();
   }
-  // |v| rises from the tip, so the level is reached in the first step at whose inner end |v| is above it.
+  // Seen from the tip, |v| rises. The level therefore lies in the first step at whose inner end |v| is above
+  // it.
   for (const TaylorStep& step : state_->steps) {
     const double end = step.x_start - step.length;
     if (end <= inner) break;
@@ -262,7 +264,7 @@ int TaylorMarch::zeros() const {
 
 namespace {
 
-// Largest number of consecutive points that are evaluated together, which is the size of the scratch arrays.
+// Largest number of consecutive points that are evaluated together. The scratch arrays have this size.
 constexpr std::size_t batch = 256;
 
 struct Scratch {
@@ -313,7 +315,7 @@ void TaylorMarch::evaluate(std::span<const double> x, std::complex<double> phase
   for (std::size_t i = 0; i < x.size();) {
     if (step == nullptr || !(x[i] > step->x_start - step->length && x[i] <= step->x_start))
       step = s.step_at(x[i]);
-    // the point lies in the apex series, or is the end itself, where v is zero
+    // the apex series covers this point, or the point is the end itself, where v is zero
     if (step == nullptr || x[i] >= end) {
       const Scaled one = value(x[i]);
       ln_amplitude[i] = one.mantissa == 0.0 ? ln_zero : one.ln_magnitude() - ln_reference;
@@ -329,7 +331,7 @@ void TaylorMarch::evaluate(std::span<const double> x, std::complex<double> phase
     const std::complex<double> factor = turn * std::exp(std::min(ln_step, 700.0));
     rotate(re, im, n, factor.real(), factor.imag(), reinterpret_cast<double*>(&v[i]));
     if (!half_log_square(re, im, n, ln_step, &ln_amplitude[i])) {
-      for (std::size_t j = 0; j < n; ++j) {  // v is zero here, apart from rounding
+      for (std::size_t j = 0; j < n; ++j) {  // v is too small for half_log_square() here
         const double magnitude = std::hypot(re[j], im[j]);
         ln_amplitude[i + j] = magnitude > 0 ? std::log(magnitude) + ln_step : ln_zero;
       }

@@ -1,13 +1,13 @@
 #pragma once
-// Marches g'' + p(x) g = 0 from the tip of a surface to its drive edge by high-order Taylor steps, carrying
-// the size of g as a power of two, so that neither the evanescent zone nor strong loss leaves the range of a
-// double.
+// Solves g'' + p(x) g = 0 step by step ("marches") from the tip of a surface to its drive edge, with
+// high-order Taylor series. The size of g is kept as a power of two, so that neither the evanescent zone nor
+// strong loss leaves the range of a double.
 //
 //   p(x) = A - (B + C W'(x)^2) / W(x)^2,  A complex with loss
 //
-// Marching from the tip outward is the stable direction: the solution that vanishes at the tip is the one
-// that grows. The tip is either the apex of a linear taper (regular singular point, started by Frobenius'
-// series) or a clamped end anywhere.
+// Starting at the tip is stable, because the solution that vanishes at the tip grows towards the drive edge.
+// The tip is either a clamped end or the apex of a linear taper. The apex is a regular singular point, so the
+// solution starts with Frobenius' series there.
 #include <complex>
 #include <memory>
 #include <optional>
@@ -24,7 +24,7 @@ struct MarchEquation {
   double w_power = 0;      // exponent in the displacement v = g W^-w_power
 };
 
-// A value of g or v in two parts: it is `mantissa` exp(ln_scale).
+// A value of g or v in two parts: the value is `mantissa` times exp(ln_scale).
 struct Scaled {
   std::complex<double> mantissa;
   double ln_scale = 0;
@@ -36,8 +36,8 @@ struct Scaled {
 class TaylorMarch {
  public:
   TaylorMarch(const Taper& taper, const MarchEquation& equation);
-  // The part that holds the last maximum and the levels beyond it: from a point `held_m` in the evanescent
-  // zone, where v is taken as zero, to the last maximum. Nothing may be asked about the rest.
+  // Solves only from a point `held_m` in the evanescent zone, where v is set to zero, to the last maximum.
+  // This part contains the last maximum and the levels beyond it. The functions below are valid only there.
   TaylorMarch(const Taper& taper, const MarchEquation& equation, double held_m);
   ~TaylorMarch();
   TaylorMarch(TaylorMarch&&) noexcept;

@@ -8,7 +8,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// Terms that are left out are smaller than exp of this, relative to the first two terms.
+// The series is cut off where its terms, relative to the larger of the first two, are below
+// exp(ln_truncation).
 constexpr double ln_truncation = -39.8;  // 5e-18
 
 // 1/((n + 1)(n + 2))
@@ -53,8 +54,8 @@ std::complex<double> SeriesMaker::potential(double x) const {
   return equation_.a - (equation_.b + equation_.c * slope * slope) / (w * w);
 }
 
-// First guess of the step: 3 radians (or e-folds) of the local wavenumber, and much less than the distance to
-// the point where the sides would meet.
+// First guess of the step: 3 radians or e-folds of the local solution, but at most 0.35 times the distance to
+// the point where the sides would meet if they continued straight.
 double SeriesMaker::trial_scale(double x) const {
   const double meet = std::abs(taper_.half_width_m(x) / taper_.slope(x));
   double scale = 0.35 * std::min(meet, 1e6 * taper_.length_m());
@@ -64,7 +65,8 @@ double SeriesMaker::trial_scale(double x) const {
   return std::min({scale, 3 / k, 4 * taper_.length_m()});
 }
 
-// Taylor series for s^2 g'' + (A s^2 - mu'^2) g = 0 with s = s0 (1 + e tau), by a five-term recurrence.
+// Taylor series of the solution on a linear taper. A five-term recurrence solves s^2 g'' + (A s^2 - mu'^2) g
+// = 0 with s = s0 (1 + e tau).
 template <bool lossy>
 void SeriesMaker::linear(double x, TaylorStep& step) const {
   const double slope = std::get<LinearTaper>(taper_.form()).slope;
@@ -92,7 +94,8 @@ void SeriesMaker::linear(double x, TaylorStep& step) const {
   }
 }
 
-// Computes the Taylor coefficients of p - A in tau, which are real. Returns how many of them are needed.
+// Computes the Taylor coefficients of p - A in tau, which are real. Returns the number of coefficients that
+// are not negligible.
 int SeriesMaker::potential_series(double x, double knot, double scale,
                                   std::array<double, taylor_order>& q) const {
   q.fill(0);
@@ -110,8 +113,8 @@ int SeriesMaker::potential_series(double x, double knot, double scale,
     q[0] -= equation_.c / (l * l);
     return count;
   }
-  // If the half-width W(tau) is a cubic, 1/W^2 has a recurrence; it is then multiplied by the quartic B + C
-  // W'^2.
+  // W(tau) is a cubic, so a recurrence gives the coefficients of 1/W^2. They are then multiplied by those of
+  // the quartic B + C W'^2.
   std::array<double, 4> w{taper_.half_width_m(x), 0, 0, 0};
   if (std::holds_alternative<TabulatedTaper>(taper_.form())) {
     const Cubic& p = taper_.table().piece(0.5 * (knot + x));
@@ -136,7 +139,7 @@ int SeriesMaker::potential_series(double x, double knot, double scale,
     }
     r[n] = -sum / (static_cast<double>(n) * w[0]);
     if (std::max(std::abs(r[n]), std::abs(r[n - 1])) < 1e-22 * r[0])
-      break;  // as on the short pieces of a table
+      break;  // this happens early on the short pieces of a tabulated taper
   }
   int count = 1;
   double size = 0;
@@ -197,7 +200,7 @@ void SeriesMaker::fill(const TaylorState& from, TaylorStep& step) const {
     convolved(from.x, knot, step);
   }
   step.length = step.order < taylor_order ? step.scale : exact_length(step);
-  // End exactly on the knot: if rounding put the inner end just outside of it, another, tiny step would
+  // End exactly on the knot. If rounding left the step's inner end just short of it, another, tiny step would
   // follow.
   if (step.length > (from.x - knot) * (1 - 1e-9)) step.length = from.x - knot;
 }
@@ -207,8 +210,8 @@ ApexSeries::ApexSeries(const Taper& taper, const MarchEquation& equation)
       slope_(std::get<LinearTaper>(taper.form()).slope),
       a_(equation.a) {
   mu_ = std::sqrt(equation.b / (slope_ * slope_) + equation.c + 0.25);
-  // A point costs more by this series than by a step. Use the series only near the tip, unless the order is
-  // so high that many steps would be needed there.
+  // Evaluating a point by this series takes longer than by a Taylor step. Use the series only near the tip,
+  // unless its order mu is so high that many steps would be needed there.
   const double share = 1 / (1 + 9 * std::min(1.0, 20 / mu_));
   const double reach = share * std::min(2 * std::sqrt(mu_ + 1), mu_) / std::sqrt(std::abs(equation.a));
   inner_m_ = std::max(0.0, half_width_m_ / slope_ - reach);

@@ -1,5 +1,6 @@
 #pragma once
-// Local series of the marched equation, at a regular point and at the apex of a linear taper.
+// Series that solve the marched equation locally: a Taylor series at a regular point, and Frobenius' series
+// at the apex of a linear taper.
 #include <array>
 #include <complex>
 #include <vector>
@@ -10,8 +11,8 @@
 
 namespace turnpoint::physics {
 
-// g and dg/dx at a point; both are to be multiplied by 2^exponent exp(ln_base). The exponent is an integer,
-// so that thousands of steps add no rounding error to it.
+// The solution at a point: g and dg/dx, both to be multiplied by 2^exponent exp(ln_base). The exponent is an
+// integer, so that thousands of steps add no rounding error to it.
 struct TaylorState {
   double x = 0;
   std::complex<double> g;
@@ -19,12 +20,13 @@ struct TaylorState {
   double ln_base = 0;
   long exponent = 0;
   double ln_scale() const;
-  // Moves a power of two from (g, dg scale) into the exponent.
+  // Divides g and dg by a power of two, so that g and dg times `scale` are of order 1, and adds the power to
+  // the exponent.
   void normalise(double scale);
 };
 
-// Makes the Taylor polynomial of the solution through a state, and computes the length over which it is
-// accurate to rounding.
+// Makes the Taylor polynomial of the solution that passes through a given state, and computes the length over
+// which the polynomial is accurate to rounding.
 class SeriesMaker {
  public:
   SeriesMaker(const Taper& taper, const MarchEquation& equation);
@@ -42,8 +44,9 @@ class SeriesMaker {
   MarchEquation equation_;
 };
 
-// Frobenius' series at the apex of a linear taper: g = s^(mu + 1/2) sum c_j (k s)^2j, s the distance from the
-// apex, mu^2 = B/d^2 + C + 1/4. Used for k s below 2 sqrt(mu + 1), where its terms fall from the first on.
+// Frobenius' series at the apex of a linear taper of slope d: g = s^(mu + 1/2) sum c_j (k s)^2j, with s the
+// distance from the apex and mu^2 = B/d^2 + C + 1/4. It is used only for k s below 2 sqrt(mu + 1), where each
+// term is smaller than the one before.
 class ApexSeries {
  public:
   ApexSeries(const Taper& taper, const MarchEquation& equation);

@@ -37,8 +37,8 @@ Quadrature make_gauss_legendre(int n) {
 }  // namespace
 
 Quadrature gauss_legendre(int n) {
-  // Rules with up to `kept` nodes are made only once, because making one takes almost as long as a solution
-  // at 1000 points.
+  // Rules with up to `kept` nodes are made only once. Making a rule takes almost as long as evaluating a
+  // solution at 1000 points.
   constexpr int kept = 40;
   static const std::vector<Quadrature> rules = [] {
     std::vector<Quadrature> list;
@@ -59,7 +59,8 @@ TransverseBasis TransverseBasis::polynomials(int count, int power) {
   // The last column is the centre, eta = 0. It is evaluated with the others and then separated.
   for (Eigen::Index q = 0; q <= nodes; ++q) {
     const double t = q == nodes ? 0 : basis.rule_.x[static_cast<std::size_t>(q)];
-    // Computes bubble functions and Legendre polynomials with two derivatives each, by recurrence.
+    // b is the factor (1 - t^2)^power with its two derivatives. A recurrence gives the Legendre polynomials
+    // and their two derivatives.
     const double u = 1 - t * t;
     const double b = power == 1 ? u : u * u;
     const double b1 = power == 1 ? -2 * t : -4 * t * u;
@@ -95,7 +96,7 @@ TransverseBasis TransverseBasis::clamped_shape(double b, double g) {
   basis.value_.resize(1, nodes);
   basis.first_.resize(1, nodes);
   basis.second_.resize(1, nodes);
-  // cosh(g eta)/cosh g in a form that does not overflow for large g.
+  // Computes cosh(g eta)/cosh g in a form that does not overflow for large g.
   const auto decay = [g](double t) { return std::exp(g * (t - 1)) / (1 + std::exp(-2 * g)); };
   const double unit = 1 / std::cos(b) - 2 * decay(0);
   for (Eigen::Index q = 0; q < nodes; ++q) {

@@ -1,6 +1,6 @@
 #pragma once
-// Functions of eta = y / W(x) for the two-dimensional field, and the integrals that the field's weak form
-// needs.
+// Basis functions of eta = y / W(x) for the two-dimensional field, and the integrals of their products that
+// its weak form needs.
 #include <Eigen/Dense>
 #include <array>
 #include <functional>
@@ -14,8 +14,9 @@ struct Quadrature {
 };
 Quadrature gauss_legendre(int n);
 
-// Even functions of eta that vanish at eta = 1: (1 - eta^2)^m P_2j(eta) with m = 1 for membranes and m = 2 if
-// the slope must vanish, too; or one given shape. Integrals are over [0, 1].
+// Even functions Y_i of eta that vanish at eta = 1. They are (1 - eta^2)^m P_2j(eta), with m = 1 for
+// membranes and m = 2 if the slope must vanish, too; or there is just one function, a given shape. Integrals
+// are over [0, 1].
 class TransverseBasis {
  public:
   using Matrix = Eigen::MatrixXd;
@@ -26,13 +27,13 @@ class TransverseBasis {
   static TransverseBasis clamped_shape(double b, double g);
 
   int count() const { return static_cast<int>(centre.size()); }
-  // Coefficients of the basis functions in a least-squares fit to this shape.
+  // Fits the basis functions to this shape by least squares and returns their coefficients.
   Eigen::VectorXd project(const std::function<double(double)>& shape) const;
 
-  Matrix mass;                                // Y_i Y_j
+  Matrix mass;                                // integrals of Y_i Y_j
   Matrix stretch;                             // integrals of Y_i eta Y_j'
   Matrix shear;                               // integrals of eta^2 Y_i' Y_j'
-  Matrix stiff;                               // Y_i' Y_j'
+  Matrix stiff;                               // integrals of Y_i' Y_j'
   std::array<std::array<Matrix, 4>, 4> bend;  // integrals of all products of (Y, eta Y', eta^2 Y'', Y'')
   Eigen::VectorXd centre;                     // Y_i(0)
 

@@ -22,7 +22,8 @@ constexpr std::array<double, 8> weights{0.0506142681451881, 0.1111905172266872, 
                                         0.1813418916891810, 0.1813418916891810, 0.1568533229389436,
                                         0.1111905172266872, 0.0506142681451881};
 
-// Values at a point: the phase integral from the turning point, which is positive on both sides, and p.
+// Values at one point: p, and the phase integral from the turning point, which is positive on both sides of
+// it.
 struct PhaseIntegral {
   double integral;
   double p;
@@ -32,7 +33,8 @@ class UniformLine final : public CentreLine {
  public:
   UniformLine(const Surface& surface, double f);
   Scaled value(double x) const override;
-  // By a central difference of the logarithm, whose error in position is far below the model's own error.
+  // Computed as a central difference of the logarithm. The error in position that this causes is far below
+  // the error of the model itself.
   Scaled slope(double x) const override;
   std::optional<double> last_peak_m() const override {
     return turning_m_ < 0 ? std::nullopt : find_last_peak(*this, std::min(turning_m_, length_m_), 0.25 / k_);
@@ -55,8 +57,8 @@ class UniformLine final : public CentreLine {
   double k_, length_m_;
   double turning_m_ = 0;
   double steepness_ = 0;  // -dp/dx at the turning point
-  // Cumulative integrals towards the drive edge and towards the tip, at equal steps of u = sqrt(distance from
-  // the turning point).
+  // Phase integrals from the turning point, towards the drive edge and towards the tip, at equal steps of u =
+  // sqrt(distance from the turning point).
   std::array<std::vector<double>, 2> running_;
   double panel_ = 0;
 };
@@ -66,7 +68,7 @@ UniformLine::UniformLine(const Surface& surface, double f)
       equation_(march_equation(surface, f, Model::mode, Losses::left_out)),
       k_(wavenumber_per_m(surface, f)),
       length_m_(surface.length_m) {
-  // the 1/4 of Langer's correction, which makes the solution right at the apex
+  // Langer's correction adds 1/4, which makes the solution right at the apex
   if (taper_.apex_m()) equation_.c += 0.25;
   find_turning();
   if (!taper_.apex_m()) tabulate();

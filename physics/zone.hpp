@@ -1,5 +1,5 @@
 #pragma once
-// Inverse design: finds tones for a desired zone of friction, or for a desired profile of amplitude.
+// Inverse design: finds the tones that produce a desired zone of friction, or a desired profile of amplitude.
 #include <optional>
 #include <span>
 #include <string>
@@ -13,43 +13,42 @@
 
 namespace turnpoint::physics {
 
-// The frequencies that may be used, and the smallest distance between tones at which their beats are not
-// felt.
+// The frequencies that may be used, and the smallest difference between two of them. Below `spacing_Hz`, the
+// beats between two tones could be felt.
 struct ToneBand {
   double low_Hz = audible_limit_Hz;
   double high_Hz = 45000;
   double spacing_Hz = 1000;
 };
 
-// Asks for a zone with mean relative friction `friction` from from_m to boundary_m. The zone ends at the
-// `edge` of its own profile: with several tones, the amplitude is the root of summed squares, and for a
-// turning edge the highest tone counts.
+// Describes a zone from from_m to boundary_m with the mean relative friction `friction`. boundary_m is where
+// the `edge` of the zone's own amplitude profile must lie. With several tones, this amplitude is the root of
+// summed squares; a turning edge is that of the highest tone.
 struct ZoneRequest {
   double from_m = 0;
   double boundary_m = 0;
   Edge edge = Edge::turning();
-  double friction = 0.6;  // mean over [from_m, boundary_m] of friction averaged over the fingertip
+  double friction = 0.6;  // fingertip-averaged friction, averaged over [from_m, boundary_m]
   int tones = 3;          // largest number of tones
   ToneBand band;
   double fingertip_m = 10e-3;
 };
 
 struct ZoneDesign {
-  // tones with amplitudes at the drive edge and phases for a low crest factor, highest frequency first
+  // highest frequency first; amplitudes are at the drive edge, and phases give a low crest factor
   std::vector<Tone> tones;
   double boundary_m = 0;  // the actual boundary, defined by the requested edge
   double friction = 0;    // the mean friction that was reached
   double residual = 0;    // rms deviation of the fingertip-averaged friction from its mean in the zone
   double node_fill = 0;   // smallest squared amplitude in the zone, summed over tones, divided by its mean
-  double peak_displacement_m = 0;  // largest amplitude on the surface if all tones are in phase
+  double peak_displacement_m = 0;  // largest amplitude on the surface with all tones in phase
   double crest_factor = 0;         // crest factor of the drive waveform
   std::string reason;              // how the tones were placed, and what limits them
   std::vector<Warning> warnings;
 };
 
-// Designs a zone. Throws std::domain_error if it cannot be reached, with a message that says why: friction
-// below the map's lowest, a boundary whose tone lies outside the band, or a friction edge outside (friction,
-// 1).
+// Designs a zone. Throws std::domain_error with the reason if no tones can produce it: friction below the
+// lowest of the map, a boundary whose tone lies outside the band, or a friction edge outside (friction, 1).
 ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request);
 
 struct ProfilePoint {
@@ -65,9 +64,9 @@ struct ProfileDesign {
   std::string verdict;
 };
 
-// Designs a profile: non-negative least squares on sum a_i^2 |v_i|^2 over candidate frequencies that are
-// band.spacing_Hz apart. Essentially, only profiles that fall with x can be reached; `residual` and
-// `reachable` say how well this one is.
+// Designs a profile. Non-negative least squares fit sum a_i^2 |v_i|^2 to the target; candidate frequencies
+// are band.spacing_Hz apart. Only profiles that fall with x can be reached, roughly speaking; `residual` and
+// `reachable` say how close the design comes.
 ProfileDesign design_profile(const Surface& surface, std::span<const ProfilePoint> target,
                              const ToneBand& band);
 

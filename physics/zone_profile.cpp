@@ -18,7 +18,7 @@ namespace {
 constexpr double grid_step_m = 0.5e-3;
 constexpr int candidates_per_spacing = 3;
 constexpr int most_candidates = 40;
-// A tone is kept only if it multiplies the unevenness of the zone by this factor or less.
+// Another tone is added only if it reduces the unevenness of the zone to this share or less.
 constexpr double worthwhile = 0.97;
 
 double interpolate_crossing(double x0, double x1, double y0, double y1, double level) {
@@ -55,7 +55,8 @@ ToneShape ZoneProfile::shape(double f) const {
   return one;
 }
 
-// The weights (0 or more) of the shapes for which the sum of squares in the zone is closest to one.
+// Returns weights of 0 or more, for which the weighted sum of the squared amplitudes is closest to one in the
+// zone.
 std::vector<double> ZoneProfile::fit(const std::vector<const ToneShape*>& shapes, double& residual) const {
   std::vector<double> columns, wanted;
   for (const ToneShape* one : shapes) {
@@ -99,7 +100,7 @@ void ZoneProfile::choose_tones(double highest_Hz) {
       trial.push_back(&candidate);
       double residual = 0;
       const auto weights = fit(trial, residual);
-      // The highest tone determines the boundary, so a set without it would be a different zone.
+      // The highest tone determines the boundary, so a set without this tone would make a different zone.
       if (residual < lowest && weights.front() > 0.05 * weights.back()) {
         lowest = residual;
         chosen = &candidate;
@@ -111,7 +112,7 @@ void ZoneProfile::choose_tones(double highest_Hz) {
     for (const ToneShape& one : shapes_) all.push_back(&one);
     weights_ = fit(all, best);
   }
-  // The tones in descending order of frequency, without those of weight 0.
+  // Remove tones of weight 0 and sort the others by descending frequency.
   for (std::size_t i = shapes_.size(); i-- > 1;) {
     if (weights_[i] > 0) continue;
     shapes_.erase(shapes_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -130,7 +131,7 @@ void ZoneProfile::shift_to(double highest_Hz) {
   shapes_.front() = shape(highest_Hz);
   for (std::size_t i = 1; i < shapes_.size();) {
     const double f = std::max(request_.band.low_Hz, shapes_[i].frequency_Hz + by);
-    // the next tone would be outside the band
+    // at the band's lower end, this tone would be too close to the previous one
     if (shapes_[i - 1].frequency_Hz - f < 0.999 * request_.band.spacing_Hz) {
       shapes_.erase(shapes_.begin() + static_cast<std::ptrdiff_t>(i));
       weights_.erase(weights_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -166,9 +167,9 @@ double ZoneProfile::zone_mean(const std::vector<double>& values) const {
   return sum / std::max(1, count);
 }
 
-// The weight of each point's friction in the mean of fingertip averages over the zone. This mean is linear in
-// the friction: each average is an integral of straight pieces, and each piece adds to the weights of its two
-// ends.
+// Returns the weight of the friction at each point in the zone's mean friction. This mean of fingertip
+// averages is linear in the friction: each average is an integral over straight pieces, and each piece adds
+// to the weights of its two ends.
 std::vector<double> ZoneProfile::mean_weights() const {
   std::vector<double> weight(x_.size(), 0.0);
   const double step = x_[1] - x_[0];
@@ -218,7 +219,7 @@ void ZoneProfile::scale_to_friction() {
     text << "mean friction " << request_.friction << " is not reachable in the zone";
     throw std::domain_error(text.str());
   }
-  // If both ends have the same friction, or one is the solution, there is nothing to search.
+  // No search is needed if one end is already the solution.
   const double x = std::abs(f_low) < 1e-9 ? low
                                           : false_position({low, f_low, high, f_high}, miss, {8, true}, 1e-9,
                                                            [](const Chord& c) { return c.width() <= 1e-12; });

@@ -7,7 +7,8 @@
 
 namespace turnpoint::physics {
 
-// Squared amplitude of one tone on a grid, relative to its last maximum, and the drive that this requires.
+// Squared amplitude of one tone on a grid, relative to its last maximum, and the drive that one unit of it
+// requires.
 struct ToneShape {
   double frequency_Hz = 0;
   double drive_gain = 1;  // |v(0)| if the last maximum is 1
@@ -16,17 +17,17 @@ struct ToneShape {
 
 class ZoneProfile {
  public:
-  // Chooses up to request.tones tones at and below `highest_Hz` and their relative weights, by non-negative
-  // least squares towards a uniform squared amplitude in the zone.
+  // Chooses up to request.tones tones at and below `highest_Hz`, and their relative weights. The weights make
+  // the squared amplitude in the zone as uniform as possible (non-negative least squares).
   ZoneProfile(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request,
               double highest_Hz);
 
   double highest_Hz() const { return shapes_.front().frequency_Hz; }
-  // Shifts all tones by the same frequency difference, but lower ones not out of the band, and recomputes
-  // their shapes.
+  // Shifts all tones by the same frequency difference and recomputes their shapes. A tone that would leave
+  // the band stays at the band's lower end, or is removed if that is too close to the next tone.
   void shift_to(double highest_Hz);
   // Sets the overall level so that the mean friction in the zone has the desired value. Throws
-  // std::domain_error.
+  // std::domain_error if no level does.
   void scale_to_friction();
   // Position of the edge in the zone's own profile; empty if there is none.
   std::optional<double> edge_m() const;
@@ -52,7 +53,7 @@ class ZoneProfile {
   std::vector<double> weights_;          // weight of each tone's squared amplitude
   std::vector<double> weights_of_mean_;  // weight of each point's friction in the zone's mean
   double scale_ = 1e-12;                 // squared displacement (m^2) for a weighted sum of 1
-  bool scaled_before_ = false;           // true once a scale was found, from which the next search starts
+  bool scaled_before_ = false;           // true once a scale was found; the next search starts from it
 };
 
 }  // namespace turnpoint::physics
