@@ -74,7 +74,7 @@ struct Sample {
   double trial, value;
 };
 
-/// Slope of a regression within groups: both variables enter as deviations from their group means.
+/// Fits one slope to all groups: both variables are taken relative to their group means.
 std::optional<Trend> within_groups(const std::vector<Sample>& samples) {
   std::map<std::pair<double, std::string>, std::array<double, 3>> sums;
   for (const auto& sample : samples) {

@@ -7,7 +7,7 @@
 
 namespace turnpoint::analysis {
 
-/// The levels that a procedure presented, in order, for plotting an adaptive trace.
+/// One level that a procedure presented, and the answer to it, for plotting an adaptive trace.
 struct TracePoint {
   int trial_index = 0;
   double level = 0;
@@ -18,11 +18,11 @@ struct Trace {
   std::string procedure;
   std::vector<TracePoint> points;
 };
-/// One trace per procedure, in the order of first occurrence. Only experimental trials with a level are
-/// included.
+/// Returns one trace per procedure, in the order in which the procedures first occur. Includes only
+/// experimental trials with a level.
 std::vector<Trace> traces(const std::vector<TrialRecord>& trials);
 
-/// The preference for one of two choices: left/right, first/second.
+/// How often one of two choices (left/right, first/second) was preferred.
 struct Bias {
   int answered = 0, second_choice = 0;
   double share_second = 0;
@@ -30,8 +30,8 @@ struct Bias {
   std::optional<double> criterion;  ///< c, log-linear; positive if the second choice is avoided
   std::vector<Statement> statements;
 };
-/// Computed from answered experimental trials with response 0 or 1; empty if there are none. Adds a statement
-/// if the share's interval excludes the share of trials on which the second choice was right.
+/// Computes the bias from answered experimental trials with response 0 or 1; empty if there are none. Adds a
+/// statement if the interval of the share excludes the share of trials in which the second choice was right.
 std::optional<Bias> choice_bias(const std::vector<TrialRecord>& trials);
 
 struct Proportion {
@@ -39,8 +39,8 @@ struct Proportion {
   double value = 0;
   Interval interval;  ///< Clopper-Pearson interval
 };
-/// Proportion of catch trials answered correctly. Timeouts and anticipations do not count as answers. Empty
-/// if there are none.
+/// Returns the proportion of catch trials answered correctly. Timeouts and anticipations do not count as
+/// answers. Empty if no catch trial was answered.
 std::optional<Proportion> catch_accuracy(const std::vector<TrialRecord>& trials);
 
 /// A linear trend over the session with its 95 % interval (normal theory).
@@ -52,9 +52,9 @@ struct Fatigue {
   std::optional<Trend> response_time_s, proportion_correct;
   std::vector<Statement> statements;
 };
-/// Trends of response time and accuracy over experimental trials. Level and instruction are controlled for:
-/// each value is taken relative to the mean of trials with equal level and instruction. Empty with fewer than
-/// 20 answered trials.
+/// Computes the trends of response time and accuracy over the experimental trials. To control for level and
+/// instruction, each value is taken relative to the mean of the trials with the same level and instruction.
+/// Empty with fewer than 20 answered trials.
 Fatigue fatigue(const std::vector<TrialRecord>& trials);
 
 struct OutcomeCounts {

@@ -9,18 +9,19 @@ namespace turnpoint::analysis {
 
 namespace {
 
-constexpr double kNearChance = 1e-3;  ///< if Pc is nearer than this to 1/2, L^3 loses precision
+constexpr double kNearChance = 1e-3;  ///< if Pc is nearer than this to 1/2, use the limits, because L^3 loses
+                                      ///< precision
 
-/// The function h(L) in the variance of the decision time, which is (a / s)^4 h(L).
+/// The factor h(L) of the variance of the decision time, which is (a / s)^4 h(L).
 double h(double L) {
   L = std::abs(L);
-  // use the Taylor series, because the closed form loses digits by cancellation here
+  // near 0, use the Taylor series, because the closed form loses digits by cancellation
   if (L < 0.02) return (1 - L * L / 10) / 24;
   const double e = std::exp(-L);
   return (1 - 2 * L * e - e * e) / (2 * L * L * L * (1 + e) * (1 + e));
 }
 
-/// The function m(L) in the mean of the decision time, which is (a / s)^2 m(L).
+/// The factor m(L) of the mean decision time, which is (a / s)^2 m(L).
 double m(double L) { return std::abs(L) < 1e-4 ? 0.25 : std::tanh(L / 2) / (2 * L); }
 
 double corrected(const EzMoments& moments) {
@@ -28,7 +29,7 @@ double corrected(const EzMoments& moments) {
   return moments.proportion_correct;
 }
 
-/// The reason why no diffusion model fits these moments; empty if one does.
+/// Returns the reason why the diffusion model does not fit these moments; empty if it does.
 std::optional<Statement> refusal(const EzMoments& moments) {
   const double p = corrected(moments);
   if (!(p > 0 && p < 1) || moments.proportion_correct > 1)
@@ -79,8 +80,9 @@ SharedEzResult shared_ez_diffusion(const std::vector<EzMoments>& conditions) {
     L.push_back(!refusal(moments) ? logit(p) : 0);
     weight.push_back(0);
     if (!usable) continue;
-    // Relative variance of the estimate from VRT. The kurtosis of the exit time adds about 9 cv^2 to that of
-    // a normal distribution; the variance of ln h follows from that of L.
+    // Relative variance of this condition's estimate of (a / s)^4. The first term is the sampling error of
+    // the variance of the times, whose kurtosis exceeds that of a normal distribution by about 9 cv^2. The
+    // second is the sampling error of ln h, from that of L.
     const double l = L.back(), cv2 = h(l) / (m(l) * m(l)), step = 1e-3;
     const double dlnh = (std::log(h(l + step)) - std::log(h(l - step))) / (2 * step);
     const double spread = (2 + 9 * cv2) / correct + dlnh * dlnh / (moments.trials * p * (1 - p));

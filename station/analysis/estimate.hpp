@@ -3,7 +3,7 @@
 
 namespace turnpoint::analysis {
 
-/// A number and its interval.
+/// An estimated number and its confidence or credible interval.
 struct Estimate {
   double value = 0;
   Interval interval;

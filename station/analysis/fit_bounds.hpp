@@ -3,13 +3,12 @@
 
 namespace turnpoint::analysis {
 
-/// Code shared by a fit and its bootstrap: counts on the function's axis, the optimiser's bounds (threshold
-/// within one range of the levels around them, rate from nearly flat to a step), and the conversion back to
-/// parameters. Levels are ascending and unique, and those without trials are removed. Throws
-/// std::invalid_argument for counts or options that make no sense.
+/// This header holds code that a fit and its bootstrap share. checked() sorts the counts by level, merges
+/// equal levels and removes levels without trials. It throws std::invalid_argument for impossible counts or
+/// options.
 std::vector<LevelCount> checked(const std::vector<LevelCount>& data, const FitOptions& options);
-/// The reason why checked counts cannot be fitted: no trials, too few, or reversed. Independent of how the
-/// levels were chosen.
+/// Returns the reason why checked counts cannot be fitted: no trials, too few, or an answer that becomes
+/// rarer as the level rises. The reason does not depend on how the levels were chosen.
 std::optional<Statement> unusable(const std::vector<LevelCount>& data, const FitOptions& options);
 AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, Scale scale);
 ThetaBounds theta_bounds(const AxisCounts& counts, const FitOptions& options);

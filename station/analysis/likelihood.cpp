@@ -8,8 +8,9 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// Solves the damped system (its lower half is used) for the free parameters by Cholesky. Fixed parameters
-/// get rows of the unit matrix and a step of 0. Returns false if the system is not positive definite.
+/// Solves the damped system for the free parameters by Cholesky decomposition. Only its lower half is read.
+/// Fixed parameters get rows of the unit matrix and a step of 0. Returns false if the system is not positive
+/// definite.
 bool solve(const std::array<std::array<double, 4>, 4>& a, const std::array<double, 4>& b,
            const std::array<bool, 4>& free, std::array<double, 4>& x) {
   Eigen::Matrix4d system = Eigen::Matrix4d::Identity();
@@ -63,7 +64,7 @@ std::array<double, 4> Likelihood::gradient_of_probability(const Theta& theta, co
                                                           double u) const {
   const double rate = std::exp(theta[1]), height = 1 - theta[3] - theta[2], from = rate * (u - theta[0]);
   const double f = core(function_, from + at.z), df = core_derivative(function_, from + at.z);
-  // On trials without a signal the function is flat, because they lie infinitely far below all levels.
+  // Without a signal, `from` is minus infinity; the slope's derivative is then 0.
   std::array<double, 4> dp{-height * df * rate, df > 0 ? height * df * from : 0,
                            -f + height * df * at.dz_dlapse, 1 - f + height * df * at.dz_dguess};
   if (guess_ == Guess::tied_to_lapse) dp[2] += dp[3], dp[3] = 0;
@@ -107,7 +108,8 @@ Likelihood::Maximum Likelihood::climb(Theta start) const {
       continue;
     }
     Theta next = theta;
-    // Limit each step to one standard deviation of the function and a factor of e in rate.
+    // Limit each step: the threshold moves at most two units of 1 / rate, the rate changes at most by a
+    // factor of e.
     step[0] = std::clamp(step[0], -2 / std::exp(theta[1]), 2 / std::exp(theta[1]));
     step[1] = std::clamp(step[1], -1.0, 1.0);
     for (int i = 0; i < 4; ++i) next[i] += step[i];
@@ -130,8 +132,9 @@ Likelihood::Maximum Likelihood::climb(Theta start) const {
 }
 
 Likelihood::Maximum Likelihood::steepest(const Maximum& found) const {
-  // If the answers jump between two levels, the likelihood is flat towards infinite slope and the climb ends
-  // anywhere on that plateau. The bound on the slope marks this case.
+  // If the answers jump between two levels, ever steeper functions fit equally well, and the climb ends at an
+  // arbitrary steep slope. Returns the steepest slope allowed in that case; callers recognise a step by this
+  // bound.
   std::vector<double> thresholds{found.theta[0]};
   for (std::size_t i = 1; i < counts_.u.size(); ++i)
     if (counts_.u[i - 1] != kNoise && counts_.u[i - 1] <= found.theta[0] && found.theta[0] <= counts_.u[i])

@@ -10,25 +10,26 @@ namespace turnpoint::analysis {
 /// Keeps logarithms finite if rounding makes a probability 0 or 1.
 constexpr double kProbabilityFloor = 1e-12;
 
-/// The optimiser's parameters: threshold on the axis, ln rate, lapse, guess. A parameter with equal bounds is
-/// fixed; a tied guess follows the lapse.
+/// The parameters that the optimiser varies: threshold on the axis, ln rate, lapse, guess. A parameter whose
+/// two bounds are equal is fixed. With Guess::tied_to_lapse, the guess equals the lapse.
 using Theta = std::array<double, 4>;
 struct ThetaBounds {
   Theta low{}, high{};
 };
 
-/// Counts by level on the axis. All replicates of a bootstrap share them except for `positive`.
+/// Numbers of trials and of positive answers by level on the axis. The replicates of a bootstrap differ only
+/// in `positive`.
 struct AxisCounts {
   std::vector<double> u, trials, positive;  ///< u is ascending; the first may be kNoise
-  /// The lowest level with a signal.
+  /// Returns the lowest level with a signal.
   double lowest() const { return u.front() == kNoise && u.size() > 1 ? u[1] : u.front(); }
 };
 
 /// The likelihood of one set of counts and its maximum.
 class Likelihood {
  public:
-  /// With an anchor, theta[0] is not the threshold but the level at which the probability is `anchor`. Counts
-  /// and bounds must outlive the object.
+  /// If an anchor is given, theta[0] is the level at which the probability is `anchor`, instead of the
+  /// threshold. Counts and bounds must outlive the object.
   Likelihood(Function function, Guess guess, const AxisCounts& counts, const ThetaBounds& bounds,
              std::optional<double> anchor = std::nullopt)
       : function_(function), guess_(guess), counts_(counts), bounds_(bounds), anchor_(anchor) {}
@@ -40,10 +41,10 @@ class Likelihood {
     Theta theta{};
     double negative_log = 0;
   };
-  /// Fisher scoring with Levenberg damping from one start, projected on the bounds: a parameter stays on its
-  /// bound as long as the gradient points outside.
+  /// Climbs from one start by Fisher scoring with Levenberg damping. A parameter that reaches a bound stays
+  /// there as long as the gradient points outside.
   Maximum climb(Theta start) const;
-  /// Searches from a grid of starts: climbs a little from each, and to the end from the best ones.
+  /// Searches from a grid of starting points and climbs from the four best.
   Maximum search() const;
 
  private:
@@ -53,7 +54,7 @@ class Likelihood {
     std::array<std::array<double, 4>, 4> information;
   };
   Local local(const Theta& theta) const;
-  /// The standard variable at theta[0], and its derivatives with respect to lapse and guess.
+  /// The value of the function's variable z at theta[0], and its derivatives with respect to lapse and guess.
   struct Anchor {
     double z = 0, dz_dlapse = 0, dz_dguess = 0;
   };

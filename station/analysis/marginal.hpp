@@ -3,7 +3,7 @@
 
 namespace turnpoint::analysis {
 
-/// Cells of equal width from low to high. A single cell may have width 0.
+/// A range divided into cells of equal width. A single cell may have width 0.
 struct Cells {
   double low = 0, high = 1;
   int count = 1;
@@ -16,13 +16,13 @@ struct Cells {
 /// A distribution with constant density within each cell.
 class Marginal {
  public:
-  /// Takes one mass per cell; their sum may be any number above 0. Throws std::invalid_argument if the number
+  /// Takes one mass per cell. The masses may have any sum above 0. Throws std::invalid_argument if the number
   /// of masses is wrong.
   Marginal(const Cells& cells, std::vector<double> mass);
 
   const Cells& cells() const { return cells_; }
   const std::vector<double>& mass() const { return mass_; }
-  /// p in [0, 1]; 0 and 1 give the outer ends of the cells.
+  /// Returns the quantile for p in [0, 1]; p = 0 and p = 1 give the outer ends of the cells.
   double quantile(double p) const;
 
  private:

@@ -9,13 +9,14 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// Cells whose profile likelihood is this far below the maximum are left out: 4.2 standard deviations.
+/// A cell is left out if its profile likelihood is this far below the maximum (4.2 standard deviations).
 constexpr double kNegligible_nats = 9;
-/// Half the 95 % point of chi squared with one degree of freedom.
+/// An end of the prior is excluded beyond this distance from the maximum: half the 95 % point of chi squared
+/// with one degree of freedom.
 constexpr double kNotExcluded_nats = 1.92;
 constexpr int kMostRefinements = 16;
-/// Number of cells for threshold, ln rate, lapse and guess. A fitted guess multiplies the size of the grid,
-/// so the others get fewer cells.
+/// Number of cells for threshold, ln rate, lapse and guess. With a fitted guess the other parameters get
+/// fewer cells, because each additional axis multiplies the size of the grid.
 constexpr std::array<int, kParameters> kCoarse{24, 16, 3, 8}, kFine{96, 36, 4, 1},
     kFineWithGuess{64, 24, 3, 10};
 constexpr int kProbabilityCells = 500, kMostCrossingCells = 4096;
@@ -77,8 +78,8 @@ void PosteriorGrid::evaluate(const Box& box) {
     }
 }
 
-/// Adds the log-likelihood of the data for each pair of asymptotes, computed from the function's core at each
-/// level.
+/// Adds up the log-likelihood of the data for each pair of asymptotes. `between` holds the value of the
+/// function's core at each level.
 void PosteriorGrid::add_log_likelihoods(const std::vector<double>& between) {
   for (const auto& ends : ends_) {
     double sum = 0;
@@ -93,8 +94,9 @@ void PosteriorGrid::add_log_likelihoods(const std::vector<double>& between) {
   }
 }
 
-/// The box around the cells that matter, one cell wider on each side if there is one, but at least half as
-/// wide as this one: if cells are far wider than the posterior, the best centre may be the wrong one.
+/// Returns the box for the next, finer grid: the cells that are not negligible, and one more cell on each
+/// side. The box keeps at least half the width of the previous one: if cells are far wider than the
+/// posterior, the cell with the highest likelihood may not contain the maximum.
 Box PosteriorGrid::narrowed() const {
   Box box = box_;
   for (std::size_t p = 0; p < kParameters; ++p) {
@@ -119,7 +121,7 @@ Box PosteriorGrid::narrowed() const {
   return box;
 }
 
-/// Prior density of the parameter, relative to the flat part of the prior, where it is 1.
+/// Returns the prior density of a cell, relative to the flat part of the prior.
 double PosteriorGrid::prior_density(Parameter parameter, int cell, double falling_share) const {
   const double falling = falling_share * extent(prior_[parameter]), at = box_[parameter].centre(cell);
   const double inside = std::min(at - prior_[parameter].low, prior_[parameter].high - at);
@@ -150,7 +152,8 @@ Marginal PosteriorGrid::marginal(Parameter parameter, const std::vector<double>&
 }
 
 std::optional<Marginal> PosteriorGrid::marginal_of_crossing(double p) const {
-  // Distance of the crossing from the threshold, for each rate and pair of asymptotes.
+  // For each rate and pair of asymptotes: the distance from the threshold to the point where the probability
+  // is p.
   std::vector<std::optional<double>> shifts;
   double least = 1e300, most = -1e300, held = 0;
   for (int r = 0; r < box_[at_rate].count; ++r)
@@ -169,7 +172,7 @@ std::optional<Marginal> PosteriorGrid::marginal_of_crossing(double p) const {
   for (std::size_t i = 0; i < weight_.size(); ++i) {
     const auto& shift = shifts[i % shifts.size()];
     if (!shift) continue;
-    // Divide the weight between the two nearest cells, so that its mean does not change.
+    // Divide the weight between the two nearest cells in such a way that the mean level does not change.
     const double level = thresholds.centre(static_cast<int>(i / shifts.size())) + *shift;
     const double at = std::max(0.0, (level - cells.low) / cells.width() - 0.5);
     const auto cell = std::min(static_cast<std::size_t>(at), mass.size() - 2);

@@ -8,34 +8,37 @@
 
 namespace turnpoint::analysis {
 
-/// Axes of the grid, in the order of Theta: threshold on the function's axis, ln rate, lapse, guess.
+/// The axes of the grid, in the order of Theta. The threshold is a position on the function's axis; the rate
+/// is given by its logarithm.
 enum Parameter { at_threshold, at_rate, at_lapse, at_guess };
 constexpr std::size_t kParameters = 4;
 using Box = std::array<Cells, kParameters>;
 
-/// The posterior of counts on a grid. The prior is uniform on each axis. For threshold and rate, however, the
-/// density falls linearly to 0 over a share of the range at both ends.
+/// The posterior of a psychometric function, computed on a grid. The prior is uniform for lapse and guess.
+/// For threshold and rate it is flat in the middle and falls linearly to 0 over a share of the range at
+/// either end.
 class PosteriorGrid {
  public:
-  /// Evaluates coarse grids, each restricted to the part of the previous one that matters, until a grid fills
-  /// its box; then evaluates a fine grid. A parameter whose cells have no width is fixed. With
-  /// Guess::tied_to_lapse the guess follows the lapse, whatever its cells are. `counts` has at least one
-  /// level.
+  /// Evaluates coarse grids first, each on the part of the previous grid that has noticeable probability,
+  /// until that part hardly shrinks. Then evaluates a fine grid. A parameter whose cells have no width is
+  /// fixed. With Guess::tied_to_lapse, the guess equals the lapse and its cells are ignored. `counts` must
+  /// have at least one level.
   PosteriorGrid(Function function, Guess guess, const AxisCounts& counts, const Box& prior,
                 double falling_share);
 
   Marginal marginal(Parameter parameter) const;
-  /// Marginal of the axis position at which the probability is `p`. Empty if no such position exists for most
-  /// of the posterior.
+  /// Returns the marginal distribution of the position on the axis at which the probability is `p`. Empty if
+  /// no such position exists for most of the posterior.
   std::optional<Marginal> marginal_of_crossing(double p) const;
-  /// Marginal of the probability at a position on the axis.
+  /// Returns the marginal distribution of the probability at a position on the axis.
   Marginal marginal_of_probability(double u) const;
 
-  /// True if the data exclude neither end of the prior; an interval would then merely repeat the prior. An
-  /// end is not excluded if, under a flat prior, the density falls there by less than the 95 % likelihood
-  /// ratio.
+  /// True if the data exclude neither end of the prior: an interval would then merely repeat the prior. An
+  /// end is not excluded if, under a flat prior, the likelihood ratio between the maximum and that end stays
+  /// below its 95 % limit.
   bool undetermined(Parameter parameter) const { return open_low(parameter) && open_high(parameter); }
-  /// True if the data do not exclude that end: there the prior limits the parameter, not the data.
+  /// True if the data do not exclude the low or the high end. There the parameter is limited by the prior,
+  /// not by the data.
   bool open_low(Parameter parameter) const;
   bool open_high(Parameter parameter) const;
 
@@ -59,7 +62,7 @@ class PosteriorGrid {
   Box prior_, box_;
   std::vector<Asymptotes> ends_;        ///< indexed by [lapse][guess]
   std::vector<double> log_likelihood_;  ///< indexed by [threshold][rate][lapse][guess]
-  /// same index: posterior weight with the prior, and with a flat prior
+  /// posterior weight of each cell, with the prior and with a flat prior; same index as log_likelihood_
   std::vector<double> weight_, flat_;
 };
 

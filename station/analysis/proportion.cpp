@@ -41,7 +41,7 @@ Interval wilson(int successes, int trials, double confidence) {
   const double z = normal_quantile(0.5 + confidence / 2), z2 = z * z;
   const double centre = (p + z2 / (2 * n)) / (1 + z2 / n);
   const double half = z / (1 + z2 / n) * std::sqrt(p * (1 - p) / n + z2 / (4 * n * n));
-  // With 0 or n successes one limit is exactly 0 or 1; rounding must not move it outside [0, 1].
+  // With 0 or n successes, one end is exactly 0 or 1. Set it, because rounding could move it outside [0, 1].
   return {successes == 0 ? 0 : centre - half, successes == trials ? 1 : centre + half, confidence};
 }
 

@@ -13,7 +13,7 @@ double normal_quantile(double p);
 /// a confidence in (0, 1); otherwise throws std::invalid_argument.
 Interval wilson(int successes, int trials, double confidence = 0.95);
 
-/// The interval of Clopper & Pearson (1934), whose coverage is never below the stated one. Arguments as for
+/// The interval of Clopper & Pearson (1934). Its coverage is never below `confidence`. Arguments as for
 /// wilson().
 Interval clopper_pearson(int successes, int trials, double confidence = 0.95);
 

@@ -13,13 +13,14 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// A quantity that gets an interval: its entry in theta, and the meaning of theta[0] for it.
+/// A quantity that gets an interval: its index in theta and, for a crossing level, the probability at
+/// theta[0].
 struct Quantity {
   int parameter;
   std::optional<double> anchor;
 };
 
-/// Everything needed to repeat a fit on resampled counts.
+/// Holds everything that is needed to repeat a fit on resampled counts.
 struct Replicator {
   FitOptions options;
   AxisCounts counts;
@@ -46,7 +47,8 @@ struct Replicator {
   Likelihood::Maximum fit(const AxisCounts& drawn) const {
     const auto of = likelihood(drawn, bounds);
     const auto first = of.climb(best);
-    // A second start in the middle of the box guards against a local maximum on the lapse bound.
+    // Climb also from the middle of the box, because the first climb can end in a local maximum on the lapse
+    // bound.
     Theta other = best;
     other[0] = (bounds.low[0] + bounds.high[0]) / 2;
     other[2] = (bounds.low[2] + bounds.high[2]) / 2;
@@ -54,7 +56,7 @@ struct Replicator {
     return second.negative_log < first.negative_log - 1e-9 ? second : first;
   }
 
-  /// The smallest negative log-likelihood with one quantity fixed at a value, climbing from `start`.
+  /// Returns the maximum of the likelihood with one quantity fixed at a value, climbing from `start`.
   Likelihood::Maximum held(const AxisCounts& of, const Quantity& quantity, double value, Theta start) const {
     ThetaBounds narrowed = bounds;
     narrowed.low[quantity.parameter] = narrowed.high[quantity.parameter] = value;
@@ -88,14 +90,16 @@ Replicator replicator(const PsychometricFit& fit) {
   return result;
 }
 
-/// The point where the profile reaches `critical` on one side of the estimate; the bound if it never does.
+/// Returns the point on one side of the estimate where the likelihood ratio reaches `critical`, or the bound
+/// if the ratio never does.
 double profile_end(const Replicator& base, const Quantity& quantity, Theta start, double bound,
                    double best_cost, double critical) {
   double inside = start[quantity.parameter], outside = bound;
   auto at_bound = base.held(base.counts, quantity, bound, start);
   if (2 * (at_bound.negative_log - best_cost) <= critical) return bound;
   for (int i = 0; i < 40 && std::abs(outside - inside) > 1e-5 * (1 + std::abs(inside)); ++i) {
-    // Most of the box is far away, so the first steps move towards the estimate faster than bisection.
+    // The bound is usually far away. The first steps cut off three quarters of the distance, because the end
+    // of the interval is nearer to the estimate.
     const double middle = i < 3 ? inside + (outside - inside) / 4 : (inside + outside) / 2;
     const auto found = base.held(base.counts, quantity, middle, start);
     if (2 * (found.negative_log - best_cost) <= critical) {
@@ -110,8 +114,8 @@ double profile_end(const Replicator& base, const Quantity& quantity, Theta start
 
 ParameterInterval profile(const Replicator& base, const Quantity& quantity, const Theta& start,
                           double best_cost, std::vector<double> ratios, double confidence) {
-  // If the fitted slope is too steep, its replicates hardly vary. The chi-square value is therefore a lower
-  // limit.
+  // The chi-square value is a lower limit of the critical value: if the fitted slope is too steep, the
+  // replicates hardly vary and would give a value that is too small.
   const double z = normal_quantile(0.5 + confidence / 2);
   const double critical = std::max(quantile(std::move(ratios), confidence), z * z);
   const double low = base.bounds.low[quantity.parameter], high = base.bounds.high[quantity.parameter];
@@ -131,7 +135,7 @@ ParameterInterval percentile(std::vector<double> values, double confidence, doub
   return result;
 }
 
-/// Applies a monotone map to both ends. A decreasing map swaps them.
+/// Applies a monotone function to both ends of an interval. A decreasing function swaps the ends.
 template <class Map>
 ParameterInterval mapped(const ParameterInterval& from, Map map) {
   auto result = from;
@@ -159,8 +163,8 @@ void add_band(PsychometricIntervals& result, const Replicator& base, const std::
   }
 }
 
-/// The replicates of one fit: their estimates, how many deviances exceed the fit's, and for each
-/// quantity the likelihood ratio of the fitted value.
+/// The replicates of one fit: their parameters, the number of replicates whose deviance is at least that of
+/// the fit, and for each quantity the likelihood ratio of the fitted value.
 struct Replicates {
   std::vector<Theta> thetas;
   std::vector<std::vector<double>> ratios;

@@ -34,7 +34,7 @@ void check(const std::vector<LevelCount>& data, const FitOptions& options) {
                                 ": it must be at least 0 and below 1");
 }
 
-/// Sorts the levels, merges equal ones and drops those without trials.
+/// Sorts the levels, merges equal levels and removes levels without trials.
 std::vector<LevelCount> merged(const std::vector<LevelCount>& data) {
   std::map<double, LevelCount> by_level;
   for (const auto& point : data) {
@@ -49,10 +49,10 @@ std::vector<LevelCount> merged(const std::vector<LevelCount>& data) {
   return result;
 }
 
-/// The z statistic of a linear trend in the proportion of positive answers along the axis (Cochran-Armitage);
-/// 0 if all answers or all levels are the same.
+/// Returns the z statistic of a linear trend in the proportion of positive answers along the axis
+/// (Cochran-Armitage). Returns 0 if all answers or all levels are the same.
 double trend(AxisCounts counts) {
-  // For this test, place noise trials below the lowest signal by the range of the signals.
+  // For this test, give noise trials a finite level: below the lowest signal, by the range of the signals.
   if (counts.u.front() == kNoise)
     counts.u.front() = counts.lowest() - std::max(counts.u.back() - counts.lowest(), 1.0);
   double n = 0, k = 0, sum_u = 0;
@@ -71,7 +71,7 @@ double trend(AxisCounts counts) {
   return variance > 0 ? covariance / std::sqrt(variance) : 0;
 }
 
-/// The reason why no maximum can be found; empty if one can.
+/// Returns the reason why the likelihood has no maximum within the bounds; empty if it has one.
 std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitOptions& options) {
   int trials = 0, positive = 0;
   for (const auto& point : data) {
@@ -112,7 +112,7 @@ double deviance(const PsychometricFit& fit, const Likelihood& likelihood, const 
 void note_bounds(PsychometricFit& fit, const Theta& theta, const ThetaBounds& bounds) {
   const auto at = [](double value, double bound) { return std::abs(value - bound) < 1e-6; };
   const bool rate_low = at(theta[1], bounds.low[1]), rate_high = at(theta[1], bounds.high[1]);
-  // for this function the slope parameter is a spread
+  // the slope of a normal function is a spread, which falls as the rate rises
   const bool falling = fit.options.function == Function::normal;
   fit.at_bound.slope_low = falling ? rate_high : rate_low;
   fit.at_bound.slope_high = falling ? rate_low : rate_high;

@@ -12,11 +12,13 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// Flattest and steepest rate of the prior, in units of 1 / range of the levels.
+/// Rates at the ends of the prior's flat part, from flattest to steepest, in units of 1 / range of the
+/// levels.
 constexpr double kShallow = 1.5, kSteep = 24;
-/// An estimate within this share of the prior's range, at either end, gets a statement in the report.
+/// An estimate in the outer quarter of the prior's range, at either end, gets a statement in the report.
 constexpr double kOuter = 0.25;
-/// The falling part of a prior at either end, as a share of its flat part and of the whole range.
+/// Width of the prior's falling part at either end, as a share of the flat part (kBeyond) and of the whole
+/// range (kFallingShare).
 constexpr double kBeyond = 0.25, kFallingShare = kBeyond / (1 + 2 * kBeyond);
 
 void check(const Prior& prior) {
@@ -46,7 +48,7 @@ Box box_of(const FitOptions& options, const Prior& prior) {
   return box;
 }
 
-/// The data and settings from which a fit and its intervals are made.
+/// Reads estimates, intervals and statements from the posterior grid of one fit.
 class Reading {
  public:
   Reading(PosteriorFit& into, const Prior& prior)

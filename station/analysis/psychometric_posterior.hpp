@@ -10,17 +10,19 @@ namespace turnpoint::analysis {
 /// Lowest and highest value, in the unit of the quantity.
 using Range = std::pair<double, double>;
 
-/// The prior for a design that can present a range of levels. Its density is flat for thresholds within the
-/// range. For slopes it is flat from a function that needs two thirds of the range for a change of z by one
-/// to a function that needs a 24th of it (Weibull in dB over 30 dB: 0.43 to 7), or further if the protocol
-/// allows other `slopes`. Beyond either end it falls to 0 over a quarter of that width, on the axis for the
-/// threshold and in the logarithm for the slope. The prior is wider than what is plausible, because central
-/// intervals miss more often near an end of their prior. It falls at the ends, because a few shallow answers
-/// would otherwise draw the estimates far outside. Throws std::invalid_argument unless low < high, and on a
-/// log10 scale above 0.
+/// Returns the prior for a design that can present a range of levels.
+/// - Threshold: the density is flat within the range of levels.
+/// - Slope: the density of the logarithm is flat between two functions: the flattest needs two thirds of the
+///   range of levels for a change of z by one, the steepest a 24th (Weibull in dB over 30 dB: slopes of 0.43
+///   to 7). If the protocol allows further `slopes`, the flat part includes them.
+/// - Beyond either end of the flat part, the density falls to 0 over a quarter of the flat width, on the axis
+///   for the threshold and in the logarithm for the slope.
+/// The prior is wider than plausible values, because central intervals miss more often near an end of their
+/// prior. It falls to 0 at the ends because otherwise a few shallow answers would draw the estimates far
+/// outside. Throws std::invalid_argument unless low < high and, on a log10 scale, low > 0.
 Prior prior_around(Function function, Scale scale, const Range& levels, const std::optional<Range>& slopes);
 
-/// The flat part of a prior, as a prior.
+/// Returns the flat part of a prior, without the falling ends.
 Prior flat_part(Function function, Scale scale, const Prior& prior);
 
 struct PosteriorFit {
@@ -28,17 +30,21 @@ struct PosteriorFit {
   PsychometricIntervals intervals;
 };
 
-/// Estimates and central 95 % credible intervals from the posterior on a grid of threshold, slope, lapse and,
-/// if it is fitted, guess. Lapse and guess are uniform within the bounds of the options.
-/// Use this if a procedure chose the levels by the answers. The likelihood does not depend on how levels were
-/// chosen or when the session stopped (Berger & Wolpert 1988), while a bootstrap at fixed levels gives
+/// Computes estimates and central 95 % credible intervals from the posterior on a grid of threshold, slope,
+/// lapse and (if fitted) guess. Lapse and guess are uniform within the bounds of the options.
+///
+/// Use this if a procedure chose the levels from the answers. The likelihood does not depend on how levels
+/// were chosen or when the session stopped (Berger & Wolpert 1988), while a bootstrap at fixed levels gives
 /// intervals that are too short.
-/// An end of an interval `touches` if the data do not exclude the prior's end. A quantity that the data limit
-/// at neither end has no interval but a statement. If true values lie in the middle half of the prior's
-/// ranges, the intervals have their stated coverage (tests/coverage/README.md); an estimate outside gets a
-/// statement. Reversed data and fewer trials than FitOptions::minimum_trials are refused.
+///
+/// An end of an interval is marked as touching if the data do not exclude that end of the prior. If the data
+/// limit a quantity at neither end, a statement replaces its interval. The intervals have their stated
+/// coverage if the true values lie in the middle half of the prior's ranges (tests/coverage/README.md); an
+/// estimate outside gets a statement. If the answers become rarer as the level rises, or there are fewer
+/// trials than FitOptions::minimum_trials, a statement replaces the fit.
+///
 /// Takes about 4 ms for 200 trials on 30 levels, and 10 ms with a band. Throws std::invalid_argument for
-/// counts, options or a prior that make no sense.
+/// impossible counts, options or priors.
 PosteriorFit fit_posterior(const std::vector<LevelCount>& data, const FitOptions& options, const Prior& prior,
                            int band_points);
 

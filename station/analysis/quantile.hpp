@@ -5,14 +5,14 @@
 
 namespace turnpoint::analysis {
 
-/// Linear interpolation between order statistics (type 7 of Hyndman & Fan 1996). `sorted` must be ascending
-/// and not empty, and p in [0, 1]; otherwise throws std::invalid_argument.
+/// Returns a quantile by linear interpolation between order statistics (type 7 of Hyndman & Fan 1996).
+/// `sorted` must be ascending and not empty, and p in [0, 1]; otherwise throws std::invalid_argument.
 double sorted_quantile(const std::vector<double>& sorted, double p);
 
-/// The same for values in any order.
+/// Like sorted_quantile(), for values in any order.
 double quantile(std::vector<double> values, double p);
 
-/// The central interval of bootstrap replicates.
+/// Returns the central percentile interval of bootstrap replicates.
 Interval percentile_interval(std::vector<double> replicates, double confidence = 0.95);
 
 double mean(const std::vector<double>& values);      ///< needs at least one value

@@ -28,8 +28,8 @@ double student(double degrees) { return boost::math::quantile(boost::math::stude
 
 Estimate around(double value, double half) { return {value, {value - half, value + half, 0.95}}; }
 
-/// Least-squares slope of settings over starts; empty if all starts are equal or no degrees of freedom are
-/// left.
+/// Returns the least-squares slope of the settings over their starting positions. Empty if all starts are
+/// equal or if there are fewer than 5 settings.
 std::optional<Estimate> slope_on_starts(const Settings& s) {
   const double n = static_cast<double>(s.values.size());
   const double start = mean_of(s.starts), mean = mean_of(s.values), spread = squares_about(s.starts, start);

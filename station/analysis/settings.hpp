@@ -17,14 +17,15 @@ struct Settings {
   std::vector<double> starts, values;  ///< in order of presentation, in the unit of the level
   std::optional<Estimate> mean;        ///< 95 % interval by Student's t; empty with fewer than 3 settings
   std::optional<Estimate> sd;          ///< 95 % interval by chi squared; empty with fewer than 3 settings
-  /// how much a setting depends on its start: 0 not at all, 1 the slider was not moved
+  /// slope of the settings over the slider's starting positions: 0 if the start has no influence, 1 if the
+  /// slider was not moved
   std::optional<Estimate> start_slope;
   std::vector<Statement> statements;
 };
 
-/// The settings of answered experimental trials, one entry for each procedure and condition. The given
-/// conditions come first, in this order; other conditions, and the procedures, follow in the order of first
-/// occurrence.
+/// Returns the settings of answered experimental trials, one entry for each procedure and condition.
+/// Conditions in `order` come first. Other conditions, and the procedures, follow in the order in which they
+/// first occur.
 std::vector<Settings> settings(const std::vector<TrialRecord>& trials,
                                const std::vector<std::string>& order = {});
 

@@ -53,7 +53,7 @@ YesNoCounts operator+(const YesNoCounts& a, const YesNoCounts& b) {
           a.correct_rejections + b.correct_rejections};
 }
 
-/// Variance of z of a log-linear proportion from this number of trials.
+/// Returns the variance of z(p) for a log-linear proportion p from this number of trials.
 double variance_of_z(double p, int trials) {
   const double density = normal_density(normal_quantile(p));
   return p * (1 - p) / (trials + 1) / (density * density);

@@ -8,46 +8,51 @@
 
 namespace turnpoint::analysis {
 
-/// Sensitivity in two-alternative forced choice of interval or place: sqrt(2) z(Pc) (Green & Swets 1966).
-/// Empty for a proportion of 0 or 1, where it is not finite; use the log-linear counts there.
+/// Sensitivity in two-alternative forced choice between intervals or places: sqrt(2) z(Pc) (Green & Swets
+/// 1966). Empty for a proportion of 0 or 1, where the sensitivity would be infinite; correct the proportion
+/// with log_linear_proportion() first.
 std::optional<double> d_prime_forced_choice(double proportion_correct);
 
-/// Answers of a yes/no task, or of a two-answer task with one answer counted as "yes".
+/// Counts the answers of a yes/no task, or of a two-answer task in which one answer counts as "yes".
 struct YesNoCounts {
   int hits = 0, misses = 0, false_alarms = 0, correct_rejections = 0;
 };
 
-/// Sensitivity d' = z(H) - z(F) and criterion c = -(z(H) + z(F)) / 2 (positive if "yes" is avoided).
+/// Sensitivity d' = z(H) - z(F) and criterion c = -(z(H) + z(F)) / 2, from hit rate H and false-alarm rate F.
+/// c is positive if "yes" is avoided.
 struct YesNo {
   double d_prime = 0, criterion = 0;
   double hit_rate = 0, false_alarm_rate = 0;  ///< with the log-linear correction
 };
 
-/// Always applies the log-linear correction (Hautus 1995), 0.5 added to each count and 1 to each total, so
-/// that the estimate is finite for perfect rates too. Empty if one of the two stimuli was never presented.
+/// Computes sensitivity and criterion. The log-linear correction (Hautus 1995) is always applied: it adds 0.5
+/// to each count and 1 to each total, so that perfect rates also give finite estimates. Empty if there were
+/// no signal trials or no noise trials.
 std::optional<YesNo> yes_no(const YesNoCounts& counts);
 
-/// How sensitivity is measured from answers of which one is counted as "yes".
+/// Which trials count as signal and which as noise, when one answer is counted as "yes".
 enum class Detecting {
-  presence,  ///< trials without a signal are the noise for every level (yes/no)
-  sides,     ///< at each |level| one side is the signal, the other the noise (left/right)
-  /// like `sides`, by place or interval; d' is divided by sqrt(2) (Macmillan & Creelman 2005)
+  presence,  ///< yes/no: trials without a signal are the noise, for every level
+  sides,     ///< left/right: at each |level|, one side is the signal and the other is the noise
+  /// like `sides`, for a choice between places or intervals; d' is divided by sqrt(2) (Macmillan & Creelman
+  /// 2005)
   forced_choice,
 };
 
-/// The yes/no analysis of one condition at one level, or at all of them.
+/// Sensitivity and criterion in one condition, at one level or over all levels.
 struct Detection {
   std::string condition;
   std::optional<double> level;  ///< |level|; empty for all levels together
   YesNoCounts counts;
-  /// Empty if there was no signal or no noise. 95 % intervals by the variance of Gourevitch & Galanter (1967)
-  /// at the corrected rates.
+  /// Empty if there were no signal trials or no noise trials. The 95 % intervals use the variance of
+  /// Gourevitch & Galanter (1967) at the corrected rates.
   std::optional<Estimate> d_prime, criterion;
 };
 
-/// Analyses answered experimental trials that have a right answer. For each condition, in this order, it
-/// returns the levels ascending, then all levels together. With more than `most_levels` levels, as after an
-/// adaptive procedure, it returns only all levels together. `positive` is the choice that means "yes".
+/// Analyses answered experimental trials that have a right answer. Conditions come in this order. For each
+/// condition, the levels come first, ascending, and then all levels together. With more than `most_levels`
+/// levels, as after an adaptive procedure, only all levels together are returned. `positive` is the choice
+/// that means "yes".
 std::vector<Detection> detect(const std::vector<TrialRecord>& trials, const std::vector<std::string>& order,
                               Detecting detecting, int positive, std::size_t most_levels = 8);
 
@@ -62,12 +67,12 @@ struct Roc {
   Estimate area;
 };
 
-/// `noise` and `signal` are numbers of trials by rating, from the surest no to the surest yes. Empty if one
-/// of them has no trials. Throws std::invalid_argument for fewer than 2 ratings, lists of different length,
-/// or negative counts.
+/// Computes the curve from the numbers of noise and signal trials by rating, from the surest "no" to the
+/// surest "yes". Empty if there are no noise trials or no signal trials. Throws std::invalid_argument for
+/// fewer than 2 ratings, lists of different length, or negative counts.
 std::optional<Roc> roc(const std::vector<int>& noise, const std::vector<int>& signal);
 
-/// Proportion correct with the log-linear correction, (k + 0.5) / (n + 1); empty for n = 0.
+/// Returns the proportion correct with the log-linear correction, (k + 0.5) / (n + 1); empty for n = 0.
 std::optional<double> log_linear_proportion(int successes, int trials);
 
 }  // namespace turnpoint::analysis

@@ -6,16 +6,19 @@
 
 namespace turnpoint::analysis {
 
-/// Linear integrated speed-accuracy score, s (Vandierendonck 2017): RTc + PE S_RT / S_PE. If the whole data
-/// set contains no error (S_PE = 0), it is RTc.
+/// Linear integrated speed-accuracy score in s (Vandierendonck 2017): RTc + PE S_RT / S_PE, with the mean
+/// correct time RTc, the proportion of errors PE, and the standard deviations S_RT of times and S_PE of
+/// errors. Without any error (S_PE = 0), the score is RTc.
 double lisas(double mean_correct_s, double proportion_error, double sd_time_s, double sd_error);
 
-/// Inverse efficiency score, s (Townsend & Ashby 1978): RTc / Pc; empty for Pc = 0.
+/// Inverse efficiency score in s (Townsend & Ashby 1978): the mean correct time divided by the proportion
+/// correct. Empty for a proportion of 0.
 std::optional<double> inverse_efficiency(double mean_correct_s, double proportion_correct);
 
-/// Balanced integration score (Liesefeld & Janczyk 2019), one per cell: z(Pc) - z(RTc) with mean and standard
-/// deviation (divisor n - 1) over the given cells. Empty with fewer than three cells, or if accuracy or time
-/// is the same in all of them.
+/// Balanced integration score of each cell (Liesefeld & Janczyk 2019): z(Pc) - z(RTc), the z scores of its
+/// proportion correct and of its mean correct time. Mean and standard deviation (divisor n - 1) are those of
+/// the given cells. Empty with fewer than three cells, or if all cells have the same accuracy or the same
+/// time.
 std::optional<std::vector<double>> balanced_integration(const std::vector<double>& proportion_correct,
                                                         const std::vector<double>& mean_correct_s);
 
@@ -25,17 +28,19 @@ struct CafBin {
   int trials = 0, correct = 0;
 };
 
-/// Accuracy as a function of response time, in `bins` (4 to 6) bins of equal counts; empty with fewer than 5
-/// scored trials per bin. `times_s` and `correct` are parallel.
+/// Returns accuracy as a function of response time, in `bins` (4 to 6) bins with equal numbers of trials.
+/// Empty with fewer than 5 scored trials per bin. Element i of `times_s` and of `correct` belong to the same
+/// trial.
 std::vector<CafBin> conditional_accuracy(const std::vector<double>& times_s, const std::vector<bool>& correct,
                                          int bins = 5);
 
 struct ResponseTimes {
   int count = 0;
-  double mean_s = 0, sd_s = 0, median_s = 0, mad_s = 0;  ///< mad: median absolute deviation, unscaled
+  double mean_s = 0, sd_s = 0, median_s = 0, mad_s = 0;  ///< mad: median absolute deviation, without the
+                                                         ///< factor 1.4826
   std::vector<double> deciles_s;                         ///< deciles from 10 % to 90 %
 };
-/// empty if there are no times
+/// Summarises response times; empty if there are none.
 std::optional<ResponseTimes> describe_times(const std::vector<double>& times_s);
 
 /// A rule that decides which response times an analysis keeps.
@@ -44,8 +49,8 @@ struct TimeExclusion {
   std::optional<double> mad;  ///< excludes times further from the median than this multiple of 1.4826 MAD
 };
 
-/// True for each time that is kept. The median is taken over the times not below `below_s`. If the MAD is 0,
-/// it excludes nothing.
+/// Returns true for each time that is kept. The median is that of all times of at least `below_s`. If the MAD
+/// is 0, it excludes no trial.
 std::vector<bool> keep_times(const std::vector<double>& times_s, const TimeExclusion& rule);
 
 }  // namespace turnpoint::analysis

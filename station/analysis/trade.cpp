@@ -20,7 +20,7 @@ struct Scored {
 };
 using Cell = std::vector<Scored>;
 
-/// The included trials, by instruction and difficulty.
+/// The included trials of one condition, by difficulty.
 struct Group {
   std::vector<double> difficulty;
   std::vector<Cell> cells;
@@ -61,8 +61,8 @@ Cell pooled(const Group& group) {
   return all;
 }
 
-/// Adds the BIS of each group: scores are standardised over all cells, then averaged over the cells of the
-/// group.
+/// Computes the BIS of each condition: standardises the scores over all cells, then averages over the
+/// condition's cells.
 void add_balanced(const std::vector<Group>& groups, std::vector<Measures>& result) {
   if (groups.size() < 2) return;
   std::vector<double> proportion, time;
@@ -131,7 +131,7 @@ std::optional<Estimate> estimate(const std::optional<double>& value, std::vector
   return Estimate{*value, percentile_interval(std::move(replicates), options.confidence)};
 }
 
-/// Fills in the results of one instruction that need no bootstrap. Also returns its trials by difficulty.
+/// Fills in the results of one condition that need no bootstrap. Returns its trials by difficulty.
 Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& options,
               InstructionResult& result) {
   std::vector<const TrialRecord*> scored;
@@ -224,7 +224,8 @@ void set_estimates(InstructionResult& result, const Group& group, const Measures
   }
 }
 
-/// Interval of `b - a` from the intervals of independent a and b (MOVER; Donner & Zou 2002).
+/// Returns the interval of `b - a` from the intervals of two independent estimates (MOVER; Donner & Zou
+/// 2002).
 Interval difference_interval(const Estimate& a, const Estimate& b) {
   const double gap = b.value - a.value;
   return {gap - std::hypot(b.value - b.interval.low, a.interval.high - a.value),
@@ -242,7 +243,7 @@ constexpr MeasureName kNames[measures] = {{"proportion correct", "proportion"},
                                           {"inverse efficiency", "s"},
                                           {"BIS", "SD"}};
 
-/// The measures of each condition in the session, and in each of its replicates.
+/// The measures of each condition, in the session itself and in each bootstrap replicate of it.
 struct Sessions {
   std::vector<Measures> values;
   std::vector<std::vector<Measures>> replicates;

@@ -17,12 +17,12 @@ struct DifficultyCell {
   double proportion_correct = 0;
   Interval accuracy;                     ///< Wilson interval
   std::optional<double> mean_correct_s;  ///< empty if no answer was correct
-  std::optional<double> drift;           ///< from the shared fit
+  std::optional<double> drift;           ///< from the diffusion fit that all difficulties share
 };
 
-/// The results of one condition, which is an instruction or whatever else TrialRecord::instruction contains.
-/// Accuracy and times cover the answered experimental trials that the time rule keeps. Scores that cannot be
-/// computed are empty.
+/// The results of one condition: an instruction, or whatever else TrialRecord::instruction contains. Accuracy
+/// and times are those of answered experimental trials that the exclusion rule keeps. A score that cannot be
+/// computed is empty.
 struct InstructionResult {
   std::string instruction;
   int presented = 0, answered = 0, timeouts = 0, anticipations = 0, excluded = 0, correct = 0;
@@ -44,14 +44,16 @@ struct Difference {
 };
 
 struct Trade {
-  std::vector<InstructionResult> instructions;  ///< in the order of the options
-  /// for all pairs, with the first before the second in that order
+  std::vector<InstructionResult> instructions;  ///< one for each condition, in the order of
+                                                ///< TradeOptions::order
+  /// one for each pair of conditions; the earlier condition is `first`
   std::vector<Difference> differences;
   std::vector<Statement> statements;
 };
 
 struct TradeOptions {
-  std::vector<std::string> order;  ///< order of conditions; others follow in the order of first occurrence
+  std::vector<std::string> order;  ///< order of conditions; conditions not listed follow in the order in
+                                   ///< which they first occur
   TimeExclusion exclusion;
   int caf_bins = 5;
   int replicates = 1000;
@@ -59,12 +61,13 @@ struct TradeOptions {
   std::uint64_t seed = 1;
 };
 
-/// Speed and accuracy by instruction. The diffusion model is fitted within equal difficulty, with shared
-/// boundary and Ter. Intervals are percentiles of a bootstrap that resamples trials within instruction and
-/// difficulty. Only the boundary's interval is different: it is normal in the logarithm, with the standard
-/// deviation of shared_ez_diffusion(). If more than 5 % of the replicates cannot be fitted, there is neither
-/// an interval nor a number. LISAS uses the standard deviations of all trials of the session, BIS those over
-/// its cells. A single condition has no BIS, because the scores of its cells always average 0.
+/// Analyses speed and accuracy by condition. The diffusion model is fitted to the difficulties of a
+/// condition, with shared boundary and Ter. Intervals are percentiles of a bootstrap that resamples trials
+/// within condition and difficulty. The boundary's interval is different: it is normal in the logarithm, with
+/// the standard deviation of shared_ez_diffusion(). If more than 5 % of the replicates cannot be fitted, both
+/// the number and its interval are empty. LISAS uses the standard deviations over all trials of the session,
+/// BIS those over the session's cells. A single condition has no BIS, because the scores of its cells always
+/// average 0.
 Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options);
 
 }  // namespace turnpoint::analysis

@@ -18,25 +18,26 @@ struct TrialRecord {
   std::string block;
   TrialType type = TrialType::experimental;
   std::string procedure;
-  std::optional<double> level;      ///< in the unit of the protocol's factor; signed if it has two sides
+  std::optional<double> level;      ///< in the unit of the protocol's factor; signed if it has two sides,
+                                    ///< such as left and right
   std::optional<int> right_choice;  ///< index of the correct choice; empty if there is none
   std::optional<int> response;      ///< index of the chosen answer
   std::optional<bool> correct;
-  /// final position of a slider in the unit of the level; `level` is where it began
+  /// final position of a slider in the unit of the level; `level` is its starting position
   std::optional<double> setting;
   Outcome outcome = Outcome::answered;
   std::optional<double> response_time_s;
-  /// the condition that the analysis groups trials by; "" if there is only one
+  /// the condition by which the analysis groups trials; "" if there is only one
   std::string instruction;
   std::optional<double> difficulty;  ///< the same number for trials of equal difficulty, usually |level|
 };
 
-/// The conditions of experimental trials: first those in `order`, then others in the order of first
-/// occurrence.
+/// Returns the conditions of the experimental trials: first those in `order`, then the others in the order in
+/// which they first occur.
 std::vector<std::string> conditions_of(const std::vector<TrialRecord>& trials,
                                        const std::vector<std::string>& order);
 
-/// A remark that must be shown with a number or instead of it: a stable code and a sentence for people.
+/// A remark to be shown with a number or in its place: a stable code and a sentence for people.
 struct Statement {
   std::string code;
   std::string text;

@@ -48,7 +48,7 @@ void Exposure::check(double displacement_m, double length_s) const {
                                     limits_.duty * window_s, window_s));
 }
 
-// The duty cycle is largest in the window that ends with a stimulus, so only such windows are checked.
+// Checks only the window that ends with this stimulus, because the duty cycle is largest there.
 bool Exposure::fits(double start_s, double length_s) const {
   constexpr double rounding_s = 1e-9;
   const double end_s = start_s + length_s;
@@ -63,8 +63,8 @@ double Exposure::earliest_start_s(double wanted_s, double length_s) const {
   check(0, length_s);
   double start_s = recent_.empty() ? wanted_s : std::max(wanted_s, recent_.back().end_s);
   if (!fits(start_s, length_s)) {
-    // A later start is never worse, so bisection finds the earliest one. After a whole window no earlier
-    // stimulus counts any more.
+    // If one start is late enough, every later start is too, so bisection finds the earliest. A whole window
+    // later, no earlier stimulus counts any more.
     double too_soon_s = start_s, late_s = start_s + window_s + rest_s;
     for (int k = 0; k < 60; ++k) {
       const double middle_s = 0.5 * (too_soon_s + late_s);
@@ -77,8 +77,8 @@ double Exposure::earliest_start_s(double wanted_s, double length_s) const {
   return start_s;
 }
 
-// If a later stimulus has to wait, the whole trial waits, because the gaps between its stimuli are part of
-// the design.
+// If any stimulus of the trial has to wait, the whole trial waits, because the gaps between its stimuli are
+// part of the design.
 double Exposure::earliest_start_s(double wanted_s, std::span<const Exposed> trial) const {
   constexpr int most_tries = 1000;
   double start_s = wanted_s;
@@ -101,8 +101,8 @@ double Exposure::earliest_start_s(double wanted_s, std::span<const Exposed> tria
 
 namespace {
 
-/// The first measured level at or above the frequency; the end if the frequency is outside of what was
-/// measured.
+/// Returns the first measured level at or above the frequency. Returns end() if the frequency lies outside
+/// the measured range.
 auto measured_from(double frequency_Hz, const std::vector<SoundLevel>& measured) {
   const auto above = std::find_if(measured.begin(), measured.end(), [=](const SoundLevel& level) {
     return level.frequency_Hz >= frequency_Hz;
@@ -130,7 +130,7 @@ std::string sound_problem(double frequency_Hz, double amplitude, const std::vect
   double full_scale_dB = above->level_dB;
   if (above->frequency_Hz != frequency_Hz) {
     const SoundLevel& below = *(above - 1);
-    // Between two measured tones use the louder one: because of resonances, interpolation would be wrong.
+    // Between two measured frequencies use the louder level: resonances make interpolation unreliable.
     full_scale_dB = std::max(below.level_dB, above->level_dB);
   }
   const double level_dB = full_scale_dB + 20 * std::log10(amplitude);

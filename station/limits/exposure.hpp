@@ -10,28 +10,29 @@ namespace turnpoint::limits {
 
 /// The largest vibration that a rig may deliver to a finger.
 struct ExposureLimits {
-  double displacement_m = 0;  ///< peak anywhere on the surface, all tones added
+  double displacement_m = 0;  ///< peak anywhere on the surface, with all tones added
   double continuous_s = 30;   ///< longest vibration without a rest of 0.5 s
-  double duty = 0.8;          ///< fraction of any 60 s
-  double session_s = 3600;    ///< one period of exposure, including its interruptions
+  double duty = 0.8;          ///< largest share of vibration in any 60 s
+  double session_s = 3600;    ///< length of one period of exposure, pauses included
 };
 
-/// A presented stimulus. Its times (seconds) must be on a scale that continues when the station restarts,
-/// such as the wall time in the database.
+/// The time of a stimulus that was presented, in seconds. The clock must continue when the station restarts,
+/// like the wall time in the database.
 struct Exposed {
   double start_s = 0;
   double end_s = 0;
 };
 
-/// A limit forbids this stimulus, either now or always. The message names the limit, the value and what is
-/// allowed.
+/// Thrown if a limit forbids a stimulus, for now or for good. The message names the limit, the value and what
+/// is allowed.
 class LimitExceeded : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Keeps account of the finger's exposure to vibration. Pure: no clock. After a restart, pass the last
-/// minute's stimuli and the session's start from the database, so that a crash does not reset a limit.
+/// Keeps account of how long the finger was exposed to vibration. Pure: it has no clock. After a restart,
+/// pass the last minute's stimuli and the start of the period of exposure from the database, so that a crash
+/// does not reset a limit.
 class Exposure {
  public:
   static constexpr double window_s = 60;
@@ -43,19 +44,18 @@ class Exposure {
   /// Throws LimitExceeded if a stimulus of this displacement and length can never be presented.
   void check(double displacement_m, double length_s) const;
 
-  /// The earliest time at or after `wanted_s` at which a stimulus of `length_s` meets the limits of duty
-  /// cycle and continuous vibration. The pause between trials is extended accordingly and reported. Throws
-  /// LimitExceeded if the stimulus can never be presented, or if the session's time ends before the stimulus
-  /// does.
+  /// Returns the earliest time, at or after `wanted_s`, at which a stimulus of `length_s` keeps within the
+  /// limits of duty cycle and continuous vibration. Throws LimitExceeded if the stimulus can never be
+  /// presented, or if the period of exposure would end before the stimulus does.
   double earliest_start_s(double wanted_s, double length_s) const;
 
-  /// The same for all stimuli of one trial, given in order with times from its start.
+  /// The same for all stimuli of one trial. They are given in order, with times from the start of the trial.
   double earliest_start_s(double wanted_s, std::span<const Exposed> trial) const;
 
-  /// Records what was actually presented. Add stimuli in order.
+  /// Records a stimulus that was presented. Add stimuli in order of time.
   void add(const Exposed& exposed);
 
-  double on_time_s(double from_s, double to_s) const;  ///< total stimulation between two times
+  double on_time_s(double from_s, double to_s) const;  ///< duration of vibration between two times
 
  private:
   bool fits(double start_s, double length_s) const;
@@ -65,18 +65,19 @@ class Exposure {
   std::deque<Exposed> recent_;
 };
 
-/// A sound pressure level measured at one metre or at the participant's ear, for a drive at full scale.
+/// A sound pressure level that was measured with the drive at full scale, at one metre or at the
+/// participant's ear.
 struct SoundLevel {
   double frequency_Hz = 0;
   double level_dB = 0;
 };
 
-/// True if a level was measured at this frequency, or at one below and one above it.
+/// True if a level was measured at this frequency, or at both a lower and a higher frequency.
 bool sound_measured(double frequency_Hz, const std::vector<SoundLevel>& measured);
 
-/// For live sessions. A tone below 22.4 kHz needs a measured level (see sound_measured()). A measured level,
-/// at the tone's amplitude, must stay within terms::allowed_sound_dB(). Returns the problem, or "" if there
-/// is none.
+/// Checks the sound of a tone in a live session. A tone below 22.4 kHz needs a measured level (see
+/// sound_measured()). The measured level, reduced to the tone's amplitude, must not exceed
+/// terms::allowed_sound_dB(). Returns the problem, or "" if there is none.
 std::string sound_problem(double frequency_Hz, double amplitude, const std::vector<SoundLevel>& measured);
 
 }  // namespace turnpoint::limits

@@ -18,7 +18,7 @@ double wall_s(const records::SegmentStart& segment, std::int64_t time_ns) {
          1e-9 * static_cast<double>(time_ns - segment.monotonic_ns);
 }
 
-/// The time span in which a segment was active, s since 1970.
+/// The time during which a segment ran, in s since 1970.
 struct Active {
   double start_s = 0, end_s = 0;
 };
@@ -88,7 +88,8 @@ FingerHistory read_finger_history(const std::string& database, const std::string
 
 namespace {
 
-// Relative to the origin, because seconds since 1970 have too few digits left for comparing with a limit.
+// Shifts times towards 0: seconds since 1970 are so large that too few digits remain for comparing with a
+// limit.
 std::vector<Exposed> shifted(std::vector<Exposed> stimuli, double by_s) {
   for (auto& stimulus : stimuli) stimulus.start_s -= by_s, stimulus.end_s -= by_s;
   return stimuli;

@@ -10,11 +10,11 @@
 
 namespace turnpoint::limits {
 
-/// The rig's limits in the drive's form. A simulated session may last any time.
+/// Converts the rig's limits. A simulated session may last any time.
 ExposureLimits limits_of(const rig::Rig& rig, terms::RunMode mode);
 
-/// The stimuli of a participant's earlier segments from the database, in order of time, and the start of the
-/// period of exposure, on the wall clock (s since 1970). A pause of half an hour begins a new period; a new
+/// The stimuli of a participant's earlier segments, from the database, in order of time; and the start of the
+/// period of exposure on the wall clock (s since 1970). A pause of half an hour starts a new period. A new
 /// process, or another session of the same participant, does not.
 struct FingerHistory {
   std::vector<Exposed> stimuli;
@@ -22,20 +22,20 @@ struct FingerHistory {
 };
 inline constexpr double kNewPeriod_s = 1800;
 
-/// Uses sessions that end within the last half hour before `now_s`. A trial that was presented but never
-/// ended (a crash) counts as a stimulus of `longest_s`. Times after now_s (the clock was set back) count as
-/// now.
+/// Uses the sessions that ended within the half hour before `now_s`. If a trial was presented but never
+/// finished (a crash), it counts as a stimulus of `longest_s`. Times after `now_s` count as `now_s`, because
+/// the clock must have been set back.
 FingerHistory finger_history(const std::vector<store::StoredSession>& sessions, double now_s,
                              double longest_s);
 
-/// The same, read from a database that may not exist yet. Simulated sessions have no history.
+/// Reads the history from a database, which may not exist yet. Simulated sessions have no history.
 FingerHistory read_finger_history(const std::string& database, const std::string& participant, double now_s,
                                   double longest_s);
 
-/// Keeps a period of exposure within the rig's limits, on the stage's clock.
+/// Keeps a period of exposure within the rig's limits. Times are those of the stage's clock.
 class FingerAccount {
  public:
-  /// `origin_ns` on the stage's clock corresponds to `origin_s` on the wall clock.
+  /// `origin_ns` on the stage's clock and `origin_s` on the wall clock are the same moment.
   FingerAccount(const ExposureLimits& limits, const FingerHistory& history, std::int64_t origin_ns,
                 double origin_s);
 
@@ -43,7 +43,7 @@ class FingerAccount {
   std::int64_t earliest_ns(std::int64_t wanted_ns, const std::vector<Exposed>& trial) const;
   /// Throws LimitExceeded for a displacement that the rig does not allow.
   void check(double displacement_m, double length_s) const { exposure_.check(displacement_m, length_s); }
-  /// Records what was actually presented.
+  /// Records a stimulus that was presented.
   void add(std::int64_t on_ns, std::int64_t off_ns);
 
  private:
@@ -53,7 +53,7 @@ class FingerAccount {
   std::int64_t origin_ns_;
 };
 
-/// The stimuli of a trial, with times from its start and the longest possible durations.
+/// Returns the stimuli of a trial, with their times from its start and their longest possible durations.
 std::vector<Exposed> stimuli_of(const protocol::Protocol& protocol, const trial::TrialSpec& trial);
 
 }  // namespace turnpoint::limits

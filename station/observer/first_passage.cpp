@@ -9,13 +9,14 @@ namespace turnpoint::observer {
 
 namespace {
 
-/// If the product of drift and bound is larger than this, nobody makes an error, and the exponentials can be
+/// If drift times bound exceeds this value, an observer makes no errors, and the argument of exp() can be
 /// limited to it.
 constexpr double kSurest = 300;
 
-/// The share of inverse Gaussian times to keep. It is the density of the passage through -1 or +1 without
-/// drift, divided by twice that through +1 alone (whose paths may have been below -1). The series has two
-/// forms; use the one for which a few terms are enough.
+/// Returns the probability with which a time drawn from the inverse Gaussian distribution is accepted. It is
+/// the density of the first passage through -1 or +1 without drift, divided by twice the density of the
+/// passage through +1 alone (which counts paths that were below -1 before). The series has two forms; the one
+/// that needs only a few terms is used.
 double kept_share(double time) {
   double sum = 0, term = 1;
   if (time < 0.7) {
@@ -34,8 +35,8 @@ double kept_share(double time) {
   return sum * pi * std::sqrt(0.5 * pi * time * time * time);
 }
 
-/// Time from 0 to -1 or +1 with this drift, which must be at least 0. At least half of the proposals are
-/// kept.
+/// Draws the time that a walk with this drift (0 or more) needs from 0 to -1 or +1. At least half of the
+/// proposed times are accepted.
 double unit_passage(double drift, random::Draws& draws) {
   for (;;) {
     const double normal = draws.normal(), y = normal * normal;
@@ -71,7 +72,7 @@ double upper_probability(double drift, double bound, double range) {
   const double pull = std::clamp(drift * bound, -kSurest, kSurest), inner = 2 * pull * range;
   if (std::fabs(inner) < 1e-4) return upper_probability(pull, 1);
   if (pull < 0) return 1 - upper_probability(-drift, bound, range);
-  // The mean over the start of (1 - exp(-2 pull (1 + start))) / (1 - exp(-4 pull)).
+  // This is the mean of (1 - exp(-2 pull (1 + start))) / (1 - exp(-4 pull)) over all starting points.
   const double hit = random::exp(inner - 2 * pull), miss = random::exp(-inner - 2 * pull);
   return (1 - (hit - miss) / (2 * inner)) / (1 - random::exp(-4 * pull));
 }

@@ -3,26 +3,29 @@
 
 namespace turnpoint::observer {
 
-/// The end of a diffusion.
+/// Where and when a diffusion ended.
 struct Passage {
-  bool upper = false;  ///< true if it ended at the upper boundary
+  bool upper = false;  ///< true if the diffusion ended at the upper boundary
   double time_s = 0;
 };
 
-/// Draws the first passage through -bound or +bound of a Wiener process with unit variance per second (bound
-/// > 0, in square roots of a second). `drift` is per square root of a second. `start` is the starting point
-/// as a fraction of the bound, inside (-1, 1).
-/// The result is exact, without a time step. From the middle of an interval, an inverse Gaussian variate
-/// (Michael, Schucany & Haas 1976) is drawn for the passage through one boundary and accepted with the
-/// probability that the alternating series of Feller (1968) gives for two boundaries. From any other start,
-/// the walk first leaves the largest interval around it that fits between the boundaries. Only + - * / and
-/// square roots are used, so every machine draws the same.
+/// Draws the first passage of a Wiener process through -bound or +bound. The process has unit variance per
+/// second; `bound` (> 0) is in square roots of a second, `drift` per square root of a second. `start` is the
+/// starting point as a fraction of the bound, inside (-1, 1).
+///
+/// The result is exact, without time steps. From the middle between two boundaries, the time of the passage
+/// through one boundary is drawn from an inverse Gaussian distribution (Michael, Schucany & Haas 1976). It is
+/// accepted with a probability that follows from Feller's (1968) alternating series for two boundaries. From
+/// any other start, the walk first leaves the largest interval around the start that fits between the
+/// boundaries. The code uses only + - * / and square roots, so every machine draws the same numbers.
 Passage first_passage(double drift, double bound, double start, random::Draws& draws);
 
-/// The probability of ending at the upper boundary from the middle: 1 / (1 + exp(-2 drift bound)).
+/// Returns the probability that a walk from the middle ends at the upper boundary: 1 / (1 + exp(-2 drift
+/// bound)).
 double upper_probability(double drift, double bound);
 
-/// The same if the start is uniform between -range and +range times the bound (0 <= range < 1).
+/// The same probability if the starting point is uniformly distributed between -range and +range times the
+/// bound (0 <= range < 1).
 double upper_probability(double drift, double bound, double range);
 
 }  // namespace turnpoint::observer

@@ -13,17 +13,17 @@ namespace turnpoint::observer {
 
 namespace {
 
-constexpr double kLogStrongest = 4.6;         // 99 times the threshold, where nobody makes errors
-constexpr double kZ75 = 0.67448975019608171;  // 75 % point of the normal
+constexpr double kLogStrongest = 4.6;         // ln 99: at 99 times the threshold nobody makes errors
+constexpr double kZ75 = 0.67448975019608171;  // z of 75 % in the normal distribution
 constexpr double kLn2 = 0.69314718055994531;
-// beyond it the normal's tail is below 1e-9, and its logarithm loses precision
+// limit of z: beyond it the normal's tail is below 1e-9, and its logarithm loses precision
 constexpr double kSurest_sd = 6;
 constexpr double kRatingStep_sd = 0.5;  // distance between the criteria of neighbouring ratings
 constexpr int kMoves = 5;
 constexpr double kLook_s = 1.6;       // time to slide the finger across the surface and back
 constexpr double kLookSpread = 0.25;  // SD of the logarithm of that time
 
-/// Half the log odds that a standard normal variable is above -x.
+/// Returns half the log odds that a standard normal variable is above -x.
 double half_logit_of_normal(double x) {
   const double inside = std::clamp(x, -kSurest_sd, kSurest_sd);
   const double rarer = random::normal_cdf(-std::fabs(inside));
@@ -31,14 +31,15 @@ double half_logit_of_normal(double x) {
   return inside < 0 ? -half : half;
 }
 
-/// The proportion correct with `answers` answers if a diffusion ends at its upper boundary with probability
-/// `upper`. The part beyond guessing (Weibull's core) is the same for any number of answers.
+/// Returns the proportion correct for a task with `answers` answers, if a diffusion ends at its upper
+/// boundary with probability `upper`. The part beyond guessing (Weibull's core) is the same for any number of
+/// answers.
 double share_right(double upper, int answers) {
   const double chance = 1.0 / answers;
   return std::max(0.0, chance + (1 - chance) * (2 * upper - 1));
 }
 
-/// The mean of a function of the drift over the drift's normal distribution, by the trapezoidal rule.
+/// Averages a function of the drift over the drift's normal distribution, by the trapezoidal rule.
 template <class Function>
 double mean_over_drift(double drift, double sd, Function function) {
   if (sd == 0) return function(drift);
@@ -50,8 +51,8 @@ double mean_over_drift(double drift, double sd, Function function) {
   return sum / weights;
 }
 
-/// The criterion above rating `rating`, in SDs from the mean of noise. The yes/no criterion lies in the
-/// middle of all criteria.
+/// Returns the criterion above rating `rating`, in SDs from the mean of noise. The criteria of the ratings
+/// lie symmetrically around the yes/no criterion.
 double rating_criterion(const Parameters& p, int rating, int ratings) {
   return p.criterion + kRatingStep_sd * (rating - 0.5 * (ratings - 2));
 }
@@ -68,11 +69,12 @@ double Observer::strength(const Question& q, double from) const {
 
 double Observer::sensitivity(const Question& q) const { return q.absent ? 0 : 2 * kZ75 * strength(q, 0); }
 
-/// Drift per square root of a second, towards the right, positive or "yes" answer.
+/// Returns the drift per square root of a second. A positive drift leads to the right answer, to the answer
+/// for levels above zero, or to "yes".
 double Observer::drift(const Question& q) const {
   double half_logit = 0;
   switch (q.decides) {
-    case Decides::right_answer:  // of two answers, a share of 1 - 2^-(1 + strength) is right
+    case Decides::right_answer:  // with two answers, a share of 1 - 2^-(1 + strength) is right
       half_logit = 0.5 * random::log(2 * random::exp(kLn2 * strength(q, 0)) - 1);
       break;
     case Decides::side:
@@ -88,7 +90,7 @@ double Observer::drift(const Question& q) const {
 
 double Observer::bound(double deadline_s) const {
   if (deadline_s <= 0) return parameters_.bound;
-  // P(T > t) is at most 4/pi exp(-pi^2 t / (8 bound^2)).
+  // The bound follows from P(T > t) <= 4/pi exp(-pi^2 t / (8 bound^2)), the share of late decisions.
   const double left_s = std::max(0.02, deadline_s - nondecision_s() - 0.5 * parameters_.residual_range_s);
   return std::min(parameters_.bound, std::sqrt(0.35 * left_s));
 }
@@ -133,8 +135,8 @@ Reply Observer::answer(const Question& q) const {
   const auto passage = first_passage(pull, limit, start, draws);
   Reply reply;
   if (q.decides == Decides::right_answer) {
-    // With three or more answers, some walks that end at the upper boundary must give a wrong answer, so that
-    // the proportion correct equals share_right().
+    // With three or more answers, guessing is right less often than with two. Some walks that end at the
+    // upper boundary must therefore give a wrong answer, so that the proportion correct equals share_right().
     const double upper = upper_probability(pull, limit, p.start_range);
     const bool found = passage.upper && u * upper < share_right(upper, q.answers);
     const int right = q.correct.value_or(any);
@@ -165,7 +167,7 @@ Setting Observer::adjust(const Adjustment& a) const {
   Setting setting;
   double time_s = parameters_.residual_s;
   for (int k = 1; k <= kMoves; ++k) {
-    // Overshoot the target and come back, each time by half as much, as people do when they bracket a
+    // Overshoot the target and come back, each time by a smaller amount, as people do when they bracket a
     // setting.
     const double overshoot = k == kMoves ? 0 : (a.start - wanted) * (k % 2 == 1 ? -0.5 : 0.5) / k;
     time_s += kLook_s * random::exp(kLookSpread * draws.normal());
@@ -177,7 +179,7 @@ Setting Observer::adjust(const Adjustment& a) const {
 
 namespace {
 
-/// Throws terms::UsageError naming what is out of range.
+/// Throws terms::UsageError that names the parameter out of range.
 void check(const Parameters& p) {
   const auto require = [](bool good, const char* what) {
     if (!good) throw terms::UsageError(std::string("--observer: ") + what);

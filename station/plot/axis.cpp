@@ -10,8 +10,8 @@ namespace turnpoint::plot {
 
 namespace {
 
-/// Differences smaller than this fraction of a number are rounding errors. Ticks that close could not be
-/// counted.
+/// Two numbers that differ by less than this fraction are treated as equal: the difference is a rounding
+/// error, and the number of ticks between them would overflow.
 constexpr double kRounding = 1e-9;
 
 bool differ(double low, double high) {
@@ -26,7 +26,7 @@ void check(const Axis& axis) {
         ": the limits must be finite and in ascending order, and above 0 on a log axis");
 }
 
-/// A label with a typographic minus sign.
+/// Formats a tick's value with a typographic minus sign.
 std::string label(double value) {
   auto result = text::number(std::abs(value) < 1e-12 ? 0 : value, 6);
   if (result[0] == '-') result = "\u2212" + result.substr(1);
@@ -47,7 +47,7 @@ std::vector<Tick> linear_ticks(const Axis& axis, int wanted) {
   return result;
 }
 
-/// A power of ten with a raised exponent.
+/// Formats a power of ten with a raised exponent.
 std::string power_of_ten(int exponent) {
   static const char* const raised[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                        "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
@@ -61,7 +61,7 @@ std::vector<Tick> log_ticks(const Axis& axis, int wanted) {
   const int last = static_cast<int>(std::ceil(std::log10(axis.high)));
   const bool decades_only = 2 * (last - first) > wanted;
   const bool powers = decades_only && (first < -4 || last > 4);
-  // Over many decades each decade has a tick, but only every second, third, ... has a label.
+  // Over many decades each decade has a tick, but only every second, third, ... tick has a label.
   const int labelled = (last - first) / std::max(1, 2 * wanted) + 1;
   std::vector<Tick> result;
   for (int decade = first; decade <= last; ++decade)

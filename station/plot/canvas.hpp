@@ -5,10 +5,11 @@
 
 namespace turnpoint::plot {
 
-/// In px, y downward.
+/// A point in px; y counts downward.
 using Point = std::pair<double, double>;
 
-/// Stroke and fill of a shape as "#rrggbb"; "" is none. Dash as in SVG ("6 3", in px).
+/// Stroke and fill colour of a shape as "#rrggbb"; "" draws none. The dash pattern is written as in SVG ("6
+/// 3", in px).
 struct Paint {
   std::string stroke, fill;
   double width = 1;
@@ -18,16 +19,16 @@ struct Paint {
 
 enum class Anchor { start, middle, end };
 
-/// An upper estimate of a text's width in px at this size in common sans-serif fonts. Wide characters (CJK)
-/// count as a full em, others as 0.62.
+/// Returns an upper estimate of a text's width in px at this size in common sans-serif fonts. Wide characters
+/// (CJK) count as a full em, others as 0.62 em.
 double text_width(const std::string& utf8, double size_px);
 
-/// What a figure is drawn on: a file (Svg) or a screen. The order of calls is begin(), then shapes.
+/// The surface on which a figure is drawn: a file (Svg) or a screen. Call begin() first, then draw shapes.
 class Canvas {
  public:
   virtual ~Canvas() = default;
 
-  /// The figure's size, and its title for readers who cannot see it.
+  /// Starts a figure of this size. Screen readers read the title aloud.
   virtual void begin(double width, double height, const std::string& title) = 0;
 
   virtual void line(Point from, Point to, const Paint& paint) = 0;
@@ -35,8 +36,8 @@ class Canvas {
   virtual void polygon(const std::vector<Point>& points, const Paint& paint) = 0;
   virtual void rectangle(Point corner, double width, double height, const Paint& paint) = 0;
   virtual void circle(Point centre, double radius, const Paint& paint) = 0;
-  /// The baseline starts, has its middle or ends at `at`; weight is 400 or 600; degrees turn
-  /// counter-clockwise about `at`.
+  /// Draws one line of text. `anchor` says whether its baseline starts, is centred, or ends at `at`. `weight`
+  /// is 400 (normal) or 600 (bold). `degrees` turns the text counter-clockwise about `at`.
   virtual void text(Point at, const std::string& text, double size, Anchor anchor, const std::string& colour,
                     int weight = 400, double degrees = 0) = 0;
   /// Until end_clip(), shapes are clipped to this rectangle.

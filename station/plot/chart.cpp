@@ -86,7 +86,7 @@ struct Draw {
       }
   }
 
-  /// Draws only the line. Its label is placed after everything that it has to avoid has been drawn.
+  /// Draws only the line. Its label follows later, when it is known which places are free.
   void operator()(const Rule& rule) const {
     if (!is_shown(rule, frame)) return;
     const bool flat = rule.direction == Rule::Direction::horizontal;
@@ -132,7 +132,7 @@ struct Draw {
   }
 };
 
-/// One entry of the legend. Layers of equal name and series share an entry.
+/// One entry of the legend. Layers with the same name and series share one entry.
 struct Entry {
   std::string name;
   int series = 0;
@@ -164,7 +164,7 @@ std::vector<Entry> legend_of(const Chart& chart) {
   return entries;
 }
 
-/// Draws the legend between title and data, in rows that fit the width.
+/// Draws the legend between title and data, in rows that fit the width. Returns its height.
 double draw_legend(Canvas* canvas, const std::vector<Entry>& entries, double left, double top, double width) {
   constexpr double sample = 24, gap = 18, row = 18;
   double x = left, y = top;
@@ -227,7 +227,8 @@ void draw_axes(Canvas& canvas, const Frame& frame, const std::vector<Tick>& acro
   canvas.text({frame.x + frame.width / 2, bottom + 37}, frame.across->label, kText, Anchor::middle, kInk);
 }
 
-/// As many horizontal ticks as there is room for their labels. On a log axis some have no label.
+/// Returns as many ticks of the horizontal axis as there is room for labels. On a log axis, some ticks have
+/// no label.
 std::vector<Tick> ticks_with_room(const Axis& axis, double width) {
   for (int wanted = 7; wanted > 2 && axis.scale == AxisScale::linear; --wanted) {
     const auto some = ticks(axis, wanted);
@@ -247,9 +248,9 @@ struct Place {
   double left = 0, top = 0, width = 0, height = 0;
 };
 
-/// How a chart's area is divided.
+/// Divides a chart's area into title, legend and data.
 struct Division {
-  double left = 0, width = 0, legend_top = 0;  ///< for title, legend and data
+  double left = 0, width = 0, legend_top = 0;  ///< left end and width of the chart; top of the legend
   std::vector<Tick> up;
   std::vector<Entry> entries;
   Labelled labelled;
@@ -271,7 +272,8 @@ Division divided(const Chart& chart, const Place& place, VerticalLabels where, i
   return d;
 }
 
-/// Chooses as many vertical ticks as fit with a spacing of one and a half lines of text.
+/// Divides a chart's area with as many vertical ticks as possible, at least one and a half lines of text
+/// apart.
 Division divided(const Chart& chart, const Place& place, VerticalLabels where) {
   for (int wanted = 5;; --wanted) {
     auto d = divided(chart, place, where, wanted);
@@ -303,7 +305,8 @@ void draw_chart(Canvas& canvas, const Chart& chart, const Place& place, const Di
   if (const auto* map = heat_map(chart)) draw_colour_bar(canvas, frame, d.left + d.width, *map);
 }
 
-/// Small multiples are compared with each other: if one chart has to put a label above its data, all do.
+/// Charts side by side are compared, so their data must have the same height. If one chart has to put a label
+/// above its data, all charts leave room for labels there.
 VerticalLabels labels_of(const std::vector<Chart>& charts, const std::vector<Place>& places) {
   for (std::size_t i = 0; i < charts.size(); ++i)
     for (const auto& label : divided(charts[i], places[i], VerticalLabels::beside).labelled.labels)
@@ -375,7 +378,7 @@ Figure laid_out(Figure figure, double width_px, double height_px) {
     figure.chart_width_px = width / columns;
     figure.chart_height_px = std::max(
         least_height, (height_px * larger - (caption > 0 ? kPad + kCaptionLine * caption : 0)) / rows);
-    // Shrinking a chart to make it fit counts as much as distorting its proportions.
+    // Prefer the layout that distorts the charts' proportions least and makes the document grow least.
     const double off =
         std::abs(std::log(figure.chart_width_px / figure.chart_height_px / best)) + 2 * std::log(larger);
     if (off < nearest) nearest = off, chosen = figure;

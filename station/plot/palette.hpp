@@ -5,17 +5,17 @@ namespace turnpoint::plot {
 
 enum class Marker { circle, square, triangle, diamond, down, cross };
 
-/// The look of a series. Each of the three properties alone identifies it.
+/// The look of a series. Each of the three properties alone identifies the series.
 struct Style {
   std::string colour, dash;
   Marker marker = Marker::circle;
 };
 
-/// The style of series 0, 1, ... (wrapping at 6), or grey for a negative number. Colours: Okabe & Ito (2008),
-/// without their yellow, which is too light for thin lines on paper.
+/// Returns the style of series 0, 1, ... (repeating after 6), or grey for a negative number. The colours are
+/// those of Okabe & Ito (2008) without their yellow, which is too light for thin lines on paper.
 Style style(int series);
 
-/// A colour of the sequential scale from light (0) to dark (1) blue, with decreasing luminance.
+/// Returns a blue from light (share 0) to dark (share 1). Its luminance decreases steadily.
 std::string shade(double share);
 
 }  // namespace turnpoint::plot

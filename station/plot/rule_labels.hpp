@@ -11,21 +11,22 @@ struct Frame {
   double x = 0, y = 0, width = 0, height = 0;
   const Axis *across, *up;
 
-  /// Points far outside the axes are kept within a few widths of the chart.
+  /// Returns the position of a data point in px. A point far outside the axes is moved to within a few chart
+  /// widths.
   Point at(double value_x, double value_y) const;
 };
 
-/// False for a value without a position on the axis: not finite, or not positive on a log axis.
+/// False if the value has no position on the axis: it is not finite, or not positive on a log axis.
 bool drawable(const Axis& axis, double value);
 
-/// False for a rule beyond the chart's axes.
+/// False if the rule lies outside the chart's axes.
 bool is_shown(const Rule& rule, const Frame& frame);
 
-/// Nominal radii of markers in px, from their weights. No marker extends further than 1.3 radii plus its
-/// outline.
+/// Returns the nominal radii of markers in px from their weights. No marker extends further than 1.3 radii
+/// plus its outline.
 std::vector<double> marker_radii_px(const Points& dots);
 
-/// Size of a rule's label.
+/// Text size of a rule's label.
 constexpr double kLabelText_px = 11;
 
 struct Box {
@@ -33,14 +34,15 @@ struct Box {
 };
 bool overlap(const Box& a, const Box& b);
 
-/// The area outside of which no data are drawn. Markers at the upper and right end extend beyond the frame.
+/// Returns the area that contains everything drawn for the data. It is larger than the frame, because markers
+/// at the upper and right end extend beyond the frame.
 Box drawn_in(const Frame& frame);
 
-/// The area covered by the chart's curves, markers, bars, cells and rules, as small boxes. Bands are ignored,
-/// because text remains readable on them.
+/// Returns small boxes that cover the chart's curves, markers, bars, cells and rules. Bands are left out,
+/// because text on them remains readable.
 std::vector<Box> covered(const Chart& chart, const Frame& frame);
 
-/// A placed label of a rule: the end of its baseline, and the box around its text.
+/// The label of a rule after it was placed: the anchor point of its baseline, and the box around its text.
 struct RuleLabel {
   std::string text;
   Point at;
@@ -48,11 +50,11 @@ struct RuleLabel {
   Box box;
 };
 
-/// The labels of the chart's rules, and the frame that is left for the data. Each label is placed beside its
-/// rule where nothing is covered, as near to the upper right end as possible. If there is no such place, it
-/// goes outside the data, and the frame becomes smaller: above it for a vertical rule (in a row of its own),
-/// to the right for a horizontal one. With `above`, the labels of all vertical rules go there, so that charts
-/// side by side keep the same height.
+/// The labels of the chart's rules, and the frame that is left for the data. A label stands beside its rule,
+/// in the free place nearest to the upper right end. If no place is free, the label goes outside the data,
+/// and the frame becomes smaller. The label of a vertical rule then stands above the data in a row of its
+/// own; the label of a horizontal rule stands to the right. With `above`, the labels of all vertical rules
+/// stand above the data, so that charts side by side keep the same height.
 struct Labelled {
   Frame frame;
   std::vector<RuleLabel> labels;

@@ -6,11 +6,11 @@
 
 namespace turnpoint::plot {
 
-/// Escapes text for an SVG or HTML document: replaces & < > and quotes.
+/// Replaces & < > and quotes by their entities, for text in an SVG or HTML document.
 std::string escaped(const std::string& text);
 
-/// Builds one SVG document. Coordinates are written with two decimals, so that equal input gives equal bytes.
-/// Throws std::invalid_argument for a coordinate that is not finite.
+/// Builds one SVG document. Coordinates have two decimals, so that the same calls give the same bytes. Throws
+/// std::invalid_argument for a coordinate that is not finite.
 class Svg : public Canvas {
  public:
   void begin(double width, double height, const std::string& title) override;
@@ -24,7 +24,7 @@ class Svg : public Canvas {
   void begin_clip(Point corner, double width, double height) override;
   void end_clip() override;
 
-  /// The document.
+  /// Returns the finished document.
   std::string finish() const;
 
  private:

@@ -7,7 +7,7 @@
 
 namespace turnpoint::random {
 
-/// The purpose of a draw. The numbers are part of the meaning of recorded data: never renumber, only add.
+/// The purpose of a random draw. Recorded data depend on these numbers: never change one, only add.
 enum class Stream : std::uint32_t {
   level_order = 1,
   factor_level = 2,
@@ -25,8 +25,8 @@ enum class Stream : std::uint32_t {
   masking_noise = 14,
 };
 
-/// Identifies a draw. The same key always gives the same numbers, whatever was drawn elsewhere, so a repeated
-/// or void trial does not shift other draws.
+/// Identifies a random draw. The same key always gives the same numbers, whatever else was drawn. A repeated
+/// or void trial therefore does not change the draws of other trials.
 struct Key {
   std::uint64_t seed = 0;
   Stream stream = Stream::level_order;
@@ -34,22 +34,22 @@ struct Key {
   int trial = 0;
 };
 
-/// Ten rounds of Philox 4x32 (Salmon et al., SC 2011): turn counter and key into 128 random bits.
+/// Turns a counter and a key into 128 random bits, with ten rounds of Philox 4x32 (Salmon et al., SC 2011).
 std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
 
-/// A sequence of random numbers for one key. It uses only integer arithmetic and exact scaling, so it gives
-/// the same bits on every machine, with and without fused multiply-add.
+/// A sequence of random numbers for one key. It gives the same bits on every machine, with and without fused
+/// multiply-add, because it uses only integer arithmetic and exact scaling.
 class Draws {
  public:
   explicit Draws(const Key& key) : key_(key) {}
 
   std::uint64_t bits();
-  /// Uniform in [0, 1); a multiple of 2^-53.
+  /// Returns a number uniform in [0, 1), a multiple of 2^-53.
   double uniform();
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
-  /// Uniform in 0 ... n - 1 (by rejection, without modulo bias). n > 0.
+  /// Returns an integer uniform in 0 ... n - 1, for n > 0. Rejection avoids the bias of a plain remainder.
   std::uint64_t below(std::uint64_t n);
-  /// Standard normal, by Marsaglia's polar method with the logarithm of elementary.hpp.
+  /// Returns a standard normal number, by Marsaglia's polar method with the logarithm of elementary.hpp.
   double normal();
 
   /// Shuffles in place (Fisher-Yates).

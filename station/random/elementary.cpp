@@ -7,7 +7,7 @@ namespace turnpoint::random {
 
 namespace {
 
-// ln 2 in two parts. The first has so few bits that its product with an exponent is exact.
+// ln 2 in two parts. The first part has so few bits that its product with an integer exponent is exact.
 constexpr double kLn2High = 6.93147180369123816490e-01, kLn2Low = 1.90821492927058770002e-10;
 
 }  // namespace
@@ -37,7 +37,7 @@ double exp(double x) {
 
 double normal_cdf(double x) {
   if (!(std::fabs(x) < 8)) return x > 0 ? 1 : 0;
-  // x + x^3 / 3 + x^5 / (3 5) + ..., all terms of the same sign (Marsaglia 2004).
+  // The series x + x^3 / 3 + x^5 / (3 5) + ... has only terms of the same sign (Marsaglia 2004).
   double sum = x, term = x;
   for (int k = 1; std::fabs(term) > 1e-17; ++k) term *= x * x / (2 * k + 1), sum += term;
   return 0.5 + 0.39894228040143267794 * exp(-0.5 * x * x) * sum;

@@ -16,16 +16,17 @@ using terms::RunMode;
 using terms::TrialType;
 
 enum class SessionStatus { running, completed, interrupted, stopped, abandoned };
-/// The status reason that opening a database writes for a session whose process died.
+/// The reason stored for an interrupted session whose process died. It is written when the database is next
+/// opened.
 inline constexpr const char* kLostReason = "the process ended without a word";
 inline constexpr const char* kAbandonedReason = "no trial was made";
 
 const char* name(SessionStatus status);
 
-/// The value of a factor in a trial, as exported in the factor's column.
+/// The value of a factor in a trial. Exports have one column per factor.
 using FactorValue = std::variant<double, std::string>;
 
-/// The provenance of a session: everything needed to run or explain it later.
+/// Where the data of a session come from: everything needed to run the session again or to explain it later.
 struct SessionStart {
   std::string participant;  ///< participant code
   RunMode run_mode = RunMode::live;
@@ -35,7 +36,7 @@ struct SessionStart {
   std::string level_unit;
   std::string rig_name, rig_path, rig_text, rig_sha256;
   std::optional<std::string> calibration_id;  ///< SHA-256 of the calibration file; absent on a simulated rig
-  /// the calibration file itself, stored once; "" if there is none
+  /// text of the calibration file, stored once per file; "" if there is none
   std::string calibration_text;
   std::uint64_t seed = 0;
   std::string language, observer;  ///< observer: "" or the argument of `--observer`
@@ -44,7 +45,7 @@ struct SessionStart {
   std::string consent_version;
 };
 
-/// One process run of a session, with the origin of its monotonic clock. Each resume opens another segment.
+/// One process run of a session, with readings of the clocks at its start. Each resume opens another segment.
 struct SegmentStart {
   std::string boot_id, reason;  ///< reason: "start", "resume" or "fault"
   std::int64_t monotonic_ns = 0, boottime_ns = 0, realtime_ns = 0;
@@ -52,7 +53,7 @@ struct SegmentStart {
 
 struct BlockStart {
   int block_index = 0;  ///< from 0, in the order in which blocks are run
-  int attempt = 0;      ///< incremented with each restart of the same block
+  int attempt = 0;      ///< counts the restarts of the same block, from 0
   std::string name, instruction;
   bool practice = false;
 };
@@ -74,11 +75,11 @@ struct ToneRow {
   std::int64_t onset_frame = 0, length_frames = 0;
 };
 
-/// The result of one trial, committed as a whole before the next one begins.
+/// The result of one trial. It is committed as a whole before the next trial begins.
 struct TrialRow {
-  int segment_index = 1;   ///< from 1; set by the log, not by the caller
+  int segment_index = 1;   ///< from 1; the session log sets it, not the caller
   int trial_index = 0;     ///< from 0 within the session; counts every presented trial
-  int trial_in_block = 0;  ///< key of the trial's random draws
+  int trial_in_block = 0;  ///< number of the trial within its block; part of the key of its random draws
   TrialType type = TrialType::experimental;
   std::string procedure;
   std::optional<double> level;
@@ -87,8 +88,8 @@ struct TrialRow {
   std::optional<std::string> correct_response, response;
   std::optional<bool> correct;
   Outcome outcome = Outcome::answered;
-  std::int64_t onset_ns = 0;  ///< CLOCK_MONOTONIC (or virtual time) at response_zero
-  double onset_s = 0;         ///< the same from the start of the segment
+  std::int64_t onset_ns = 0;  ///< time of response_zero on CLOCK_MONOTONIC, or in virtual time
+  double onset_s = 0;         ///< time of response_zero from the start of the segment
   double duration_s = 0;
   std::optional<double> response_time_s, decision_time_s, movement_time_s;
   std::string response_zero, response_time_quality;  ///< quality: kernel | toolkit | simulated
@@ -96,9 +97,9 @@ struct TrialRow {
   std::optional<double> deadline_s;
   int xruns = 0, extra_touches = 0;
   std::optional<double> threshold_est, threshold_sd;
-  /// slope and residual of the regression between frames and time
+  /// slope and residual of the regression of time over frames
   std::optional<double> clock_slope_ns_per_frame, clock_residual_ns;
-  std::uint64_t state_hash = 0;  ///< state of the block's procedures after this trial
+  std::uint64_t state_hash = 0;  ///< hash of the state of the block's procedures after this trial
   std::vector<ToneRow> tones;
 };
 
@@ -108,13 +109,13 @@ struct BlockRecord {
   std::vector<TrialRow> trials;
 };
 
-/// Any event with a time stamp: touches, button edges, xruns, presentations, faults.
+/// An event with a time stamp: a touch, a button edge, an xrun, a presentation, a fault, ...
 struct EventRow {
   std::int64_t time_ns = 0;
   std::string kind;
   std::string value;
   std::optional<int> trial_index;
-  int segment_index = 1;  ///< from 1; set by the log
+  int segment_index = 1;  ///< from 1; the session log sets it
 };
 
 }  // namespace turnpoint::records

@@ -11,8 +11,8 @@ namespace turnpoint::report {
 
 namespace {
 
-/// A cell with fewer trials than this is left out of the figure. If there are more cells than kMostJoined, no
-/// line joins them.
+/// The figure leaves out cells with fewer trials than kFewestOfCell. If there are more cells than
+/// kMostJoined, no line joins them.
 constexpr int kFewestOfCell = 5;
 constexpr std::size_t kMostJoined = 8;
 
@@ -48,7 +48,7 @@ plot::Line curve(const NamedFit& named, int series, const plot::Axis& axis, cons
   return line;
 }
 
-/// The share of "yes" answers when there was no signal.
+/// Returns the share of "yes" answers in trials without a signal.
 std::optional<double> false_alarms(const NamedFit& named) {
   for (const auto& point : named.fit.data)
     if (point.level == analysis::kNoise) return static_cast<double>(point.positive) / point.trials;
@@ -128,7 +128,7 @@ std::optional<plot::Figure> trace_figure(const Summary& summary) {
     panel.title = or_default(trace.procedure, "all trials");
     panel.x = plot::fitted("Trial (number in the session)", line.x, 0.03);
     panel.y = plot::fitted(summary.data.level_label, line.y, 0.1);
-    // Draw lines only for procedures that move step by step: a line through shuffled levels would just
+    // Draw a line only if the procedure moves in small steps. A line through shuffled levels would just
     // zigzag.
     double steps = 0;
     for (std::size_t i = 1; i < line.y.size(); ++i) steps += std::abs(line.y[i] - line.y[i - 1]);
@@ -240,7 +240,7 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
     bin_line.x = bins.x, bin_line.y = bins.y;
     cell_line.x = by_difficulty.x, cell_line.y = by_difficulty.y;
     caf.layers.insert(caf.layers.end(), {bin_line, bins});
-    // An adaptive procedure presents many levels, and a line through all of them would just zigzag.
+    // Leave out the line if there are many levels, as after an adaptive procedure: it would just zigzag.
     if (cell_line.x.size() <= kMostJoined) cells.layers.push_back(cell_line);
     cells.layers.push_back(by_difficulty);
   }

@@ -8,17 +8,18 @@ namespace turnpoint::report {
 
 /// The figures of a report. Each function returns nothing if there is nothing to show.
 
-/// Proportions by level with Wilson bars, fitted curves with their bands. The area of a marker shows its
-/// number of trials.
+/// Plots the proportion of answers at each level with its Wilson interval, and the fitted curve with its
+/// band. The area of a marker is proportional to the number of trials.
 std::optional<plot::Figure> psychometric_figure(const Summary& summary);
-/// Levels in order of presentation, one panel per procedure; open markers are wrong answers.
+/// Plots the levels in order of presentation, one panel per procedure. Open markers are wrong answers.
 std::optional<plot::Figure> trace_figure(const Summary& summary);
-/// Histograms of response times, one panel per instruction on a common axis.
+/// Draws a histogram of the response times for each instruction, all on the same time axis.
 std::optional<plot::Figure> response_time_figure(const Summary& summary);
-/// Settings of a slider in order of presentation with their starting points and their mean.
+/// Plots the settings of a slider in order of presentation, with the slider's starting positions and the mean
+/// setting.
 std::optional<plot::Figure> settings_figure(const Summary& summary);
-/// Accuracy against response time: conditional accuracy functions, and the speed-accuracy trade-off by
-/// difficulty.
+/// Plots accuracy against response time, in two panels: the conditional accuracy functions, and the mean of
+/// each difficulty.
 std::optional<plot::Figure> trade_figure(const Summary& summary);
 
 }  // namespace turnpoint::report

@@ -34,7 +34,7 @@ std::string minus(std::string text) {
 
 std::string number(double value, int digits = 3) { return minus(text::number(value, digits)); }
 
-/// A value and its interval, both rounded to the digits that the interval justifies.
+/// Formats a value and its interval, both rounded to the digits that the width of the interval justifies.
 std::string estimated(double value, const Interval& interval) {
   const double error = text::uncertainty(value, interval.low, interval.high);
   const auto shown = [error](double number) { return minus(text::estimated(number, error)); };
@@ -141,7 +141,8 @@ std::string settings_section(const Summary& summary) {
 
 std::string name_of(const std::string& condition) { return condition.empty() ? "all trials" : condition; }
 
-/// A measure of the speed-accuracy trade-off: its table row, and the part of the report that contains it.
+/// A row of the table of speed and accuracy. `part` names the part of the report that the protocol must show
+/// for this row to appear.
 struct MeasureRow {
   const char *title, *measure, *part;
   std::optional<Estimate> analysis::InstructionResult::*value;
@@ -180,7 +181,7 @@ std::string instruction_table(const Summary& summary) {
   return html + "</tr></table>\n";
 }
 
-/// One column for each pair of conditions.
+/// Returns a table with one column for each pair of conditions.
 std::string difference_table(const Summary& summary) {
   const auto& differences = summary.trade.differences;
   if (differences.empty()) return "";

@@ -5,11 +5,11 @@
 
 namespace turnpoint::report {
 
-/// A single self-contained page: inline SVG, no script, no external files, laid out for the screen and for
-/// A4.
+/// Returns the report as one self-contained page, laid out for the screen and for A4 paper: inline SVG, no
+/// script, no external files.
 std::string to_html(const Summary& summary);
 
-/// The same numbers as one JSON document; missing values are null.
+/// Returns the same numbers as one JSON document. Missing values are null.
 std::string to_json(const Summary& summary);
 
 }  // namespace turnpoint::report

@@ -34,8 +34,8 @@ Json value(const std::vector<analysis::Statement>& statements) {
   return list;
 }
 
-/// The prior as JSON: the range in which each parameter was uniform, and, if the prior falls off beyond that
-/// range, where it ends. Null for a bootstrap.
+/// Returns the prior as JSON: for each parameter, the range in which the prior is uniform and, if the prior
+/// falls off beyond this range, where it reaches 0. Returns null for a bootstrap, which has no prior.
 Json prior_json(const NamedFit& named) {
   const auto& prior = named.intervals.prior;
   if (!prior) return nullptr;

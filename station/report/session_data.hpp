@@ -11,19 +11,21 @@
 
 namespace turnpoint::report {
 
-/// How answers relate to levels. This decides which function is fitted.
+/// How the answers depend on the level. The report fits a different function for each design.
 enum class Design {
-  forced_choice,   ///< accuracy rises with the level; guess = 1 / alternatives
-  two_sided,       ///< two answers on a signed level: PSE and spread, never scored as forced choice
-  yes_no,          ///< "yes" becomes more frequent with the size of the level; trials at 0 are noise
-  same_different,  ///< like yes_no, with "different" and with identical pairs as noise
+  forced_choice,   ///< accuracy rises with the level; the guess rate is 1 / alternatives
+  two_sided,       ///< two answers on a signed level, such as left and right: the fit gives the PSE and the
+                   ///< spread
+  yes_no,          ///< "yes" becomes more frequent as |level| rises; trials at level 0 have no signal
+  same_different,  ///< like yes_no: "different" counts as "yes", and pairs of identical stimuli have no
+                   ///< signal
   adjustment,      ///< no psychometric function
 };
 
 /// True if some trials have no signal, so that "yes" is a false alarm in them.
 inline bool has_noise(Design design) { return design == Design::yes_no || design == Design::same_different; }
 
-/// The estimate of one track of levels; `basis` says what it was computed from.
+/// The estimate of one procedure in one block. `basis` says in words what it was computed from.
 struct StaircaseResult {
   std::string block, procedure;
   double mean = 0;           ///< in the unit of the level
@@ -49,9 +51,9 @@ struct SessionData {
   std::vector<std::string> choices;  ///< ids in the order of their indices
   int positive = 1;                  ///< if has_noise(): the choice that means "yes"
   bool scored = true;                ///< true if answers are right or wrong
-  /// in the order of the report; each TrialRecord::instruction is one of them
+  /// conditions in the order of the report; each TrialRecord::instruction is one of them
   std::vector<std::string> conditions;
-  /// parts chosen by the protocol; empty: all that suit the design
+  /// parts of the report that the protocol chooses; empty: all parts that suit the design
   std::optional<std::vector<std::string>> show;
   std::vector<StaircaseResult> staircases;
   std::vector<analysis::TrialRecord> trials;
@@ -63,9 +65,8 @@ struct SessionData {
   int replicates = 1000;
 };
 
-/// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime",
-/// "trace". If the protocol does not choose, the report contains all parts; d', however, only for yes/no
-/// tasks.
+/// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime" or
+/// "trace". If the protocol does not choose, the report contains all parts, but d' only for yes/no tasks.
 bool shows(const SessionData& data, const std::string& part);
 
 }  // namespace turnpoint::report

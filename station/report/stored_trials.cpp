@@ -23,7 +23,8 @@ std::optional<int> index_of(const std::optional<std::string>& id, const protocol
   return std::nullopt;
 }
 
-/// The row of an adjustment contains the setting in the column for the response.
+/// Reads a setting. In trials of an adjustment task, the response column contains the setting instead of an
+/// answer.
 std::optional<double> setting_of(const std::string& response) {
   double value = 0;
   const auto* end = response.data() + response.size();
@@ -61,7 +62,7 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
   return record;
 }
 
-/// The last attempt at each block: only its trials count.
+/// Returns the last attempt at each block. The trials of earlier attempts are not analysed.
 std::vector<const records::BlockRecord*> last_attempts(const std::vector<records::BlockRecord>& blocks) {
   std::map<int, const records::BlockRecord*> last;
   for (const auto& block : blocks) {
@@ -87,7 +88,8 @@ report::Design design_of(const protocol::Protocol& protocol, const protocol::Ans
   return single && below && above ? report::Design::two_sided : report::Design::forced_choice;
 }
 
-/// Chooses the function that the protocol's own procedure assumes, or else one that suits the levels.
+/// Chooses the function to fit: the one that the protocol's procedure assumes, otherwise one that suits the
+/// levels.
 void choose_function(const protocol::Protocol& protocol, report::SessionData& data) {
   const bool decibel = data.level_unit == "dB";
   const bool detection = report::has_noise(data.design);
@@ -100,7 +102,7 @@ void choose_function(const protocol::Protocol& protocol, report::SessionData& da
   data.scale = rises && positive && !decibel ? analysis::Scale::log10 : analysis::Scale::linear;
   for (const auto& spec : protocol.procedures) {
     if (procedure::description(spec.kind).choice != procedure::Choice::posterior) continue;
-    // A Weibull function requires levels above 0, or in dB.
+    // A Weibull function needs levels above 0, or levels in dB.
     if (spec.function != terms::Function::weibull || decibel || positive) data.function = spec.function;
     return;
   }
@@ -108,7 +110,8 @@ void choose_function(const protocol::Protocol& protocol, report::SessionData& da
 
 using analysis::Range;
 
-/// The levels that an adaptive procedure can present, and the thresholds of its grid.
+/// Returns the range that contains the levels that an adaptive procedure can present and the thresholds of
+/// its grid.
 Range levels_of(const procedure::Spec& spec, const protocol::Protocol& protocol) {
   Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   const auto include = [&range](double level) {
@@ -126,17 +129,18 @@ Range levels_of(const procedure::Spec& spec, const protocol::Protocol& protocol)
   return range;
 }
 
-/// On a logarithmic axis, a range that starts at 0 starts this far below its end instead: 60 dB.
+/// A logarithmic axis cannot start at 0. A range that starts at 0 then starts at this share of its upper end
+/// (60 dB below it).
 constexpr double kLowestRatio = 1e-3;
 
-/// True if the slopes of a procedure's grid have the same meaning as those of the fit.
+/// True if the slopes of a procedure's grid have the same meaning as the slope of the fit.
 bool same_function(const procedure::Spec& spec, const report::SessionData& data) {
   const bool linear = spec.scale == procedure::Scale::linear;
   return linear == (data.scale == analysis::Scale::linear) && spec.function == data.function;
 }
 
-/// The prior follows from what the protocol can present, never from the answers; empty if no procedure is
-/// adaptive.
+/// Returns the prior for the posterior intervals. It depends only on the levels that the protocol can
+/// present, never on the answers. Empty if no procedure is adaptive.
 std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, const report::SessionData& data) {
   std::optional<Range> levels, slopes;
   const auto widen = [](std::optional<Range>& range, const Range& by) {
@@ -149,7 +153,7 @@ std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, cons
       for (const double slope : spec.slope.values) widen(slopes, {slope, slope});
   }
   if (!levels) return std::nullopt;
-  // In a yes/no task only the magnitude of the level counts.
+  // In a yes/no task only the magnitude of the level matters.
   if (data.design == report::Design::yes_no)
     levels = Range{0, std::max(std::fabs(levels->first), std::fabs(levels->second))};
   if (data.scale == analysis::Scale::log10)
@@ -157,7 +161,8 @@ std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, cons
   return analysis::prior_around(data.function, data.scale, *levels, slopes);
 }
 
-/// `contrast_dB` gives `Contrast` and `dB`. The levels of a yes/no task are used without their sign.
+/// Derives the axis label from the factor's name: `contrast_dB` gives `Contrast` and `dB`. In a yes/no task
+/// the levels lose their sign.
 void set_level_words(const std::string& level, report::SessionData& data) {
   const auto words = protocol::words_of(level);
   auto name = level.empty() ? std::string("level") : words.name;
@@ -173,7 +178,7 @@ void set_level_words(const std::string& level, report::SessionData& data) {
   data.level_label = name + " (" + (words.unit.empty() ? "no unit" : words.unit) + ")";
 }
 
-/// Computes the final estimates of staircases again from their answers.
+/// Recomputes the final estimates of staircases from the stored answers.
 void add_staircases(const std::vector<const records::BlockRecord*>& blocks,
                     const protocol::Protocol& protocol, report::SessionData& data) {
   for (const auto& spec : protocol.procedures) {

@@ -14,7 +14,7 @@ using analysis::TrialRecord;
 
 constexpr int kBandPoints = 61;
 
-/// For a signed level, the choice that is right above zero; if unknown, the second choice.
+/// Returns the choice that is right at levels above 0. If that is unknown, returns the second choice.
 int rising_choice(const std::vector<TrialRecord>& trials) {
   std::map<int, std::pair<double, int>> sums;
   for (const auto& trial : trials) {
@@ -35,7 +35,8 @@ int rising_choice(const std::vector<TrialRecord>& trials) {
   return best;
 }
 
-/// Noise trials are counted as a level below all others.
+/// Counts the "yes" answers at each level. Trials without a signal are counted at kNoise, a level below all
+/// others.
 std::vector<analysis::LevelCount> count_yes(const std::vector<TrialRecord>& trials, int positive) {
   auto marked = trials;
   for (auto& trial : marked)
@@ -86,7 +87,7 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
   return result;
 }
 
-/// Removes the measures that the protocol does not ask for.
+/// Removes the measures of parts that the protocol does not show.
 void hide(const SessionData& data, analysis::Trade& trade) {
   for (auto& entry : trade.instructions) {
     if (!shows(data, "ez")) {

@@ -34,22 +34,22 @@ struct Summary {
   std::vector<analysis::Settings> settings;
 };
 
-/// Only the psychometric fits: to all trials, or to each instruction if there are several. With
-/// data.replicates = 0 there are no bootstraps and no bands.
+/// Returns only the psychometric fits: one to all trials, or one per instruction if there are several. If
+/// data.replicates is 0, there are no bootstraps and no bands.
 std::vector<NamedFit> fits_of(const SessionData& data);
 
-/// False if the data only limit the slope: it lies on a bound of a maximum-likelihood fit, or a posterior
-/// does not determine it.
+/// False if the data only set a limit to the slope. The slope then lies on a bound of the maximum-likelihood
+/// fit, or the posterior does not determine it.
 bool slope_estimated(const NamedFit& named);
 
-/// Explains in a sentence or two which intervals a fit has, and with which prior.
+/// Says in a sentence or two how the intervals of a fit were computed, and with which prior.
 std::string describe_intervals(const NamedFit& named, const SessionData& data);
 
 /// The options for analysing the speed-accuracy trade-off of these data.
 analysis::TradeOptions trade_options(const SessionData& data);
 
-/// Analyses one session and computes the parts that the protocol asks for. Deterministic for its seed; takes
-/// about 0.3 s with 1000 replicates.
+/// Analyses one session and computes the parts that the protocol chooses. The result depends only on `data`,
+/// seed included. Takes about 0.3 s with 1000 replicates.
 Summary summarise(const SessionData& data);
 
 }  // namespace turnpoint::report

@@ -2,17 +2,20 @@
 
 namespace turnpoint::scene {
 
-/// Properties of a stimulus that a participant could use to answer instead of the property that the task asks
-/// about. One number per cue.
+/// Properties of a stimulus that could give the right answer away. A participant could use them instead of
+/// the property that the task asks about.
 struct Cues {
-  double pitch_Hz = 0;              ///< lowest tone below 22.4 kHz; 0 if nothing is audible
-  double loudness_dB = 0;           ///< drive of the audible tones, re 1 um at the edge; 0 if silent
-  double wide_end_amplitude_m = 0;  ///< root of summed squares, averaged over the first 30 mm
-  double stripe_pitch_m = 0;        ///< half the local wavelength of the strongest tone at the wide end
-  double edge_width_m = 0;          ///< distance between 90 % and 10 % of the last maximum
+  double pitch_Hz = 0;              ///< frequency of the lowest tone below 22.4 kHz; 0 if no tone is audible
+  double loudness_dB = 0;           ///< drive amplitude of the audible tones, re 1 um at the drive edge; 0 if
+                                    ///< there are none
+  double wide_end_amplitude_m = 0;  ///< displacement of all tones (root of summed squares), averaged over the
+                                    ///< 30 mm next to the drive edge
+  double stripe_pitch_m = 0;        ///< half the local wavelength of the strongest tone at the wide end of
+                                    ///< the surface
+  double edge_width_m = 0;          ///< distance over which the last maximum falls from 90 % to 10 %
   double strip_width_m = 0;         ///< width of the surface at the boundary
-  double displacement_m = 0;        ///< at the last maximum
-  double friction = 1;              ///< lowest value of the fingertip average
+  double displacement_m = 0;        ///< displacement at its last maximum
+  double friction = 1;              ///< lowest friction anywhere, averaged over the fingertip
 };
 
 }  // namespace turnpoint::scene

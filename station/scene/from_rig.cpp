@@ -24,7 +24,8 @@ physics::Bending bending_of(rig::Bending bending) {
   return physics::Bending::automatic;
 }
 
-/// A rig that leaves the theory open is described by the most exact one that has all models.
+/// Returns the plate theory to use. If the rig file does not choose a theory, this is the most exact theory
+/// that has all models.
 physics::PlateTheory theory_of(rig::PlateTheory theory, const rig::Surface& surface) {
   switch (theory) {
     case rig::PlateTheory::kirchhoff:

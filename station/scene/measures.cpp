@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kWideEnd_m = 0.030;
 
-/// Mean friction, averaged over the fingertip, in the zone of the scene, and its rms deviation.
+/// Mean of the friction (averaged over the fingertip) in the scene's zone, and its rms deviation from that
+/// mean.
 struct ZoneFriction {
   double mean = 1, rms = 0;
 };
@@ -37,8 +38,8 @@ ZoneFriction zone_friction(const std::vector<double>& x_m, const std::vector<dou
   return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean))};
 }
 
-/// The last position at which the profile falls through `share` of its last maximum (linear interpolation),
-/// or the end of the profile if there is none.
+/// Returns the last position at which the profile falls below `share` of its last maximum (linear
+/// interpolation). If it never does, returns the end of the profile.
 double last_crossing(const std::vector<double>& x_m, const std::vector<double>& a, std::size_t peak,
                      double share) {
   const double level = share * a[peak];
@@ -74,7 +75,7 @@ Cues cues_of(const physics::Surface& surface, const std::vector<physics::Tone>& 
     cues.wide_end_amplitude_m += amplitude[i];
   cues.wide_end_amplitude_m /= std::max(n, 1.0);
   const auto& profile = fields[strongest].v;
-  // Half a wavelength is the distance between the first two zeros of the strongest tone's displacement.
+  // The first two zeros of the strongest tone's displacement are half a wavelength apart.
   std::vector<double> nodes;
   for (std::size_t i = 1; i < profile.size() && nodes.size() < 2; ++i) {
     const double from = profile[i - 1].real(), to = profile[i].real();

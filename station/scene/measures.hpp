@@ -10,21 +10,22 @@
 
 namespace turnpoint::scene {
 
-/// Number of evenly spaced profile points on which a plan is measured, from 0 to the length, ends included.
+/// A plan is measured at this number of evenly spaced points along the surface, ends included.
 inline constexpr int profile_points = 601;
 
-/// Fills in the predicted behaviour of the surface: peak displacement, lowest friction, zone friction and
-/// residual, cues. `fields` are the tones' displacements (m) at `profile_points` points.
+/// Fills in how the surface will behave: peak displacement, lowest friction, mean and residual of the zone's
+/// friction, cues. `fields` holds each tone's displacement (m) at `profile_points` points.
 void measure(const physics::Surface& surface, const physics::FrictionMap& friction, const rig::Rig& rig,
              const std::vector<physics::Tone>& tones, const std::vector<physics::ToneField>& fields,
              DrivePlan& plan);
 
-/// The factor for all amplitudes that makes the zone's mean friction equal to the scene's. Throws Unreachable
-/// if there is none.
+/// Returns the factor by which all amplitudes must be multiplied to give the zone the mean friction that the
+/// scene specifies. Throws Unreachable if no factor does.
 double scale_to_friction(const physics::Surface& surface, const physics::FrictionMap& friction,
                          const rig::Rig& rig, const std::vector<physics::Tone>& tones, const Scene& scene);
 
-/// The relative amplitude error that changes friction by `tolerance` where the map is steepest.
+/// Returns the relative change of amplitude that changes friction by `tolerance`, where friction depends most
+/// steeply on amplitude.
 double amplitude_tolerance(const physics::FrictionMap& friction, double tolerance);
 
 }  // namespace turnpoint::scene

@@ -30,7 +30,7 @@ namespace {
 
 constexpr std::size_t kRemembered = 512, kSolutions = 128;
 
-/// A text with everything in a scene that affects its plan, used as the cache key.
+/// Returns a text with everything in a scene that affects its plan. It is the key of the cache.
 std::string key_of(const Scene& scene) {
   const auto maybe = [](const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : "-";
@@ -48,12 +48,12 @@ std::string key_of(const Scene& scene) {
   return key;
 }
 
-/// The displacement that a set of tones causes on this rig's surface, independent of their strength, so
-/// roving does not change it. `fields` are per metre at the drive edge. They use the chosen model, but at
-/// least `mode`: a limit must not be checked with a coarse model.
+/// How the surface moves for a set of tones, whatever their strength, so roving does not change it. `fields`
+/// are displacements per metre at the drive edge. If the chosen model is coarser than `mode`, the fields use
+/// `mode`, because the rig's limits must not be checked with a coarser model.
 struct Solution {
   physics::PlanChoice choice;
-  std::vector<double> frequencies_Hz;  ///< by the chosen model, on the grid
+  std::vector<double> frequencies_Hz;  ///< computed with the chosen model, rounded to the grid
   std::vector<physics::ToneField> fields;
   std::vector<std::optional<double>> resonances_Hz;
   double uncertainty_m = 0;
@@ -67,7 +67,8 @@ Model at_least_mode(Model chosen) { return chosen == Model::modes ? Model::modes
 struct Planner::State : ToneDesigner {
   std::map<std::string, DrivePlan> plans;
   std::map<std::string, Solution> solutions;
-  std::map<physics::PlateTheory, Planner> by_theory;  ///< of a rig that leaves the theory open
+  std::map<physics::PlateTheory, Planner> by_theory;  ///< planners for the plate theories, if the rig does
+                                                      ///< not choose one
 
   using ToneDesigner::ToneDesigner;
 
@@ -95,7 +96,8 @@ physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector
   return physics::choose_model(surface, request);
 }
 
-/// Moves the tones that have a boundary to where `modes` puts their edge; false if it has no such edge.
+/// Moves each tone that has a boundary to the frequency at which the model `modes` puts its edge there.
+/// Returns false if `modes` finds no such edge.
 bool Planner::State::place_by_field(const std::vector<WantedTone>& wanted,
                                     std::vector<double>& frequencies_Hz) const {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -117,7 +119,8 @@ Solution Planner::State::solve(const Scene& scene, const std::vector<WantedTone>
     tones.push_back({tone.frequency_Hz, 1, 0});
     solution.frequencies_Hz.push_back(tone.frequency_Hz);
   }
-  // Zones are designed by the first mode, so their boundary has its error whichever model is chosen.
+  // Zones are designed with the first mode. Their boundary has the error of that model, whichever model is
+  // chosen later.
   const auto placed_by = scene.zone ? std::optional(Model::mode) : std::nullopt;
   solution.choice = choose(scene, tones, placed_by);
   if (solution.choice.model == Model::modes && !place_by_field(wanted, solution.frequencies_Hz))
@@ -193,7 +196,7 @@ Planner::Planner(const Planner& other) : state_(std::make_unique<State>(*other.s
 const physics::Surface& Planner::surface() const { return state_->surface; }
 const physics::FrictionMap& Planner::friction() const { return state_->friction; }
 
-/// The planner of this rig with one of the theories.
+/// Returns a planner for this rig with the given plate theory.
 Planner& Planner::by_theory(physics::PlateTheory theory) {
   auto found = state_->by_theory.find(theory);
   if (found == state_->by_theory.end()) {
@@ -219,10 +222,11 @@ DrivePlan Planner::plan(const Scene& scene) {
   auto& plans = state_->plans;
   const auto key = key_of(scene);
   if (const auto found = plans.find(key); found != plans.end()) return found->second;
-  // With roving almost every scene is new, so the cache must not grow with the session.
+  // With roving, almost every scene is new. Clear the cache when it is full, so that it does not grow with
+  // the session.
   if (plans.size() >= kRemembered) plans.clear();
-  // If the physics library refuses, the scene is at fault: the surface does not have this edge, or the zone
-  // is beyond the strip.
+  // These errors of the physics library mean that the scene is impossible: the surface does not have this
+  // edge, or the zone lies beyond the strip.
   try {
     return plans.emplace(key, make(scene)).first->second;
   } catch (const std::domain_error& error) {
@@ -250,7 +254,7 @@ DrivePlan Planner::make(const Scene& scene) {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const auto& info = solution.fields[i].info;
     const double frequency_Hz = solution.frequencies_Hz[i];
-    // Where the two-dimensional field has no last maximum, the first mode's sets the level.
+    // If the two-dimensional field has no last maximum, set the level with the first mode's last maximum.
     const double drive_m =
         info.last_peak_m ? wanted[i].displacement_m / info.gain
                          : physics::drive_amplitude_m(surface(), frequency_Hz, wanted[i].displacement_m);

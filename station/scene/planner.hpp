@@ -18,7 +18,7 @@
 
 namespace turnpoint::scene {
 
-/// A scene that this rig cannot present. The message says why and what would be possible.
+/// Thrown for a scene that this rig cannot present. The message says why, and what would be possible.
 class Unreachable : public terms::UsageError {
  public:
   using terms::UsageError::UsageError;
@@ -27,20 +27,23 @@ class Unreachable : public terms::UsageError {
 /// One tone as the drive will play it.
 struct DrivenTone {
   double frequency_Hz = 0;
-  double amplitude_m = 0;  ///< peak displacement at the drive edge
+  double amplitude_m = 0;  ///< peak at the drive edge
   double phase_rad = 0;    ///< phase at the drive edge
   std::string transducer;
   int channel = 0;
-  double full_scale = 0;             ///< peak at the converter; 1 is full scale
-  double output_phase_rad = 0;       ///< phase at the converter, with the transducer's phase subtracted
-  std::optional<double> boundary_m;  ///< by the scene's edge definition, for this tone alone
+  double full_scale = 0;             ///< peak at the converter, as a share of full scale
+  double output_phase_rad = 0;       ///< phase at the converter: `phase_rad` minus the phase shift of the
+                                     ///< transducer
+  std::optional<double> boundary_m;  ///< where this tone alone would put the scene's edge
   std::optional<double> turning_point_m, last_peak_m, nearest_resonance_Hz;
-  double displacement_m = 0;  ///< peak at its last maximum (largest value if there is none)
+  double displacement_m = 0;  ///< peak at the tone's last maximum, or the largest value if there is no
+                              ///< maximum
   double gain = 0;
 };
 
-/// The plan for a scene on this rig: the tones, the chosen model and the reason for it, its error bounds, and
-/// the predicted behaviour of the surface. Model error and parameter uncertainty are kept separate.
+/// How this rig presents a scene: the tones, the chosen model with the reason and its error bounds, and the
+/// predicted behaviour of the surface. The error of the model and the uncertainty of the rig's parameters are
+/// kept separate.
 struct DrivePlan {
   Scene scene;
   std::vector<DrivenTone> tones;  ///< in order of falling frequency
@@ -51,37 +54,39 @@ struct DrivePlan {
   double amplitude_bound = 0;  ///< relative model error of the amplitude
   double uncertainty_m = 0;    ///< uncertainty of the boundary from the rig's tolerances
   std::string reason;          ///< why this model was chosen
-  physics::PlateTheory theory = physics::PlateTheory::kirchhoff;  ///< of a plate
+  physics::PlateTheory theory = physics::PlateTheory::kirchhoff;  ///< plate theory, if the surface is a plate
   /// How far the next better plate theory would move the boundary; empty for membranes.
   std::optional<double> shear_shift_m;
   std::optional<double> boundary_m;     ///< predicted boundary
   std::optional<double> zone_friction;  ///< predicted mean over the zone
-  std::optional<double> residual;       ///< rms deviation of friction from its mean in the zone
-  double lowest_friction = 1;           ///< lowest fingertip average anywhere on the surface
-  double peak_displacement_m = 0;       ///< anywhere on the surface, with all tones in phase
-  double peak_full_scale = 0;           ///< largest over all channels, with all tones in phase
+  std::optional<double> residual;       ///< rms deviation of friction from its mean within the zone
+  double lowest_friction = 1;           ///< lowest friction anywhere on the surface, averaged over the
+                                        ///< fingertip
+  double peak_displacement_m = 0;       ///< largest displacement anywhere on the surface, if all tones were
+                                        ///< in phase
+  double peak_full_scale = 0;           ///< largest value over all channels, if all tones were in phase
   double crest_factor = 0;
   std::vector<physics::Product> audible_products;
   Cues cues;
   std::vector<physics::Warning> warnings;
 };
 
-/// Turns scenes into drive plans for one rig. The result of plan() depends only on the scene and the rig (the
-/// planner merely caches boundary maps and designs). Not thread-safe.
+/// Turns scenes into drive plans for one rig. The result of plan() depends only on the scene and the rig; the
+/// planner caches boundary maps and designs only to save time. Not thread-safe.
 class Planner {
  public:
   explicit Planner(const rig::Rig& rig);
   ~Planner();
   Planner(Planner&&) noexcept;
-  /// Copies the cache too, for use in another thread.
+  /// Copies the caches too, so that another thread can use the copy.
   Planner(const Planner& other);
 
-  /// The cheapest plan that meets the scene's tolerance. Throws Unreachable if the surface, a transducer's
-  /// band, the converter or the rig's limits do not allow the scene.
+  /// Returns the plan with the cheapest model that meets the scene's tolerance. Throws Unreachable if the
+  /// surface, a transducer's band, the converter or the rig's limits cannot present the scene.
   DrivePlan plan(const Scene& scene);
 
-  /// The plan's displacement profile (m, root of summed squares) and the friction averaged over the
-  /// fingertip, at n evenly spaced points from 0 to the length, ends included.
+  /// The displacement of a plan (m, root of summed squares over the tones) and the friction averaged over the
+  /// fingertip, at evenly spaced points along the surface, ends included.
   struct Profile {
     std::vector<double> x_m, displacement_m, friction;
   };
@@ -98,7 +103,7 @@ class Planner {
 };
 
 /// Converts the rig's surface and friction map to the types of the physics library. Throws
-/// std::invalid_argument.
+/// std::invalid_argument for values that the library does not accept.
 physics::Surface surface_of(const rig::Rig& rig);
 physics::FrictionMap friction_of(const rig::Rig& rig);
 

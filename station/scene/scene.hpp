@@ -7,7 +7,7 @@
 
 namespace turnpoint::scene {
 
-/// One explicit tone, placed by its boundary or by its frequency (exactly one is set).
+/// One explicit tone. Exactly one of its boundary and its frequency is set.
 struct ToneTarget {
   std::optional<double> boundary_m, frequency_Hz;
   physics::Edge edge;
@@ -18,13 +18,13 @@ struct ToneTarget {
 /// A zone of uniform friction from `from_m` to the scene's boundary.
 struct ZoneTarget {
   double from_m = 0;
-  double friction = 1;  ///< desired mean over the zone, relative to the surface at rest
-  int tones = 1;        ///< largest number of tones
-  std::optional<double>
-      design_friction;  ///< tones are designed for this friction and then only scaled to `friction`
+  double friction = 1;  ///< desired mean over the zone, relative to the friction of the surface at rest
+  int tones = 1;        ///< the most tones that may be used
+  std::optional<double> design_friction;  ///< the tones are designed for this friction; then their amplitudes
+                                          ///< are scaled to give `friction`
 };
 
-/// The accuracy that a scene requires. An empty value means no requirement.
+/// The accuracy that a scene requires of its plan. An empty value means no requirement.
 struct Tolerance {
   std::optional<double> boundary_m, level_dB, friction;
 };
@@ -35,11 +35,11 @@ struct Scene {
   std::string name;
   std::optional<double> boundary_m;
   physics::Edge edge;
-  /// at the last maximum; for a boundary alone, one of them is set
+  /// values at the last maximum; for a boundary alone, one of the two is set
   std::optional<double> displacement_m, friction;
   std::vector<ToneTarget> tones;
   std::optional<ZoneTarget> zone;
-  double rove_dB = 0;  ///< random value of this trial, added to every displacement
+  double rove_dB = 0;  ///< random change of strength in this trial, added to every displacement
   double ramp_s = 0.050;
   Tolerance tolerance;
 };

@@ -17,7 +17,7 @@ std::optional<SoundBound> sound_bound(const rig::Rig& rig, std::span<const physi
   };
   std::map<long, Band> bands;
   const auto surface = surface_of(rig);
-  // The model `edge` has no field.
+  // The model `edge` gives no field, so use `mode` instead.
   const auto with_field = model == physics::Model::edge ? physics::Model::mode : model;
   for (const auto& tone : tones) {
     if (!(tone.amplitude_m > 0)) continue;
@@ -28,7 +28,7 @@ std::optional<SoundBound> sound_bound(const rig::Rig& rig, std::span<const physi
       return std::nullopt;
     }
     auto& band = bands[std::lround(10 * std::log10(1e-3 * tone.frequency_Hz))];
-    // The loudest places of different tones differ, so the sum is an upper bound.
+    // Each tone is loudest at a different place, so the sum of the maxima is an upper bound.
     band.power += std::pow(10, 0.1 * level_dB);
     if (level_dB > band.loudest_dB) band.loudest_dB = level_dB, band.frequency_Hz = tone.frequency_Hz;
   }

@@ -14,8 +14,8 @@ using text::number;
 
 static_assert(terms::kAudible_Hz == physics::audible_limit_Hz);
 
-/// Percent, peak and turning edges depend only on the surface, so one map for each is enough. It covers the
-/// tones that this rig can play.
+/// An edge defined by a percentage, a peak or a turning point depends only on the surface, so one map serves
+/// all displacements. The map covers the tones that this rig can play.
 const physics::BoundaryMap& ToneDesigner::map_for(const physics::Edge& edge) {
   const auto key = physics::format(edge);
   auto found = maps_.find(key);
@@ -40,13 +40,14 @@ physics::MapOptions ToneDesigner::edge_options(const physics::Edge& edge, double
 double ToneDesigner::frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m) {
   const auto options = edge_options(edge, displacement_m);
   if (edge.kind == physics::Edge::Kind::friction) {
-    // An edge defined by friction depends on the displacement, which roving changes in every trial, so a map
-    // would be used only once.
+    // An edge defined by friction depends on the displacement. Roving changes the displacement in every
+    // trial, so a map would be used only once.
     if (const auto frequency = physics::solve_frequency_Hz(surface, options, boundary_m)) return *frequency;
   } else if (const auto frequency = map_for(edge).frequency_Hz(boundary_m)) {
     return *frequency;
   }
-  // The position is out of the rig's range. A map over all frequencies tells the user what would be possible.
+  // The rig's tones cannot put the edge there. A map over all frequencies tells whether the surface could,
+  // for the message.
   const physics::BoundaryMap whole(surface, options);
   if (const auto frequency = whole.frequency_Hz(boundary_m)) return *frequency;
   throw Unreachable(fmt::format("no frequency puts the {} edge at {} mm: {}", physics::format(edge),

@@ -14,32 +14,33 @@
 
 namespace turnpoint::scene {
 
-/// Planned tones are rounded to a grid, because processors and C libraries differ in the last bits of sines
-/// and logarithms, and the same session must give the same samples everywhere. The grid is far finer than
-/// what matters: 1 uHz, 1 fm (-180 dB re 1 um), 1 nrad.
+/// Planned tones are rounded to a grid. The reason: the last bits of sines and logarithms differ between
+/// processors and C libraries, and the same session must give the same samples everywhere. The grid is far
+/// too fine to matter: 1 uHz, 1 fm (-180 dB re 1 um), 1 nrad.
 inline constexpr double kGridPerHz = 1e6, kGridPerMetre = 1e15, kGridPerRadian = 1e9;
 inline double on_grid(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
-/// A tone that a scene asks for, before a model is chosen. The frequency is the first mode's.
+/// A tone that a scene needs, before a model is chosen. Its frequency is computed with the first mode.
 struct WantedTone {
   double frequency_Hz = 0;
-  double displacement_m = 0;  ///< at its last maximum
+  double displacement_m = 0;  ///< displacement at the tone's last maximum
   double phase_rad = 0;
   physics::Edge edge;
-  std::optional<double> boundary_m;  ///< where the tone's own edge shall lie; empty for tones of a zone
+  std::optional<double> boundary_m;  ///< required position of the tone's own edge; empty for tones of a zone
 };
 
-/// Finds the tones that a scene asks for, by the first mode on this rig's surface. Keeps boundary maps and
+/// Finds the tones that a scene needs, from the first mode of this rig's surface. Caches boundary maps and
 /// zone designs.
 class ToneDesigner {
  public:
   explicit ToneDesigner(const rig::Rig& r) : rig(r), surface(surface_of(r)), friction(friction_of(r)) {}
 
-  /// Sets the boundary of `plan` for a zone. Throws Unreachable.
+  /// Returns the tones of a scene. For a zone, also sets the boundary of `plan`. Throws Unreachable.
   std::vector<WantedTone> tones_for(const Scene& scene, DrivePlan& plan);
-  /// Percent, peak and turning edges only: the map covers the tones that this rig can play.
+  /// Returns the map of boundaries for an edge defined by a percentage, a peak or a turning point. The map
+  /// covers the tones that this rig can play.
   const physics::BoundaryMap& map_for(const physics::Edge& edge);
-  /// How an edge is found where the surface moves this much.
+  /// Returns how the edge is defined at a place that moves with this displacement.
   physics::MapOptions edge_options(const physics::Edge& edge, double displacement_m) const;
 
   rig::Rig rig;

@@ -11,7 +11,7 @@ namespace turnpoint::scene {
 
 namespace {
 
-/// Displacement at full scale (m) and phase (rad) at a frequency inside the band.
+/// Returns the displacement at full scale (m) and the phase (rad) at a frequency inside the band.
 std::pair<double, double> response_at(const rig::Transducer& transducer, double frequency_Hz) {
   if (transducer.m_per_full_scale) return {*transducer.m_per_full_scale, 0.0};
   const auto& points = transducer.response;

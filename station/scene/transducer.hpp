@@ -4,12 +4,12 @@
 
 namespace turnpoint::scene {
 
-/// Assigns the tone to the first transducer whose band contains its frequency, and fills in transducer,
-/// channel, full_scale and output phase. Throws Unreachable with a list of the bands if there is none.
+/// Assigns the tone to the first transducer whose band contains its frequency. Fills in transducer, channel,
+/// full_scale and output phase. If no band contains it, throws Unreachable with a list of the bands.
 void assign_transducer(const rig::Rig& rig, DrivenTone& tone);
 
-/// The lowest and highest frequencies that the transducers can play. The lowest is at least `preferred_Hz` if
-/// the bands extend above it; the highest is below `limit_Hz`.
+/// Return the lowest and the highest frequency that the transducers can play. The lowest is at least
+/// `preferred_Hz` if the bands extend above it; the highest is below `limit_Hz`.
 double lowest_frequency(const rig::Rig& rig, double preferred_Hz);
 double highest_frequency(const rig::Rig& rig, double limit_Hz);
 

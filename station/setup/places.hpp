@@ -4,19 +4,22 @@
 
 namespace turnpoint::setup {
 
-/// The rig file to use: the named one, else /etc/turnpoint/rig.toml, else the simulated rig that comes with
-/// the program. Prints its own choice on `messages`. Throws text::BadInput if there is none.
+/// Returns the rig file to use: the named file; otherwise /etc/turnpoint/rig.toml; otherwise the simulated
+/// rig that comes with the program. If no file was named, prints the choice on `messages`. Throws
+/// text::BadInput if no file is found.
 std::string rig_or_default(const std::string& named, std::ostream& messages);
 
-/// A folder that comes with the program ("protocols", "deploy/rigs"), in the source tree or as installed.
+/// Returns the path of a folder that comes with the program ("protocols", "deploy/rigs"), installed or in the
+/// source tree.
 std::string shipped(const std::string& folder);
 
-/// The station's own database: in the user's data folder ($XDG_DATA_HOME, else ~/.local/share).
+/// Returns the path of the station's own database, in the user's data folder ($XDG_DATA_HOME or
+/// ~/.local/share).
 std::string default_database();
 
-/// The graphics card to which a screen is connected, "/dev/dri/card1". Without a screen, the first card with
-/// a connector; "" if there is none. A board's first card may have no connector. `drm` is where the kernel
-/// lists cards.
+/// Returns the graphics card to which a screen is connected, such as "/dev/dri/card1". Without a screen,
+/// returns the first card with a connector, or "" if there is none. (On some boards the first card has no
+/// connector.) `drm` is the folder in which the kernel lists cards.
 std::string screen_card(const std::string& drm = "/sys/class/drm");
 
 }  // namespace turnpoint::setup

@@ -39,14 +39,15 @@ std::string choose_language(const std::string& wanted, const protocol::Protocol&
   return wanted;
 }
 
-/// A calibration that contains only panel latency is not enough for a live session; it needs a transducer
-/// response.
+/// True if the calibration contains a transducer response. A live session needs one; a calibration with only
+/// the latency of the touch panel is not enough.
 bool has_response(const session::Setup& setup) {
   return !setup.calibration_text.empty() &&
          !calibration::parse(setup.calibration_text, "calibration").transducers.empty();
 }
 
-/// What is said if the tones may be too loud in air and not all of their levels were measured.
+/// Returns a problem if some tones have no measured sound level and their computed bound is unknown or
+/// exceeds the recommended limit. Otherwise returns "".
 std::string unmeasured_sound(const session::Setup& setup, const protocol::Sight& sight) {
   const auto measured = [&](const physics::Tone& tone) {
     return limits::sound_measured(tone.frequency_Hz, setup.sound);
@@ -60,7 +61,7 @@ std::string unmeasured_sound(const session::Setup& setup, const protocol::Sight&
       1e-3 * bound->frequency_Hz, bound->level_dB, scene::kEarDistance_m, bound->allowed_dB);
 }
 
-/// A live session has stricter requirements than a pilot: everything that reaches the finger must have been
+/// Checks the additional requirements of a live session: everything that reaches the finger must have been
 /// measured.
 void check_live(const session::Setup& setup, const protocol::Survey& survey, std::vector<Problem>& problems) {
   const auto& rig = setup.rig;
@@ -76,8 +77,8 @@ void check_live(const session::Setup& setup, const protocol::Survey& survey, std
   if (!has_response(setup) && rig.amplifier_uri != "sim:")
     add("the rig has no valid calibration", "turnpoint calibrate --rig " + rig.path + " makes one");
   for (const auto& sight : survey.sights) {
-    // Check only that a level was measured. Whether it is allowed depends on each tone's amplitude and is
-    // checked in the trial.
+    // Check only that the level was measured. Whether the level is allowed depends on each tone's amplitude
+    // and is checked in the trial.
     auto problem = limits::sound_problem(sight.lowest_Hz, 1e-9, setup.sound);
     if (problem.empty()) problem = unmeasured_sound(setup, sight);
     if (problem.empty()) continue;
@@ -112,7 +113,7 @@ void take_calibration(const std::string& source, const std::string& path, sessio
 
 namespace {
 
-/// Finds the named calibration, or the newest one beside the rig.
+/// Loads the calibration that was named, or the newest one beside the rig file.
 void find_calibration(const RunRequest& request, session::Setup& setup, std::vector<Problem>& problems) {
   const auto path =
       request.calibration.empty() ? calibration::newest_for(setup.rig.path) : request.calibration;

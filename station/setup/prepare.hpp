@@ -13,21 +13,22 @@ struct RunRequest {
   std::string protocol, rig, participant, database;
   std::string mode = "pilot";  ///< live | pilot
   std::string language;        ///< "" uses the protocol's first language
-  std::string observer;        ///< "" for a person
+  std::string observer;        ///< "" for a person answering
   std::optional<std::uint64_t> seed;
-  std::string consent_version;  ///< version of the consent form; "" if none is required
+  std::string consent_version;  ///< version of the consent form; "" if the study needs none
   bool headless = false, buttons_only = false;
   std::string calibration;  ///< file; "" uses the newest one beside the rig file, if any
 };
 
-/// Loads and checks everything that a session needs. Throws text::BadInput with all problems of both files,
-/// of the protocol on this rig, and of participant code, language and mode. A calibration is applied to the
-/// rig. If it has expired or belongs to another rig, it is refused if it was named or the session is live,
-/// and otherwise ignored. Throws protocol::Abandoned soon after `stop` is requested.
+/// Loads and checks everything that a session needs, and applies the calibration to the rig. Throws
+/// text::BadInput with all problems of both files, of the protocol on this rig, and of participant code,
+/// language and mode. A calibration that has expired or belongs to another rig is an error if it was named or
+/// if the session is live; otherwise it is ignored. Throws protocol::Abandoned soon after `stop` is
+/// requested.
 session::Setup prepare(const RunRequest& request, const std::stop_token& stop = {});
 
-/// Applies the text of a calibration file: to the rig, the sound levels, and the values stored with the
-/// session. Throws text::BadInput, terms::UsageError.
+/// Applies the text of a calibration file to the rig, to the sound levels, and to the values that are stored
+/// with the session. Throws text::BadInput or terms::UsageError.
 void take_calibration(const std::string& source, const std::string& path, session::Setup& setup);
 
 }  // namespace turnpoint::setup

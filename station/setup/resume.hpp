@@ -9,17 +9,18 @@ namespace turnpoint::setup {
 
 /// The options of `turnpoint resume`.
 struct ResumeRequest {
-  std::string database, session_id;  ///< session_id "": the newest interrupted one
+  std::string database, session_id;  ///< session_id "" continues the newest interrupted session
   std::string
-      policy;  ///< "" (the protocol's; being called is the answer to "ask") | resume | restart | block
+      policy;  ///< resume | restart | block; "" uses the protocol's policy, and "ask" then means resume
   bool headless = false;
-  /// continue even a session older than its protocol allows, for example because the clock was wrong
+  /// continue the session even if it is older than its protocol allows, for example because the clock was
+  /// wrong
   bool any_age = false;
 };
 
-/// The setup for continuing an interrupted session: rig, protocol text, observer and language are taken from
-/// its row. Empty if no session was interrupted. Throws text::BadInput for a session older than its protocol
-/// allows, and store::StoreError.
+/// Returns the setup for continuing an interrupted session. Rig, protocol text, observer and language come
+/// from the session's row in the database. Empty if no session was interrupted. Throws text::BadInput for a
+/// session older than its protocol allows, and store::StoreError.
 std::optional<session::Setup> prepare_resume(const ResumeRequest& request, std::ostream& messages);
 
 }  // namespace turnpoint::setup

@@ -3,11 +3,11 @@
 
 namespace turnpoint::setup {
 
-/// The options of `turnpoint station`. All of them are filled in before a screen gets them.
+/// The options of `turnpoint station`, with defaults filled in.
 struct StationRequest {
-  std::string protocols;  ///< folder
+  std::string protocols;  ///< the folder with the protocols
   std::string rig, database;
-  bool locked = false;  ///< ask for the code before the start page too
+  bool locked = false;  ///< also ask for the operator's code before the start page
 };
 
 }  // namespace turnpoint::setup

@@ -16,12 +16,12 @@ namespace {
 
 using protocol::Protocol;
 
-// Estimates of the time that people need in addition to a rehearsal: reading an instruction, exploring before
-// a decision (as a share of the duration of the tones), one setting of a slider.
+// A rehearsal leaves out the time for which people read an instruction, explore before a decision (as a share
+// of the duration of the tones), and set a slider. These are estimates of those times.
 constexpr double instruction_s = 12, explored_share = 0.5, setting_s = 15;
 
-/// A simulated session: its duration for a person, and the number of trials in each block, all attempts
-/// together.
+/// A simulated session: its duration for a person, and the number of trials in each block. Repeated attempts
+/// at a block are added up.
 struct Estimate {
   double duration_s = 0;
   std::vector<CheckedBlock> blocks;
@@ -32,7 +32,7 @@ double longest_s(const Protocol& protocol) {
   return protocol.task.duration_s.value_or(protocol.timing.explore_s.value_or(0));
 }
 
-/// The observer of `run --observer sim`, except that setting a slider takes as long as for people.
+/// The observer of `run --observer sim`, but setting a slider takes as long as it takes a person.
 Rehearser person(const Protocol& protocol) {
   auto person = rehearser(observer::Observer{observer::Parameters{}});
   person.adjust = [adjust = person.adjust, done_s = std::min(setting_s, longest_s(protocol))](
@@ -44,7 +44,8 @@ Rehearser person(const Protocol& protocol) {
   return person;
 }
 
-/// How long people explore in each trial before they decide, if the task lets them choose.
+/// The time for which people explore the surface in each trial before they decide, if the task lets them
+/// choose when to answer.
 double exploring_s(const Protocol& protocol) {
   const auto& task = protocol.task;
   const bool free = task.kind == protocol::TaskKind::single_interval && !task.foreperiod_s;
@@ -66,7 +67,7 @@ Estimate simulate(const Protocol& protocol, std::uint64_t seed) {
   Estimate estimate;
   estimate.duration_s = rehearsal.duration_s + rehearsal.trials * exploring_s(protocol);
   for (const auto& [start, trials] : rehearsal.blocks) {
-    // Practice that is repeated counts as one block with as many trials as were needed.
+    // Repeated practice is listed as one block. Its number of trials is the sum over all attempts.
     if (start.attempt == 0) {
       estimate.blocks.push_back({start.name, start.instruction, start.practice, {}});
       estimate.trials.push_back(0);
@@ -156,7 +157,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   } catch (const protocol::Abandoned&) {
     throw;
   } catch (const std::exception& error) {
-    // A procedure that cannot work must be reported here, before a session begins.
+    // If a procedure cannot work, report it here and not in the middle of a session.
     check.problems.push_back({{protocol_path, 0, 0}, error.what(), ""});
   }
   if (!check.cues.not_compared.empty())

@@ -12,7 +12,7 @@
 
 namespace turnpoint::simulation {
 
-/// A number over simulated sessions: its median, and the range that contains nine of ten sessions.
+/// The median of a number over simulated sessions, and the range that contains nine of ten sessions.
 struct Spread {
   double low = 0, median = 0, high = 0;
 };
@@ -26,7 +26,7 @@ struct CheckedBlock {
 
 /// The result of `turnpoint check` for a protocol on a rig.
 struct Check {
-  /// problems of both files and of their combination; if there are any, everything else is empty
+  /// problems of both files and of their combination; if there are any, all other members are empty
   std::vector<text::Problem> problems;
   std::vector<text::Problem> warnings;
   std::vector<text::Problem> notes;  ///< minor points
@@ -36,15 +36,16 @@ struct Check {
   int simulated_sessions = 0;
   protocol::Survey survey;
   CueGuard cues;
-  /// of the loudest combination; empty if not asked for, or if no bound is known for this rig
+  /// bound of the airborne sound for the loudest combination of factors; empty if CheckOptions::sound is
+  /// false or if this rig has no known bound
   std::optional<scene::SoundBound> sound;
   std::vector<std::string> protocol_defaults, rig_defaults;
 };
 
-/// The number of sessions to simulate for the number of trials and the duration; 0: none.
+/// What `turnpoint check` computes besides the survey.
 struct CheckOptions {
-  int sessions = 21;
-  bool sound = false;  ///< also the bound of the airborne sound, some 10 ms for each tone
+  int sessions = 21;   ///< simulated to estimate the number of trials and the duration; 0: none
+  bool sound = false;  ///< also compute the bound of the airborne sound, about 10 ms per tone
 };
 
 /// Reads and checks both files as `run` would. Throws std::system_error if one cannot be read, and

@@ -49,17 +49,17 @@ constexpr CueKind cue_kinds[] = {
 
 constexpr double smallest_difference = 1e-3, smallest_difference_dB = 0.01;
 
-// Precision of the accuracy in an observer's own sessions (three standard errors), the number of sessions
-// from which the required number is estimated, and the largest number of sessions.
+// Wanted precision of an observer's accuracy in simulated sessions (three standard errors). The first
+// sessions give an estimate of the number of sessions needed, which is limited to `most_sessions`.
 constexpr double precision = 0.01;
 constexpr int first_sessions = 30, most_sessions = 1000;
 
-/// Thrown if there are trials whose cues cannot be known.
+/// Thrown if the cues of some trials can neither be planned nor interpolated.
 struct NotPlanned : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The cues of one interval, before its strength is drawn.
+/// The cues of one interval, for any drawn strength: in its first and its last scene.
 struct Interval {
   RovedCues first, last;
   double duration_s = 0;
@@ -68,18 +68,18 @@ struct Interval {
 struct Presentation {
   std::vector<Interval> intervals;
   int correct = 0;
-  double share = 0;   ///< share of this presentation among the trials of its cell
-  double turn = 0.5;  ///< starting point for the draws of its strength
+  double share = 0;   ///< share of this order and combination of factors among the trials of its cell
+  double turn = 0.5;  ///< offset into the sequence of quasi-random strengths (see looks())
 };
 
-/// All cells of the census, each with its presentations and its number of trials.
+/// All cells of the census. Each has its presentations and its number of trials.
 using Cells = std::vector<std::pair<const std::vector<Presentation>*, double>>;
 
-/// Which value the observer uses in an interval of two scenes.
+/// Which value of the cue the observer uses in an interval that changes from one scene to another.
 enum class Feature { last, change, first };
 
-/// There are two equally large sets of draws of the strength, because a rule that was chosen on one set looks
-/// better on that set than it is.
+/// Each trial has two equally large sets of drawn strengths. The first chooses the rule and the second
+/// measures its accuracy, because a rule always looks better on the draws for which it was chosen.
 enum class Draws { to_choose, to_judge };
 
 struct Strategy {
@@ -87,8 +87,9 @@ struct Strategy {
   Rule rule;
 };
 
-/// Simulated sessions in which the observer's answers determine the next level. A cue that gives the same
-/// answers in all trials that occurred leads to the same sessions.
+/// Simulated sessions in which the observer's answers determine the next level. Two cues that give the same
+/// answers in all presented trials lead to the same sessions, so the second cue reuses the sessions of the
+/// first.
 struct OwnSessions {
   std::vector<Score> done;
   /// score of one trial, for each cell that occurred
@@ -179,7 +180,7 @@ const std::vector<Presentation>& Guard::presentations(const protocol::Factors& c
   for (const auto& factors : combinations)
     for (const auto& order : orders) {
       const auto correct = order.correct ? order.correct : trial::correct_choice(protocol_.task, factors);
-      if (!correct) continue;  // in this trial no answer is right, so it does not count
+      if (!correct) continue;  // no answer to this trial is right, so the trial does not count
       turn_ += 0.7548776662466927;
       Presentation presentation;
       presentation.correct = *correct, presentation.turn = turn_;
@@ -197,8 +198,8 @@ Cells Guard::cells_of(const TrialCensus& census) {
   return cells;
 }
 
-// Roving is uniform. Points of a low-discrepancy sequence (Roberts 2018) replace random draws for the
-// intervals.
+// Roving draws strengths from a uniform distribution. Here they come from a low-discrepancy sequence (Roberts
+// 2018), one dimension per interval, because it needs fewer points than random draws.
 std::vector<Look> Guard::looks(const CueKind& kind, Feature feature, const Cells& cells, Draws draws) const {
   constexpr double g = 1.2207440846057596;
   constexpr double steps[] = {1 / g, 1 / (g * g), 1 / (g * g * g)};
@@ -258,7 +259,7 @@ std::vector<std::array<double, 3>> Guard::answers_to(const Cells& cells, const C
   return answers;
 }
 
-// Simulates further sessions until there are `count`.
+// Simulates sessions until there are `count`.
 void Guard::run_sessions(const CueKind& kind, const Strategy& strategy, int count, OwnSessions& own) {
   while (static_cast<int>(own.done.size()) < count) {
     if (stop_.stop_requested()) throw protocol::Abandoned();
@@ -275,8 +276,8 @@ void Guard::run_sessions(const CueKind& kind, const Strategy& strategy, int coun
   }
 }
 
-// The accuracy of a rule that is equally good at every level, so that it does not matter which levels its
-// answers lead to.
+// Returns the accuracy of a rule that is equally good at every level. Its answers may lead to any levels
+// without changing the accuracy. Empty if the accuracy depends on the level.
 std::optional<Reached> Guard::same_everywhere(const CueKind& kind, const Strategy& strategy,
                                               const Cells& all) const {
   if (protocol_.task.kind == TaskKind::single_interval) return std::nullopt;
@@ -290,7 +291,8 @@ std::optional<Reached> Guard::same_everywhere(const CueKind& kind, const Strateg
   return Reached{std::max(0.5 * (low + high), by_guessing), by_guessing, 0.5 * (high - low)};
 }
 
-// The number of sessions depends only on the first ones, not on the results of the others.
+// The number of sessions is estimated from the first sessions alone. If it depended on later results, the
+// accuracy would be biased.
 Reached Guard::by_itself(const CueKind& kind, const Strategy& strategy, const Cells& all) {
   if (const auto same = same_everywhere(kind, strategy, all)) return *same;
   for (const auto& known : own_sessions_)

@@ -6,7 +6,7 @@
 
 namespace turnpoint::simulation {
 
-/// Number of trials, of right answers, and of answers that each key alone would get right.
+/// Counts trials, right answers, and for each key the trials in which that key is right.
 struct Score {
   double trials = 0, right = 0;
   std::array<double, 3> keys{};
@@ -22,11 +22,11 @@ struct Score {
   double one_key() const { return trials > 0 ? keys[best_key()] / trials : 0; }
 };
 
-/// The sum over whole sessions.
+/// Adds up the scores of whole sessions.
 Score sum_of(const std::vector<Score>& sessions);
 
-/// The larger of two standard errors over sessions: of the proportion correct, and of its gain over a single
-/// key. 0 without trials.
+/// Computes two standard errors from the scores of several sessions: of the proportion correct, and of its
+/// gain over always pressing one key. Returns the larger. Returns 0 without trials.
 double standard_error(const std::vector<Score>& sessions);
 
 }  // namespace turnpoint::simulation

@@ -21,7 +21,8 @@ bool same(double a, double b) {
   return std::fabs(a - b) <= 1e-9 * std::max({1.0, std::fabs(a), std::fabs(b)});
 }
 
-// Silence has neither pitch nor loudness, so between silence and a tone use the nearer one.
+// Silence has neither pitch nor loudness. Between silence and a tone there is nothing to interpolate, so
+// these two cues come from the nearer scene.
 Cues mixed(const Cues& a, const Cues& b, double share_of_b) {
   Cues cues;
   for (const auto cue : all_cues) cues.*cue = (1 - share_of_b) * a.*cue + share_of_b * b.*cue;
@@ -70,8 +71,8 @@ CueTable::CueTable(const protocol::Protocol& protocol, const rig::Rig& rig, cons
   }
 }
 
-// Interpolates between the nearest entries on either side of `at`. `cues_at` gives the cues of an entry (or
-// of all entries with the same coordinate), together with the coordinate.
+// Interpolates between the nearest entry below and the nearest entry above the coordinate `at`. `cues_at`
+// returns the coordinate and the cues of an entry (or of all entries that have the same coordinate).
 template <typename Entries, typename Coordinate, typename CuesAt>
 static std::optional<RovedCues> mixed_along(const Entries& entries, double at, Coordinate&& coordinate,
                                             CuesAt&& cues_at) {

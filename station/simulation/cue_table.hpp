@@ -10,27 +10,27 @@
 
 namespace turnpoint::simulation {
 
-/// The cues of a scene for one set of factors, for any strength that may be drawn.
+/// The cues of a scene for one set of factors. They can be read for any strength that roving may draw.
 struct RovedCues {
-  scene::Cues high;  ///< with the strength roved upwards by rove_dB
-  /// with the strength roved downwards, if that changes more than the strength
+  scene::Cues high;  ///< cues with the strength roved upwards by rove_dB
+  /// cues with the strength roved downwards, if roving changes more than the strength
   std::optional<scene::Cues> low;
   double rove_dB = 0;
 
-  /// The cues with this draw. Roving scales the amplitude and shifts the loudness; it changes the frequency
-  /// if the edge depends on the strength.
+  /// Returns the cues for one drawn strength. Roving scales the amplitude and shifts the loudness. It also
+  /// changes the frequency if the position of the edge depends on the strength.
   scene::Cues at(double drawn_dB) const;
 };
 
-/// The cues that the task's scenes offer an observer, for any factors that a trial can have. They come from
-/// the survey's plans, from plans made here (at most 200 more, and not for zones, which take long), or from
-/// linear interpolation between plans: along the single sum of factors on which the scene depends, or along
-/// each factor.
+/// Returns the cues that a scene offers an observer, for any factors that a trial can have. It takes them
+/// from one of three sources: the survey's plans; plans made here (at most 200 more, and none for zones,
+/// which take long); or linear interpolation between plans. If only one sum of factors in the scene matters,
+/// interpolation runs along that sum, otherwise along each factor.
 class CueTable {
  public:
   CueTable(const protocol::Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey);
 
-  /// Empty: the scene can neither be planned nor interpolated.
+  /// Returns nothing if the scene can neither be planned nor interpolated.
   std::optional<RovedCues> find(const std::string& scene, const protocol::Factors& factors);
 
  private:

@@ -20,7 +20,7 @@ double banded(const Rule& rule, const std::array<double, 3>& x) {
   return rule.statistic == Statistic::value ? x[0] : std::fabs(x[1] - x[0]);
 }
 
-// How strongly the cue speaks for each interval.
+// Scores each interval; the observer chooses the interval with the highest score.
 std::array<double, 3> scores(const Rule& rule, std::size_t intervals, const std::array<double, 3>& x) {
   const auto difference = [&](double a, double b) {
     const auto& grain = rule.grain;
@@ -49,13 +49,14 @@ struct Weighed {
   double weight = 0;
 };
 
-// Cue values that cannot be told apart, and how much more often the one answer is right there than the other.
+// A group of cue values that count as equal. `excess` is the weight of trials for one answer minus that for
+// the other.
 struct Group {
   double first = 0, last = 0, excess = 0;
 };
 
-// The best band of neighbouring groups for answering `inside` within the band and the other answer outside:
-// the neighbouring groups with the largest sum (Kadane 1984).
+// Finds the best band: within it the observer answers `inside`, outside it the other answer. The band is the
+// run of neighbouring groups with the largest sum of `excess` (Kadane's algorithm).
 Rule best_band(std::vector<Weighed> values, Statistic statistic, const Grain& grain) {
   std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
   std::vector<Group> groups;

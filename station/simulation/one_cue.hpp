@@ -6,27 +6,28 @@
 
 namespace turnpoint::simulation {
 
-/// The values of one cue in the intervals of a trial, the right answer, and how often this occurs. `x` has
-/// one number for each interval, at most three.
+/// The values of one cue in the intervals of a trial, the right answer, and the weight of this case. `x` has
+/// one value per interval, at most three.
 struct Look {
   std::array<double, 3> x{};
   int correct = 0;
   double weight = 1;
 };
 
-/// How an observer derives an answer from one cue.
+/// How an observer derives an answer from the values of one cue.
 enum class Statistic {
   value,   ///< one interval: one answer if the cue lies inside a band, the other answer outside
-  change,  ///< same or different: like `value`, with the difference between the two intervals
-  most,    ///< which interval: the one with the largest cue
-  least,   ///< ... with the smallest
-  odd,     ///< ... with the one that differs most from the other intervals or, of two, from `usual`
-  even,    ///< ... with the one that differs least
+  change,  ///< same or different: like `value`, applied to the difference between the two intervals
+  most,    ///< which interval: the observer chooses the one with the largest cue
+  least,   ///< which interval: the one with the smallest cue
+  odd,     ///< which interval: the one that differs most from the other intervals; with two intervals, from
+           ///< `usual`
+  even,    ///< which interval: the one that differs least
 };
 
-/// Which differences count as none. Two intervals are compared by `relative`, a share of the larger value,
-/// unless it is 0. A band of values over all trials may end only where values are further apart than
-/// `absolute`.
+/// Cue values that differ by less than this count as equal. Two intervals are compared with `relative`, a
+/// share of the larger value, or with `absolute` if `relative` is 0. A band may end only where neighbouring
+/// values, over all trials, are further apart than `absolute`.
 struct Grain {
   double absolute = 0, relative = 0;
 };
@@ -39,7 +40,8 @@ struct Rule {
   Grain grain = {};
 };
 
-/// The probability that this observer gives each answer; between intervals with equal cues it guesses.
+/// The probability of each answer from an observer with this rule. Between intervals with equal cues, the
+/// observer guesses.
 std::array<double, 3> shares(const Rule& rule, protocol::TaskKind task, const std::array<double, 3>& x);
 
 /// The proportion correct over these looks; 0 if there are none.

@@ -20,7 +20,7 @@ namespace turnpoint::simulation {
 
 namespace {
 
-/// One number found in one session.
+/// One number that the analysis of one session found.
 struct Finding {
   std::string source, parameter, unit;
   double value = 0;
@@ -30,7 +30,7 @@ struct Finding {
 struct Outcome {
   std::vector<Finding> findings;
   GeneratingValues generating;
-  std::vector<std::pair<std::string, analysis::FitOptions>> fits;  ///< pairs of condition and options
+  std::vector<std::pair<std::string, analysis::FitOptions>> fits;  ///< condition and options of each fit
   report::Design design = report::Design::forced_choice;
   int presented = 0, scored = 0, right = 0;
   double duration_s = 0;
@@ -44,14 +44,15 @@ std::optional<analysis::Interval> interval_of(const std::optional<analysis::Para
   return found ? std::optional(found->interval) : std::nullopt;
 }
 
-/// Adds the procedures' own estimates, for which a report prints no interval.
+/// Adds the procedures' own threshold estimates. A report prints no intervals for them.
 void add_estimates(const Rehearsal& rehearsal, const std::string& unit, std::vector<Finding>& findings) {
   for (const auto& estimate : rehearsal.estimates)
     if (estimate.parameter == "threshold")
       findings.push_back({"procedure " + estimate.procedure, estimate.parameter, unit, estimate.mean, {}});
 }
 
-/// True for estimates with a long tail: if the fitted function is a step, its slope has no upper limit.
+/// True for estimates whose distribution has a long tail. If the best fit is a step, its slope has no upper
+/// limit.
 bool heavy_tailed(const std::string& parameter) { return parameter == "slope" || parameter == "spread"; }
 
 const char* spread_name(const analysis::FitOptions& options) {
@@ -200,7 +201,7 @@ class Truths {
         };
         add_gap("proportion correct", generating.share_correct(names[a]), generating.share_correct(names[b]));
         add_gap("boundary", generating.boundary(names[a], observer), generating.boundary(names[b], observer));
-        // a simulated observer has the same time outside the decision in all conditions
+        // a simulated observer's time outside the decision is the same in all conditions
         add(source, "time outside the decision", 0);
       }
   }

@@ -15,7 +15,8 @@ plot::Chart panel_of(const Recovery& recovery) {
   panel.title = recovery.source + ": " + recovery.parameter;
   auto sorted = recovery.estimates;
   std::sort(sorted.begin(), sorted.end());
-  // The axis leaves out the outermost hundredth of the values on either side, because they may lie anywhere.
+  // Choose the axis without the lowest and the highest 1 % of the values, because a few of them may lie very
+  // far out.
   const auto at = [&](double share) {
     return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
   };

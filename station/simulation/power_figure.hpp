@@ -4,7 +4,7 @@
 
 namespace turnpoint::simulation {
 
-/// A histogram of the estimates of each recovered number, with its truth as a line.
+/// Draws a histogram of the estimates of each recovered number, with its true value as a line.
 plot::Figure figure_of(const Power& power, const std::string& title);
 
 }  // namespace turnpoint::simulation

@@ -15,7 +15,8 @@ namespace turnpoint::simulation {
 
 namespace {
 
-/// Probability that the answer is 1, as a function of the level; empty if it depends on more than the level.
+/// Returns the probability of the tracked answer as a function of the level, or of the right answer if no
+/// answer is tracked. Empty if this probability depends on more than the level.
 std::function<double(double)> share_of_ones(const protocol::Protocol& protocol, const procedure::Spec& spec,
                                             const observer::Observer& observer) {
   trial::TrialSpec trial;
@@ -40,7 +41,8 @@ std::function<double(double)> share_of_ones(const protocol::Protocol& protocol, 
   };
 }
 
-/// The point at which a monotone function crosses a value between two levels; empty if it does not.
+/// Returns the level between `low` and `high` at which a monotone function crosses `value`; empty if it does
+/// not cross.
 std::optional<double> crossing(const std::function<double(double)>& share, double low, double high,
                                double value) {
   const bool rises = share(high) > share(low);
@@ -49,7 +51,7 @@ std::optional<double> crossing(const std::function<double(double)>& share, doubl
   return physics::bisect({high, low}, [&](double level) { return !below(level); }).middle();
 }
 
-/// A range that contains all levels between both asymptotes, whatever the unit.
+/// A range that contains all levels between the two asymptotes, for any unit of the level.
 struct Reach {
   double low = 0, high = 0;
 };
@@ -58,7 +60,8 @@ Reach reach_of(const observer::Question& question) {
   return {question.decides == observer::Decides::side ? -1e6 : 0, 1e6};
 }
 
-/// The last digits of a bisection are rounding errors, so less than 1e-12 of the threshold counts as 0.
+/// Bisection leaves rounding errors in the last digits, so a level below 1e-9 of the threshold is returned as
+/// 0.
 std::optional<double> without_rounding(const std::optional<double>& level, double threshold) {
   return level && std::fabs(*level) < 1e-9 * std::fabs(threshold) ? 0 : level;
 }

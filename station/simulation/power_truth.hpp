@@ -12,9 +12,9 @@
 
 namespace turnpoint::simulation {
 
-/// The level on which a procedure would converge with this observer and unlimited trials; empty if there is
-/// none (constant stimuli, several wrong answers needed for a step up, a tracked answer that does not depend
-/// on the level).
+/// The level on which a procedure would converge with this observer and unlimited trials. Empty if there is
+/// no such level: for constant stimuli, if a step up takes several wrong answers, or if the probability of
+/// the tracked answer does not depend on the level.
 std::optional<double> settled_level(const protocol::Protocol& protocol, const procedure::Spec& spec,
                                     const observer::Observer& observer);
 
@@ -23,8 +23,8 @@ struct FitTruth {
   std::optional<double> threshold, slope, level_75;
 };
 
-/// The values that produced the answers, by condition: the observer's own functions and, for the proportion
-/// correct, its probabilities in the presented trials.
+/// Computes the true values that produced the answers, by condition. They come from the observer's own
+/// functions; the proportion correct comes from the observer's probabilities in the presented trials.
 class GeneratingValues {
  public:
   void add(const protocol::Protocol& protocol, const trial::TrialSpec& trial,
@@ -32,7 +32,8 @@ class GeneratingValues {
   void add(const GeneratingValues& other);
 
   /// True values for a fit with these options to the answers of a condition ("" for all trials). The slope is
-  /// set only if the observer's function is of the same family; with a deadline it is not.
+  /// set only if the observer's function is of the same family as the fitted one; a deadline changes the
+  /// family.
   FitTruth fit(const std::string& condition, const analysis::FitOptions& options,
                const observer::Observer& observer) const;
   std::optional<double> share_correct(const std::string& condition) const;

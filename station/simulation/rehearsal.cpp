@@ -17,10 +17,10 @@ namespace {
 
 using trial::TrialSpec;
 
-// How long a page is read, as on the virtual clock of a session.
+// The time for which a page is read; the same as in a session on the virtual clock.
 constexpr std::int64_t page_ns = 1'000'000'000;
-// A procedure without a rule that ends it would be refused; this is only a safeguard against one that never
-// ends.
+// The protocol reader refuses procedures without an end. This limit is a safeguard against one that the
+// reader missed.
 constexpr int most_trials = 100'000;
 
 std::int64_t ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
@@ -38,8 +38,8 @@ std::int64_t zero_after_onset_ns(const protocol::Protocol& protocol, const Trial
   }
 }
 
-/// Runs one trial on a clock that only the trial's state machine advances. Intervals begin when the machine
-/// asks for them, and the answer comes when the observer gives it.
+/// Runs one trial on a simulated clock, which advances to each event of the trial's state machine. Intervals
+/// begin when the machine asks for them, and the answer comes at the observer's response time.
 class Bench {
  public:
   Bench(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec,
@@ -84,7 +84,7 @@ class Bench {
     }
   }
 
-  /// Returns the onset of the last interval. Nothing is ever lost.
+  /// Presents all intervals without any fault. Returns the onset of the last one.
   std::int64_t present(std::int64_t onset_ns, const observer::Reply& reply) {
     const auto times = trial::interval_times(protocol_, spec_);
     for (int i = 0; i < static_cast<int>(times.size()); ++i) {
@@ -114,7 +114,7 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
   if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}};
   const auto set = rehearser.adjust(spec, trial::adjustment_of(spec, seed));
   trial::Slider slider(*spec.slider, spec.level.value_or(spec.slider->low));
-  // The slider is set only while the surface vibrates, because a setting made in silence cannot be felt.
+  // Ignore slider movements in silence: the participant could not feel their effect.
   const double sounds_s = trial::interval_times(protocol, spec).back().length_s;
   for (const auto& move : set.moves)
     if (move.time_s < sounds_s) slider.move(move.value);

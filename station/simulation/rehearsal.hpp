@@ -10,18 +10,18 @@
 
 namespace turnpoint::simulation {
 
-/// Gives the answer of a trial. The TrialSpec is complete, and the reply's time counts from response_zero.
+/// Returns the answer to a trial whose TrialSpec is complete. The reply's time counts from response_zero.
 using Answerer = std::function<observer::Reply(const trial::TrialSpec&, const observer::Question&)>;
-/// Sets a slider; times count from its onset.
+/// Returns how the slider is moved in an adjustment. Times count from the onset of its interval.
 using Adjuster = std::function<observer::Setting(const trial::TrialSpec&, const observer::Adjustment&)>;
 
-/// The participant of a rehearsal. `adjust` is called only in an adjustment, `answer` in every other task.
+/// The participant of a rehearsal. `adjust` is called only in adjustment tasks, `answer` in all other tasks.
 struct Rehearser {
   Answerer answer;
   Adjuster adjust;
 };
 
-/// A simulated session without a drive: the rows that `run` would have stored, without tones.
+/// A simulated session: the rows that `run` would have stored, except those of tones.
 struct Rehearsal {
   std::vector<records::BlockRecord> blocks;         ///< every attempt at every block, in order
   std::vector<trial::ProcedureEstimate> estimates;  ///< at the end of each block
@@ -29,9 +29,9 @@ struct Rehearsal {
   double duration_s = 0;
 };
 
-/// Simulates a whole session in memory. Director, trial machine and scoring are those of `run`; only drive,
-/// screen and database are missing, so a trial takes microseconds. Levels, answers and response times equal
-/// those of `run --observer` with the same seed and sequence index. Thread-safe for a shared protocol.
+/// Simulates a whole session in memory, with the director, trial machine and scoring of `run` but without
+/// drive, screen and database. A trial takes microseconds. Levels, answers and response times equal those of
+/// `run --observer` with the same seed and sequence index. Several threads may use the same protocol at once.
 Rehearsal rehearse(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed,
                    const Rehearser& rehearser);
 

@@ -28,8 +28,8 @@ double trials_of(const Protocol& protocol, const Block& block) {
   return trials;
 }
 
-// If a list is shuffled, any part of it has the same trials on average. Returns true if the first trials of
-// this procedure differ from the rest.
+// Returns true if the first trials of this block differ on average from the rest. In a shuffled list, every
+// part has the same trials on average.
 bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
   if (block.practice || !block.trials || *block.trials >= trials_of(protocol, block)) return false;
   bool unlike = block.procedures.size() > 1;
@@ -52,7 +52,7 @@ void run_session(const Protocol& protocol, std::uint64_t seed, const Answers& an
       trial::TrialEnd end;
       end.response = answers(*trial);
       if (trial->correct) end.correct = end.response == trial->correct;
-      // a participant who does not pass practice never sees the other blocks
+      // Mark practice as passed, because a participant who fails it never sees the other blocks.
       if (block->practice) end.correct = true;
       director.record(end);
       if (++trials > most_trials_of_a_block) return;
@@ -84,7 +84,8 @@ void TrialCensus::add(const Block& block, const procedure::Spec* spec, const std
     }
   };
   count(spec ? spec->level : block.level, levels, trials);
-  // Before each trial of a procedure, catch trials are presented as long as their random draws succeed.
+  // Catch trials come in addition to the procedure's trials. Before each of them, catch trials are inserted
+  // as long as a random draw with probability `rate` succeeds.
   if (const auto& caught = block.catch_trials; caught && spec)
     count(caught->factor, caught->levels, trials * caught->rate / (1 - caught->rate));
 }

@@ -8,26 +8,27 @@
 
 namespace turnpoint::simulation {
 
-/// Answers a trial of a simulated session with the index of a choice.
+/// Answers a trial of a simulated session. Returns the index of a choice.
 using Answers = std::function<int(const trial::TrialSpec&)>;
 
-/// Counts the trials of a session by kind. Practice and warm-up are left out. Whatever only chance decides
-/// (drawn or balanced factors, catch trials) is not counted as it was drawn but enters with its exact
-/// probability.
+/// Counts the trials of a session by kind. Practice and warm-up are left out. Where only chance decides
+/// (drawn or balanced factors, catch trials), the exact probability is counted, and the draw of this session
+/// is ignored.
 class TrialCensus {
  public:
   explicit TrialCensus(const protocol::Protocol& protocol);
 
   void add(const protocol::Block& block, const trial::TrialSpec& trial);
-  /// Adds this number of trials of a procedure (or of the block's fixed levels), with each of these levels
-  /// equally often.
+  /// Adds `trials` trials of a procedure, with each of `levels` equally often. Without a procedure (`spec` is
+  /// null), the levels are the block's fixed levels.
   void add(const protocol::Block& block, const procedure::Spec* spec, const std::vector<double>& levels,
            double trials);
   void add(const TrialCensus& other);
 
-  /// The number of trials of each kind, by the factors that block, procedure or catch trial set.
+  /// The number of trials of each kind. The key holds the factors that the block, procedure or catch trial
+  /// sets.
   const std::map<protocol::Factors, double>& cells() const { return cells_; }
-  /// All factors that the trials of a cell can have, each equally likely.
+  /// All combinations of factors that the trials of a cell can have. Each is equally likely.
   std::vector<protocol::Factors> combinations(const protocol::Factors& cell) const;
 
  private:
@@ -40,14 +41,14 @@ class TrialCensus {
 /// True if, outside practice, a procedure chooses levels by whether answers are right.
 bool levels_follow_right_answers(const protocol::Protocol& protocol);
 
-/// Counts one session in which practice is passed.
+/// Simulates one session in which the participant passes practice, and counts its trials.
 TrialCensus census_of_session(const protocol::Protocol& protocol, std::uint64_t seed, const Answers& answers);
 
 /// The average content of a session, computed exactly from the protocol. If a procedure follows the answers,
-/// each level that it can present counts equally often. One case is sampled instead: if a block has fewer
-/// trials than its procedures, and they are not all alike (several procedures, no shuffling, `max_run`),
-/// sessions with 40 000 trials are counted, which gives any share of the trials with a standard error of 0.25
-/// %.
+/// each level that it can present counts equally often. One case is sampled instead of computed: a block that
+/// has fewer trials than its procedures provide, where the first trials differ from the rest (several
+/// procedures, no shuffling, or `max_run`). There, sessions with 40 000 trials in total are counted, which
+/// gives each share with a standard error of at most 0.25 %.
 TrialCensus census_of(const protocol::Protocol& protocol);
 
 }  // namespace turnpoint::simulation

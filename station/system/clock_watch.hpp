@@ -5,17 +5,17 @@
 
 namespace turnpoint::system {
 
-/// Detects that the machine was suspended, or that somebody set its clock. Pure.
+/// Detects that the machine was suspended, or that somebody set its clock. Pure: it compares clock readings.
 class ClockWatch {
  public:
   explicit ClockWatch(const Clocks& start) noexcept : last_(start) {}
 
   struct News {
     std::optional<double> suspended_s;  ///< how long the machine slept
-    std::optional<double> jump_s;       ///< how much the wall clock was changed, apart from suspend
+    std::optional<double> jump_s;       ///< how much the wall clock was changed, suspend not counted
   };
-  /// What happened since the last call. Slow corrections by a time service (at most 500 ppm) do not count as
-  /// a jump.
+  /// Returns what happened since the previous call. Slow corrections by a time service (at most 500 ppm) do
+  /// not count as a jump.
   News look(const Clocks& now) noexcept;
 
  private:

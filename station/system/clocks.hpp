@@ -3,17 +3,17 @@
 
 namespace turnpoint::system {
 
-/// CLOCK_MONOTONIC in nanoseconds, the clock of all events in the station.
+/// Returns CLOCK_MONOTONIC in nanoseconds. All events in the station have times of this clock.
 std::int64_t monotonic_ns() noexcept;
 
-/// CLOCK_MONOTONIC_RAW minus CLOCK_MONOTONIC, in ns: the correction that time services have made since the
-/// machine started.
+/// Returns CLOCK_MONOTONIC_RAW minus CLOCK_MONOTONIC in ns. The difference is the sum of all corrections that
+/// time services have made since the machine started.
 std::int64_t raw_minus_monotonic_ns() noexcept;
 
-/// Wall-clock time in ns since 1970: for records only, never for durations.
+/// Returns the wall-clock time in ns since 1970. Use it for records only, never for durations.
 std::int64_t realtime_ns() noexcept;
 
-/// Three clocks of the machine, read at the same time; ns.
+/// Readings of three clocks in ns, taken together.
 struct Clocks {
   std::int64_t monotonic_ns = 0;  ///< stops during suspend
   std::int64_t boottime_ns = 0;   ///< continues during suspend
@@ -21,7 +21,7 @@ struct Clocks {
 };
 Clocks read_clocks() noexcept;
 
-/// Sleeps until that time, through signals.
+/// Sleeps until that time. Signals do not end the sleep.
 void sleep_until_ns(std::int64_t time_ns) noexcept;
 
 }  // namespace turnpoint::system

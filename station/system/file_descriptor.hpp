@@ -5,7 +5,7 @@
 
 namespace turnpoint::system {
 
-/// Owns a kernel descriptor and closes it. Move-only.
+/// Owns a kernel descriptor and closes it in the destructor. Move-only.
 class FileDescriptor {
  public:
   /// Takes ownership of an open descriptor; a negative number means none.
@@ -21,7 +21,7 @@ class FileDescriptor {
 
   bool is_open() const noexcept { return number_ >= 0; }
   int get() const noexcept { return number_; }
-  /// The caller closes it from now on.
+  /// Gives the descriptor up; the caller must close it.
   int release() noexcept { return std::exchange(number_, -1); }
 
  private:

@@ -16,7 +16,7 @@ namespace {
 
 }  // namespace
 
-// Without O_NONBLOCK, opening a pipe would wait for a writer.
+// O_NONBLOCK prevents that opening a pipe waits for a writer.
 FileReader::FileReader(const std::string& path)
     : path_(path), file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   if (!file_.is_open()) refuse(path_, errno);

@@ -7,13 +7,13 @@
 
 namespace turnpoint::system {
 
-/// Reads a file piece by piece. Throws std::system_error naming the file if it cannot be opened or read, or
-/// if it is not a regular file (a folder, a pipe, a device).
+/// Reads a file piece by piece. Throws std::system_error with the file's name if the file cannot be opened or
+/// read, or is not a regular file (a folder, a pipe, a device).
 class FileReader {
  public:
   explicit FileReader(const std::string& path);
 
-  /// The next bytes, valid until the next call; empty at the end of the file.
+  /// Returns the next bytes, valid until the next call. Returns nothing at the end of the file.
   std::string_view read();
 
  private:
@@ -22,7 +22,7 @@ class FileReader {
   std::vector<char> buffer_ = std::vector<char>(1 << 16);
 };
 
-/// The bytes of a file. Throws the errors of FileReader, and an error if the file has more than `most_bytes`.
+/// Returns the bytes of a file. Throws like FileReader; also throws if the file has more than `most_bytes`.
 std::string read_file(const std::string& path, std::size_t most_bytes = std::size_t{256} << 20);
 
 }  // namespace turnpoint::system

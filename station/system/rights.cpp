@@ -20,16 +20,16 @@
 namespace turnpoint::system {
 namespace {
 
-constexpr std::size_t used_stack = 256 * 1024;  ///< more than any real-time thread here needs
+constexpr std::size_t used_stack = 256 * 1024;  ///< in bytes; enough for any real-time thread here
 
-// Touches the stack that the thread will use, so that none of its pages has to be loaded later.
+// Touches the stack that the thread will use, so that no page of it has to be loaded later.
 void prefault_stack() noexcept {
   volatile unsigned char stack[64 * 1024];
   for (std::size_t k = 0; k < sizeof stack; k += 1024) stack[k] = 0;
 }
 
-/// The memory range of a line of /proc/self/maps, if it should be locked: readable files (the program and its
-/// libraries) and the heap.
+/// Reads a line of /proc/self/maps. Returns its memory range if the range should be locked: the heap, and
+/// readable files such as the program and its libraries.
 std::optional<MemoryRange> lockable(const std::string& line) {
   std::istringstream words(line);
   std::string range, rights, offset, device, path;
@@ -72,7 +72,7 @@ int lock_stack() noexcept {
   const int error = ::pthread_attr_getstack(&attributes, &lowest, &size);
   ::pthread_attr_destroy(&attributes);
   if (error != 0) return error;
-  // Stacks grow downwards, so the used part is the upper one.
+  // Stacks grow downwards, so the used part is at the upper end.
   const std::size_t used = std::min(size, used_stack);
   return ::mlock(static_cast<std::byte*>(lowest) + (size - used), used) == 0 ? 0 : errno;
 }
@@ -80,7 +80,8 @@ int lock_stack() noexcept {
 int become_realtime(int priority) noexcept {
   prefault_stack();
   static_cast<void>(lock_stack());
-  const rlimit limit{200'000, 400'000};  // in microseconds without a blocking call
+  // longest run time without a blocking call, in microseconds: soft and hard limit
+  const rlimit limit{200'000, 400'000};
   static_cast<void>(::setrlimit(RLIMIT_RTTIME, &limit));
   sched_param parameters{};
   parameters.sched_priority = priority;

@@ -16,14 +16,14 @@ namespace {
 
 constexpr int kSignals[] = {SIGTERM, SIGINT, SIGHUP};
 
-/// A signal handler has no argument to pass these, so they are global.
+/// These are global because a signal handler cannot be given an argument.
 std::atomic<int> wake_descriptor = -1;
 std::atomic<int> first_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free);
 
 void wake(int descriptor) {
   const std::uint64_t one = 1;
-  // The write can fail only if the counter is full, and then the waiting thread has been woken already.
+  // The write fails only if the counter is full; then the waiting thread has been woken already.
   [[maybe_unused]] const auto written = ::write(descriptor, &one, sizeof one);
 }
 
@@ -61,7 +61,7 @@ void StopSignals::take_over() {
     if (before.action.sa_handler == SIG_IGN) continue;
     struct sigaction ours {};
     ours.sa_handler = tell;
-    // A second signal has its default action again. System calls interrupted by a signal are restarted.
+    // With these flags, a second signal has its default action, and interrupted system calls are restarted.
     ours.sa_flags = static_cast<int>(SA_RESETHAND) | SA_RESTART;
     ::sigemptyset(&ours.sa_mask);
     ::sigaction(signal, &ours, nullptr);

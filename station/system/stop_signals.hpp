@@ -8,33 +8,34 @@
 
 namespace turnpoint::system {
 
-/// The signals that ask the program to end: SIGTERM (from the service manager, also at shutdown), SIGINT and
-/// SIGHUP. At first each of them kills the process at once, as by default. After take_over() the first signal
-/// is only recorded, so that the program can shut down cleanly: wait() for it, watch descriptor(), or poll
-/// told(). A second signal of the same kind kills the process.
-/// Only one object may exist at a time, because the handler writes to an eventfd that it finds in a global
-/// variable. The handler does nothing else.
+/// Catches the signals that ask the program to end: SIGTERM (from the service manager, also at shutdown),
+/// SIGINT and SIGHUP. Before take_over(), each signal kills the process at once, as by default. After
+/// take_over(), the first signal is only recorded, so that the program can shut down cleanly. To learn of it,
+/// call wait(), watch descriptor(), or poll told(). A second signal of the same kind kills the process.
+///
+/// Only one object may exist at a time, because the signal handler finds its eventfd in a global variable.
+/// The handler only records the signal and writes to the eventfd.
 class StopSignals {
  public:
   /// Throws std::system_error if no descriptor can be created.
   StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;
-  ~StopSignals();  ///< restores the signal handling from before take_over()
+  ~StopSignals();  ///< restores the signal handlers that were set before take_over()
 
-  /// From now on the first signal is only recorded. Call this before beginning anything that must be ended
-  /// cleanly; further calls have no effect. A signal that is ignored (nohup) stays ignored.
+  /// Records the first signal from now on. Call this before starting anything that must be ended cleanly.
+  /// Further calls have no effect. A signal that the process ignores (nohup) stays ignored.
   void take_over();
 
-  /// Becomes, and stays, readable at the first signal. Do not read from it.
+  /// Returns a descriptor that becomes readable at the first signal and stays so. Do not read from it.
   int descriptor() const { return wake_.get(); }
 
-  /// Waits for the first signal and returns its name ("SIGTERM"). After release() without a signal, returns
-  /// "". May be called on any thread.
+  /// Waits for the first signal and returns its name ("SIGTERM"). If release() was called before a signal
+  /// came, returns "". May be called on any thread.
   std::string wait() const;
   void release();
 
-  /// The first signal's name, for polling; "" if there was none.
+  /// Returns the first signal's name; "" if there was none.
   static std::string told();
 
  private:

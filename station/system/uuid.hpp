@@ -3,7 +3,7 @@
 
 namespace turnpoint::system {
 
-/// A random UUID (version 4, RFC 9562) from the kernel's random numbers.
+/// Returns a random UUID (version 4, RFC 9562), made from the kernel's random numbers.
 std::string new_uuid();
 
 }  // namespace turnpoint::system

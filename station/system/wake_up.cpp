@@ -14,7 +14,7 @@ WakeUp::WakeUp() : event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
 }
 
 void WakeUp::ring() noexcept {
-  // fails only if the counter is full, and then the waiting thread is awake anyway
+  // the write fails only if the counter is full; then the waiting thread is awake anyway
   const std::uint64_t one = 1;
   [[maybe_unused]] const auto written = ::write(event_.get(), &one, sizeof one);
 }

@@ -3,7 +3,7 @@
 
 namespace turnpoint::system {
 
-/// Ends another thread's wait for a descriptor. ring() never blocks and is safe on any thread; only one
+/// Wakes a thread that waits for descriptor(). ring() never blocks and may be called on any thread; only one
 /// thread may wait.
 class WakeUp {
  public:
@@ -13,9 +13,9 @@ class WakeUp {
   WakeUp& operator=(const WakeUp&) = delete;
 
   void ring() noexcept;
-  /// For the waiting thread: forgets all rings so far.
+  /// Forgets all rings so far. The waiting thread calls this.
   void clear() noexcept;
-  /// Readable from a ring() until a clear().
+  /// Returns a descriptor that is readable from a ring() until the next clear().
   int descriptor() const noexcept { return event_.get(); }
 
  private:

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
   throw std::system_error(code, std::generic_category(), "writing " + path);
 }
 
-/// The file to write after following links that belong to this user or to the system. Throws for a link that
-/// another user has made.
+/// Follows symbolic links that belong to this user or to the system, and returns the file to write. Throws
+/// for a link that another user has made.
 std::string destination(const std::string& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return path;
@@ -46,7 +46,7 @@ FileWriter::FileWriter(const std::string& path, mode_t mode) : path_(destination
     return;
   }
   draft_ = path_ + ".new";
-  ::unlink(draft_.c_str());  // left by a killed process, or somebody's link
+  ::unlink(draft_.c_str());  // remove what a killed process, or somebody with a link, left there
   file_ = FileDescriptor(::open(draft_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
   if (!file_.is_open()) fail(std::exchange(draft_, ""), errno);
 }

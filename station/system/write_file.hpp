@@ -8,11 +8,12 @@
 
 namespace turnpoint::system {
 
-/// Writes a whole file or changes nothing. The bytes go to PATH.new; commit() syncs it and renames it to
-/// PATH. `mode` is reduced by the process's umask. A device or a pipe is written directly. A symbolic link
-/// that another user has made is refused, and anything that already exists as PATH.new is replaced and never
-/// followed, so that root can safely write into another user's folder. All functions throw std::system_error
-/// naming the file.
+/// Writes a whole file, or changes nothing. The bytes go to PATH.new; commit() syncs that file and renames it
+/// to PATH. `mode` is reduced by the process's umask. A device or a pipe is written directly.
+///
+/// It is safe for root to write into another user's folder: a symbolic link that another user has made is
+/// refused, and whatever exists as PATH.new is replaced and never followed. All functions throw
+/// std::system_error with the file's name.
 class FileWriter {
  public:
   explicit FileWriter(const std::string& path, mode_t mode = 0666);
@@ -24,11 +25,11 @@ class FileWriter {
   void commit();
 
  private:
-  std::string path_, draft_;  ///< draft_: "" for a device, and after commit()
+  std::string path_, draft_;  ///< draft_ is PATH.new; "" for a device, and after commit()
   FileDescriptor file_;
 };
 
-/// The same for bytes that are already complete.
+/// Writes a file whose bytes are already complete, in the same way.
 void write_file(const std::string& path, std::string_view bytes, mode_t mode = 0666);
 
 }  // namespace turnpoint::system

@@ -3,7 +3,7 @@
 
 namespace turnpoint::terms {
 
-/// A tone below this frequency may be heard and falls into the stricter band of exposure limits. It is the
+/// A tone below this frequency may be audible, and the stricter limit of airborne sound applies. This is the
 /// lower end of the third-octave band around 25 kHz.
 inline constexpr double kAudible_Hz = 22400;
 
@@ -12,16 +12,17 @@ inline constexpr double kAudible_Hz = 22400;
 /// Canada, Safety Code 24 (1991). For the public INIRC/IRPA recommends 70 and 100 dB.
 constexpr double allowed_sound_dB(double frequency_Hz) { return frequency_Hz < kAudible_Hz ? 75 : 110; }
 
-/// Highest frequency of a tone as a share of the sampling rate: the pass band of common converters.
+/// Highest frequency of a tone as a share of the sampling rate. Common converters pass frequencies up to this
+/// share.
 inline constexpr double kHighestShareOfRate = 0.45;
 
-/// Fingers of one hand land within about 30 ms of each other. A touch is therefore an answer only if no other
-/// touch follows within this time.
+/// A touch counts as an answer only if no other touch follows within this time. The reason: when a hand lands
+/// on the panel, its fingers touch it within about 30 ms of each other.
 inline constexpr std::int64_t kOneTouch_ns = 40'000'000;
-/// How long the page holds a touch back before it passes it to the session: kOneTouch_ns and some margin for
+/// The page waits this long before it passes a touch to the session: kOneTouch_ns, and some margin for
 /// timers.
 inline constexpr std::int64_t kTouchToAnswer_ns = 60'000'000;
-/// How long the session waits for touches with an earlier time stamp that may still arrive.
+/// The session waits this long for touches with an earlier time stamp that may still arrive.
 inline constexpr std::int64_t kWatermark_ns = 80'000'000;
 static_assert(kOneTouch_ns < kTouchToAnswer_ns && kTouchToAnswer_ns < kWatermark_ns);
 

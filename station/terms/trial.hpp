@@ -7,14 +7,15 @@ namespace turnpoint::terms {
 /// How a trial ended.
 enum class Outcome { answered, timeout, anticipation, aborted, fault };
 
-/// The purpose of a trial. Only experimental trials are fitted. A catch trial has an answer that is easy to
-/// feel.
+/// The purpose of a trial. Only experimental trials are fitted. Catch trials are easy, and test whether the
+/// participant pays attention.
 enum class TrialType { experimental, catch_trial, practice, warmup };
 
 /// The moment from which response times are measured.
 enum class ResponseZero { go_cue, change, interval_off, first_contact, lift_off };
 
-/// live: a person, for the study. pilot: a person, but not for the study. simulated: a simulated observer.
+/// Who answers. live: a person, for the study. pilot: a person, not for the study. simulated: a simulated
+/// observer.
 enum class RunMode { live, pilot, simulated };
 
 inline constexpr std::array outcomes{Outcome::answered, Outcome::timeout, Outcome::anticipation,
@@ -26,7 +27,7 @@ inline constexpr std::array response_zeros{ResponseZero::go_cue, ResponseZero::c
                                            ResponseZero::lift_off};
 inline constexpr std::array run_modes{RunMode::live, RunMode::pilot, RunMode::simulated};
 
-/// The words used in protocols, databases and exports: "answered", "catch", "go_cue", "live", ...
+/// Return the words used in protocols, databases and exports: "answered", "catch", "go_cue", "live", ...
 const char* name(Outcome outcome);
 const char* name(TrialType type);
 const char* name(ResponseZero zero);

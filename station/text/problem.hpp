@@ -19,11 +19,11 @@ struct Problem {
   std::string allowed;  ///< may be empty if `what` is enough
 };
 
-/// `file:line:column: what; allowed`, without the parts that are missing.
+/// Returns `file:line:column: what; allowed`. Parts that are not set are left out.
 std::string format(const Problem& problem);
 
-/// All problems of a file at once; `what()` contains one formatted problem per line. The programs exit with
-/// 2.
+/// Reports all problems of a file at once: what() has one formatted problem per line. The programs exit with
+/// status 2.
 class BadInput : public std::runtime_error {
  public:
   explicit BadInput(std::vector<Problem> problems);
@@ -33,7 +33,8 @@ class BadInput : public std::runtime_error {
   std::vector<Problem> problems_;
 };
 
-/// The candidate nearest to `word` by edit distance, or "" if none is close enough to be a typing error.
+/// Returns the candidate nearest to `word` by edit distance, or "" if no candidate is close enough to explain
+/// `word` as a typing error.
 std::string nearest(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace turnpoint::text

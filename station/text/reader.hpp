@@ -9,7 +9,8 @@
 
 namespace turnpoint::text {
 
-/// The allowed range of a number in a file. `open` ends are excluded; the unit is only for messages ("mm").
+/// The allowed range of a number in a file. `ends` says which ends are excluded (open). The unit appears only
+/// in messages ("mm").
 struct Range {
   double low = 0, high = 0;
   enum class Ends { closed, open_low, open_high, open } ends = Ends::closed;
@@ -21,7 +22,7 @@ std::string describe(const Range& range);
 /// True if the value is finite and within the range.
 bool inside_range(double value, const Range& range);
 
-/// Collects problems and the defaults that were used, so that a reader reports everything in one go.
+/// Collects problems, so that a reader can report all of them at once, and the defaults that were used.
 struct Findings {
   std::vector<Problem> problems;
   std::vector<std::string> defaults_used;  ///< entries such as `timing.anticipation_s = 0`
@@ -30,10 +31,11 @@ struct Findings {
   void throw_if_any();
 };
 
-/// The title of a table in a list of tables, from its "name": `block.practice`.
+/// Returns the title of a table in a list of tables: `block.practice` for the `block` with the name
+/// "practice".
 std::string titled(const std::string& list, const Value& table);
 
-/// Joins words: `"a", "b" or "c"`.
+/// Joins words as `"a", "b" or "c"`.
 std::string quoted_list(const std::vector<std::string>& words);
 
 /// Reads one table key by key. Each getter marks its key as known; finish() reports all other keys and
@@ -41,12 +43,12 @@ std::string quoted_list(const std::vector<std::string>& words);
 /// problem and returns a harmless value, so that reading can continue. The table must outlive the reader.
 class TableReader {
  public:
-  /// `name` is the dotted path for messages and defaults; empty for the whole file.
+  /// `name` is the dotted path that appears in messages and in the list of defaults; "" for the whole file.
   TableReader(const Value& table, std::string name, Findings& findings);
 
-  /// The raw value, marked as known; nullptr if absent.
+  /// Returns the raw value and marks the key as known; nullptr if the key is absent.
   const Value* take(const std::string& key);
-  /// The same, but an absent key is a problem. The message uses `what` to say what the key is.
+  /// Like take(), but reports a problem if the key is absent. `what` says in the message what the key is for.
   const Value* require(const std::string& key, const std::string& what);
   bool has(const std::string& key) const { return table_->find(key) != nullptr; }
 
@@ -63,31 +65,31 @@ class TableReader {
   std::optional<std::string> maybe_string(const std::string& key);
   std::string string(const std::string& key, const std::string& what);
 
-  /// One of `words`. The fallback, if given, must be one of them too.
+  /// Reads one of the given words. The fallback, if given, must be one of these words too.
   std::optional<std::string> maybe_word(const std::string& key, const std::vector<std::string>& words);
   std::string word(const std::string& key, const std::vector<std::string>& words);
   std::string word(const std::string& key, const std::vector<std::string>& words,
                    const std::string& fallback);
 
-  /// A list of at least `at_least` numbers within a range; empty if absent.
+  /// Reads a list of at least `at_least` numbers within a range; empty if the key is absent.
   std::vector<double> maybe_numbers(const std::string& key, const Range& range, std::size_t at_least = 1);
   std::vector<double> numbers(const std::string& key, const Range& range, std::size_t at_least = 1);
-  /// A list of two numbers, the first below the second.
+  /// Reads a list of two numbers, of which the first must be the smaller.
   std::optional<std::pair<double, double>> maybe_interval(const std::string& key, const Range& range);
   std::vector<std::string> maybe_strings(const std::string& key);
   std::vector<std::string> strings(const std::string& key, const std::string& what);
 
-  /// A sub-table; nullptr if absent or not a table.
+  /// Returns a sub-table; nullptr if the key is absent or not a table.
   const Value* maybe_table(const std::string& key);
   const Value* table(const std::string& key, const std::string& what);
-  /// The tables of `[[key]]`; empty if absent.
+  /// Returns the tables of `[[key]]`; empty if the key is absent.
   std::vector<const Value*> tables(const std::string& key);
 
   /// Reports a problem with this key's value (or with the table if the key is absent).
   void problem(const std::string& key, const std::string& what, const std::string& allowed = "");
-  /// Records that the default `key = value` was used because the key is absent.
+  /// Records that `key` is absent and that its default `value` was used.
   void defaulted(const std::string& key, const std::string& value);
-  /// This table in messages: `[timing]`, or `the file`.
+  /// Returns this table's name for messages: `[timing]`, or `the file`.
   std::string title() const;
   std::string path(const std::string& key) const;
   const Place& place() const { return table_->place; }

@@ -10,12 +10,12 @@ namespace turnpoint::text {
 
 namespace {
 
-// The round constants are the fractional parts of the cube roots of the first 64 primes, and the start values
-// those of the square roots of the first 8. They are computed here, so that no table can contain a typing
-// error.
+// The standard defines the round constants as the fractional parts of the cube roots of the first 64 primes.
+// The start values are those of the square roots of the first 8 primes. They are computed here, so that no
+// table can contain a typing error.
 std::uint32_t fractional_bits(unsigned prime, int root) {
-  // Bisection in 128 bits for the largest integer n with n^root <= prime * 2^(32 root). Returns its low 32
-  // bits.
+  // Finds, by bisection in 128 bits, the largest integer n with n^root <= prime * 2^(32 root), and returns
+  // its low 32 bits.
   __extension__ using Wide = unsigned __int128;
   const auto too_large = [&](std::uint64_t n) {
     if (root == 2) return Wide(n) * n > (Wide(prime) << 64);

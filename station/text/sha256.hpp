@@ -6,12 +6,13 @@
 
 namespace turnpoint::text {
 
-/// SHA-256 (FIPS 180-4) of data that arrive in pieces. For data in one piece use sha256() in number.hpp.
+/// Computes the SHA-256 (FIPS 180-4) of data that arrive in pieces. For data in one piece, use sha256() in
+/// number.hpp.
 class Sha256 {
  public:
   Sha256();
   void add(std::string_view bytes);
-  /// Lower-case hexadecimal. Nothing may be added after this call.
+  /// Returns the hash in lower-case hexadecimal. Do not call add() afterwards.
   std::string hex();
 
  private:

@@ -7,9 +7,9 @@
 #include "station/system/read_file.hpp"
 #include "station/text/toml_scan.hpp"
 
-// Some malformed files trip assertions of toml++ 3.3 (for example a key that begins with an invalid byte). An
-// abort would take the station down, so assertions become exceptions. NDEBUG must be undefined, because with
-// it toml++ would assume that the conditions hold.
+// Some malformed files trip assertions of toml++ 3.3, for example a key that begins with an invalid byte. An
+// abort would take the station down, so assertions become exceptions. With NDEBUG defined, toml++ would
+// assume that its conditions hold, so NDEBUG must be undefined.
 #undef NDEBUG
 namespace turnpoint::text {
 namespace {
@@ -21,7 +21,7 @@ constexpr void parser_assert(bool holds) {
 }  // namespace turnpoint::text
 #define TOML_ASSERT(condition) ::turnpoint::text::parser_assert(static_cast<bool>(condition))
 
-// No other file includes toml++: the rest of the station uses plain Values and compiles faster.
+// Include toml++ in this file only: it compiles slowly, and the rest of the station uses plain Values.
 #include <toml++/toml.h>
 
 namespace turnpoint::text {

@@ -9,7 +9,8 @@ namespace turnpoint::text {
 
 struct Entry;
 
-/// One value of a TOML document with its place. Unlike toml++, tables keep the order of the file.
+/// One value of a TOML document and its place in the file. A table keeps the order of the file, which toml++
+/// does not.
 struct Value {
   enum class Kind { boolean, integer, number, string, date, array, table };
   Kind kind = Kind::table;
@@ -21,28 +22,28 @@ struct Value {
   std::vector<Value> items;    ///< for an array
   std::vector<Entry> entries;  ///< for a table, in file order
 
-  /// The entry of a table, or nullptr.
+  /// Returns the entry of a table with this key, or nullptr.
   const Entry* find(const std::string& key) const;
 };
 
-/// A key of a table: its place and its value.
+/// One key of a table with its place and its value.
 struct Entry {
   std::string key;
   Place place;
   Value value;
 };
 
-/// Parses `source`; `path` is used in places. Throws BadInput with the place of a syntax error, of a list
-/// with more than 10 000 items, or of a key with more than 16 parts.
+/// Parses `source`. `path` appears in the places of problems. Throws BadInput with the place of a syntax
+/// error, of a list with more than 10 000 items, or of a key with more than 16 parts.
 Value parse_toml(const std::string& source, const std::string& path);
 
-/// The type of a value, for messages: `a number`, `text`, `a table`, ...
+/// Names the type of a value for messages: `a number`, `text`, `a table`, ...
 std::string describe(const Value& value);
 
 /// Size limit for files that people write (protocols, rigs, calibrations).
 constexpr std::size_t most_text_bytes = 4 << 20;
 
-/// Reads a file that people write. Throws as system::read_file, and BadInput if it is longer than
+/// Reads a file that people write. Throws like system::read_file; throws BadInput if the file is longer than
 /// `most_text_bytes`.
 std::string read_text_file(const std::string& path);
 

@@ -15,7 +15,7 @@ struct Character {
   std::size_t bytes = 1;
 };
 
-// The character at `at`. An invalid one counts as a single byte; the parser will report it.
+// Decodes the UTF-8 character at `at`. An invalid character counts as a single byte; the parser reports it.
 Character character_at(std::string_view text, std::size_t at) {
   const auto lead = static_cast<unsigned char>(text[at]);
   const std::size_t bytes = lead < 0x80 ? 1 : lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
@@ -32,8 +32,8 @@ std::string printed(const char* format, std::uint32_t code) {
   return buffer;
 }
 
-// Goes through the source and keeps track of strings and comments. It is only as exact as needed: the parser
-// reports strings that are not closed.
+// Reads through the source and keeps track of strings and comments. It ignores errors that the parser reports
+// anyway, such as strings that are not closed.
 class Scanner {
  public:
   Scanner(std::string_view source, const std::string& path) : source_(source), path_(path) {}
@@ -99,7 +99,7 @@ class Scanner {
   void inside(const Character& character) {
     if (!escaped_ && source_.substr(at_).starts_with(quote_)) {
       copy(quote_.size());
-      // Up to two further quotes may belong to the text of a multi-line string.
+      // A multi-line string may end with one or two quotes of its own before the three that close it.
       while (quote_.size() == 3 && at_ < source_.size() && source_[at_] == quote_[0]) copy(1);
       quote_ = {};
       trimming_ = false;
@@ -107,7 +107,7 @@ class Scanner {
     }
     const bool blank = character.code == ' ' || character.code == '\t' || character.code == '\r';
     const bool was_escaped = escaped_;
-    // A backslash remains a line-ending one if only white space follows it on its line.
+    // A backslash that ends a line may be followed by white space on that line, but by nothing else.
     escaped_ = quote_[0] == '"' && ((!was_escaped && character.code == '\\') || (was_escaped && blank));
     if (was_escaped && character.code >= 0x80)
       throw BadInput(
@@ -135,7 +135,7 @@ class Scanner {
   std::string_view source_;
   int parts_ = 1;  ///< parts of the current key
   std::string path_, out_;
-  std::string_view quote_;  // the quotes that close the current string; empty outside strings
+  std::string_view quote_;  // the quotes that will close the current string; empty outside strings
   std::size_t at_ = 0;
   int line_ = 1, column_ = 1;
   bool comment_ = false, escaped_ = false, trimming_ = false;

@@ -7,18 +7,18 @@
 
 namespace turnpoint::texts {
 
-/// The languages that the station speaks: two-letter codes, sorted.
+/// Returns the two-letter codes of the languages that the station speaks, sorted.
 std::vector<std::string> languages();
 
-/// What the station says, by key, in one of these languages. The keys of a table are joined by dots:
+/// Returns all texts of the station in one of these languages, by key. Keys of a table are joined by dots:
 /// "fault.disk_full.happened".
 const std::map<std::string, std::string>& catalogue(const std::string& language);
 
-/// One text in the language asked for ("de", "de-CH"), or in English where the station does not speak that
+/// Returns one text in the given language ("de", "de-CH"), or in English if the station does not speak that
 /// language. Throws std::logic_error for a key that no catalogue has.
 const std::string& text(const std::string& key, const std::string& language);
 
-/// A fault in words for whoever stands before the screen: what happened, what is safe, what to do.
+/// Explains a fault to the person in front of the screen: what happened, what is safe, what to do.
 struct FaultText {
   std::string happened, safe, to_do;
 };

@@ -8,8 +8,8 @@ namespace turnpoint::touch {
 struct Contact {
   std::int64_t time_ns = 0;
   bool on = false;
-  std::optional<double>
-      position;  ///< along the surface, from 0 at one end of the sensor to 1 at the other, if it can tell
+  std::optional<double> position;  ///< position along the surface, from 0 at one end of the sensor to 1 at
+                                   ///< the other; empty if the sensor cannot tell
 };
 
 }  // namespace turnpoint::touch

@@ -14,8 +14,8 @@ class ContactReader {
   /// Positions are scaled from `range` to [0, 1].
   explicit ContactReader(AxisRange range) noexcept : range_(range) {}
 
-  /// Takes the state at the end of a report. Returns a contact if the finger came, left, or moved by a
-  /// hundredth or more.
+  /// Takes the sensor's state at the end of a report. Returns a contact if the finger came, left, or moved by
+  /// at least a hundredth of the range.
   std::optional<Contact> take(std::int64_t time_ns, bool on, int position) noexcept;
 
  private:
@@ -24,15 +24,16 @@ class ContactReader {
   double told_ = -1;
 };
 
-/// A touch sensor, found by the name of its input device.
+/// The touch sensor of the surface. It is found by the name of its input device.
 class EvdevContact {
  public:
   /// `axis` is ABS_X or ABS_Y. Throws std::system_error: ENOENT if no input device has this name, ENOTSUP if
-  /// it does not have this axis.
+  /// the device does not have this axis.
   EvdevContact(const std::string& name, int axis);
 
-  /// The next contact within `timeout_ns`, with the kernel's stamp. If events were lost, it has the time at
-  /// which the loss began. Throws std::system_error with ENODEV when the device is unplugged.
+  /// Waits up to `timeout_ns` for the next contact and returns it with the kernel's time stamp. If the kernel
+  /// lost events, the contact has the time at which the loss began. Throws std::system_error with ENODEV when
+  /// the device is unplugged.
   std::optional<Contact> wait(std::int64_t timeout_ns);
 
  private:

@@ -15,14 +15,14 @@ struct AxisRange {
   int lowest = 0, highest = 0;
 };
 
-/// A kernel input device, read by libevdev report by report. Between two calls of next(), the state is that
-/// at the end of a report. Stamps are from CLOCK_MONOTONIC. Other programs can read the same device. Use it
-/// from one thread at a time.
+/// A kernel input device, which libevdev reads report by report. key(), axis() and slot() give the state at
+/// the end of the last report. Time stamps are from CLOCK_MONOTONIC. Other programs can read the same device
+/// at the same time. Use an object from one thread at a time.
 class EvdevDevice {
  public:
   /// Opens the device with this path or (without a leading slash) this name, for reading only. Empty if there
-  /// is no such device or it cannot be opened; errno says why. Throws std::system_error for something that is
-  /// not an input device.
+  /// is no such device or it cannot be opened; errno says why. Throws std::system_error if the path is not an
+  /// input device.
   static std::optional<EvdevDevice> find(const std::string& path_or_name);
 
   /// Takes ownership of an open, non-blocking descriptor. Throws std::system_error.
@@ -37,17 +37,17 @@ class EvdevDevice {
   enum class News {
     none,    ///< no event is waiting
     report,  ///< a report is complete
-    /// the kernel dropped events; the state is the current one, and what led to it is unknown
+    /// the kernel dropped events: the state is the current one, but the events that led to it are unknown
     resynchronised,
   };
-  /// Reads to the end of the next report, without waiting. Throws std::system_error with ENODEV if the device
-  /// is gone.
+  /// Reads up to the end of the next report, without waiting. Throws std::system_error with ENODEV if the
+  /// device is gone.
   News next();
 
   /// Time of the last report; after `resynchronised`, the time at which the kernel began to drop events.
   std::int64_t time_ns() const noexcept { return time_ns_; }
-  /// The state: whether a key is pressed, the value of an axis, and the same for each finger of a multitouch
-  /// panel.
+  /// The current state: whether a key is pressed, and the value of an axis. slot() gives the value for one
+  /// finger of a multitouch panel.
   bool key(int code) const noexcept;
   int axis(int axis) const noexcept;
   int slot_count() const noexcept;  ///< 0 if the device cannot tell fingers apart

@@ -14,23 +14,23 @@ struct PanelTouch {
   double x = 0, y = 0;       ///< from 0 to 1, measured from the panel's left and top
 };
 
-/// The position of a finger, in the panel's own units.
+/// One finger of a panel's state. x and y are in the panel's own units.
 struct Finger {
   std::optional<int> id;  ///< a different number for each touch; empty while no finger is there
   int x = 0, y = 0;
 };
 
-/// Finds out from a panel's reports which fingers have come down. Pure: states in, touches out.
+/// Compares a panel's successive reports and returns the fingers that have come down. Pure.
 class TouchDecoder {
  public:
   TouchDecoder(AxisRange x, AxisRange y) noexcept : x_(x), y_(y) {}
 
-  /// Takes the panel's fingers at the end of a report, always in the same order. Returns those that came down
-  /// since the last call.
+  /// Takes the panel's fingers at the end of a report, always in the same order. Returns the fingers that
+  /// came down since the previous call.
   std::vector<PanelTouch> report(std::int64_t time_ns, std::span<const Finger> fingers);
 
-  /// Takes the fingers after reports were lost, or at the start. Since it is unknown when they came down,
-  /// they do not count as touches.
+  /// Takes the fingers that are on the panel at the start, or after reports were lost. It is unknown when
+  /// they came down, so they do not count as touches.
   void resynchronise(std::span<const Finger> fingers);
 
  private:

@@ -21,8 +21,9 @@ namespace {
 constexpr int kPriority = 60;
 constexpr int kLookAgain_ms = 1000;
 
-/// An open panel, read finger by finger (Documentation/input/multi-touch-protocol.rst of the kernel, type B),
-/// or as a single finger if it cannot tell fingers apart.
+/// An open panel. It is read finger by finger (type B of the kernel's
+/// Documentation/input/multi-touch-protocol.rst), or as a single finger if the panel cannot tell fingers
+/// apart.
 class OpenPanel {
  public:
   /// Throws std::system_error if the device is not a touch panel.
@@ -94,7 +95,7 @@ class TouchReader::Thread {
  private:
   void run(const std::stop_token& stop) {
     const sched_param priority{kPriority};
-    // if this is not permitted, continue without it
+    // without permission, the thread runs at ordinary priority
     ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &priority);
     while (!stop.stop_requested()) {
       pollfd files[] = {{wake_.descriptor(), POLLIN, 0}, {panel_ ? panel_->descriptor() : -1, POLLIN, 0}};
@@ -120,7 +121,7 @@ class TouchReader::Thread {
     try {
       panel_.emplace(open_now(device_));
     } catch (const std::exception&) {
-      return;  // not there, or not completely attached: try again later
+      return;  // the panel is absent or not completely attached yet: try again later
     }
     on_state_(TouchPanelState::back);
   }

@@ -7,19 +7,19 @@
 
 namespace turnpoint::touch {
 
-/// State changes of the panel while it is read; reported on the reader's thread.
+/// Says that the panel was disconnected or is back. It is reported on the reader's thread.
 enum class TouchPanelState { lost, back };
 
-/// Reads a touch panel in parallel to the toolkit, read-only and without grabbing it, on its own thread
-/// (SCHED_FIFO 60 if allowed). Stamps are the kernel's, from CLOCK_MONOTONIC. If a panel is unplugged, it is
-/// looked for by its name every second until it is back.
+/// Reads a touch panel on its own thread (SCHED_FIFO 60 if allowed), at the same time as the toolkit. Opens
+/// the device for reading only and does not grab it. Time stamps are the kernel's, from CLOCK_MONOTONIC. If
+/// the panel is unplugged, the reader looks for a device of the same name every second.
 class TouchReader {
  public:
   using OnState = std::function<void(TouchPanelState)>;
 
   /// `device` is a path below /dev/input, or the device's name as the kernel reports it. Throws
-  /// std::system_error if it cannot be opened or is not a touch panel, and terms::UsageError for a name that
-  /// no device has.
+  /// std::system_error if the device cannot be opened or is not a touch panel; throws terms::UsageError if no
+  /// device has this name.
   TouchReader(const std::string& device, OnState on_state);
   ~TouchReader();
   TouchReader(const TouchReader&) = delete;

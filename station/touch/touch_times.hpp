@@ -8,10 +8,10 @@
 
 namespace turnpoint::touch {
 
-/// Finds the kernel's time for a touch that a toolkit reports: evdev knows when, the toolkit knows what was
-/// touched. A match is made only if it is beyond doubt: exactly one kernel touch lies within `nearness` (in
-/// units of the panel's width and height) and at most `latest_ns` before the toolkit saw it. It never
-/// guesses. May be used from any thread.
+/// Finds the kernel's time stamp of a touch that a toolkit reports. The kernel knows when the panel was
+/// touched, the toolkit knows what was touched. Two touches match only if there is no doubt: exactly one
+/// kernel touch lies within `nearness` (in units of the panel's width and height) and at most `latest_ns`
+/// before the toolkit saw the touch. May be used from any thread.
 class TouchTimes {
  public:
   struct Rules {
@@ -24,9 +24,9 @@ class TouchTimes {
 
   void add(const PanelTouch& touch);
 
-  /// The kernel's time of the touch at (x, y), each from 0 to 1, that the toolkit saw at `seen_ns`; empty if
-  /// no touch fits or more than one does. A matched touch cannot be matched again, nor can touches that made
-  /// a match ambiguous.
+  /// Returns the kernel's time of the touch at (x, y), each from 0 to 1, that the toolkit saw at `seen_ns`.
+  /// Empty if no kernel touch fits, or more than one. A kernel touch is used once only; those that made a
+  /// match ambiguous are not used again either.
   std::optional<std::int64_t> claim(double x, double y, std::int64_t seen_ns);
 
  private:
