@@ -1,7 +1,8 @@
-"""Power cuts of the `disk` of a scenario, replayed from the record of its writes and flushes (qemu's blklogwrites).
+"""Simulates power cuts on the `disk` of a scenario, from qemu's record of all writes and flushes (blklogwrites).
 
-A cut at some place of the record leaves what had been flushed, and of each write since the last flush any of its
-512-byte sectors or none: that is what a disk with a write cache may do. No virtual machine runs for it.
+A cut can be at any position of the record. The simulated disk then contains everything that was flushed before the
+cut. Each 512-byte sector written after the last flush may or may not be there, as on a real disk with a write cache.
+This needs no virtual machine.
 """
 import dataclasses
 import os
@@ -14,7 +15,7 @@ import tempfile
 
 SECTOR = 512
 FLUSH, DISCARD = 1, 4
-MARK_SECTOR = (31 << 20) // SECTOR  # the sector of marks, as in programs/disk_marker.hpp
+MARK_SECTOR = (31 << 20) // SECTOR  # marks are written to this sector (see programs/disk_marker.hpp)
 
 
 @dataclasses.dataclass
@@ -26,19 +27,20 @@ class Entry:
 
 @dataclasses.dataclass
 class Cut:
-    # the disk's files after the cut and the file system's repair; the next cut replaces them
+    # folder with the disk's files after the cut and after the file system's repair; the next cut
+    # overwrites it
     files: pathlib.Path
     marked: int          # number of the last mark that the disk had accepted
     position: int        # position of the cut in the record
 
 
 def read_record(path):
-    """The entries of a record; it ends where a header is empty."""
+    """Returns the entries of a record. The record ends at the first empty header."""
     entries = []
     with open(path, "rb") as file:
         magic, version, _, sector_size = struct.unpack("<QQQI", file.read(28))
         if magic != 0x6A736677736872 or version != 1 or sector_size != SECTOR:
-            raise ValueError(f"{path} is no record of a disk's writes")
+            raise ValueError(f"{path} is not a record of a disk's writes")
         at = SECTOR
         while True:
             file.seek(at)
@@ -55,7 +57,7 @@ def read_record(path):
 
 
 def marks(entries, name):
-    """(position, number) of each mark "NAME number", in order."""
+    """Returns (position, number) of each mark "NAME number" in the record, in order."""
     found = []
     for position, entry in enumerate(entries):
         if entry.sector == MARK_SECTOR and entry.data:
@@ -66,7 +68,8 @@ def marks(entries, name):
 
 
 def write(image, entry, keep=None):
-    """Writes an entry; with `keep`, a function that says for each sector whether it reached the medium."""
+    """Writes an entry to the image. If `keep` is given, it is called for each sector and returns whether to write
+    this sector."""
     for i in range(0, len(entry.data), SECTOR):
         if keep is None or keep():
             at = entry.sector * SECTOR + i
@@ -74,7 +77,7 @@ def write(image, entry, keep=None):
 
 
 def files_of(image, directory):
-    """Repairs the file system as a start of the machine would, and copies its files out."""
+    """Repairs the file system, as a machine does when it starts, and copies the files out of it."""
     disk, files = directory / "disk.img", directory / "files"
     disk.write_bytes(image)
     environment = {**os.environ, "PATH": os.environ["PATH"] + ":/sbin:/usr/sbin"}
@@ -82,18 +85,19 @@ def files_of(image, directory):
     files.mkdir()
     repaired = subprocess.run(["e2fsck", "-fy", disk], env=environment, capture_output=True, text=True)
     if repaired.returncode > 2:
-        raise RuntimeError(f"the file system is beyond repair: {repaired.stdout}")
+        raise RuntimeError(f"e2fsck could not repair the file system: {repaired.stdout}")
     subprocess.run(["debugfs", "-R", f"rdump / {files}", disk], env=environment, capture_output=True, check=True)
     return files
 
 
 def cuts(name, count, seed):
-    """`count` random cuts between the first and the last mark of this name, each as a Cut; same seed, same cuts."""
+    """Yields `count` Cuts at random positions between the first and the last mark of this name. The seed determines
+    the positions."""
     out = pathlib.Path(os.environ["BENCH_OUT"])
     entries = read_record(out / "disk.log")
     marked = marks(entries, name)
     if len(marked) < 2:
-        raise ValueError(f"the record holds no marks {name}: {len(entries)} entries")
+        raise ValueError(f"the record has {len(entries)} entries, but fewer than two marks named {name}")
     draw = random.Random(seed)
     positions = sorted(draw.randrange(marked[0][0], marked[-1][0]) for _ in range(count))
     flushed = bytearray((out / "disk.start.img").read_bytes())

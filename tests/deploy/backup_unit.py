@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""backup_unit.py verify | run PROGRAM: turnpoint-backup.service and its timer.
+"""backup_unit.py verify | run PROGRAM: tests turnpoint-backup.service and its timer.
 
-`verify` asks systemd-analyze (77 where there is none). `run` takes ExecStart and Environment from the unit as they stand
-and runs that line with another program and other files, the way systemd would.
+`verify` checks both units with systemd-analyze; the exit status is 77 if it is not installed. `run` reads ExecStart
+and Environment from the service file. It runs this command line as systemd would, but with PROGRAM and with temporary
+files.
 """
 import os
 import re
@@ -40,18 +41,19 @@ def verify():
         done = subprocess.run(["systemd-analyze", "verify", "--man=no", *(os.path.join(work, unit) for unit in UNITS)],
                               capture_output=True, text=True, check=False)
     said = [line for line in done.stderr.splitlines() if any(unit in line for unit in UNITS)]
-    check("\n".join(said) or f"systemd-analyze ends with {done.returncode}: {done.stderr}", done.returncode == 0 and not said)
-    check("the timer is on by itself", settings("turnpoint-backup.timer", "WantedBy") == ["timers.target"]
+    check("\n".join(said) or f"systemd-analyze exited with {done.returncode}: {done.stderr}", done.returncode == 0 and not said)
+    check("the timer must be the only unit that `systemctl enable` starts",
+          settings("turnpoint-backup.timer", "WantedBy") == ["timers.target"]
           and not settings("turnpoint-backup.service", "WantedBy"))
 
 
 class Unit:
-    """Environment of the unit, then that of /etc/turnpoint/backup, and its command line."""
+    """The backup service: its command line, and its environment, which /etc/turnpoint/backup overrides."""
 
     def __init__(self, program, work):
         self.program, self.work = program, work
         self.line = settings("turnpoint-backup.service", "ExecStart")[0]
-        check("its environment file has another name",
+        check("the service must read its settings from /etc/turnpoint/backup",
               settings("turnpoint-backup.service", "EnvironmentFile") == ["/etc/turnpoint/backup"])
 
     def run(self, configuration):
@@ -61,11 +63,11 @@ class Unit:
         environment.update(configuration)
         words = []
         for word in shlex.split(self.line):
-            if re.fullmatch(r"\$\w+", word):  # systemd splits the value of $NAME into words
+            if re.fullmatch(r"\$\w+", word):  # for $NAME, systemd splits the value into words
                 words += environment.get(word[1:], "").split()
             else:
                 words.append(re.sub(r"\$\{(\w+)\}", lambda name: environment.get(name[1], ""), word))
-        check("it runs another program", words[0] == PROGRAM)
+        check(f"the service does not run {PROGRAM}", words[0] == PROGRAM)
         return subprocess.run([self.program, *words[1:]], cwd=self.work, env={"PATH": os.environ["PATH"]},
                               stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False, timeout=60)
 
@@ -86,29 +88,33 @@ def run(program):
         os.makedirs(folder)
 
         refused = unit.run({"TURNPOINT_BACKUP_DIR": folder})
-        check(f"it writes beside a disk that is missing: {refused.stdout}",
+        check(f"with no disk mounted, the backup was not refused: {refused.stdout}",
               refused.returncode == 1 and "no disk is mounted" in refused.stderr and not os.listdir(folder))
         refused = unit.run({})
-        check("it takes an empty name for a folder", refused.returncode == 2 and "--dir" in refused.stderr)
+        check("without TURNPOINT_BACKUP_DIR, the backup was not refused",
+              refused.returncode == 2 and "--dir" in refused.stderr)
 
         plain = {"TURNPOINT_BACKUP_DIR": folder, "TURNPOINT_BACKUP_TO": "folder", "TURNPOINT_BACKUP_KEEP": "2"}
         for _ in range(3):
             done = unit.run(plain)
             check(done.stderr, done.returncode == 0 and "read back and checked" in done.stdout)
-        check(f"it keeps {backups(folder)}", len(backups(folder)) == 2)
-        check("the start page cannot know of it", os.path.exists(database + ".last-backup"))
+        check(f"expected two backups after three runs with TURNPOINT_BACKUP_KEEP=2, found {backups(folder)}",
+              len(backups(folder)) == 2)
+        check("the file .last-backup, which the start page reads, was not written",
+              os.path.exists(database + ".last-backup"))
         before = sorted(os.listdir(folder))
         drill = subprocess.run([program, "backup", "--db", database, "--dir", folder, "--drill"], capture_output=True,
                                text=True, check=False)
         check(drill.stdout + drill.stderr, drill.returncode == 0 and "every row of the backup is as it was recorded" in drill.stdout)
-        check("the drill leaves something behind", sorted(os.listdir(folder)) == before)
+        check("the restore drill left files behind", sorted(os.listdir(folder)) == before)
 
         memory = "/dev/shm"
         if not os.path.ismount(memory) or os.stat(memory).st_dev == os.stat(work).st_dev:
             return
         with tempfile.TemporaryDirectory(dir=memory) as disk:
             done = unit.run({"TURNPOINT_BACKUP_DIR": disk})
-            check(f"it refuses a disk: {done.stderr}", done.returncode == 0 and len(backups(disk)) == 1)
+            check(f"the backup to a mounted disk was refused: {done.stderr}",
+                  done.returncode == 0 and len(backups(disk)) == 1)
 
 
 if sys.argv[1] == "verify":

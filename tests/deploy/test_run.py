@@ -1,4 +1,5 @@
-"""deploy/run in a folder whose deploy/install, cmake and turnpoint only write down how they were called."""
+"""Tests deploy/run in a temporary folder. The folder's deploy/install, cmake and turnpoint only record how they were
+called."""
 import os
 import shutil
 import socket
@@ -30,7 +31,7 @@ class Run(unittest.TestCase):
         os.chmod(path, 0o755)
 
     def run_it(self, *arguments, **environment):
-        """Exit status, standard error, and the calls that were made."""
+        """Runs deploy/run. Returns its exit status, its standard error, and the recorded calls."""
         if os.path.exists(self.calls):
             os.remove(self.calls)
         environment = {"HOME": self.folder, "PATH": self.folder + "/tools:" + os.environ["PATH"],
@@ -100,7 +101,7 @@ class Run(unittest.TestCase):
                                                    "with a simulated observer\n"))
             self.assertIn("--headless --observer sim\n", calls)
             _, errors, _ = self.run_it("--headless", **display)
-            self.assertEqual(errors, "", "without a screen, no display is looked for")
+            self.assertEqual(errors, "", "with --headless, deploy/run must not try to reach the display")
 
     def test_a_display_that_is_there(self):
         wayland = socket.socket(socket.AF_UNIX)

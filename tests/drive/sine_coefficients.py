@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Coefficients of the odd minimax polynomials for sin(2 pi r), |r| <= 1/4 (station/drive/sine.hpp).
+"""Computes the coefficients of the odd minimax polynomials for sin(2 pi r), |r| <= 1/4 (station/drive/sine.hpp).
 
-Remez exchange on the absolute error with mpmath; prints hexadecimal doubles and the error that is left.
+Uses Remez's exchange algorithm on the absolute error, with mpmath. Prints the coefficients as hexadecimal doubles,
+and the largest error of the polynomial.
 Usage: sine_coefficients.py [terms ...]   (default 8 and 5 terms: degrees 15 and 9)
 """
 import sys
@@ -31,7 +32,7 @@ def remez(terms):
                    if abs(values[k]) >= abs(values[k - 1]) and abs(values[k]) >= abs(values[k + 1])]
         nodes = [grid[k] for k in extrema] + [mpf(1) / 4]
         if len(nodes) != terms + 1:
-            raise SystemExit(f"{len(nodes)} extrema, {terms + 1} wanted")
+            raise SystemExit(f"the error has {len(nodes)} extrema, expected {terms + 1}")
     return c, max(abs(v) for v in values)
 
 

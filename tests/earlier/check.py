@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""check.py PROGRAM ARCHIVE FAULTY_SYSTEM CASE: what an earlier release has made is opened, resumed and exported.
+"""check.py PROGRAM ARCHIVE FAULTY_SYSTEM CASE: opens, resumes and exports files that an earlier release has written.
 
-A session that was interrupted then is resumed now to the very trials that it would have had, or refused with a reason
-and left as it is. The clock of the program is set to a minute after the archive was made.
+ARCHIVE contains databases with interrupted sessions. PROGRAM must either resume such a session with exactly the
+trials that the earlier release would have presented, or refuse with a reason and change nothing. FAULTY_SYSTEM is a
+preloaded library that sets the program's clock to one minute after ARCHIVE was made.
 """
 import csv
 import json
@@ -35,7 +36,7 @@ def decisions(database):
 
 
 def contents(database):
-    """All rows of all tables, as independent of pages and logs as can be."""
+    """Returns all rows of all tables, sorted, so that two databases with the same rows compare as equal."""
     tables = [name for name, in rows(database, "SELECT name FROM sqlite_schema WHERE type = 'table' ORDER BY name")]
     return {name: sorted(map(repr, rows(database, f'SELECT * FROM "{name}"'))) for name in tables}
 
@@ -88,11 +89,11 @@ class Release:
         self.call("run", "protocols/demo.toml", "--rig", "rigs/simulated.toml", "--participant", "P09", "--db",
                   "lab.sqlite", "--observer", "sim", "--headless")
         if decisions(self.path("lab.sqlite"))[:len(before)] != before:
-            fail("lab.sqlite: writing a new session has changed the old ones")
+            fail("lab.sqlite: writing a new session changed the trials of earlier sessions")
         withdrawn = self.call("run", "protocols/demo.toml", "--rig", "rigs/simulated.toml", "--participant", "P03",
                               "--db", "lab.sqlite", "--observer", "sim", "--headless", expected=1)
         if "withdrawn" not in withdrawn.stderr:
-            fail("a code that was withdrawn then is given out again")
+            fail("the code P03 was withdrawn with the earlier release, but a new session may use it again")
 
     def backups(self):
         with open(self.path("lab.sqlite"), "r+b") as file:
@@ -100,9 +101,9 @@ class Release:
         said = self.call("backup", "--db", "lab.sqlite", "--dir", "backups", "--restore").stdout
         newest = sorted(name for name in os.listdir(self.path("backups")) if name.endswith(".sqlite"))[-1]
         if newest not in said:
-            fail(f"not the newest backup was restored: {said}")
+            fail(f"the restored backup is not the newest, {newest}: {said}")
         if len(self.sessions("lab.sqlite")) != 5:
-            fail("the restored database has not the sessions of the backup")
+            fail("the restored database does not contain the 5 sessions of the backup")
 
     def stations(self):
         self.export("merged.sqlite")
@@ -125,23 +126,24 @@ class Release:
             expected = json.load(file)
         before, stored = contents(self.path(database)), len(decisions(self.path(database)))
         if not 0 < stored < len(expected):
-            fail(f"{database} holds {stored} of {len(expected)} trials: the case shows nothing")
+            fail(f"{database} contains {stored} of {len(expected)} trials; this test needs a session that was interrupted after"
+                 " the first and before the last trial")
         done = self.call("resume", "--db", database, "--headless", "--policy", "resume", expected=None)
         if done.returncode != 0:
             self.refused(database, before, done)
         elif decisions(self.path(database)) != expected:
-            fail(f"{database}: the resumed session is not the one that was interrupted")
+            fail(f"{database}: the resumed session has other trials than the interrupted session would have had")
         self.export(database)
 
     def refused(self, database, before, done):
         if done.returncode not in (1, 2) or "resume: " not in done.stderr:
-            fail(f"{database}: status {done.returncode} without a reason: {done.stderr}")
+            fail(f"{database}: resume exited with {done.returncode} and gave no reason: {done.stderr}")
         if contents(self.path(database)) != before:
             fail(f"{database}: resume was refused, but the database has changed")
-        print("refused and left alone:", done.stderr.strip())
+        print("resume refused the database and left it unchanged:", done.stderr.strip())
 
     def tampered(self):
-        """A trial that this program would never have presented."""
+        """Changes a stored trial, so that replaying the session cannot reproduce it. Resume must refuse."""
         database = "interrupted/boundary-adjustment.sqlite"
         connection = sqlite3.connect(self.path(database))
         connection.executescript("DROP TRIGGER trial_is_never_changed; UPDATE trial SET state_hash = state_hash + 1"
@@ -155,7 +157,7 @@ class Release:
         self.environment["CLOCK_OFFSET_S"] = str(int(self.environment["CLOCK_OFFSET_S"]) + seconds)
 
     def clock(self):
-        """A clock that went back, or is ahead, prevents no resume."""
+        """Tests that a session can be resumed although the clock went back by a year or forward by ten years."""
         name = "boundary-adjustment"
         database, copy = f"interrupted/{name}.sqlite", "interrupted/copy.sqlite"
         for suffix in ("", "-wal"):
@@ -166,16 +168,17 @@ class Release:
         before = contents(self.path(database))
         refused = self.call("resume", "--db", database, "--headless", expected=2)
         if "--any-age" not in refused.stderr or contents(self.path(database)) != before:
-            fail(f"{database}: not refused as too old, or changed: {refused.stderr}")
+            fail(f"{database}: after ten years, resume must refuse, name --any-age, and leave the database unchanged:"
+                 f" {refused.stderr}")
         self.call("resume", "--db", database, "--headless", "--any-age", "--policy", "resume")
         self.set_clock(-11 * 365 * 24 * 3600)
         self.call("resume", "--db", copy, "--headless", "--policy", "resume")
         for resumed in (database, copy):
             if decisions(self.path(resumed)) != expected:
-                fail(f"{resumed}: the resumed session is not the one that was interrupted")
+                fail(f"{resumed}: the resumed session has other trials than the interrupted session would have had")
 
     def by_buttons(self):
-        """Nobody simulates this participant, so nothing excuses a refusal."""
+        """Resumes a session that a person, not a simulated observer, answered by buttons. Resume must not refuse it."""
         database = "interrupted/by-buttons.sqlite"
         before = decisions(self.path(database))
         process = subprocess.Popen([self.program, "resume", "--db", database, "--headless"], cwd=self.folder,
@@ -195,7 +198,7 @@ class Release:
         process.communicate()
         patience.cancel()
         if decisions(self.path(database))[:len(before)] != before:
-            fail(f"{database}: resuming has changed what was stored")
+            fail(f"{database}: resume changed trials that were already stored")
         if rows(self.path(database), "SELECT max(segment_index) FROM segment") != [[2]]:
             fail(f"{database} was not resumed")
 

@@ -1,12 +1,16 @@
 #!/usr/bin/env python3
-"""sweep.py PROGRAM FAULTY_SYSTEM SCHEMA_V1 [--seed N --points N | --all] [OPERATION...]: a fault at each call.
+"""sweep.py PROGRAM FAULTY_SYSTEM SCHEMA_V1 [--seed N --points N | --all] [OPERATION...]: tests a fault at each system
+call.
 
-Each operation runs once to count its calls on files, and then again from the same start for each chosen call, which is
-killed before or within it, or answered with EIO or ENOSPC. Afterwards, with Python's own SQLite as the judge:
-  - whatever bears a database's name is whole, and holds every trial that was there before;
-  - an operation that said that it succeeded has done what it says; one that failed has said why;
-  - done again without a fault, it succeeds.
-Without --all it takes --points of all points by a seeded rotation: with N = 0, 1, 2, ... every point has its turn.
+Each operation runs once without a fault, to list its system calls on files. Then it runs again from the same files
+for each chosen call. At that call the program is killed, or the call fails with EIO or ENOSPC. Afterwards this script
+checks with Python's own SQLite:
+  - Every database is intact and still contains every trial that it contained before.
+  - If the operation reported success, its result is complete. If it failed, it printed a reason.
+  - Repeated without a fault, the operation succeeds.
+
+With --all, every combination of call and fault (a "point") is tested. Otherwise about --points of them are tested per
+operation, chosen by --seed; successive seeds cover all points.
 """
 import argparse
 import glob
@@ -32,7 +36,8 @@ def wrong(what):
 
 
 def trials(path):
-    """Every trial of a database that must be whole; none where there is no file."""
+    """Returns all trials of a database and checks that the database is intact. Returns an empty set if the file is
+    absent."""
     if not os.path.exists(path):
         return set()
     folder = tempfile.mkdtemp(dir="/dev/shm" if os.path.isdir("/dev/shm") else None)
@@ -45,7 +50,7 @@ def trials(path):
             if connection.execute("PRAGMA integrity_check").fetchall() != [("ok",)]:
                 wrong(f"{path} is damaged")
             if connection.execute("PRAGMA application_id").fetchone()[0] != 0x54504E54:
-                wrong(f"{path} is not a database of the station")
+                wrong(f"{path} does not have the application id of a station database")
             if not connection.execute("SELECT value FROM meta WHERE key = 'database_id'").fetchone():
                 wrong(f"{path} has no id")
             rows = connection.execute("SELECT session_id, trial_index, state_hash, response FROM trial").fetchall()
@@ -59,7 +64,7 @@ def trials(path):
 
 
 def holds(folder, text):
-    """Files below a folder that hold a text."""
+    """Returns the files below a folder that contain this text."""
     found = []
     for base, _, names in os.walk(folder):
         for name in names:
@@ -70,7 +75,7 @@ def holds(folder, text):
 
 
 def publish_half_made(folder):
-    """What a program would leave that writes under the final name."""
+    """Gives unfinished *.new files their final names, as if the program had written directly under those names."""
     for base, _, names in os.walk(folder):
         for name in names:
             if name.endswith(".new"):
@@ -78,7 +83,7 @@ def publish_half_made(folder):
 
 
 class Operation:
-    """One command. prepare() makes its start, once; check() judges what it leaves."""
+    """One command under test. prepare() makes the files from which each run starts; check() checks them after a run."""
     databases = ["lab.sqlite"]
 
     def __init__(self, sweep):
@@ -107,10 +112,10 @@ class Operation:
 
     def kept(self, before, after):
         if not before <= after:
-            wrong(f"{len(before - after)} trials are lost")
+            wrong(f"{len(before - after)} trials are missing")
 
     def done(self, folder):
-        """What must hold where the command says that it has succeeded."""
+        """Checks the result after the command has reported success."""
 
     def check(self, folder, before):
         for name in self.databases:
@@ -126,7 +131,7 @@ class Create(Operation):
 
     def done(self, folder):
         if len(trials(os.path.join(folder, "lab.sqlite"))) < 10:
-            wrong("a session was completed and is not there")
+            wrong("the session was reported as completed, but its trials are not in the database")
 
 
 class Run(Create):
@@ -184,19 +189,19 @@ class Backup(Operation):
 
     def done(self, folder):
         if trials(self.backups(folder)[-1]) != trials(os.path.join(folder, "lab.sqlite")):
-            wrong("the newest backup is not what was backed up")
+            wrong("the newest backup does not contain the same trials as the database")
 
     def check(self, folder, before):
         Operation.check(self, folder, before)
         backups = self.backups(folder)
         if len(backups) < 2:
-            wrong("good backups are gone")
+            wrong("fewer than two backups are left")
         for backup in backups:
             trials(backup)
 
 
 class Restore(Backup):
-    """Beside a log that belongs to the lost file."""
+    """Restores a damaged database beside which a write-ahead log of the damaged file still lies."""
     databases = []
 
     def prepare(self, folder):
@@ -218,7 +223,7 @@ class Restore(Backup):
 
     def done(self, folder):
         if trials(os.path.join(folder, "lab.sqlite")) != trials(self.backups(folder)[-1]):
-            wrong("what was restored is not the newest backup")
+            wrong("the restored database does not contain the trials of the newest backup")
         if os.path.getsize(glob.glob(os.path.join(folder, "lab.sqlite.damaged-*Z"))[0]) != 20000:
             wrong("the damaged file was not kept")
 
@@ -226,14 +231,13 @@ class Restore(Backup):
         path = os.path.join(folder, "lab.sqlite")
         if os.path.exists(path) and os.path.getsize(path) != 20000:
             if os.path.exists(path + "-wal") and os.path.getsize(path + "-wal") > 0:
-                wrong("the restored file has a log that is not its own")
+                wrong("the restored database lies beside the old write-ahead log of the damaged file")
             trials(path)
-        # As long as the database is missing because a restore was interrupted, no session may create a new
-        # one.
+        # If an interrupted restore has left no database, a session must not create a new one.
         if not os.path.exists(path):
             started = self.run(folder, *self.session("lab.sqlite", "P05"))
             if started.returncode == 0 or os.path.exists(path):
-                wrong("a new database was begun in the middle of a restore")
+                wrong("a session created a new database although a restore was interrupted")
 
 
 class Drill(Backup):
@@ -242,7 +246,7 @@ class Drill(Backup):
 
     def done(self, folder):
         if left := glob.glob(os.path.join(folder, "**", "*.drill*"), recursive=True):
-            wrong(f"the drill has left {left}")
+            wrong(f"the restore drill left these files behind: {left}")
 
 
 class Merge(Operation):
@@ -260,7 +264,8 @@ class Merge(Operation):
 
 
 class Withdraw(Backup):
-    """With what interrupted operations of every kind have left behind."""
+    """Withdraws a participant while leftover files of interrupted operations, which contain the participant, lie
+    beside the database."""
     databases = []
 
     def prepare(self, folder):
@@ -277,12 +282,12 @@ class Withdraw(Backup):
 
     def done(self, folder):
         if left := holds(folder, "QX9"):
-            wrong(f"the participant is still in {left}")
+            wrong(f"the withdrawn participant is still found in {left}")
 
     def check(self, folder, before):
         after = trials(os.path.join(folder, "lab.sqlite"))
         if len(before["lab.sqlite"] - after) not in (0, 10):
-            wrong("a part of the participant's trials is gone, or others are")
+            wrong("either all 10 trials of the participant must be deleted or none, and no other trials")
         if not self.backups(folder):
             wrong("no backup is left")
         for backup in self.backups(folder):
@@ -298,12 +303,12 @@ class Export(Operation):
 
     def done(self, folder):
         if len(self.tables(folder)) != 4 or glob.glob(os.path.join(folder, "export", "*", "*INCOMPLETE*")):
-            wrong("the export is not whole")
+            wrong("the export reported success, but is incomplete")
 
     def check(self, folder, before):
         Operation.check(self, folder, before)
         if 0 < len(self.tables(folder)) < 4 and not glob.glob(os.path.join(folder, "export", "*", "*INCOMPLETE*")):
-            wrong("half an export without a mark")
+            wrong("some tables of the export are missing, and no file is marked INCOMPLETE")
 
 
 class Calibrate(Operation):
@@ -324,7 +329,7 @@ class Calibrate(Operation):
 
     def check(self, folder, before):
         if self.text(folder) != self.text(self.sweep.start):
-            wrong("calibration.toml is half written")
+            wrong("calibration.toml is neither the old nor the complete new file")
 
 
 OPERATIONS = {"create": Create, "migrate": Migrate, "run": Run, "resume": Resume, "backup": Backup, "restore": Restore, "drill": Drill,
@@ -349,13 +354,14 @@ class Sweep:
         return folder
 
     def calls(self, operation):
-        """[(number, what, kinds)] of all calls of the operation."""
+        """Returns (number, call and path, kind of fault) for each call of the operation and each fault to be tested
+        there."""
         log = os.path.join(self.work, "calls.log")
         if os.path.exists(log):
             os.remove(log)
         done = self.once(operation, self.fresh(), {"FAULT_LOG": log})
         if done.returncode != 0:
-            sys.exit(f"sweep: without a fault: {done.stdout}{done.stderr}")
+            sys.exit(f"sweep: the operation fails even without a fault: {done.stdout}{done.stderr}")
         operation.done(os.path.join(self.work, "now"))
         found = []
         with open(log, encoding="utf-8", errors="replace") as file:
@@ -373,20 +379,22 @@ class Sweep:
         if done.returncode == 0:
             operation.done(folder)
         elif done.returncode > 0 and len((done.stdout + done.stderr).strip()) < 20:
-            wrong(f"status {done.returncode} without a reason")
+            wrong(f"the program exited with {done.returncode} and gave no reason")
         elif done.returncode < 0 and done.returncode != -9:
-            wrong(f"ended by signal {-done.returncode}: {done.stderr}")
+            wrong(f"the program was ended by signal {-done.returncode}: {done.stderr}")
         operation.check(folder, before)
         again = operation.run(folder, *operation.arguments(),
                               environment=dict(LD_PRELOAD=self.faulty_system, HOST_NAME="a"))
         if done.returncode != 0 and again.returncode != 0 and not self.complete(operation, folder, again):
-            wrong(f"after {done.stderr.strip()!r} it fails again: {again.stderr.strip()}")
+            wrong(f"the operation failed with {done.stderr.strip()!r}; repeated without a fault, it fails again:"
+                  f" {again.stderr.strip()}")
         operation.done(folder)
         operation.check(folder, before)
 
     @staticmethod
     def complete(operation, folder, again):
-        """Failed after all was done: to do it again is refused, and what it was to do holds."""
+        """Returns whether a repeated restore was refused because the first attempt had already restored an intact
+        database."""
         return "is intact; nothing was changed" in again.stderr
 
     def run(self, name, choose):
@@ -397,7 +405,7 @@ class Sweep:
         before = {database: trials(os.path.join(self.start, database)) for database in ("lab.sqlite", "other.sqlite")
                   if name not in ("restore", "calibrate")}
         points = self.calls(operation)
-        if self.careless:  # test only kills while a .new file is being written
+        if self.careless:  # only kill the program while it writes a .new file
             points = [point for point in points if point[2] == "kill" and ".new" in point[1]]
         failures, tried = [], 0
         for index, (number, what, kind) in enumerate(points):
@@ -422,15 +430,17 @@ def main():
     parser.add_argument("program")
     parser.add_argument("faulty_system")
     parser.add_argument("schema")
-    parser.add_argument("operations", nargs="*", help="some of these: " + " ".join(OPERATIONS))
-    parser.add_argument("--seed", type=int, default=commits(), help="otherwise the number of commits")
-    parser.add_argument("--points", type=int, default=6, help="of each operation")
+    parser.add_argument("operations", nargs="*", help="any of: " + " ".join(OPERATIONS))
+    parser.add_argument("--seed", type=int, default=commits(),
+                        help="chooses the points to test; default: the number of commits")
+    parser.add_argument("--points", type=int, default=6, help="number of points to test per operation")
     parser.add_argument("--all", action="store_true")
-    parser.add_argument("--careless", action="store_true", help="half-made files are published: must be found")
+    parser.add_argument("--careless", action="store_true",
+                        help="negative control: unfinished files get their final names, and the sweep must detect this")
     options = parser.parse_intermixed_args()
 
     def choose(index, count):
-        """A seeded rotation: the seeds 0 to count / points - 1 have each point once."""
+        """Returns whether to test this point. The seeds 0 to count / points - 1 together choose each point once."""
         turns = max(1, -(-count // options.points))
         return options.all or index % turns == options.seed % turns
 

@@ -1,14 +1,18 @@
 #!/usr/bin/env python3
-"""Writes first_passage.csv: the probability that a Wiener process of unit variance with a drift has left the
-interval (-1, 1) at its upper end by a time. Two independent series, for short and for long times (Feller 1968,
-XIV.6; Navarro & Fuss 2009), must agree; the table has what both say. Needs python3-mpmath."""
+"""Writes first_passage.csv: the probability that a Wiener process with drift has left (-1, 1) at its upper end by a
+given time.
+
+The process has unit variance. The probability is computed by two independent series, for short and for long times
+(Feller 1968, XIV.6; Navarro & Fuss 2009), which must agree to 1e-20. Needs python3-mpmath.
+"""
 from mpmath import mp, mpf, pi, exp, sin, sqrt, erfc
 
 mp.dps = 40
 
 
 def long_times(drift, start, t):
-    """Upper passage by t from `start` in (-1, 1): that from 2 - (1 + start) to the lower end, mirrored."""
+    """Probability of passing the upper end by time t from `start` in (-1, 1), by the series for long times. The
+    series is for the lower end, so the process is mirrored."""
     v, a, w = -drift, mpf(2), (1 - start) / 2
     total = upper_ever(drift, start)
     s = mpf(0)
@@ -25,12 +29,13 @@ def upper_ever(drift, start):
 
 
 def short_times(drift, start, t):
-    """Images: sum over k of passage densities through 1 - start + 4k, integrated in closed form."""
+    """The same probability by the series for short times: a sum over images k at the distances 1 - start + 4k, each
+    integrated in closed form."""
     s = mpf(0)
     for k in range(-60, 61):
         d = 1 - start + 4 * k
-        # One term: the integral of d / sqrt(2 pi u^3) exp(drift (1 - start) - drift^2 u / 2 - d^2 / (2 u))
-        # from 0 to t.
+        # One term of the series is the integral of d / sqrt(2 pi u^3) exp(drift (1 - start) -
+        # drift^2 u / 2 - d^2 / (2 u)) over u from 0 to t.
         sign, b = (1, d) if d > 0 else (-1, -d)
         m = abs(drift)
         one = exp(-m * b) * erfc((b - m * t) / sqrt(2 * t)) / 2

@@ -1,5 +1,8 @@
-"""The JSON schemas that editors use agree with the shipped files, and refuse files with mistakes that a schema can see.
-Usage: validate_schema.py SOURCE_DIR. Exit 77 (skipped) without the modules."""
+"""validate_schema.py SOURCE_DIR: tests the JSON schemas with which editors check protocols and rigs.
+
+The schemas must accept all files in protocols/ and deploy/rigs/, and reject files with mistakes that a schema can
+detect. The exit status is 77 (skipped) if the Python modules tomllib and jsonschema are missing.
+"""
 import json
 import pathlib
 import sys
@@ -34,16 +37,16 @@ schema = check("protocols/protocol.schema.json", protocols)
 rigs = sorted((root / "deploy/rigs").glob("*.toml"))
 rig_schema = check("deploy/rigs/rig.schema.json", rigs)
 if len(protocols) < 10 or not rigs:
-    faults.append("too few files were found")
+    faults.append("fewer than 10 protocols, or no rigs, were found")
 
-# The schema must reject unknown keys, unknown words and wrong types. It cannot check names that refer to
-# others, or arithmetic.
+# The schema must reject unknown keys, unknown words and wrong types. It cannot check whether a name
+# refers to something that exists, or whether numbers fit together.
 for name in ["key-unknown", "id-number", "seed-negative", "task-kind", "task-device", "block-feedback", "resume-word",
              "scene-rove-negative", "timing-iti-missing", "factor-no-values", "table-unknown"]:
     if not errors(schema, (root / f"tests/protocol/bad/{name}.toml").read_text()):
-        faults.append(f"the schema accepts the mistake of {name}.toml")
+        faults.append(f"the protocol schema accepts tests/protocol/bad/{name}.toml, which has a mistake")
 if not errors(rig_schema, rigs[0].read_text().replace("thickness_mm", "thicknes_mm")):
-    faults.append("the rig schema accepts an unknown key")
+    faults.append("the rig schema accepts a misspelt key")
 
 print("\n".join(faults) or f"{len(protocols)} protocols and {len(rigs)} rigs fit their schemas")
 sys.exit(1 if faults else 0)

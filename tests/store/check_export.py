@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""check_export.py pandas|bids MAKE_SAMPLE README: exports read by the programs that they are made for.
+"""check_export.py pandas|bids MAKE_SAMPLE README: reads exports with the programs for which they are made.
 
-pandas runs the snippet of the README; bids runs bids-validator-deno. Ends with 77 (skipped) where that program
-is not installed: pip install pandas bids-validator-deno==3.0.2
+`pandas` runs the Python example from README; `bids` runs bids-validator-deno. The exit status is 77 (skipped) if the
+program is not installed. To install both: pip install pandas bids-validator-deno==3.0.2
 """
 import csv
 import glob
@@ -32,7 +32,7 @@ def check_pandas(folder, readme):
         snippet = re.search(r"```python\n(.*?)```", file.read(), re.S).group(1)
     os.chdir(os.path.join(folder, "csv", "two-boundaries"))
     names = {}
-    exec(snippet, names)  # Run the example code from the documentation, which shows how to read an export.
+    exec(snippet, names)  # run the README's example of how to read an export
     trials, by_level = names["trials"], names["by_level"]
     with open("trials.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -45,7 +45,8 @@ def check_pandas(folder, readme):
     assert trials.response_time.isna().sum() == len(rows) - len(answered) > 0
     sessions = names["pd"].read_csv("sessions.csv", na_values=["n/a"])
     assert sessions.annotations.iloc[1] == "'=a note, with a comma and \"quotes\"", sessions.annotations
-    # Negative control: without na_values the column would be read as text, and the check above would fail.
+    # Negative control: without na_values, pandas must read the column as text, so that the check
+    # above can fail.
     with open("trials.csv", encoding="utf-8") as file:
         text = names["pd"].read_csv(io.StringIO(file.read()), keep_default_na=False)
     assert text.response_time.dtype.kind not in "if"
@@ -58,7 +59,7 @@ def issues_of(validator, dataset):
 
 
 def name_of(issue):
-    """What the README calls a warning: a key that is missing, or the code of a rule."""
+    """Returns the name by which the README lists a warning: the missing key, or the code of the rule."""
     return issue.get("subCode") or issue["code"]
 
 

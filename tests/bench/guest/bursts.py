@@ -1,5 +1,8 @@
-"""bursts.py FILE PREFIX [SECONDS]: from a recording (S32_LE stereo, 192 kHz) each burst on channel 0, without its ramps,
-as PREFIX0.raw, PREFIX1.raw, ...; of a long one the middle SECONDS."""
+"""bursts.py FILE PREFIX [SECONDS]: cuts a recording (S32_LE stereo, 192 kHz) into its bursts on channel 0.
+
+Writes each burst, without its ramps, to PREFIX0.raw, PREFIX1.raw, ... If a burst is longer than SECONDS, only the
+SECONDS in its middle are written.
+"""
 import array
 import sys
 

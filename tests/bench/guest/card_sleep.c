@@ -1,6 +1,7 @@
-// While this module is loaded, the loopback sound card sleeps as on a machine that is suspended: its drivers' own
-// callbacks are called, children first, and on removal in the other order. (The guest as a whole cannot sleep: its
-// root file system's transport does not wake.)
+// While this module is loaded, the loopback sound card is suspended as if the whole machine were. The module
+// calls the suspend callbacks of the card's drivers, children first; when it is removed, it calls their
+// resume callbacks in the opposite order. (The whole guest cannot be suspended, because the transport of its
+// root file system does not resume.)
 #include <linux/device.h>
 #include <linux/module.h>
 #include <linux/platform_device.h>

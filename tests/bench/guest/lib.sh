@@ -5,14 +5,14 @@ PATH=$BENCH_DIR/bin:$BIN:$PATH
 say() { echo "# $*"; }
 fail() { echo "FAILED: $*"; [ ! -e /dev/fb0 ] || screenshot failed || true; exit 1; }
 
-# near WHAT VALUE EXPECTED TOLERANCE: passes if the value is within the tolerance.
+# near WHAT VALUE EXPECTED TOLERANCE: fails the scenario unless VALUE is within TOLERANCE of EXPECTED.
 near() {
   awk -v v="$2" -v e="$3" -v t="$4" 'BEGIN { d = v - e; exit !(v ~ /^[-+0-9.e]+$/ && d <= t && d >= -t) }' ||
     fail "$1 is $2, expected $3 within $4"
   say "$1: $2 (expected $3 within $4)"
 }
-# fails STATUS COMMAND...: passes if the command exits with this status. Writes the command's output to
-# refusal.txt.
+# fails STATUS COMMAND...: fails the scenario unless the command exits with STATUS. Writes the command's
+# output to refusal.txt.
 fails() {
   local expected=$1 status=0; shift
   "$@" >refusal.txt 2>&1 || status=$?
@@ -22,14 +22,14 @@ fails() {
 # eventually SECONDS COMMAND...: repeats the command until it succeeds. Fails the scenario after SECONDS.
 eventually() {
   local end=$((SECONDS + $1 + 1)); shift   # +1 because the clock SECONDS counts whole seconds
-  until "$@"; do [ $SECONDS -lt $end ] || fail "did not happen in time: $*"; sleep 0.1; done
+  until "$@"; do [ $SECONDS -lt $end ] || fail "this command did not succeed in time: $*"; sleep 0.1; done
 }
 has() { grep -q "$2" "$1"; }   # has FILE PATTERN: true if the file contains the pattern
 equals() { [ "$($1 $2)" = "$3" ]; }
 
-# gpio_sim NAME...: makes a simulated chip whose lines have these names, in this order. Afterwards `pull NAME
-# up|down` drives an input, `level NAME` reads a line's level, and `pull_file NAME` prints the file that
-# gpio_line press needs.
+# gpio_sim NAME...: makes a simulated GPIO chip whose lines have these names, in this order. Afterwards `pull
+# NAME up|down` drives an input, and `level NAME` prints the level of a line. `pull_file NAME` prints the file
+# name that `gpio_line press` takes.
 gpio_sim() {
   local n=0 name chip=/sys/kernel/config/gpio-sim/bench
   if [ -s "$BENCH_DIR/gpio-sim.ko" ]; then insmod "$BENCH_DIR/gpio-sim.ko"; else modprobe gpio-sim; fi
@@ -52,11 +52,12 @@ line_of() {
 pull_file() { echo "$(line_of "$1")/pull"; }
 pull() { echo "pull-$2" >"$(pull_file "$1")"; }
 level() { cat "$(line_of "$1")/value"; }
-# keep_outputs Y|N: whether an output keeps its level when its holder ends, as on most chips; N by default.
+# keep_outputs Y|N: sets whether an output keeps its level when the program that holds it ends, as on most
+# real chips. The default is N.
 keep_outputs() { echo "$1" >/sys/module/gpio_sim_bench/parameters/keep_outputs; }
 
-# rig_with DEVICE=URI... <RIG >RIG: writes a copy of a rig file with these devices. Sound gets buffers so long
-# that a pause of the host does not empty them.
+# rig_with DEVICE=URI... <RIG >RIG: copies a rig file and replaces the URIs of these devices. A sound output
+# also gets a long buffer, which does not run empty when the host pauses.
 rig_with() {
   local device script=
   for device in "$@"; do
@@ -75,22 +76,23 @@ calibrate_for_live() {
   turnpoint calibrate --rig "$1" --response main=sweep.csv --full-scale 0.1 --friction friction.csv --sound sound.csv
 }
 
-# loopback: makes a sound card; what is played on hw:Loopback,0 can be recorded, bit by bit, from
-# hw:Loopback,1.
+# loopback: makes a simulated sound card. hw:Loopback,1 records exactly the samples that are played on
+# hw:Loopback,0.
 loopback() { modprobe snd-aloop pcm_substreams=1; eventually 5 test -e /dev/snd/pcmC0D1c; }
-# record SECONDS FILE [RATE]: records raw S32_LE stereo in the background; $! is its process.
+# record SECONDS FILE [RATE]: records raw S32_LE stereo in the background. $! is the recorder's process.
 record() { arecord -q -D hw:Loopback,1 -t raw -f S32_LE -c 2 -r "${3:-192000}" --period-size=9600 --buffer-size=192000 -d "$1" "$2" & }
 
-# disk_begin [WHERE]: mounts the empty `disk` on WHERE (default /run/disk). After the scenario, NAME.after
-# checks the disk's content with power_cuts.py.
+# disk_begin [WHERE]: mounts the empty `disk` on WHERE (default /run/disk). After the scenario NAME.sh, the
+# script NAME.after checks the content of the disk with power_cuts.py.
 disk_begin() {
   modprobe virtio_blk; eventually 5 test -b /dev/vda
   mkdir -p "${1:-/run/disk}"
   mount -t ext4 -o noatime /dev/vda "${1:-/run/disk}"
 }
 
-# panel_begin: creates a touch panel of 800 x 480 at $PANEL; `touch_do COMMAND...` controls it
-# (touch_panel.cpp). After `touch_do gone`, it plugs the panel in again.
+# panel_begin: creates a simulated touch panel of 800 x 480, whose device is $PANEL. `touch_do COMMAND...`
+# controls the panel; touch_panel.cpp lists the commands. After `touch_do gone`, call panel_begin again to
+# plug the panel in again.
 panel_begin() {
   modprobe uinput; modprobe evdev
   [ -p panel.in ] || mkfifo panel.in
@@ -102,26 +104,27 @@ panel_begin() {
 }
 touch_do() { echo "$*" >&9; }
 
-# screen_begin: prepares the frame buffer of the `screen`, and the settings that Qt needs to draw on it and to
-# read the panel.
+# screen_begin: loads the driver of the `screen`, and sets the variables that Qt needs to draw on its frame
+# buffer and to read the panel.
 screen_begin() {
   modprobe bochs; eventually 10 test -e /dev/fb0
   export QT_QPA_PLATFORM=linuxfb QT_QUICK_BACKEND=software QT_QPA_FB_DISABLE_INPUT=1
   export QT_QPA_GENERIC_PLUGINS=evdevtouch:$PANEL
 }
-# pixel X Y prints the colour there, as bbggrr in hexadecimal; screenshot NAME saves the screen as
-# $OUT/NAME.png. Both read what the card scans out, whether eglfs or the frame buffer drew it.
+# pixel X Y prints the colour of a pixel as bbggrr in hexadecimal. screenshot NAME saves the screen as
+# $OUT/NAME.png. Both read the picture that the graphics card sends to the screen, so they work with eglfs and
+# with the frame buffer.
 pixel() { kms_screen "$1" "$2"; }
 screenshot() { kms_screen | python3 "$BENCH_SOURCE/guest/screenshot.py" "$OUT/$1.png"; }
-# For the participant's pages: find out by colour whether something at X Y can be pressed, and which page is
-# shown.
+# Functions for the participant's pages. `shows X Y` succeeds if the pixel has the colour of a button that can
+# be pressed. The other functions use it to recognise the page.
 action=5c3d0f
 shows() { [ "$(pixel "$1" "$2")" = $action ]; }
 answers_open() { shows 60 400 && shows 740 400; }
 continues() { shows 290 390 && ! shows 60 400; }
 
-# For the installed kiosk on its panel of 800 x 480: `tap` taps, `hold` presses for one second, `unlock`
-# enters the operator's code 2580.
+# Functions for the installed kiosk on its panel of 800 x 480: `tap X Y` taps, `hold X Y` presses for 1.2 s,
+# and `unlock` enters the operator's code 2580.
 tap() { touch_do tap "$1" "$2"; sleep 0.2; }
 hold() { touch_do down 0 "$1" "$2"; touch_do sleep 1200; touch_do up 0; sleep 1.6; }
 keypad() { shows 280 75 && shows 397 75; }
@@ -129,7 +132,7 @@ operator_code() { eventually 10 keypad; sleep 0.3; tap 397 107; tap 397 188; tap
 start_page() { shows 25 430; }
 unlock() {
   eventually 30 keypad
-  ! start_page || fail "the start page stands open"
+  ! start_page || fail "the start page is shown without the operator's code"
   operator_code
   eventually 10 start_page
 }

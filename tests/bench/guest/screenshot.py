@@ -1,4 +1,4 @@
-"""kms_screen | screenshot.py FILE.png: what the screen shows."""
+"""kms_screen | screenshot.py FILE.png: saves what the screen shows as a picture."""
 import struct
 import sys
 import zlib
@@ -11,7 +11,7 @@ def chunk(kind, data):
 WIDTH, HEIGHT = map(int, sys.stdin.buffer.readline().split())
 pixels = sys.stdin.buffer.read(WIDTH * HEIGHT * 4)
 rgb = bytearray(WIDTH * HEIGHT * 3)
-# a pixel of the screen is blue, green, red, unused; a PNG needs red, green, blue
+# the four bytes of a screen pixel are blue, green, red and unused; a PNG needs red, green and blue
 for target, source in ((0, 2), (1, 1), (2, 0)):
     rgb[target::3] = pixels[source::4]
 rows = b"".join(b"\0" + rgb[y * WIDTH * 3:(y + 1) * WIDTH * 3] for y in range(HEIGHT))

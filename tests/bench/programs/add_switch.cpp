@@ -1,5 +1,5 @@
-// add_switch CARD NAME: adds a switch of this name to a sound card, in state "on", as the driver of a
-// converter does. The switch exists as long as the card.
+// add_switch CARD NAME: adds a mixer switch of this name to a sound card and sets it to "on", as the driver
+// of a converter does. The switch exists until the card is removed.
 extern "C" {
 #include <alsa/asoundlib.h>
 }
@@ -20,7 +20,7 @@ int add(const char* card_name, const char* name) {
   snd_ctl_elem_value_set_id(on, id);
   snd_ctl_elem_value_set_boolean(on, 0, 1);
   int error = snd_ctl_elem_add_boolean(card, id, 1);
-  // a locked switch could be changed only by this process
+  // only this process could change a locked switch
   if (error >= 0) error = snd_ctl_elem_unlock(card, id);
   if (error >= 0) error = snd_ctl_elem_write(card, on);
   snd_ctl_close(card);

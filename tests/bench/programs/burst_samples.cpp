@@ -1,6 +1,6 @@
-// burst_samples ONSET SECONDS HZ:AMPLITUDE:CHANNEL...: writes the samples that `turnpoint synth` makes of
-// these tones at 192 kHz and 24 bits to standard output, as raw S32_LE stereo. ONSET is the first frame, on
-// which the dither depends.
+// burst_samples ONSET SECONDS HZ:AMPLITUDE:CHANNEL...: computes the samples that `turnpoint synth` makes from
+// these tones at 192 kHz and 24 bits, and writes them to standard output as raw S32_LE stereo. ONSET is the
+// number of the first frame; the dither depends on it.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>

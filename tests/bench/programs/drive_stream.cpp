@@ -1,6 +1,6 @@
-// drive_stream URI PERIOD_FRAMES SECONDS: plays a real-time stream with a burst of 100 ms twice a second.
-// Prints each event with CLOCK_MONOTONIC in ns, and at the end the counters, the clock, and the priority and
-// memory lock that the audio thread received.
+// drive_stream URI PERIOD_FRAMES SECONDS: plays a real-time stream with two bursts of 100 ms per second.
+// Prints each event with its CLOCK_MONOTONIC time in ns. At the end, it prints the counters, the fitted
+// clock, and the priority and memory lock that the audio thread received.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // measure_tone FILE RATE CHANNELS CHANNEL: analyses the loudest quarter second of a raw S32_LE recording and
 // prints "FREQUENCY LEVEL RESIDUAL": the frequency (Hz) and level (dB peak, re full scale) of the strongest
-// tone, and what is left after subtracting it (dB re the tone). A gap or jump of a single frame shows up in
-// the residual. Prints "0 -inf 0" if everything is silent.
+// tone, and the residual after subtracting the tone (dB re the tone). A gap or jump of a single frame
+// increases the residual. Prints "0 -inf 0" if everything is silent.
 #include <algorithm>
 #include <cmath>
 #include <complex>

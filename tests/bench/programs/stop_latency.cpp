@@ -1,8 +1,9 @@
-// stop_latency COUNT PULL_FILE VALUE_FILE: presses the stop COUNT times, at random moments, of an amplifier
-// that is enabled on real lines (AMP_EN, AMP_FAULT, STOP, AMP_HB). Meanwhile the processor is fully loaded,
-// and a session that gets hardly any processor time keeps calling the amplifier. PULL_FILE moves the stop,
-// VALUE_FILE shows the enable line (files of gpio-sim). Prints a histogram of the time from the stop until
-// the line is low, measured from outside, and the longest time in ns.
+// stop_latency COUNT PULL_FILE VALUE_FILE: measures how fast the amplifier reacts to the emergency stop. The
+// amplifier is enabled on simulated GPIO lines (AMP_EN, AMP_FAULT, STOP, AMP_HB), and the stop is pressed
+// COUNT times at random moments. Meanwhile the processor is fully loaded, and a session that gets hardly any
+// processor time keeps calling the amplifier. PULL_FILE is the gpio-sim file that presses the stop;
+// VALUE_FILE shows the level of the enable line. Prints a histogram of the times from the stop until the
+// enable line is low, and the longest time in ns.
 #include <fcntl.h>
 #include <pthread.h>
 #include <sys/resource.h>
@@ -52,10 +53,10 @@ std::vector<std::jthread> crowd(turnpoint::drive::Amplifier& amplifier) {
   return threads;
 }
 
-/// Gives the measuring thread this real-time priority: above the load, so that it need not wait, and below
-/// the guard. The kernel delivers edges by a thread of priority 50. Below 50 the measuring thread does not
-/// disturb that thread; above 50 it blocks it, as a busy audio thread would, and the guard has to read the
-/// line's level instead.
+/// Gives the measuring thread this real-time priority. It must be above that of the load, so that the thread
+/// need not wait, and below that of the guard. The kernel delivers edges by a thread of priority 50. A
+/// measuring thread below 50 does not disturb that thread. Above 50 it blocks that thread, as a busy audio
+/// thread would, and the guard has to read the level of the line instead.
 void stand_at(int priority) {
   sched_param parameters{};
   parameters.sched_priority = priority;

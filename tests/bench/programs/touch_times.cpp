@@ -1,5 +1,5 @@
-// touch_times DEVICE COUNT: prints the kernel's CLOCK_MONOTONIC stamps (ns) of the next COUNT touches that
-// begin.
+// touch_times DEVICE COUNT: waits for COUNT new touches and prints the kernel's CLOCK_MONOTONIC time (ns) at
+// which each began.
 #include <fcntl.h>
 #include <linux/input.h>
 #include <sys/ioctl.h>

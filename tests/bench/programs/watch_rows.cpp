@@ -1,6 +1,6 @@
-// watch_rows DATABASE TABLE DEVICE: until killed, writes marks into the disk's record that say how many rows
-// of a table another process has committed so far ("rows 17"). With WAL mode and synchronous FULL, a row that
-// a reader sees must survive.
+// watch_rows DATABASE TABLE DEVICE: counts the rows that another process has committed to a table, until
+// killed. Writes each count into the disk's record, as a mark such as "rows 17". With WAL mode and
+// synchronous FULL, a row that a reader sees must survive a power cut.
 #include <sqlite3.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-# proves: a session without a screen works: the operator types, a person answers with buttons, and each answer has its time
+# proves: a session runs without a screen: the operator types commands, the participant answers with buttons, and each answer gets its time
 # timeout: 400
 gpio_sim BTN_L BTN_R
 pull BTN_L down; pull BTN_R down
@@ -28,12 +28,12 @@ answer BTN_R
 answer BTN_L
 status=0; wait $session || status=$?
 cat summary.json console.txt
-[ $status = 0 ] && has summary.json '"completed"' || fail "the session ended with $status"
+[ $status = 0 ] && has summary.json '"completed"' || fail "the session was not completed (exit status $status)"
 rows() { sqlite3 -separator ' ' lab.sqlite "$1"; }
 [ "$(rows "SELECT group_concat(response, ' ') FROM trial")" = "left right right left" ] || fail "$(rows "SELECT * FROM trial")"
 [ "$(rows "SELECT count(*) FROM trial WHERE response_time_quality = 'kernel' AND response_offset_s = 0")" = 4 ] ||
-  fail "an answer without its kernel time"
-[ "$(rows "SELECT text FROM annotation")" = "the participant asked" ] || fail "the note is lost"
+  fail "not all four answers have the kernel's time and an offset of 0"
+[ "$(rows "SELECT text FROM annotation")" = "the participant asked" ] || fail "the operator's note is not in the database"
 rows "SELECT onset_ns + CAST(round(response_time_s * 1e9) AS INTEGER) FROM trial ORDER BY trial_index" >recovered.txt
 paste -d ' ' given.txt recovered.txt | awk '{ d = $3 - $1; sum += d < 0 ? -d : d; print }
-  END { print "mean error", sum / NR * 1e-6, "ms"; exit NR != 4 || sum / NR > 1e5 }' || fail "not recovered within 0.1 ms"
+  END { print "mean error", sum / NR * 1e-6, "ms"; exit NR != 4 || sum / NR > 1e5 }' || fail "the stored answer times differ from the presses by more than 0.1 ms on average"

@@ -1,4 +1,4 @@
-# proves: on a chip that keeps its outputs, the installed unit takes the amplifier's enable line low within 2 s of the station being killed, and within 13 s of it being frozen; this holds for the rig with which the station was started
+# proves: on a chip that keeps its outputs, the installed unit takes the amplifier's enable line low within 2 s after the station is killed, and within 13 s after it is frozen; the line is that of the rig with which the station was started
 # needs: installed screen
 # timeout: 1800
 gpio_sim AMP_EN AMP_FAULT STOP AMP_HB OTHER
@@ -27,7 +27,7 @@ failed() { [ "$(state ActiveState)" = failed ]; }
 drives() {
   systemctl stop turnpoint
   rm -f /var/lib/turnpoint/second.sqlite*
-  systemctl start turnpoint || { journalctl -u turnpoint --no-pager | tail -30; fail "the unit did not get ready"; }
+  systemctl start turnpoint || { journalctl -u turnpoint --no-pager | tail -30; fail "turnpoint.service did not start"; }
   unlock
   sleep 0.5
   tap 150 215                       # choose the protocol "demo"
@@ -37,12 +37,12 @@ drives() {
   hold 385 443                      # arm the amplifier
   tap 694 443                       # begin the session
   eventually 30 english; sleep 0.5; tap 400 150
-  off || fail "on before the first stimulus"
+  off || fail "the amplifier is on before the first stimulus"
   goes_on
   eventually 30 equals level AMP_EN 1
 }
-# seconds_to_off SIGNAL LIMIT: sends the signal to the station, and measures how long the enable line stays
-# high.
+# seconds_to_off SIGNAL LIMIT: sends SIGNAL to the station and prints how many seconds the enable line stays
+# high. Returns 1 if the line is still high after LIMIT seconds.
 seconds_to_off() {
   local station start; station=$(state MainPID) start=$(date +%s%N)
   kill -"$1" "$station"
@@ -53,26 +53,26 @@ seconds_to_off() {
   awk -v ns=$(($(date +%s%N) - start)) 'BEGIN { print ns / 1e9 }'
 }
 
-say "killed"
+say "the station is killed"
 drives
-seconds_to_off KILL 5 >seconds.txt || fail "killed, and AMP_EN stays high: $(journalctl -u turnpoint --no-pager | tail -5)"
-near "killed: AMP_EN low after (s)" "$(cat seconds.txt)" 1 1
-journalctl -u turnpoint --no-pager | grep 'amplifier off: gpio:enable=AMP_EN.*second.toml' || fail "amplifier-off says nothing in the journal"
+seconds_to_off KILL 5 >seconds.txt || fail "AMP_EN is still high 5 s after the station was killed: $(journalctl -u turnpoint --no-pager | tail -5)"
+near "seconds from the kill until AMP_EN is low" "$(cat seconds.txt)" 1 1
+journalctl -u turnpoint --no-pager | grep 'amplifier off: gpio:enable=AMP_EN.*second.toml' || fail "amplifier-off wrote no message to the journal"
 
-say "frozen: the watchdog kills it"
+say "the station is frozen, and the watchdog kills it"
 drives
-seconds_to_off STOP 20 >seconds.txt || fail "frozen, and AMP_EN stays high"
-near "frozen: AMP_EN low after (s)" "$(cat seconds.txt)" 8 5
-[ "$(level OTHER)" = 0 ] || fail "the other rig's line was touched"
+seconds_to_off STOP 20 >seconds.txt || fail "AMP_EN is still high 20 s after the station was frozen"
+near "seconds from the freeze until AMP_EN is low" "$(cat seconds.txt)" 8 5
+[ "$(level OTHER)" = 0 ] || fail "OTHER, the enable line of the installed rig, is not low"
 
-say "the control: without what runs after the station, and without a restart, the line of this chip stays high"
+say "negative control: without ExecStopPost and without a restart, the line of this chip must stay high"
 mkdir -p /run/systemd/system/turnpoint.service.d
 printf '[Service]\nRestart=no\nExecStopPost=\n' >/run/systemd/system/turnpoint.service.d/bench.conf
 systemctl daemon-reload
 drives
-! seconds_to_off KILL 5 || fail "low without amplifier-off: this scenario shows nothing"
+! seconds_to_off KILL 5 || fail "AMP_EN goes low without amplifier-off, so this scenario proves nothing"
 eventually 5 failed
-turnpoint amplifier-off             # without --rig, this affects only the line of the installed rig
-! off || fail "low without the rig that the station was started with"
+turnpoint amplifier-off             # without --rig, this affects only the enable line of the installed rig
+! off || fail "amplifier-off without --rig changed AMP_EN, which belongs to another rig"
 turnpoint amplifier-off --locked --rig /etc/turnpoint/second.toml
-off || fail "amplifier-off does not lower it"
+off || fail "amplifier-off with the station's rig left AMP_EN high"

@@ -1,4 +1,4 @@
-# proves: a session under the installed unit keeps each committed trial through a power cut at any moment, and `turnpoint resume` completes it
+# proves: if the power fails at any moment of a session under the installed unit, no committed trial is lost, and `turnpoint resume` completes the session
 # needs: installed disk
 # timeout: 400
 data=/var/lib/turnpoint

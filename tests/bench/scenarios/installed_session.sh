@@ -1,4 +1,4 @@
-# proves: under the installed unit, a session with buttons plays what its database says; a stop, a clock jump, a lost sound card, a full disk and a kill lose no stored trial, and nothing arms by itself
+# proves: a session under the installed unit, answered with buttons, plays the tones that its database lists; a stop, a clock jump, a lost sound card, a full disk and a kill lose no stored trial; the station never arms by itself
 # needs: installed
 # timeout: 900
 gpio_sim AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R
@@ -11,8 +11,8 @@ rows() { sqlite3 -separator ' ' "file:$db?mode=ro" "$1"; }
 rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB buttons=gpio:left=BTN_L,right=BTN_R \
   </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
 
-# station ARGUMENTS: starts the unit as installed, but with buttons and the operator's keyboard instead of the
-# screen.
+# station ARGUMENTS: starts the installed unit with these arguments. Buttons and the operator's keyboard
+# replace the screen.
 mkfifo /run/operator; exec 8<>/run/operator
 drop_in=/run/systemd/system/turnpoint.service.d/bench.conf
 mkdir ${drop_in%/*}
@@ -26,7 +26,7 @@ lasts() { [ "$(systemctl show -P ActiveState turnpoint)" = active ]; }
 # says TEXT: waits until the station prints this text. Output that an earlier call has read does not count.
 read_so_far=0
 said() {
-  lasts || { cat $log; fail "the session ended, waiting for: $1"; }
+  lasts || { cat $log; fail "the session ended before it printed: $1"; }
   local line; line=$(tail -n +$((read_so_far + 1)) $log | grep -n -m1 "$1" | cut -d: -f1)
   [ -n "$line" ] && read_so_far=$((read_so_far + line))
 }
@@ -43,7 +43,7 @@ armed() { operator arm; sleep 0.5; said "$1"; }   # tries to arm, and checks the
 record 120 heard0.raw; recorder=$!
 station run /usr/share/turnpoint/protocols/demo.toml --participant P01 --db $db --buttons-only --seed 3
 says "arm or stop"
-off || fail "on before anybody armed"
+off || fail "the amplifier is on before the operator armed it"
 operator arm
 says "^instructions"
 sleep 0.7; press BTN_L
@@ -51,22 +51,22 @@ stimulus; answer
 eventually 20 stored 1
 date -s "+2 hours" >/dev/null
 
-say "the stop"
+say "the stop is pressed"
 stimulus
-near "stop to enable low (us)" "$(($(gpio_line until-low "$(pull_file STOP)" "$(line_of AMP_EN)/value") / 1000))" 0 1000
+near "time from the stop until the enable line is low (us)" "$(($(gpio_line until-low "$(pull_file STOP)" "$(line_of AMP_EN)/value") / 1000))" 0 1000
 says "^fault: The emergency stop"
 eventually 20 stored 2
-off || fail "on while the stop is pressed"
+off || fail "the amplifier is on while the stop is pressed"
 pull STOP down
 operator arm; says "^paused"; operator next
 
-say "the sound card is unplugged, and comes back"
+say "the sound card is unplugged and plugged in again"
 stimulus
 echo snd_aloop.0 >/sys/bus/platform/drivers/snd_aloop/unbind
 eventually 1 off
 says "^fault: The sound device"
 eventually 20 stored 3
-operator arm; sleep 0.5; off || fail "on without a sound card"
+operator arm; sleep 0.5; off || fail "the amplifier is on without a sound card"
 kill $recorder 2>/dev/null || true; wait $recorder || true
 echo snd_aloop.0 >/sys/bus/platform/drivers/snd_aloop/bind
 eventually 5 test -e /dev/snd/pcmC0D1c
@@ -74,42 +74,42 @@ record 120 heard1.raw; recorder=$!
 eventually 30 armed "^paused"
 operator next
 
-say "the disk is full, and then it is not"
+say "the disk becomes full and is then freed"
 stimulus
 dd if=/dev/zero of=$data/filler bs=4k status=none 2>/dev/null || true
 answer
 says "^fault: The disk is full"
-off || fail "on while the disk is full"
-stored 3 || fail "stored on a full disk"
+off || fail "the amplifier is on while the disk is full"
+stored 3 || fail "the number of stored trials changed while the disk was full"
 rm $data/filler
 operator next
 eventually 20 stored 4
 
-say "a second station on the same database, and a kill in a stimulus"
+say "a second station wants the same database; then the first is killed during a stimulus"
 stimulus
 fails 1 turnpoint run /usr/share/turnpoint/protocols/demo.toml --rig /usr/share/turnpoint/rigs/simulated.toml --participant P02 \
   --db $db --headless --observer sim
-has refusal.txt "pid $(systemctl show -P MainPID turnpoint)" || fail "it does not say who has the database"
+has refusal.txt "pid $(systemctl show -P MainPID turnpoint)" || fail "the message does not name the process that uses the database"
 systemctl kill -s KILL turnpoint
 eventually 1 off
 kill $recorder; wait $recorder || true
 [ "$(rows "PRAGMA integrity_check")" = ok ] || fail "the database is damaged"
 [ "$(rows "SELECT group_concat(outcome, ' ') FROM trial")" = "answered fault fault answered" ] || fail "$(rows "SELECT * FROM trial")"
-near "clock jumps logged" "$(rows "SELECT count(*) FROM event WHERE value LIKE '%wall clock was set by +7%'")" 1 0
+near "logged clock jumps" "$(rows "SELECT count(*) FROM event WHERE value LIKE '%wall clock was set by +7%'")" 1 0
 [[ "$(rows "SELECT realtime_rights FROM session")" == "fifo 70, memory locked"* ]] || fail "$(rows "SELECT realtime_rights FROM session")"
 
 # Compares each recorded stimulus with the tone in the database, in the order of presentation.
 rows "SELECT tone.frequency_Hz FROM tone ORDER BY trial_index" >frequencies.txt
 for k in 0 1; do python3 "$BENCH_SOURCE/guest/bursts.py" heard$k.raw burst$k 0.1; done
 ls burst*.raw | head -4 | paste -d ' ' - frequencies.txt >pairs.txt
-near "stimuli heard, with the one that was killed" "$(ls burst*.raw | wc -l)" 5 0
+near "recorded stimuli, including the one during which the station was killed" "$(ls burst*.raw | wc -l)" 5 0
 near "stimuli in the database" "$(wc -l <frequencies.txt)" 4 0
 while read -r burst frequency; do
   read -r measured _ residual <<<"$(measure_tone "$burst" 192000 2 0)"
   near "$burst (Hz, residual $residual dB)" "$measured" "$frequency" 0.02
 done <pairs.txt
 
-say "resumed: unarmed"
+say "the session is resumed and must not arm by itself"
 systemctl reset-failed turnpoint
 station resume --db $db --headless
 says "arm or stop"

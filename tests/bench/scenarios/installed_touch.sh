@@ -1,4 +1,4 @@
-# proves: on the installed unit, unchanged and on eglfs, a participant does a whole session by touch alone, through libinput; a panel works again after it was unplugged, and a mouse shows no pointer on the screen
+# proves: with the unchanged installed unit on eglfs, a participant completes a session by touches alone, which Qt reads with libinput; after the panel was unplugged and plugged in again it works; a mouse does not bring a pointer onto the screen
 # needs: installed screen
 # timeout: 1200
 panel_begin
@@ -8,14 +8,14 @@ db=/var/lib/turnpoint/turnpoint.sqlite
 rows() { sqlite3 -separator ' ' "file:$db?mode=ro" "$1" 2>/dev/null || true; }
 stored() { [ "$(rows "SELECT count(*) FROM trial")" = "$1" ]; }
 
-# Sets only what every station needs: its rig, its operator's code, and the size of a panel that does not
-# report its size. Screenshots must include a mouse pointer if there is one.
+# Set only what every station needs: its rig, its operator's code, and the size of the panel, which does not
+# report it. Turn off the hardware cursor, so that screenshots show a mouse pointer if there is one.
 rig_with "touch=evdev:bench touch panel" </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
 echo '{"device": "/dev/dri/card0", "hwcursor": false}' >/etc/turnpoint/kms.json
 printf 'TURNPOINT_DPI=132\nQT_QPA_EGLFS_KMS_CONFIG=/etc/turnpoint/kms.json\n' >/etc/turnpoint/environment
 echo 'TURNPOINT_OPTIONS=--protocols /usr/share/turnpoint/protocols' >>/etc/turnpoint/environment
 echo 2580 | turnpoint operator-code
-station() { systemctl restart turnpoint || { journalctl -u turnpoint --no-pager | tail -30; fail "the unit did not get ready"; }; }
+station() { systemctl restart turnpoint || { journalctl -u turnpoint --no-pager | tail -30; fail "turnpoint.service did not start"; }; }
 mount -t debugfs debugfs /sys/kernel/debug
 drawn_by() { has /sys/kernel/debug/dri/0/state "allocated by = $1"; }
 shows_no_pointer() {
@@ -23,11 +23,11 @@ shows_no_pointer() {
   local before; before=$(kms_screen | sha256sum)
   touch_do mouse 30 30
   sleep 1.5
-  [ "$(kms_screen | sha256sum)" = "$before" ] || { screenshot pointer; fail "a mouse brings its pointer onto the screen"; }
+  [ "$(kms_screen | sha256sum)" = "$before" ] || { screenshot pointer; fail "moving a mouse changes the screen, probably by a pointer"; }
 }
 
 station
-drawn_by QSGRenderThread || fail "eglfs does not draw this screen"
+drawn_by QSGRenderThread || fail "the screen is not drawn by eglfs"
 eventually 30 keypad
 shows_no_pointer
 unlock
@@ -45,7 +45,7 @@ by_touch() { eventually 30 answers_open; sleep 1; touch_do tap 200 370; eventual
 for trial in 1 2 3; do by_touch $trial; done
 screenshot trial
 
-say "the panel is unplugged, and comes back"
+say "the panel is unplugged and plugged in again"
 eventually 30 answers_open
 touch_do gone
 eventually 10 stored 4            # the fault makes the fourth trial void; it will be repeated
@@ -58,16 +58,16 @@ eventually 10 completed
   "left left left fault left left left left left left left" ] || fail "$(rows "SELECT * FROM trial")"
 near "answers with the kernel's time" "$(rows "SELECT count(*) FROM trial WHERE response_time_quality = 'kernel'")" 10 0
 
-say "the same unit on the frame buffer"
+say "the same unit draws on the frame buffer"
 printf 'QT_QPA_PLATFORM=linuxfb\nQT_QUICK_BACKEND=software\n' >>/etc/turnpoint/environment
 station
 eventually 30 keypad
-! drawn_by QSGRenderThread || fail "that is eglfs"
+! drawn_by QSGRenderThread || fail "the screen is drawn by eglfs although linuxfb is set"
 shows_no_pointer
 unlock
 
-say "a service that may only read the devices is told so by the doctor"
-# Runs the doctor by a unit file, because the guest has no message bus for systemd-run.
+say "the doctor reports that the service may only read the input devices"
+# Run the doctor by a unit file, because systemd-run needs a message bus, which the guest does not have.
 doctor() {
   cat >/run/systemd/system/bench-doctor.service <<UNIT
 [Service]

@@ -1,4 +1,4 @@
-# proves: SQLite in WAL mode with synchronous FULL keeps every acknowledged row through power cuts; with NORMAL it loses some, which shows that the test can fail
+# proves: SQLite in WAL mode with synchronous FULL loses no acknowledged row in a power cut; with NORMAL it loses some, which shows that the test can fail
 # needs: disk
 # timeout: 240
 disk_begin

@@ -1,4 +1,4 @@
-# proves: a device that has another rate, is behind a resampler, is in use or is absent is refused, and the message says which of these it is
+# proves: a sound device is refused if it has another rate, is behind a resampler, is in use or is absent; the message names the reason
 # timeout: 240
 loopback
 sed '/^rate_Hz/a period_frames = 1920' "$SOURCE/deploy/rigs/simulated.toml" >rig.toml
@@ -16,4 +16,4 @@ record 20 /dev/null 44100; recorder=$!
 eventually 5 grep -q RUNNING /proc/asound/Loopback/pcm1c/sub0/status
 refused alsa:hw:Loopback,0 "rate 192000 Hz not supported; it offers 44100"
 kill $recorder; wait $recorder || true
-synth alsa:hw:Loopback,0     # negative control: without any of these obstacles the card plays
+synth alsa:hw:Loopback,0     # negative control: without these obstacles the card plays

@@ -8,7 +8,7 @@ record 8 heard.raw; recorder=$!
 turnpoint synth --rig rig.toml --tone 40123.4:2 --seconds 1.5 --out alsa:hw:Loopback,0 --json >report.json
 cat report.json
 wait $recorder
-grep -q '"underruns": 0' report.json || fail "the stream ran dry"
+grep -q '"underruns": 0' report.json || fail "turnpoint synth reports underruns, or no report"
 read -r frequency level residual <<<"$(measure_tone heard.raw 192000 2 0)"
 near "frequency (Hz)" "$frequency" 40123.4 0.001
 near "level (dB)" "$level" -6.0206 0.001

@@ -1,6 +1,7 @@
-# Solves the one-mode equation with SciPy. Arguments: k2 (real and imaginary part), b, c, w0, slope, decay,
-# length, points, order of the Bessel function. The points are evenly spaced from the driven edge to the end,
-# ends included. Each printed line is "name;setting;seconds;re im re im ...".
+# Solves the one-mode equation with SciPy, for a comparison of speed and accuracy. Arguments: real
+# and imaginary part of k2, b, c, w0, slope, decay, length, number of points, order of the Bessel
+# function. The points are evenly spaced from the drive edge to the end, ends included. Each printed
+# line is "name;setting;seconds;re im re im ...".
 import sys
 import time, numpy as np
 from scipy.integrate import solve_ivp

@@ -1,5 +1,6 @@
-# Measures a trial of QUEST+ in questplus. Arguments: the numbers of stimuli, thresholds, slopes and lapse
-# rates of the grid. Prints "version median slowest", times in milliseconds.
+# Measures how long one trial of QUEST+ takes in the Python package questplus. Arguments: the grid's
+# numbers of stimuli, thresholds, slopes and lapse rates. Prints "version median slowest", times in
+# milliseconds.
 import sys
 import time
 from importlib.metadata import version

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""Ai and Ai' to 50 digits: t, Ai exp(-l), Ai' exp(-l), l with l = -2/3 t^(3/2) for t > 5 (needs python3-mpmath).
+"""Prints reference values of the Airy function, computed with 50 digits (needs python3-mpmath).
+
+Columns: t, Ai(t) exp(-l), Ai'(t) exp(-l), l. The scale l is -2/3 t^(3/2) for t > 5, otherwise 0.
 
     python3 make_airy.py > airy.csv
 """

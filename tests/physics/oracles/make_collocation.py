@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
-"""Two-dimensional fields of curved tapers by Chebyshev collocation of the strong form (needs python3-numpy).
+"""Computes two-dimensional fields of curved tapers, by Chebyshev collocation of the strong form (needs python3-numpy).
 
     python3 make_collocation.py > collocation.csv
 
-An independent method: the mapped Laplacian acts on grid values in (x, y/W(x)), products of it make the plate's operator,
-and boundary rows are replaced by the conditions. Rows: kind, W0, decay length, length (m), frequency (Hz), Q, then for
-x = 0, L/20, ..., L: Re v, Im v on the centre line, v(0, 0) = 1. Membrane: c^2 = 5.12e9/8110. Plate: aluminium, 2 mm,
-clamped, E = 69 GPa, nu = 0.33, rho = 2700. The last column is the largest change from a grid with fewer points.
+This method is independent of the library's. The Laplacian acts on grid values in the coordinates (x, y/W(x)); applied
+twice, it is the plate's operator. At the boundary points, boundary conditions replace the equation. Columns: kind,
+W0, decay length and length in m, frequency in Hz, Q; then Re v and Im v on the centre line at x = 0, L/20, ..., L,
+with v(0, 0) = 1. The last column is the largest difference from the solution on a coarser grid. The membrane has c^2
+= 5.12e9/8110; the plate is clamped aluminium, 2 mm thick, with E = 69 GPa, nu = 0.33, rho = 2700.
 """
 import numpy as np
 
 
 def chebyshev(n):
-    """Points on [-1, 1] and the differentiation matrix (Trefethen, Spectral Methods in MATLAB, program cheb)."""
+    """Returns Chebyshev points on [-1, 1] and their differentiation matrix (Trefethen, Spectral Methods in MATLAB,
+    program cheb)."""
     t = np.cos(np.pi * np.arange(n + 1) / n)
     c = np.r_[2, np.ones(n - 1), 2] * (-1) ** np.arange(n + 1)
     dt = t[:, None] - t[None, :]
@@ -61,7 +63,7 @@ def solve(kind, w0, l, length, f, q, nx, ny):
     for i in range(nx + 1):
         for j in range(ny + 1):
             row = on(i, j)
-            # the points run from the end to the drive: index 0 is x = length
+            # the points run from the far end to the drive edge, so index 0 is x = length
             side, end, drive = j in (0, ny), i == 0, i == nx
             if side or end or drive:
                 a[row] = 0

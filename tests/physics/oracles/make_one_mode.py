@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Exact solutions of the one-mode equations, in 40 and more digits (needs python3-mpmath).
+"""Computes exact solutions of the one-mode equations with 40 digits (needs python3-mpmath).
 
     python3 make_one_mode.py > one_mode.csv
 
@@ -55,13 +55,13 @@ def exponential(model, l, w0, k):
 
 
 def row(taper, model, slope, w0, length, f, q, x0):
-    # The C++ test reads doubles, so compute with exactly those values.
+    # The C++ test reads these values as doubles, so round them to doubles before computing.
     slope, w0, length, f = (mpf(float(value)) for value in (slope, w0, length, f))
     k = wavenumber(f, q)
     v = linear(model, slope, w0, length, k) if taper == "linear" else exponential(model, slope, w0, k)
     fractions = [x0 * mpf("0.31"), x0 * mpf("0.83"), x0]
     fractions += [x0 + (length - x0) * t for t in (mpf("0.2"), mpf("0.6"), mpf("0.97"))]
-    if taper == "exponential":  # stay away from the surface's end, which affects the solution there
+    if taper == "exponential":  # stay away from the clamped end, which this solution leaves out
         fractions[5] = x0 + (length - x0) * mpf("0.75")
     unit = v(mpf(0))
     cells = [taper, model] + [repr(float(value)) for value in (slope, w0, length, f, q)]
@@ -74,7 +74,7 @@ def row(taper, model, slope, w0, length, f, q, x0):
 
 
 def main():
-    # For each slope, the ratios of the drive edge's half-width to the cut-off half-width.
+    # For each slope, the half-widths of the drive edge, divided by the cut-off half-width.
     tapers = {
         "0.001": ("1.05", "1.3", "2.5"), "0.003": ("1.1", "2"), "0.01": ("1.1", "1.8", "5"),
         "0.02": ("1.2", "3"), "0.05": ("1.15", "2", "6"), "0.1": ("1.2", "2", "3.5", "8"),
@@ -92,8 +92,8 @@ def main():
                         apex = w0 / mpf(d)
                         row("linear", model, mpf(d), w0, apex, f, q, (w0 - wc) / mpf(d))
     for d, ratio, end in (("0.1", "2", "0.9"), ("0.1", "3", "0.55"), ("0.05", "2", "0.52"), ("0.2", "3", "0.3")):
-        # `end` is the surface's length divided by the apex's distance; below 1 - 1/ratio the surface ends
-        # where the mode still oscillates.
+        # `end` is the length of the surface divided by the distance of the apex. Below 1 - 1/ratio,
+        # the surface ends before the turning point, where the mode still oscillates.
         for q in qualities:
             for model in ("seed", "mode"):
                 wc = C / (4 * mpf("22400"))

@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
-"""Clamped strips by other methods than the library's (needs python3-numpy, python3-scipy and scikit-fem).
+"""Computes cut-offs and waves of clamped strips by other methods than the library's.
 
     python3 make_section.py > section.csv
 
-Half-width 1, G = rho = 1, thickness t. Rows:
-  cut,nu,t,omega             first symmetric bending cut-off in plane strain, both faces' ends held: Lagrange elements of
-                             degree 5 on a mesh graded to the corner, which changes omega by less than 5e-6 from degree 4
-  wave,nu,t,omega,Re,Im,...  k_x^2 of three-dimensional waves along the strip, semi-analytical finite elements, the
-                             two of smallest size
-  mindlin,nu,kappa,t,omega,Re,Im,...  the same in Mindlin's theory with shear factor kappa, Chebyshev collocation of
-                             the three equations across the strip
+Needs python3-numpy, python3-scipy and scikit-fem. The half-width is 1, G = rho = 1, and t is the thickness. There are
+three kinds of rows:
+  cut,nu,t,omega
+      The first symmetric bending cut-off, omega, in plane strain, with the sides held over the whole thickness. The
+      elements are Lagrange elements of degree 5 on a mesh that is finer near the corners. Elements of degree 4 give
+      an omega that differs by less than 5e-6.
+  wave,nu,t,omega,Re,Im,...
+      The two smallest k_x^2 of three-dimensional waves along the strip, by semi-analytical finite elements.
+  mindlin,nu,kappa,t,omega,Re,Im,...
+      The same in Mindlin's theory with shear factor kappa, by Chebyshev collocation across the strip.
 """
 import numpy as np
 import scipy.linalg as la
@@ -20,8 +23,8 @@ from skfem.helpers import grad
 
 
 def mesh(t, ny=6, nz=3, layers=7):
-    # The mesh is finer by factors of g towards the corner of clamp and free face. t = h/W, and z is in [0,
-    # t/2].
+    # Towards the corner between clamp and free face, each layer of the mesh is thinner than the
+    # last by the factor g. t = h/W, and z is in [0, t/2].
     g = 0.3
     y = np.unique(np.r_[np.linspace(0, 1 - min(0.5, t), ny + 1), 1 - min(0.5, t) * g ** np.arange(layers), 1])
     z = np.unique(np.r_[np.linspace(0, t / 4, nz), t / 2 - t / 4 * g ** np.arange(layers), t / 2])
@@ -40,12 +43,13 @@ def matrices(t, p, **kw):
 
 def free(m, b, which):
     fixed = [b.get_dofs(lambda x: np.isclose(x[0], 1)).all()]
-    if which in ("x", "y"): fixed.append(b.get_dofs(lambda x: np.isclose(x[1], 0)).all())  # odd in z
-    if which == "y": fixed.append(b.get_dofs(lambda x: np.isclose(x[0], 0)).all())         # odd in y, too
+    if which in ("x", "y"): fixed.append(b.get_dofs(lambda x: np.isclose(x[1], 0)).all())  # this component is odd in z
+    if which == "y": fixed.append(b.get_dofs(lambda x: np.isclose(x[0], 0)).all())         # and odd in y, too
     return np.setdiff1d(np.arange(b.N), np.concatenate(fixed))
 
 def plane(t, nu, p=5, **kw):
-    """K, M of (u_y, u_z) with mu = rho = 1."""
+    """Returns the matrices of the cross-section with mu = rho = 1: stiffness K and mass M of (u_y, u_z), then those
+    of u_x and the coupling C."""
     m, b, M, d = matrices(t, p, **kw)
     lam = 2 * nu / (1 - 2 * nu)
     Fx, Fy, Fz = (free(m, b, c) for c in "xyz")
@@ -54,7 +58,7 @@ def plane(t, nu, p=5, **kw):
                  [cut(lam * d[1, 0] + d[0, 1], Fz, Fy), cut((lam + 2) * d[1, 1] + d[0, 0], Fz, Fz)]]).tocsc()
     MM = sp.block_diag([cut(M, Fy, Fy), cut(M, Fz, Fz)]).tocsc()
     MA = cut(M, Fx, Fx).tocsc(); KA = cut(d[0, 0] + d[1, 1], Fx, Fx).tocsc()
-    # The matrix C belongs to the form lam (A, div(b, c)) - (grad A . (b, c)).
+    # C is the matrix of the integral of lam A div(b, c) - grad A . (b, c), with u_x = i k A.
     C = sp.bmat([[cut(lam * d[0] - d[0].T, Fx, Fy), cut(lam * d[1] - d[1].T, Fx, Fz)]]).tocsc()
     return K, MM, MA, KA, C, lam
 
@@ -63,7 +67,8 @@ def cut_off(t, nu, p=5, **kw):
     return np.sqrt(sla.eigsh(K, k=1, M=M, sigma=0, return_eigenvectors=False)[0])
 
 def wavenumbers2(t, nu, omega, n=4, p=4, sigma=0.3, **kw):
-    """Smallest k_x^2 W^2 at omega W / c_s: linear pencil of SAFE with u_x = i k A."""
+    """Returns the n smallest k_x^2 W^2 at omega W / c_s. With u_x = i k A, the semi-analytical finite elements give
+    an eigenvalue problem that is linear in k_x^2."""
     K, M, MA, KA, C, lam = plane(t, nu, p, **kw)
     o2 = omega ** 2
     P0 = sp.bmat([[KA - o2 * MA, C], [None, K - o2 * M]]).tocsc()
@@ -75,7 +80,8 @@ def wavenumbers2(t, nu, omega, n=4, p=4, sigma=0.3, **kw):
 
 
 def mindlin_waves2(t, nu, kappa, omega, n=36):
-    """w, beta_x = i a, beta_y on [-1, 1]; exp(-i k x). Quadratic in k, made linear by doubling."""
+    """Returns the k of waves exp(-i k x) by Mindlin's theory, smallest first. The unknowns are w, a = beta_x / i and
+    beta_y on [-1, 1]. The eigenvalue problem is quadratic in k and is made linear by doubling the unknowns."""
     y = np.cos(np.pi * np.arange(n + 1) / n)
     c = np.r_[2, np.ones(n - 1), 2] * (-1) ** np.arange(n + 1)
     dy = y[:, None] - y[None, :]
@@ -88,8 +94,8 @@ def mindlin_waves2(t, nu, kappa, omega, n=36):
     dd, s, j = t**3 / (6 * (1 - nu)), kappa * t, t**3 / 12
     half = dd / 2
     o2 = omega**2
-    # a0, a1 and a2 multiply k^0, k^1 and k^2. Rows: w, beta_x, beta_y; writing beta_x = i a makes the
-    # matrices real.
+    # The matrices a0, a1 and a2 belong to k^0, k^1 and k^2. Their rows are the equations of w,
+    # beta_x and beta_y. They are real because beta_x is written as i a.
     a0 = np.block([[s * d2 + t * o2 * i, z, s * d],
                    [z, half * (1 - nu) * d2 - s * i + j * o2 * i, z],
                    [-s * d, z, dd * d2 - s * i + j * o2 * i]])
@@ -102,7 +108,7 @@ def mindlin_waves2(t, nu, kappa, omega, n=36):
 
 
 def symmetric(values):
-    """The two squares of smallest size, of k that come in pairs +-k."""
+    """The k come in pairs +-k. Returns up to six different k^2, in the order of `values`."""
     squares = []
     for k in values:
         if not any(abs(k * k - other) < 1e-6 * abs(other) for other in squares):

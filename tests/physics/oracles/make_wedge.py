@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""The exact first mode of a wedge, J_nu(k r) cos(nu theta), nu = pi / (2 atan d) (needs python3-mpmath).
+"""Computes the exact first mode of a wedge, J_nu(k r) cos(nu theta) with nu = pi / (2 atan d) (needs python3-mpmath).
 
     python3 make_wedge.py > wedge.csv
 
-Half-width 30 mm at the drive edge, c^2 = 5.12e9/8110. Rows: d, f, values along the drive edge at y = 30 mm sqrt(t_i),
-t_i = (1 + cos(pi (i + 1/2)/24))/2, i = 0 ... 23, then on the centre line at i/40 of the length, i = 0 ... 39.
+The half-width at the drive edge is 30 mm, and c^2 = 5.12e9/8110. Columns: slope d; frequency f; 24 values along the
+drive edge at y = 30 mm sqrt(t_i) with t_i = (1 + cos(pi (i + 1/2)/24))/2, i = 0 ... 23; 40 values on the centre line
+at i/40 of the length, i = 0 ... 39.
 """
 from mpmath import mp, mpf, atan, atan2, besselj, cos, hypot, nstr, pi, sqrt
 
