@@ -18,7 +18,8 @@ TrialRecord answered(int index, int right, int response, double time_s) {
 
 }  // namespace
 
-TEST_CASE("A preference for one answer is found, guessing without one is not", "[analysis]") {
+TEST_CASE("A preference for one answer is detected, and guessing without a preference raises no alarm",
+          "[analysis]") {
   std::vector<TrialRecord> fair, always;
   for (int i = 0; i < 60; ++i) {
     fair.push_back(answered(i, i % 2, i / 2 % 2, 0.5));
@@ -35,7 +36,7 @@ TEST_CASE("A preference for one answer is found, guessing without one is not", "
   CHECK_FALSE(choice_bias({}).has_value());
 }
 
-TEST_CASE("Catch accuracy counts answered catch trials only", "[analysis]") {
+TEST_CASE("Catch accuracy counts only catch trials that were answered", "[analysis]") {
   std::vector<TrialRecord> trials{answered(0, 1, 1, 0.5), answered(1, 0, 0, 0.5), answered(2, 1, 0, 0.5),
                                   answered(3, 1, 1, 0.5)};
   CHECK_FALSE(catch_accuracy(trials).has_value());
@@ -48,7 +49,10 @@ TEST_CASE("Catch accuracy counts answered catch trials only", "[analysis]") {
   CHECK(result->interval.low < 0.12);
 }
 
-TEST_CASE("A trend over trials is found with level taken out, and is none for few trials", "[analysis]") {
+TEST_CASE(
+    "A trend over trials is estimated after removing the effect of level, and no trend is stated for few "
+    "trials",
+    "[analysis]") {
   std::vector<TrialRecord> slowing, steady;
   for (int i = 0; i < 80; ++i) {
     const double jitter = 0.02 * ((i * 7) % 5 - 2);
@@ -64,7 +68,8 @@ TEST_CASE("A trend over trials is found with level taken out, and is none for fe
   CHECK_FALSE(fatigue(slowing).response_time_s.has_value());
 }
 
-TEST_CASE("Traces follow each procedure in the order presented, practice left out", "[analysis]") {
+TEST_CASE("Traces show each procedure's trials in the order of presentation, without practice",
+          "[analysis]") {
   std::vector<TrialRecord> trials;
   for (int i = 0; i < 6; ++i) {
     trials.push_back(answered(i, 1, 1, 0.5));

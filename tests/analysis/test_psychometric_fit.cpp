@@ -35,7 +35,7 @@ std::vector<LevelCount> simulate(const FitOptions& o, const Psychometric& truth,
 
 }  // namespace
 
-TEST_CASE("The maximum-likelihood fit of the reference data is the known one", "[analysis]") {
+TEST_CASE("The maximum-likelihood fit of the reference data gives the known parameters", "[analysis]") {
   const auto fit = fit_psychometric(kReference, {});
   REQUIRE(fit.parameters);
   CHECK(fit.parameters->threshold == Approx(-18.9716).margin(5e-5));
@@ -47,7 +47,7 @@ TEST_CASE("The maximum-likelihood fit of the reference data is the known one", "
   CHECK(fit.statements.empty());
 }
 
-TEST_CASE("Degenerate data give a statement and no number", "[analysis]") {
+TEST_CASE("Degenerate data give a statement instead of a number", "[analysis]") {
   const auto refused = [](std::vector<LevelCount> data, const std::string& code) {
     const auto fit = fit_psychometric(data, {});
     CHECK_FALSE(fit.parameters.has_value());
@@ -66,7 +66,8 @@ TEST_CASE("Degenerate data give a statement and no number", "[analysis]") {
   SECTION("flat") { refused({{-20, 40, 21}, {-15, 40, 20}, {-10, 40, 21}}, "flat"); }
 }
 
-TEST_CASE("A step leaves the slope limited, not estimated", "[analysis]") {
+TEST_CASE("For data that form a step, the fit states a limit of the slope instead of an estimate",
+          "[analysis]") {
   FitOptions options;
   options.function = Function::normal;
   options.guess = Guess::tied_to_lapse;
@@ -81,7 +82,7 @@ TEST_CASE("A step leaves the slope limited, not estimated", "[analysis]") {
   CHECK(says(drawn.statements, "interval-slope"));
 }
 
-TEST_CASE("A lapse rate on its bound and an extrapolated threshold are said", "[analysis]") {
+TEST_CASE("The fit reports a lapse rate at its bound and an extrapolated threshold", "[analysis]") {
   const auto sleepy = fit_psychometric({{-30, 40, 20}, {-20, 40, 33}, {-10, 40, 34}, {-5, 40, 34}}, {});
   CHECK(sleepy.at_bound.lapse_high);
   CHECK(says(sleepy.statements, "lapse-bound"));
@@ -91,7 +92,7 @@ TEST_CASE("A lapse rate on its bound and an extrapolated threshold are said", "[
   CHECK(says(hard.statements, "extrapolated"));
 }
 
-TEST_CASE("Every small table gives finite numbers or none", "[analysis]") {
+TEST_CASE("Every small table of answers gives either finite numbers or no numbers", "[analysis]") {
   for (const auto function : {Function::weibull, Function::normal, Function::logistic})
     for (const auto guess : {Guess::fixed, Guess::fitted, Guess::tied_to_lapse})
       for (int code = 0; code < 216; ++code) {
@@ -110,7 +111,7 @@ TEST_CASE("Every small table gives finite numbers or none", "[analysis]") {
       }
 }
 
-TEST_CASE("The fit is the maximum: no neighbour is more likely", "[analysis]") {
+TEST_CASE("No neighbouring parameters are more likely than the fitted ones", "[analysis]") {
   for (const auto function : {Function::weibull, Function::normal, Function::logistic}) {
     FitOptions options;
     options.function = function;
@@ -140,7 +141,8 @@ TEST_CASE("The fit is the maximum: no neighbour is more likely", "[analysis]") {
   }
 }
 
-TEST_CASE("A Weibull on a log10 scale is the Weibull in dB of the same levels", "[analysis]") {
+TEST_CASE("A Weibull function on a log10 scale equals the Weibull function in dB at the same levels",
+          "[analysis]") {
   auto ratio = kReference;
   for (auto& point : ratio) point.level = std::pow(10.0, point.level / 20);
   FitOptions options;
@@ -163,7 +165,8 @@ TEST_CASE("The 75 % point takes guess and lapse into account", "[analysis]") {
   CHECK_FALSE(level_at(Function::weibull, Scale::linear, p, 0.5).has_value());
 }
 
-TEST_CASE("PSE and spread of a biased observer are recovered, and reversed sides are refused", "[analysis]") {
+TEST_CASE("The fit recovers the PSE and spread of a biased observer, and refuses data with reversed sides",
+          "[analysis]") {
   FitOptions options;
   options.function = Function::normal;
   options.guess = Guess::tied_to_lapse;
@@ -179,7 +182,7 @@ TEST_CASE("PSE and spread of a biased observer are recovered, and reversed sides
   CHECK(says(fit_psychometric(swapped, options).statements, "reversed"));
 }
 
-TEST_CASE("A bootstrap depends on its seed and stream alone", "[analysis]") {
+TEST_CASE("A bootstrap depends only on its seed and stream", "[analysis]") {
   const auto fit = fit_psychometric(kReference, {});
   const auto one = bootstrap(fit, {}), again = bootstrap(fit, {}),
              other = bootstrap(fit, {1000, 0.95, 2, 0, 0});
@@ -225,7 +228,7 @@ TEST_CASE("The fit agrees with psignifit 4.3 on the same data", "[analysis]") {
   }
 }
 
-TEST_CASE("Bootstrap intervals cover the truth about as often as they say", "[analysis]") {
+TEST_CASE("Bootstrap intervals contain the true value about as often as they claim", "[analysis]") {
   // A longer run (400 sessions with 300 replicates) gave these coverages of threshold, slope and 75 % point.
   // Weibull, 6 levels x 40 trials: .95, .93, .94. Normal with tied lapse, 8 levels x 20: .95, .94, .94.
   // Normal without lapse, 8 levels x 10: .97, .94, .94. This test uses fewer sessions: two standard errors
@@ -263,7 +266,7 @@ TEST_CASE("Bootstrap intervals cover the truth about as often as they say", "[an
   }
 }
 
-TEST_CASE("trials without a signal fix the rate of false alarms", "[analysis]") {
+TEST_CASE("Trials without a signal determine the rate of false alarms", "[analysis]") {
   // The data are the expected counts of P = .2 + .78 (1 - exp(-(x/4)^2)). The fit must return these
   // parameters.
   FitOptions options;

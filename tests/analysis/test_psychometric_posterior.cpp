@@ -89,7 +89,7 @@ const Prior kContrast = prior_around(Function::weibull, Scale::linear, {-30, -3}
 
 }  // namespace
 
-TEST_CASE("Posterior intervals are those of an independent sampler", "[analysis]") {
+TEST_CASE("Posterior intervals agree with those of an independent sampler", "[analysis]") {
   for (const auto& [truth, trials] : {std::pair{Psychometric{-20, 2, 0.5, 0.02}, 200},
                                       {Psychometric{-9, 6, 0.5, 0.01}, 96},
                                       {Psychometric{-24, 1, 0.5, 0.05}, 200}})
@@ -123,7 +123,7 @@ TEST_CASE("Posterior intervals agree with a dense grid in NumPy", "[analysis]") 
   near(fit.intervals.interval_75->interval, -22.1878, -17.8629);
 }
 
-TEST_CASE("The grid resolves a posterior that is a thousandth of its prior", "[analysis]") {
+TEST_CASE("The grid resolves a posterior that is a thousand times narrower than its prior", "[analysis]") {
   FitOptions options;
   options.function = Function::normal;
   options.guess = Guess::tied_to_lapse;
@@ -138,7 +138,8 @@ TEST_CASE("The grid resolves a posterior that is a thousandth of its prior", "[a
   CHECK(wide.fit.parameters->slope == Approx(maximum.parameters->slope).margin(0.05));
 }
 
-TEST_CASE("What the data limit on neither side is said instead of an interval", "[analysis]") {
+TEST_CASE("If the data limit a parameter on neither side, the posterior says so and gives no interval",
+          "[analysis]") {
   const auto short_session = fit_posterior(staircase({-20, 2, 0.5, 0.02}, 16, 1), {}, kContrast, 61);
   CHECK_FALSE(short_session.intervals.slope);
   CHECK(says(short_session, "slope-undetermined"));
@@ -153,7 +154,8 @@ TEST_CASE("What the data limit on neither side is said instead of an interval", 
   CHECK(says(sixteen_trials, "threshold-undetermined"));
 }
 
-TEST_CASE("All answers right leave a threshold below, and none of it is made up", "[analysis]") {
+TEST_CASE("If all answers are right, the threshold gets only an upper limit, and no estimate is made up",
+          "[analysis]") {
   const auto fit = fit_posterior({{-20, 20, 20}, {-15, 20, 20}, {-10, 20, 20}}, {}, kContrast, 61);
   REQUIRE(fit.intervals.threshold);
   CHECK(fit.intervals.threshold->touches_low);
@@ -162,7 +164,7 @@ TEST_CASE("All answers right leave a threshold below, and none of it is made up"
   CHECK(says(fit, "extrapolated"));
 }
 
-TEST_CASE("An estimate outside the middle half of the prior is pointed out", "[analysis]") {
+TEST_CASE("The posterior points out an estimate outside the middle half of the prior", "[analysis]") {
   const auto inside = fit_posterior(staircase({-20, 2, 0.5, 0.02}, 200, 1), {}, kContrast, 0);
   CHECK_FALSE(says(inside, "threshold-off-centre"));
   CHECK_FALSE(says(inside, "slope-off-centre"));
@@ -175,8 +177,10 @@ TEST_CASE("An estimate outside the middle half of the prior is pointed out", "[a
   CHECK_FALSE(says(steep, "threshold-off-centre"));
 }
 
-TEST_CASE("A prior that falls towards its ends weighs less there, and abstains as a flat one does",
-          "[analysis]") {
+TEST_CASE(
+    "A prior that falls towards its ends has less weight there, and gives no estimate where a flat prior "
+    "gives none",
+    "[analysis]") {
   const auto data = staircase({-9, 0.5, 0.5, 0.01}, 48, 3);
   auto flat = kContrast;
   flat.falling_share = 0;
@@ -188,7 +192,7 @@ TEST_CASE("A prior that falls towards its ends weighs less there, and abstains a
   CHECK_THROWS_AS(fit_posterior(data, {}, {-40, 4, 0.25, 15, 0.6}, 0), std::invalid_argument);
 }
 
-TEST_CASE("Posteriors refuse reversed data, few trials and nonsense", "[analysis]") {
+TEST_CASE("Posteriors refuse reversed data, too few trials and impossible options", "[analysis]") {
   CHECK(says(fit_posterior({{-20, 40, 38}, {-15, 40, 30}, {-10, 40, 21}}, {}, kContrast, 0), "reversed"));
   CHECK(says(fit_posterior({{-20, 4, 2}, {-15, 4, 4}}, {}, kContrast, 0), "too-few-trials"));
   CHECK(says(fit_posterior({}, {}, kContrast, 0), "no-trials"));
@@ -200,7 +204,8 @@ TEST_CASE("Posteriors refuse reversed data, few trials and nonsense", "[analysis
                   std::invalid_argument);
 }
 
-TEST_CASE("Every small table has a finite posterior or says why not", "[analysis]") {
+TEST_CASE("Every small table of answers has a finite posterior, or a statement why it has none",
+          "[analysis]") {
   for (const auto function : {Function::weibull, Function::normal, Function::logistic})
     for (const auto guess : {Guess::fixed, Guess::fitted, Guess::tied_to_lapse})
       for (int code = 0; code < 216; code += guess == Guess::fitted ? 7 : 1) {

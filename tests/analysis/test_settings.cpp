@@ -18,7 +18,7 @@ analysis::TrialRecord set_to(double value, double start = 0) {
 
 }  // namespace
 
-TEST_CASE("Settings have their mean, scatter and intervals by Student and chi squared", "[analysis]") {
+TEST_CASE("Settings get their mean and scatter with intervals by Student's t and chi squared", "[analysis]") {
   // The 97.5 % points for these eight values are t(7) = 2.364624 and chi2(7) = 16.012764 and 1.689869
   // (tables).
   const std::vector<double> values{2, 4, 4, 4, 5, 5, 7, 9};
@@ -53,7 +53,8 @@ TEST_CASE("Settings that depend on the slider's start position are reported as s
   CHECK(analysis::settings(free).front().statements.empty());
 }
 
-TEST_CASE("Too few settings, equal ones and void trials give statements and no number", "[analysis]") {
+TEST_CASE("Too few settings, equal settings and void trials give statements instead of numbers",
+          "[analysis]") {
   auto timeout = set_to(9);
   timeout.outcome = terms::Outcome::timeout;
   auto practice = set_to(9);

@@ -7,7 +7,7 @@
 
 using namespace turnpoint::analysis;
 
-TEST_CASE("Wilson and Clopper-Pearson intervals of 15 of 20 are the published ones", "[analysis]") {
+TEST_CASE("Wilson and Clopper-Pearson intervals of 15 out of 20 equal the published ones", "[analysis]") {
   const auto score = wilson(15, 20);
   CHECK(score.low == Approx(0.531299).margin(5e-7));
   CHECK(score.high == Approx(0.888138).margin(5e-7));
@@ -32,8 +32,10 @@ TEST_CASE("Intervals of a proportion stay inside 0 to 1 and mirror each other", 
   CHECK_THROWS_AS(clopper_pearson(0, 0), std::invalid_argument);
 }
 
-TEST_CASE("Clopper-Pearson covers at least as often as it says, a plain normal interval does not",
-          "[analysis]") {
+TEST_CASE(
+    "Clopper-Pearson intervals contain the true value at least as often as they claim, but plain normal "
+    "intervals do not",
+    "[analysis]") {
   const auto covered = [](double p, int n, auto interval) {
     double sum = 0, mass = std::pow(1 - p, n);
     for (int k = 0; k <= n; ++k) {
@@ -52,7 +54,7 @@ TEST_CASE("Clopper-Pearson covers at least as often as it says, a plain normal i
   CHECK(covered(0.02, 24, normal) < 0.5);
 }
 
-TEST_CASE("d' of forced choice is sqrt 2 z, of a single interval 2 z", "[analysis]") {
+TEST_CASE("d' is sqrt 2 z for two-interval forced choice and 2 z for a single interval", "[analysis]") {
   CHECK(*d_prime_forced_choice(0.75) == Approx(0.9539).margin(5e-5));
   CHECK(*d_prime_forced_choice(0.5) == Approx(0).margin(1e-15));
   CHECK_FALSE(d_prime_forced_choice(1).has_value());
@@ -71,7 +73,7 @@ TEST_CASE("Yes/no sensitivity with the log-linear correction is finite for perfe
   CHECK_FALSE(yes_no({0, 0, 3, 4}).has_value());
 }
 
-TEST_CASE("The normal quantile inverts the distribution function", "[analysis]") {
+TEST_CASE("The normal quantile is the inverse of the distribution function", "[analysis]") {
   for (const double z : {-6.0, -2.0, -0.1, 0.0, 1.0, 5.0})
     CHECK(normal_quantile(normal_cdf(z)) == Approx(z).margin(1e-9));
   CHECK_THROWS_AS(normal_quantile(0), std::invalid_argument);
@@ -106,7 +108,7 @@ bool holds(const std::optional<Estimate>& estimate, double value) {
 
 }  // namespace
 
-TEST_CASE("d' and criterion of a yes/no observer are recovered inside their intervals", "[analysis]") {
+TEST_CASE("The intervals of d' and criterion contain the true values of a yes/no observer", "[analysis]") {
   // d' is 1.349 at level 3 and twice that at level 6; c is the criterion minus half of d'.
   const turnpoint::observer::Observer observer(
       turnpoint::observer::parse("sim:threshold=3,lapse=0,criterion=0.9"));
@@ -132,7 +134,7 @@ TEST_CASE("d' and criterion of a yes/no observer are recovered inside their inte
   CHECK(sum / sessions == Approx(1.349).margin(0.03));
 }
 
-TEST_CASE("d' of sides and of forced choice follow their definitions", "[analysis]") {
+TEST_CASE("d' for left/right answers and for forced choice follows its definition", "[analysis]") {
   std::vector<TrialRecord> trials;
   const auto add = [&trials](double level, int right, int response, int times) {
     for (int i = 0; i < times; ++i) {
@@ -156,7 +158,9 @@ TEST_CASE("d' of sides and of forced choice follow their definitions", "[analysi
   CHECK_FALSE(detect(trials, {}, Detecting::forced_choice, 1)[0].d_prime);
 }
 
-TEST_CASE("the ROC of ratings has the area that d' gives, and its interval holds it", "[analysis]") {
+TEST_CASE(
+    "The area under the ROC of ratings is the one that follows from d', and its interval contains this area",
+    "[analysis]") {
   const auto example = roc({30, 15, 5}, {5, 15, 30});
   REQUIRE(example);
   REQUIRE(example->points.size() == 4);

@@ -44,7 +44,7 @@ bool holds(const Estimate& estimate, double value) {
 
 }  // namespace
 
-TEST_CASE("EZ-diffusion gives the example of its paper", "[analysis]") {
+TEST_CASE("EZ-diffusion reproduces the example of its paper", "[analysis]") {
   const auto ez = ez_diffusion({0.802, 0.112, 0.723, 100}).parameters;
   REQUIRE(ez);
   CHECK(ez->drift == Approx(0.0999385).margin(5e-8));
@@ -52,7 +52,8 @@ TEST_CASE("EZ-diffusion gives the example of its paper", "[analysis]") {
   CHECK(ez->nondecision_s == Approx(0.3000300).margin(5e-8));
 }
 
-TEST_CASE("EZ-diffusion is continuous through chance and odd in the drift", "[analysis]") {
+TEST_CASE("EZ-diffusion is continuous at chance performance, and its drift changes sign there",
+          "[analysis]") {
   const auto at = [](double p) { return *ez_diffusion({p, 0.1, 0.9, 100}).parameters; };
   CHECK(at(0.5).drift == 0);
   CHECK(at(0.5).boundary == Approx(0.1 * std::pow(2.4, 0.25)));
@@ -62,7 +63,7 @@ TEST_CASE("EZ-diffusion is continuous through chance and odd in the drift", "[an
   CHECK(at(0.3).boundary == Approx(at(0.7).boundary));
 }
 
-TEST_CASE("What EZ-diffusion cannot identify is said, never a number", "[analysis]") {
+TEST_CASE("EZ-diffusion gives a statement instead of a number for what it cannot identify", "[analysis]") {
   CHECK(says(ez_diffusion({0, 0.1, 0.7, 50}).statements, "ez-proportion"));
   CHECK(says(ez_diffusion({1.2, 0.1, 0.7, 50}).statements, "ez-proportion"));
   CHECK(says(ez_diffusion({0.8, 0, 0.7, 50}).statements, "ez-variance"));
@@ -75,7 +76,9 @@ TEST_CASE("What EZ-diffusion cannot identify is said, never a number", "[analysi
   CHECK(says(shared_ez_diffusion({{0.8, 0.05, 0.6, 9}}).statements, "ez-too-few"));
 }
 
-TEST_CASE("The shared fit of one condition is plain EZ, and of exact moments the truth", "[analysis]") {
+TEST_CASE(
+    "The shared fit of one condition equals plain EZ, and that of exact moments returns the true parameters",
+    "[analysis]") {
   const EzMoments example{0.802, 0.112, 0.723, 100};
   const auto one = shared_ez_diffusion({example}).parameters;
   REQUIRE(one);
@@ -96,7 +99,8 @@ TEST_CASE("The shared fit of one condition is plain EZ, and of exact moments the
   CHECK(shared->drift[2] == Approx(0.25).epsilon(1e-9));
 }
 
-TEST_CASE("Boundary and time outside the decision are recovered inside their intervals", "[analysis]") {
+TEST_CASE("The intervals of the boundary and of the non-decision time contain the true values",
+          "[analysis]") {
   TradeOptions options;
   options.replicates = 200;
   // A run of 600 sessions gave coverages of .95 for boundaries, .93 for Ter, .96 for differences of
@@ -138,7 +142,8 @@ TEST_CASE("Boundary and time outside the decision are recovered inside their int
   CHECK(drift >= 0.95 * fitted);
 }
 
-TEST_CASE("Pooling difficulties reads difficulty as instruction, the shared fit does not", "[analysis]") {
+TEST_CASE("Pooling easy and hard trials biases the estimated boundary, but the shared fit does not",
+          "[analysis]") {
   // The boundary is the same under both instructions, but one of them has the harder levels.
   rnd::Draws draws({8, rnd::Stream::observer, 0, 0, 0});
   const auto moments = [&](double v, int n) {
@@ -158,7 +163,7 @@ TEST_CASE("Pooling difficulties reads difficulty as instruction, the shared fit 
   CHECK(std::abs(pooled.parameters->boundary - 0.12) > 2 * std::abs(shared.parameters->boundary - 0.12));
 }
 
-TEST_CASE("Equal instructions seldom differ outside the interval", "[analysis]") {
+TEST_CASE("For equal instructions, the interval of the difference seldom excludes 0", "[analysis]") {
   TradeOptions options;
   options.replicates = 100;
   const int sessions = 20;
@@ -209,7 +214,8 @@ TEST_CASE("The conditional accuracy function has bins of equal counts", "[analys
   CHECK_THROWS_AS(conditional_accuracy(times, correct, 9), std::invalid_argument);
 }
 
-TEST_CASE("Response times are excluded below a limit and beyond a number of MAD", "[analysis]") {
+TEST_CASE("Response times are excluded below a limit and beyond a number of median absolute deviations",
+          "[analysis]") {
   const std::vector<double> times{0.02, 0.50, 0.52, 0.55, 0.58, 0.60, 5.0};
   const auto kept = keep_times(times, {0.15, 3.5});
   CHECK(kept == std::vector<bool>{false, true, true, true, true, true, false});
@@ -221,7 +227,7 @@ TEST_CASE("Response times are excluded below a limit and beyond a number of MAD"
   CHECK_FALSE(describe_times({}).has_value());
 }
 
-TEST_CASE("A session of timeouts or of five trials yields statements only", "[analysis]") {
+TEST_CASE("A session of timeouts, or of five trials, gives only statements", "[analysis]") {
   std::vector<TrialRecord> trials(5);
   for (auto& trial : trials) trial.outcome = Outcome::timeout;
   TradeOptions options;
@@ -243,7 +249,10 @@ TEST_CASE("A session of timeouts or of five trials yields statements only", "[an
   CHECK(trade({}, options).instructions.empty());
 }
 
-TEST_CASE("Differences are of all pairs, in an order that does not depend on what came first", "[analysis]") {
+TEST_CASE(
+    "Differences are given for all pairs of conditions, in an order that does not depend on the order of "
+    "presentation",
+    "[analysis]") {
   const auto measured = [](bool turned) {
     auto trials = session(0.08, 0.14, 30, 3);
     auto other = session(0.11, 0.11, 30, 4);
@@ -272,7 +281,7 @@ TEST_CASE("Differences are of all pairs, in an order that does not depend on wha
                                                      one.instructions[0].proportion_correct->value));
 }
 
-TEST_CASE("A single condition has no BIS", "[analysis]") {
+TEST_CASE("A single condition has no balanced integration score", "[analysis]") {
   auto trials = session(0.1, 0.1, 40, 6);
   TradeOptions options;
   options.replicates = 40;

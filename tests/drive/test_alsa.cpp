@@ -76,7 +76,8 @@ TEST_CASE("a resampler behind an allowed plug-in is refused as well", "[drive][a
   }
 }
 
-TEST_CASE("asking for an exact rate is not enough: alsa-lib's plug says yes", "[drive][alsa]") {
+TEST_CASE("requesting an exact rate is not enough: alsa-lib's plug-ins accept it and resample",
+          "[drive][alsa]") {
   // Negative control of the two tests above: these devices can be opened and do claim to run at 192 kHz.
   for (const char* name :
        {"rated", "rated_linear", "plugged", "file_over_rate", "copy_over_rate", "asym_over_rate",
@@ -86,7 +87,7 @@ TEST_CASE("asking for an exact rate is not enough: alsa-lib's plug says yes", "[
   }
 }
 
-TEST_CASE("plug-ins that a rig allows and that pass samples on are accepted", "[drive][alsa]") {
+TEST_CASE("plug-ins that pass samples on unchanged are accepted if the rig allows them", "[drive][alsa]") {
   OutputConfig config = config_for("straight");
   config.allow_plugin = {"null"};
   CHECK(opens(config));
@@ -98,7 +99,7 @@ TEST_CASE("plug-ins that a rig allows and that pass samples on are accepted", "[
   CHECK(opens(config));
 }
 
-TEST_CASE("a refusal names the device and what it is; a device that is not there is ENODEV or ENOENT",
+TEST_CASE("a refusal names the device and its kind; a missing device is reported as ENODEV or ENOENT",
           "[drive][alsa]") {
   CHECK_THROWS_WITH(
       open_output(config_for("plugged")),
@@ -127,7 +128,7 @@ TEST_CASE("a device that takes neither 32 nor 24 bits is refused", "[drive][alsa
                     "alsa:compressed: accepts neither 32-bit samples (S32_LE) nor 24-bit samples (S24_3LE)");
 }
 
-TEST_CASE("a device with more channels than the stream is opened with its own", "[drive][alsa]") {
+TEST_CASE("a device with more channels than the stream is opened with all its channels", "[drive][alsa]") {
   auto config = config_for("straight");
   config.allow_plugin = {"null"};
   config.device_channels = 10;

@@ -8,7 +8,7 @@
 
 using namespace turnpoint::drive;
 
-TEST_CASE("the polynomial sine is within 4e-16 of libm at every kind of phase", "[drive][sine]") {
+TEST_CASE("the polynomial sine agrees with libm within rounding at every kind of phase", "[drive][sine]") {
   double worst = 0;
   std::uint64_t phase = 0;
   for (int k = 0; k < 400000; ++k, phase += 0x3243f6a8885a308du) {
@@ -22,14 +22,15 @@ TEST_CASE("the polynomial sine is within 4e-16 of libm at every kind of phase", 
   CHECK(sine_of_phase(3 * quarter_cycle) == Approx(-1).epsilon(1e-15));
 }
 
-TEST_CASE("phase increments are correctly rounded fractions of the rate", "[drive][sine]") {
+TEST_CASE("phase increments are correctly rounded fractions of the sample rate", "[drive][sine]") {
   CHECK(phase_increment(48000, 192000) == quarter_cycle);
   CHECK(phase_increment(0.75, 192000) == 0x4189374bc6a8u);  // 0.75 / 192000 * 2^64 = 72057594037927.936
   CHECK(phase_increment(19600, 192000) == 0x1a22222222222222u);
   CHECK(phase_increment(1e-30, 192000) == 0);
 }
 
-TEST_CASE("a burst outside the limits is refused with the reason, never clipped", "[drive][burst]") {
+TEST_CASE("a burst outside the limits is refused with the reason instead of being clipped",
+          "[drive][burst]") {
   const Format format;
   CHECK_NOTHROW(prepare(one_tone(20000, 0.9), format));
   CHECK_THROWS_AS(prepare(one_tone(86400, 0.5), format), BurstRefused);
@@ -47,8 +48,10 @@ TEST_CASE("a burst outside the limits is refused with the reason, never clipped"
   CHECK_THROWS_AS(prepare(burst, format), BurstRefused);
 }
 
-TEST_CASE("tones whose amplitudes exceed full scale pass when their sum of samples does not",
-          "[drive][burst]") {
+TEST_CASE(
+    "tones whose amplitudes add up to more than full scale are accepted if the sum of their samples stays "
+    "below",
+    "[drive][burst]") {
   Burst burst = one_tone(20000, 0.6);
   burst.tones.tones[1] = {60000, 0.6, 0, 0};  // in phase with 20 kHz, the third harmonic flattens the sum
   burst.tones.count = 2;
@@ -59,7 +62,7 @@ TEST_CASE("tones whose amplitudes exceed full scale pass when their sum of sampl
   CHECK_THROWS_AS(prepare(burst, Format{}), BurstRefused);
 }
 
-TEST_CASE("changes must be in ascending order, inside the burst, and leave tones on their channels",
+TEST_CASE("live changes must be in ascending order, lie inside the burst, and leave each tone on its channel",
           "[drive][burst]") {
   Burst burst = one_tone(20000, 0.5);
   burst.change_count = 1;

@@ -45,7 +45,8 @@ TEST_CASE("before the device has reported its position, its time is unknown", "[
   CHECK(std::abs(error_frames(stream)) <= 1);
 }
 
-TEST_CASE("a restart is never forgotten, however long nobody listened", "[drive][clock]") {
+TEST_CASE("a restart of the device is noticed even if nobody reads the positions for a long time",
+          "[drive][clock]") {
   DeviceStream stream(on_fake_card());
   steps(stream, 5000);  // ten seconds, in which the ring of positions fills up
   fake_pcm().fail(FakePcm::State::xrun);
@@ -58,7 +59,7 @@ TEST_CASE("a restart is never forgotten, however long nobody listened", "[drive]
   CHECK(std::abs(error_frames(stream)) <= 1);
 }
 
-TEST_CASE("while the device is missing its time is unknown, and the rate is measured afresh after its return",
+TEST_CASE("while the device is missing its time is unknown, and after its return the rate is measured again",
           "[drive][clock]") {
   DeviceStream stream(on_fake_card());
   auto& card = fake_pcm();
@@ -92,7 +93,7 @@ TEST_CASE("while the device is missing its time is unknown, and the rate is meas
   CHECK(stream.measured_rate()->deviation_ppm > RateCheck::tolerance_ppm);
 }
 
-TEST_CASE("an underrun is reported with its first lost frame and the burst that lost frames",
+TEST_CASE("an underrun is reported with its first lost frame and with the burst that lost frames",
           "[drive][gaps]") {
   DeviceStream stream(on_fake_card());
   auto& card = fake_pcm();

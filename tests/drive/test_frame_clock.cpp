@@ -5,7 +5,7 @@
 
 using namespace turnpoint::drive;
 
-TEST_CASE("the regression finds rate and offset of a jittered clock and states its residual",
+TEST_CASE("the regression finds the rate and offset of a clock with jitter, and states the residual",
           "[drive][clock]") {
   FrameClock clock(192000, 1000);
   const double ns_per_frame = 1e9 / 192000 * (1 + 37e-6);
@@ -24,7 +24,9 @@ TEST_CASE("the regression finds rate and offset of a jittered clock and states i
   CHECK(fit.frame_at(fit.time_of(frame + 12345)) == frame + 12345);
 }
 
-TEST_CASE("few pairs use the nominal rate, a restarted device starts the fit afresh", "[drive][clock]") {
+TEST_CASE(
+    "with few pairs of frame and time the nominal rate is used, and a restarted device starts a new fit",
+    "[drive][clock]") {
   FrameClock clock(192000);
   CHECK(clock.fit().pairs == 0);
   clock.add(100, 1000);

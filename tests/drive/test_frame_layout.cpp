@@ -27,12 +27,12 @@ TEST_CASE("32-bit samples are written low byte first", "[drive][layout]") {
         Bytes{0x04, 0x03, 0x02, 0x01, 0xfe, 0xff, 0xff, 0xff});
 }
 
-TEST_CASE("24-bit samples are the upper three bytes, sign and all", "[drive][layout]") {
+TEST_CASE("24-bit samples are written as the upper three bytes, including the sign", "[drive][layout]") {
   CHECK(packed({0x01020300, -256, 0x7fffff00, INT32_MIN}, 2, {SampleFormat::s24_3le, 2}) ==
         Bytes{0x03, 0x02, 0x01, 0xff, 0xff, 0xff, 0xff, 0xff, 0x7f, 0x00, 0x00, 0x80});
 }
 
-TEST_CASE("channels that the stream does not have carry zeros", "[drive][layout]") {
+TEST_CASE("device channels that the stream does not have are filled with zeros", "[drive][layout]") {
   CHECK(packed({0x01020300, 0x0a0b0c00}, 1, {SampleFormat::s24_3le, 3}) ==
         Bytes{3, 2, 1, 0, 0, 0, 0, 0, 0, 0x0c, 0x0b, 0x0a, 0, 0, 0, 0, 0, 0});
   CHECK(packed({1, 2}, 2, {SampleFormat::s32_le, 4}) ==

@@ -277,7 +277,8 @@ Tally judge(int runs, std::uint64_t seed, const std::vector<Mishap>& kinds) {
 }  // namespace
 
 TEST_CASE(
-    "whatever stalls where, a trial is void exactly if its frames were lost, and nothing sets in abruptly",
+    "wherever the program stalls, a trial is void exactly if its frames were lost, and no sound starts "
+    "abruptly",
     "[drive][gaps]") {
   const auto tally = judge(4000, 1, {Mishap::stall});
   CHECK(tally.whole > 800);
@@ -287,12 +288,12 @@ TEST_CASE(
   CHECK(tally.void_in_doubt < 5);
 }
 
-TEST_CASE("a stall in the middle of a write is detected after it", "[drive][gaps]") {
+TEST_CASE("a stall in the middle of a write is detected afterwards", "[drive][gaps]") {
   const auto tally = judge(1000, 100'000, {Mishap::stall_in_write, Mishap::stall});
   CHECK(tally.broken > 300);
 }
 
-TEST_CASE("after a restart or an absence of the device, no burst counts as heard to its end",
+TEST_CASE("a burst interrupted by a restart or by the loss of the device does not count as completely played",
           "[drive][gaps]") {
   const auto tally = judge(1500, 200'000, {Mishap::xrun, Mishap::suspend, Mishap::stall});
   CHECK(tally.broken > 400);
@@ -301,7 +302,7 @@ TEST_CASE("after a restart or an absence of the device, no burst counts as heard
   CHECK(away.broken + away.late > 50);
 }
 
-TEST_CASE("the comparison finds one sample amiss, and a block that is not ramped: the negative control",
+TEST_CASE("negative control: the comparison detects one wrong sample, one shifted frame and an abrupt onset",
           "[drive][gaps]") {
   Bench bench(7);
   const Run run = bench.run(0, {});

@@ -73,7 +73,7 @@ std::size_t unlocked(const std::vector<Mapping>& all, std::uintptr_t start, std:
 
 }  // namespace
 
-TEST_CASE("what is recorded as locked is locked: the audio thread's stack, its blocks and its rings",
+TEST_CASE("if memory is recorded as locked, the audio thread's stack, its blocks and its rings really are",
           "[drive][realtime]") {
   StackProbe probe;
   std::thread([&probe] {
@@ -108,7 +108,7 @@ TEST_CASE("what is recorded as locked is locked: the audio thread's stack, its b
   }).join();
 }
 
-TEST_CASE("the buffer that a device is started and written from is locked, and what is not is named",
+TEST_CASE("the buffer from which a device is written is locked, and memory that cannot be locked is named",
           "[drive][realtime][alsa]") {
   ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
   std::thread([] {

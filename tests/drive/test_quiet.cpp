@@ -11,8 +11,7 @@
 
 using namespace turnpoint::drive;
 
-TEST_CASE("the counter sees an allocation, a lock and a log line: the negative control",
-          "[drive][realtime]") {
+TEST_CASE("negative control: the counter detects an allocation, a lock and a log line", "[drive][realtime]") {
   CHECK(violations_in([] {
           std::vector<int>* const made = new std::vector<int>(7);
           delete made;
@@ -22,7 +21,8 @@ TEST_CASE("the counter sees an allocation, a lock and a log line: the negative c
   CHECK(violations_in([] { std::puts(""); }) >= 1);
 }
 
-TEST_CASE("the audio side allocates, locks and logs nothing, whatever it is sent", "[drive][realtime]") {
+TEST_CASE("the audio thread's code allocates, locks and logs nothing, whatever commands it gets",
+          "[drive][realtime]") {
   StreamConfig config;
   EngineCore core(config);
   std::vector<std::int32_t> block(2 * 384);

@@ -6,8 +6,9 @@
 using namespace turnpoint::drive;
 using namespace turnpoint::system;
 
-TEST_CASE("a real-time stream to null plays bursts at their frames and tells what it was granted",
-          "[drive][realtime][threads]") {
+TEST_CASE(
+    "a real-time stream to the null device plays bursts at their frames and reports its real-time rights",
+    "[drive][realtime][threads]") {
   StreamConfig config;
   const auto stream = open_realtime(config);
   CHECK(stream->rights().asked);
@@ -37,7 +38,7 @@ TEST_CASE("a real-time stream to null plays bursts at their frames and tells wha
   CHECK(stream->frame_at(stream->time_of(asked[0]).value()) == asked[0]);
 }
 
-TEST_CASE("a burst that takes longer to check than the buffer lasts begins after it, and is not missed",
+TEST_CASE("a burst whose check takes longer than the buffer lasts begins later, and is not missed",
           "[drive][realtime][threads]") {
   // The amplitudes add up to more than full scale. Only rendering all 10 s shows that the peak stays below
   // it.

@@ -8,7 +8,7 @@
 using namespace turnpoint::drive;
 using Action = RecoveryAction;
 
-TEST_CASE("an underrun restarts the device, an interruption does not", "[drive][recovery]") {
+TEST_CASE("an underrun restarts the device, but an interrupted call does not", "[drive][recovery]") {
   Recovery recovery;
   CHECK(recovery.transferred({0}) == Action::go_on);
   CHECK(recovery.transferred({-EINTR}) == Action::go_on);
@@ -18,7 +18,7 @@ TEST_CASE("an underrun restarts the device, an interruption does not", "[drive][
   CHECK_FALSE(recovery.lost());
 }
 
-TEST_CASE("a suspended device is resumed, waited for, and restarted whether it could resume or not",
+TEST_CASE("a suspended device is resumed and awaited, and restarted whether or not it could resume",
           "[drive][recovery]") {
   Recovery recovery;
   CHECK(recovery.transferred({-ESTRPIPE}) == Action::resume);
@@ -41,7 +41,7 @@ TEST_CASE("a suspended device is resumed, waited for, and restarted whether it c
   }
 }
 
-TEST_CASE("an unplugged device is abandoned, tried four times a second, and comes back",
+TEST_CASE("an unplugged device is closed and tried again four times a second until it returns",
           "[drive][recovery]") {
   Recovery recovery;
   SECTION("the call says so") { CHECK(recovery.transferred({-ENODEV}) == Action::abandon); }
@@ -73,7 +73,8 @@ TEST_CASE("more than three underruns within a minute are too many", "[drive][rec
   CHECK(limit.exceeded_by(62 * second));
 }
 
-TEST_CASE("a device that really runs at another rate is detected within seconds", "[drive][rate]") {
+TEST_CASE("a device whose real rate differs from the nominal rate is detected within seconds",
+          "[drive][rate]") {
   // The device updates its position only every `tick_s`, so a reported position can be that old.
   const auto measured = [](double real_rate_Hz, double tick_s, double seconds) {
     RateCheck check(192000);

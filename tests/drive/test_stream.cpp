@@ -30,7 +30,7 @@ std::vector<std::int32_t> samples_of(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("10 000 onsets in a rendered stream are where they were asked for: jitter 0", "[drive][stream]") {
+TEST_CASE("10 000 onsets in a rendered stream are exactly at the requested frames", "[drive][stream]") {
   const std::string path = scratch_file("onsets.wav");
   StreamConfig config;
   config.output.uri = "wav:" + path;
@@ -64,7 +64,9 @@ TEST_CASE("10 000 onsets in a rendered stream are where they were asked for: jit
   std::remove(path.c_str());
 }
 
-TEST_CASE("frames that are passed by have the events of frames that are rendered", "[drive][stream]") {
+TEST_CASE(
+    "a stream that only passes frames without rendering them reports the same events as one that renders",
+    "[drive][stream]") {
   StreamConfig passing;
   passing.samples = Samples::passed;
   const auto rendered = open_synchronous({}), passed = open_synchronous(passing);
@@ -105,13 +107,17 @@ TEST_CASE("frames that are passed by have the events of frames that are rendered
   CHECK_THROWS_AS(open_synchronous(passing), turnpoint::terms::UsageError);
 }
 
-TEST_CASE("virtual time is frame over rate, exactly, at any age", "[drive][stream]") {
+TEST_CASE("virtual time is exactly the frame number divided by the rate, even after a month",
+          "[drive][stream]") {
   const auto stream = open_synchronous({}, 1'000);
   CHECK(stream->time_of(192000LL * 86400 * 30) == 1'000 + 1'000'000'000LL * 86400 * 30);
   CHECK(stream->frame_at(stream->time_of(123456789012).value()) == 123456789012);
 }
 
-TEST_CASE("a burst too late, one too many, or too loud beside another is refused", "[drive][stream]") {
+TEST_CASE(
+    "a burst is refused if it is too late, if all voices are in use, or if it is too loud together with "
+    "others",
+    "[drive][stream]") {
   const auto stream = open_synchronous({});
   stream->advance(1000);
   Burst burst = one_tone(20000, 0.4);
@@ -137,7 +143,7 @@ TEST_CASE("a burst too late, one too many, or too loud beside another is refused
   CHECK_NOTHROW(stream->schedule(burst));
 }
 
-TEST_CASE("a live change moves the tone under the finger and a stop ends the burst", "[drive][stream]") {
+TEST_CASE("a live change alters the tone of a playing burst, and a stop ends the burst", "[drive][stream]") {
   const auto stream = open_synchronous({});
   Burst burst = one_tone(20000, 0.4);
   burst.length_frames = 1920000;
@@ -162,7 +168,8 @@ TEST_CASE("a live change moves the tone under the finger and a stop ends the bur
 }
 
 TEST_CASE(
-    "a live change counts with what sounds beside it and with the burst's own later changes: nothing clips",
+    "a live change is refused if it would clip together with other bursts or with the burst's own later "
+    "changes",
     "[drive][stream]") {
   const auto stream = open_synchronous({});
   Burst first = one_tone(20000, 0.2);
@@ -191,7 +198,8 @@ TEST_CASE(
   CHECK(stream->largest_sample() < 1);
 }
 
-TEST_CASE("a burst that a live change made louder leaves that much less room beside it", "[drive][stream]") {
+TEST_CASE("after a live change makes a burst louder, other bursts may be only that much softer",
+          "[drive][stream]") {
   const auto stream = open_synchronous({});
   Burst first = one_tone(20000, 0.2);
   first.length_frames = 400'000;
@@ -208,7 +216,7 @@ TEST_CASE("a burst that a live change made louder leaves that much less room bes
   CHECK(stream->largest_sample() < 1);
 }
 
-TEST_CASE("bursts that are scheduled together keep their distances, or none is taken", "[drive][stream]") {
+TEST_CASE("bursts that are scheduled together keep their distances, or all are refused", "[drive][stream]") {
   const auto stream = open_synchronous({});
   stream->advance(5000);
   std::vector<PreparedBurst> bursts(3, prepare(one_tone(20000, 0.6), Format{}));

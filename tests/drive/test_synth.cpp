@@ -89,7 +89,7 @@ TEST_CASE("at 24 bits with dither no spurious product is above -140 dB", "[drive
   CHECK(synth.saturated() == 0);
 }
 
-TEST_CASE("processors' own loops give the generic double loop's bits", "[drive][synth]") {
+TEST_CASE("loops for special processors give the same bits as the generic loop", "[drive][synth]") {
   Burst burst = eight_tones();
   burst.change_count = 1;
   burst.changes[0] = {100000, 50000, eight_tones().tones};
@@ -97,7 +97,7 @@ TEST_CASE("processors' own loops give the generic double loop's bits", "[drive][
   CHECK(rendered(burst) == rendered(burst, generic_kernels()));
 }
 
-TEST_CASE("samples do not depend on how the stream is cut into blocks", "[drive][synth]") {
+TEST_CASE("samples do not depend on how the stream is divided into blocks", "[drive][synth]") {
   Burst burst = one_tone(20000.5, 0.5);
   burst.start_frame = 1001;
   burst.change_count = 1;
@@ -145,7 +145,9 @@ TEST_CASE("a frequency glide keeps the phase continuous and ends on the target",
   for (std::size_t k = 50000; k < 60000; ++k) REQUIRE(samples[k + 192] == Approx(samples[k]).margin(1e-9));
 }
 
-TEST_CASE("an amplitude glide reaches its target and a tone of one set only fades", "[drive][synth]") {
+TEST_CASE(
+    "an amplitude glide reaches its target, and a tone that is in only one of the two sets fades in or out",
+    "[drive][synth]") {
   Burst burst = one_tone(24000, 0.5);
   burst.change_count = 1;
   burst.changes[0].at_frame = 40000;
@@ -167,7 +169,7 @@ TEST_CASE("an amplitude glide reaches its target and a tone of one set only fade
   CHECK(right == Approx(0.125));
 }
 
-TEST_CASE("a burst starts at its frame, ends at its frame, and silence around it is digital",
+TEST_CASE("a burst starts and ends exactly at its frames, and all samples before and after it are zero",
           "[drive][synth]") {
   Burst burst = one_tone(20000, 0.5, M_PI / 2);
   burst.start_frame = 777;
@@ -184,7 +186,7 @@ TEST_CASE("a burst starts at its frame, ends at its frame, and silence around it
   CHECK(synth.events()[1].frame == 777 + 96000);
 }
 
-TEST_CASE("a stop ramps down and frames that were lost come back ramped", "[drive][synth]") {
+TEST_CASE("a stop ramps the sound down, and after lost frames the sound ramps up again", "[drive][synth]") {
   Synth synth({rate, 2, 24});
   REQUIRE(synth.start(prepare(one_tone(20000, 0.5), {rate, 2, 24})));
   auto before = rendered(synth, 0, 30000);
@@ -238,7 +240,7 @@ TEST_CASE("successive stops continue from the current gain, and each can only br
   CHECK(synth.events().back().frame == 37'500);
 }
 
-TEST_CASE("masking noise has the band and the rms that were asked for", "[drive][synth]") {
+TEST_CASE("masking noise has the requested band and rms", "[drive][synth]") {
   Burst burst;
   burst.length_frames = 400000;
   burst.noise = {1, 0.05, 300, 6000, 42};

@@ -63,8 +63,9 @@ TEST_CASE("the guard thread drops the enable line on a fault edge and latches it
   CHECK(bench.amplifier->state() == AmplifierState::disarmed);
 }
 
-TEST_CASE("a stop pressed before the start is noticed, and silence of the audio thread trips",
-          "[lines][amplifier][threads]") {
+TEST_CASE(
+    "a stop pressed before the start is noticed, and an audio thread that stops reporting trips the guard",
+    "[lines][amplifier][threads]") {
   const auto lines = std::make_shared<SimulatedLines>(SharedLines::count);
   lines->set(SharedLines::stop, true, 0);
   const auto amplifier = guarded(lines);
@@ -79,8 +80,7 @@ TEST_CASE("a stop pressed before the start is noticed, and silence of the audio 
 }
 
 TEST_CASE(
-    "a chip that vanishes is a latched fault; once it is back, an operator can arm, and nothing does so "
-    "alone",
+    "a GPIO chip that vanishes is a latched fault; after its return only an operator can arm the amplifier",
     "[lines][amplifier][threads]") {
   Bench bench;
   bench.enable();
@@ -106,7 +106,8 @@ TEST_CASE(
   CHECK(bench.lines->level(SharedLines::enable));
 }
 
-TEST_CASE("an amplifier is opened from the rig's text, with every mistake named", "[lines][amplifier]") {
+TEST_CASE("an amplifier is opened from the text in the rig file, and every mistake in the text is named",
+          "[lines][amplifier]") {
   CHECK(open_amplifier("sim:")->state() == AmplifierState::disarmed);
   CHECK_THROWS_WITH(open_amplifier("gpio:fault=F"), "amplifier 'gpio:fault=F' has no enable line");
   CHECK_THROWS_WITH(open_amplifier("gpio:enable=A,foo=B"),
@@ -117,7 +118,7 @@ TEST_CASE("an amplifier is opened from the rig's text, with every mistake named"
   CHECK_THROWS_AS(open_amplifier("nothing"), terms::UsageError);
 }
 
-TEST_CASE("the simulated amplifier keeps the same order of states", "[lines][amplifier]") {
+TEST_CASE("the simulated amplifier goes through the same states as the real one", "[lines][amplifier]") {
   const auto amplifier = open_amplifier("sim:");
   CHECK(why_not(amplifier->enable()) == "amplifier not armed");
   CHECK(why_not(amplifier->arm()) == "audio thread not responding");

@@ -35,7 +35,7 @@ std::vector<LineChange> changes(EdgeFilter& filter, const std::vector<std::pair<
   return all;
 }
 
-TEST_CASE("a level that lasts is a press, with the stamp of the first edge", "[lines][buttons]") {
+TEST_CASE("a level that lasts is a press, with the time stamp of its first edge", "[lines][buttons]") {
   EdgeFilter filter({}, false);
   CHECK(changes(filter, {{1000, true}}, 2499).empty());
   const auto told = changes(filter, {}, 2500);
@@ -44,7 +44,7 @@ TEST_CASE("a level that lasts is a press, with the stamp of the first edge", "[l
   CHECK(told[0].time_ns == 1000 * us);
 }
 
-TEST_CASE("a spike of 3 us is a glitch and no press, however often it comes", "[lines][buttons]") {
+TEST_CASE("a spike of 3 us is a glitch and not a press, however often it occurs", "[lines][buttons]") {
   EdgeFilter filter({}, false);
   std::vector<std::pair<std::int64_t, bool>> spikes;
   for (int k = 0; k < 100; ++k) {
@@ -61,7 +61,7 @@ TEST_CASE("a spike of 3 us is a glitch and no press, however often it comes", "[
   }
 }
 
-TEST_CASE("how long a level must last is the rig's to say", "[lines][buttons]") {
+TEST_CASE("the rig determines how long a level must last to be a press", "[lines][buttons]") {
   EdgeFilter::Rules rules;
   rules.hold_ns = 4000 * us;
   EdgeFilter slow(rules, false), quick({}, false);
@@ -70,7 +70,7 @@ TEST_CASE("how long a level must last is the rig's to say", "[lines][buttons]") 
   CHECK(changes(quick, two_ms, 90'000).at(0).kind == Kind::pressed);
 }
 
-TEST_CASE("a spike too short to be seen, two edges at the old level, is a glitch", "[lines][buttons]") {
+TEST_CASE("a spike so short that its two edges both show the old level is a glitch", "[lines][buttons]") {
   EdgeFilter filter({}, false);
   const auto told = changes(filter, {{1000, false}, {1001, false}}, 9000);
   REQUIRE(told.size() == 1);
@@ -87,7 +87,7 @@ TEST_CASE("a bouncing contact is one press at its first edge", "[lines][buttons]
   CHECK(told[0].time_ns == 1'000'000 * us);
 }
 
-TEST_CASE("interference without end is glitches, and a press after it has its own stamp",
+TEST_CASE("continuous interference is reported as glitches, and a press after it has its own time stamp",
           "[lines][buttons]") {
   EdgeFilter filter({}, false);
   std::vector<std::pair<std::int64_t, bool>> edges;
@@ -100,7 +100,7 @@ TEST_CASE("interference without end is glitches, and a press after it has its ow
   CHECK(told.back().time_ns == 200'000 * us);
 }
 
-TEST_CASE("a press within the refractory time is reported after that time, with the kernel's stamp",
+TEST_CASE("a press within the refractory time is reported after that time, with the kernel's time stamp",
           "[lines][buttons]") {
   EdgeFilter filter({}, true);
   const auto told = changes(filter, {{1'000'000, false}, {1'030'000, true}}, 1'049'999);
@@ -112,14 +112,15 @@ TEST_CASE("a press within the refractory time is reported after that time, with 
   CHECK(later[0].time_ns == 1'030'000 * us);
 }
 
-TEST_CASE("a contact that opens again within the refractory time was bouncing", "[lines][buttons]") {
+TEST_CASE("a contact that opens again within the refractory time is taken to be bouncing",
+          "[lines][buttons]") {
   EdgeFilter filter({}, false);
   const auto told = changes(filter, {{1'000'000, true}, {1'020'000, false}, {1'040'000, true}}, 1'200'000);
   REQUIRE(told.size() == 1);
   CHECK(told[0].time_ns == 1'000'000 * us);
 }
 
-TEST_CASE("a level that no edge explains is lost edges and no press", "[lines][buttons]") {
+TEST_CASE("a level that no edge explains is reported as lost edges and not as a press", "[lines][buttons]") {
   EdgeFilter filter({}, false);
   CHECK_FALSE(filter.level(1000 * us, true));  // the edge for this level may still arrive
   CHECK_FALSE(filter.level(1001 * us, false));
@@ -135,7 +136,7 @@ TEST_CASE("a level that no edge explains is lost edges and no press", "[lines][b
   CHECK(told[1].kind == Kind::pressed);
 }
 
-TEST_CASE("an edge that was on its way when the level was read is a press with its own stamp",
+TEST_CASE("an edge that arrives after the level was read is a press with its own time stamp",
           "[lines][buttons]") {
   EdgeFilter filter({}, false);
   CHECK_FALSE(filter.level(1000 * us, true));
@@ -146,7 +147,7 @@ TEST_CASE("an edge that was on its way when the level was read is a press with i
   CHECK_FALSE(filter.level(9000 * us, true));
 }
 
-TEST_CASE("a gap in the kernel's numbers tells how many edges were lost", "[lines][buttons]") {
+TEST_CASE("a gap in the kernel's sequence numbers shows how many edges were lost", "[lines][buttons]") {
   SequenceCheck check;
   CHECK(check.missed_before(1) == 0);
   CHECK(check.missed_before(2) == 0);
@@ -154,8 +155,10 @@ TEST_CASE("a gap in the kernel's numbers tells how many edges were lost", "[line
   CHECK(check.missed_before(8) == 0);
 }
 
-TEST_CASE("presses, contact, lost edges, and a chip lost and back reach the handlers with their times",
-          "[lines][buttons][threads]") {
+TEST_CASE(
+    "the handlers get presses, contacts, lost edges, and the loss and return of the chip, all with their "
+    "times",
+    "[lines][buttons][threads]") {
   std::mutex mutex;
   std::vector<Press> presses;
   std::vector<touch::Contact> touches;
@@ -240,7 +243,7 @@ TEST_CASE("presses, contact, lost edges, and a chip lost and back reach the hand
   CHECK_THROWS_AS(panel->simulate(Press{}), std::logic_error);
 }
 
-TEST_CASE("a simulated panel hands on what is simulated, and mistakes in the text are named",
+TEST_CASE("a simulated button panel passes on simulated presses, and mistakes in its text are named",
           "[lines][buttons]") {
   int pressed = -1;
   ButtonsHandlers handlers;
@@ -262,7 +265,8 @@ TEST_CASE("a simulated panel hands on what is simulated, and mistakes in the tex
                   std::system_error);
 }
 
-TEST_CASE("a rig's hold_ms decides which level of its buttons is a press", "[lines][buttons][threads]") {
+TEST_CASE("hold_ms in the rig file decides how long a button must be down to count as pressed",
+          "[lines][buttons][threads]") {
   for (const auto& [hold, is_press] : {std::pair{"hold_ms=1", true}, std::pair{"hold_ms=4", false}}) {
     INFO(hold);
     const auto lines = std::make_shared<SimulatedLines>(2);

@@ -46,7 +46,8 @@ TEST_CASE("after a start the amplifier is disarmed and cannot be enabled before 
   CHECK(guard.state() == AmplifierState::armed);
 }
 
-TEST_CASE("it cannot be armed before audio and session have given signs of life", "[lines][guard]") {
+TEST_CASE("the amplifier cannot be armed before the audio thread and the session have reported",
+          "[lines][guard]") {
   Guard guard;
   CHECK(why_not(guard.arm(0)) == "audio_silent");
   guard.audio_alive(0);
@@ -55,8 +56,9 @@ TEST_CASE("it cannot be armed before audio and session have given signs of life"
   CHECK(why_not(guard.arm(0)).empty());
 }
 
-TEST_CASE("a fault drops the line and stays latched until the cause is gone and an operator clears it",
-          "[lines][guard]") {
+TEST_CASE(
+    "a fault takes the enable line low and stays latched until its cause is gone and an operator clears it",
+    "[lines][guard]") {
   Guard guard = enabled_guard();
   guard.fault_line(5 * ms, true);
   CHECK(guard.outputs().enable == 0);
@@ -77,7 +79,7 @@ TEST_CASE("a fault drops the line and stays latched until the cause is gone and 
   CHECK(why_not(guard.arm(9 * ms)).empty());
 }
 
-TEST_CASE("the heartbeat toggles only while both audio and session are alive", "[lines][guard]") {
+TEST_CASE("the heartbeat toggles only while both the audio thread and the session report", "[lines][guard]") {
   Guard guard = enabled_guard();
   const auto toggles = [&guard](std::int64_t from_ms, std::int64_t to_ms, bool audio, bool session) {
     int count = 0, last = guard.outputs().heartbeat;
@@ -103,7 +105,7 @@ TEST_CASE("the heartbeat toggles only while both audio and session are alive", "
   }
 }
 
-TEST_CASE("a page that has reported once must keep reporting", "[lines][guard]") {
+TEST_CASE("a page that has reported once must go on reporting", "[lines][guard]") {
   Guard guard = enabled_guard();
   for (std::int64_t t = 0; t < 5000; t += 10) {
     show_life(guard, t * ms);
@@ -128,8 +130,10 @@ TEST_CASE("a page that has reported once must keep reporting", "[lines][guard]")
   CHECK_FALSE(guard.arm(9000 * ms));
 }
 
-TEST_CASE("an enable line that does not follow is a fault; one that stays high ends the heartbeat as well",
-          "[lines][guard]") {
+TEST_CASE(
+    "an enable line that does not follow its command is a fault; if it stays high, the heartbeat ends as "
+    "well",
+    "[lines][guard]") {
   Guard guard = enabled_guard();
   guard.enable_line(1 * ms, true);
   CHECK(guard.state() == AmplifierState::enabled);

@@ -21,7 +21,7 @@ TEST_CASE("an input device that can be read but not written is reported with the
   CHECK(devices.refused == std::vector<std::string>{folder / "event1" + ": Is a directory"});
 }
 
-TEST_CASE("a machine without input devices has none to report", "[lines][probe]") {
+TEST_CASE("on a machine without input devices the probe reports nothing", "[lines][probe]") {
   const auto devices = try_input_devices("/no/such/folder");
   CHECK(devices.opened == 0);
   CHECK(devices.refused.empty());

@@ -149,7 +149,7 @@ int rounds() {
 
 }  // namespace
 
-TEST_CASE("the line is never high with an active fault or stop, wherever a caller is held up",
+TEST_CASE("the enable line is never high during a fault or stop, wherever a calling thread is held up",
           "[lines][amplifier][threads]") {
   Bench bench;
   auto& amplifier = *bench.amplifier;
@@ -186,7 +186,7 @@ TEST_CASE("the line is never high with an active fault or stop, wherever a calle
   CHECK(high_when_held > rounds() / 4);  // negative control: the line was high in enough rounds
 }
 
-TEST_CASE("what switches the line off takes effect although its caller is held up inside the call",
+TEST_CASE("a call that switches the amplifier off takes effect even if its thread is held up inside the call",
           "[lines][amplifier][threads]") {
   for (int way = 0; way < 3; ++way)
     for (int hold_at = 1; hold_at < 4; ++hold_at) {

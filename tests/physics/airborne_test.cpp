@@ -58,7 +58,7 @@ std::complex<double> by_midpoints(const Surface& surface, const Tone& tone, Mode
 
 }  // namespace
 
-TEST_CASE("the sound on a piston's axis is the closed form's, near and far", "[physics][airborne]") {
+TEST_CASE("the sound on a piston's axis agrees with the closed form, near and far", "[physics][airborne]") {
   const double f = 30000, a = 0.02, u = 1e-6;
   const Air air;
   const double omega = 2 * pi * f, k = omega / air.speed_m_s;
@@ -73,7 +73,7 @@ TEST_CASE("the sound on a piston's axis is the closed form's, near and far", "[p
   CHECK_THROWS_AS(radiated_pressure_Pa(sources, 0, {&far, 1}), std::invalid_argument);
 }
 
-TEST_CASE("the integral over a strip is that on a far finer grid, at the ear and close by",
+TEST_CASE("the integral over a strip agrees with one on a far finer grid, at the ear and close to the strip",
           "[physics][airborne]") {
   const auto plate = aluminium_plate();
   for (const double f : {22400.0, 45000.0}) {
@@ -88,8 +88,10 @@ TEST_CASE("the integral over a strip is that on a far finer grid, at the ear and
   }
 }
 
-TEST_CASE("no place at that distance or beyond is louder than the loudest one by 0.3 dB",
-          "[physics][airborne]") {
+TEST_CASE(
+    "no place at the given distance or beyond is more than 0.3 dB louder than the loudest place that is "
+    "reported",
+    "[physics][airborne]") {
   const auto plate = aluminium_plate();
   const double distance = 0.4;
   for (const double f : {22400.0, 31000.0, 45000.0}) {
@@ -118,8 +120,10 @@ TEST_CASE("no place at that distance or beyond is louder than the loudest one by
   }
 }
 
-TEST_CASE("the level follows the displacement, and a distance inside the first Fresnel zone is refused",
-          "[physics][airborne]") {
+TEST_CASE(
+    "the sound level follows the displacement, and a distance too short for the first Fresnel zone is "
+    "refused",
+    "[physics][airborne]") {
   const auto plate = aluminium_plate();
   const auto soft = loudest_sound(plate, {30000, 1e-7, 0}, Model::mode, 0.4),
              loud = loudest_sound(plate, {30000, 1e-6, 0}, Model::mode, 0.4);

@@ -7,7 +7,9 @@
 
 using namespace turnpoint::physics;
 
-TEST_CASE("Ai and its derivative match a fifty-digit table to rounding on both sides", "[physics][oracle]") {
+TEST_CASE(
+    "Ai and its derivative match a table computed with fifty digits, for positive and negative arguments",
+    "[physics][oracle]") {
   const auto rows = turnpoint::physics_test::oracle("airy.csv");
   REQUIRE(rows.size() > 100);
   for (const auto& row : rows) {

@@ -36,7 +36,7 @@ long allocated_by(const CentreLine& line, std::size_t points) {
 
 }  // namespace
 
-TEST_CASE("no model allocates per point of a profile", "[physics]") {
+TEST_CASE("evaluating a profile allocates no memory per point, with any model", "[physics]") {
   for (const bool plate : {false, true}) {
     Surface surface = plate ? aluminium_plate() : seed_brass();
     surface.quality_factor = 60;
@@ -49,7 +49,7 @@ TEST_CASE("no model allocates per point of a profile", "[physics]") {
   }
 }
 
-TEST_CASE("a field of one tone takes one solution of its model", "[physics]") {
+TEST_CASE("the field of one tone solves its model only once", "[physics]") {
   Surface surface = seed_brass();
   surface.quality_factor = 60;
   const Tone tone{30e3, 1, 0};
@@ -71,7 +71,7 @@ TEST_CASE("a field of one tone takes one solution of its model", "[physics]") {
   }
 }
 
-TEST_CASE("a look-up in a map allocates nothing", "[physics]") {
+TEST_CASE("a look-up in a boundary map allocates no memory", "[physics]") {
   const BoundaryMap map(seed_brass(), {Edge::percent(0.5), {}, {}, {}});
   const long before = allocations;
   double sum = 0;

@@ -28,7 +28,7 @@ bool finite(const Field& field) {
 
 }  // namespace
 
-TEST_CASE("normalising sets the drive edge, the last maximum or metres", "[physics]") {
+TEST_CASE("normalising sets the drive edge or the last maximum to one, or leaves metres", "[physics]") {
   Surface s = seed_brass();
   s.quality_factor = 60;
   const Tone tone{19600, 2e-6, 0};
@@ -45,7 +45,8 @@ TEST_CASE("normalising sets the drive edge, the last maximum or metres", "[physi
   CHECK(drive_amplitude_m(s, 19600, 1e-6) == Approx(1e-6 / drive.tones[0].info.gain).epsilon(1e-12));
 }
 
-TEST_CASE("a tone's phase turns its displacement, and several tones add in power", "[physics]") {
+TEST_CASE("a tone's phase rotates its complex displacement, and the powers of several tones add",
+          "[physics]") {
   Surface s = seed_brass();
   s.quality_factor = 60;
   const Tone tones[] = {{20000, 1e-6, 0}, {21500, 0.5e-6, 1.0}};
@@ -58,7 +59,7 @@ TEST_CASE("a tone's phase turns its displacement, and several tones add in power
   }
 }
 
-TEST_CASE("points in any order give the values that ascending points give", "[physics]") {
+TEST_CASE("points in any order give the same values as ascending points", "[physics]") {
   const Surface s = seed_brass();
   const Tone tone{30000, 1, 0};
   const std::vector<double> up{0, 0.01, 0.1, 0.2, 0.25, 0.29, 0.3}, down(up.rbegin(), up.rend());
@@ -67,7 +68,7 @@ TEST_CASE("points in any order give the values that ascending points give", "[ph
   for (std::size_t i = 0; i < up.size(); ++i) CHECK(a.amplitude[i] == b.amplitude[up.size() - 1 - i]);
 }
 
-TEST_CASE("nothing is ever infinite or undefined, from a strip to a steep wedge, from Q 1 to lossless",
+TEST_CASE("no value is infinite or undefined, from a strip to a steep wedge and from Q = 1 to no loss",
           "[physics]") {
   const double infinite = std::numeric_limits<double>::infinity();
   for (const double d : {0.0, 1e-6, 0.001, 0.03, 0.5, 1.0}) {
@@ -98,7 +99,8 @@ TEST_CASE("nothing is ever infinite or undefined, from a strip to a steep wedge,
   }
 }
 
-TEST_CASE("below cut-off, and with strong loss, no last maximum is an answer with a reason", "[physics]") {
+TEST_CASE("below the cut-off, and with strong loss, the field says why there is no last maximum",
+          "[physics]") {
   Surface s = seed_brass();
   const ToneInfo below = tone_info(s, 6000);
   CHECK_FALSE(below.turning_point_m);
@@ -113,7 +115,7 @@ TEST_CASE("below cut-off, and with strong loss, no last maximum is an answer wit
   CHECK(lossy.no_peak_reason.find("loss") != std::string::npos);
 }
 
-TEST_CASE("near a zero of v(0) the conditioning and a warning say so", "[physics]") {
+TEST_CASE("near a zero of v(0), the conditioning number and a warning report it", "[physics]") {
   const Surface s = seed_brass();
   const double resonance = nearest_resonance_Hz(s, 19600).value();
   const Tone tone{resonance * (1 + 1e-7), 1, 0};
@@ -127,7 +129,7 @@ TEST_CASE("near a zero of v(0) the conditioning and a warning say so", "[physics
   CHECK(evaluate(s, {&tone, 1}, {&x, 1}, Model::mode, Normalise::peak).tones[0].info.conditioning == 1);
 }
 
-TEST_CASE("levels equalised by the drive amplitude are equal at every boundary's last maximum", "[physics]") {
+TEST_CASE("drive_amplitude_m gives every boundary the same displacement at its last maximum", "[physics]") {
   for (const Surface& s : {aluminium_plate(), [] {
                              Surface b = seed_brass();
                              b.quality_factor = 60;
@@ -142,7 +144,7 @@ TEST_CASE("levels equalised by the drive amplitude are equal at every boundary's
   }
 }
 
-TEST_CASE("uniform follows the corrected mode to the published errors", "[physics]") {
+TEST_CASE("the model uniform agrees with the corrected mode within the published errors", "[physics]") {
   for (const auto& [d, allowed] : {std::pair{0.1, 6e-4}, std::pair{0.5, 4e-3}}) {
     Surface s = seed_brass();
     s.taper = LinearTaper{0.03, d};
@@ -163,7 +165,7 @@ TEST_CASE("uniform follows the corrected mode to the published errors", "[physic
   }
 }
 
-TEST_CASE("impossible requests are refused by name", "[physics]") {
+TEST_CASE("impossible requests are refused, and the message names the quantity", "[physics]") {
   const Surface s = seed_brass();
   const Tone tone{20e3, 1, 0}, silent{20e3, 0, 0};
   const double x = 0.1, outside = 0.31;

@@ -30,7 +30,8 @@ TEST_CASE("the paper's four figures have their turning points and finite curves"
   }
 }
 
-TEST_CASE("the corrected mode differs from equation 11 by the flux, not by the place", "[physics]") {
+TEST_CASE("relative to the last maximum, equation 11 is larger at the drive edge than the corrected mode",
+          "[physics]") {
   const auto all = figures();
   const auto& panel = all[0].panels[0];
   const auto& seed = panel.curves[1].value;

@@ -6,14 +6,15 @@
 
 using namespace turnpoint::physics;
 
-TEST_CASE("squeeze film overpressure has its small and large excursion limits", "[physics]") {
+TEST_CASE("the overpressure of a squeeze film has the right limits for small and large excursions",
+          "[physics]") {
   CHECK(squeeze_film_overpressure(1e-6) == Approx(1.25e-12).epsilon(1e-9));
   CHECK(squeeze_film_overpressure(0.5) == Approx(std::sqrt(1.375 / 0.75) - 1).epsilon(1e-14));
   CHECK(squeeze_film_overpressure(0) == 0);
   CHECK_THROWS_AS(squeeze_film_overpressure(1), std::invalid_argument);
 }
 
-TEST_CASE("load sharing gives the published friction at each amplitude", "[physics]") {
+TEST_CASE("the load-sharing model gives the published friction at each amplitude", "[physics]") {
   LoadSharing model;
   model.floor = 0;
   const FrictionMap bare(model);
@@ -26,7 +27,7 @@ TEST_CASE("load sharing gives the published friction at each amplitude", "[physi
   CHECK(FrictionMap().illustrative());
 }
 
-TEST_CASE("amplitude to friction and back closes to 1e-9", "[physics]") {
+TEST_CASE("converting an amplitude to friction and back reproduces it to 1e-9", "[physics]") {
   const FrictionMap sharing;
   const FrictionMap table({{0, 1, 0}, {0.3e-6, 0.8, 0.02}, {1e-6, 0.4, 0.03}, {2e-6, 0.3, 0.03}});
   CHECK_FALSE(table.illustrative());
@@ -47,13 +48,14 @@ TEST_CASE("amplitude to friction and back closes to 1e-9", "[physics]") {
   }
 }
 
-TEST_CASE("a friction table must fall from one at rest", "[physics]") {
+TEST_CASE("a friction table must begin with 1 at rest and fall", "[physics]") {
   CHECK_THROWS_AS(FrictionMap(std::vector<FrictionPoint>{{0, 1, 0}}), std::invalid_argument);
   CHECK_THROWS_AS(FrictionMap({{0, 0.9, 0}, {1e-6, 0.5, 0}}), std::invalid_argument);
   CHECK_THROWS_AS(FrictionMap({{0, 1, 0}, {1e-6, 0.5, 0}, {2e-6, 0.6, 0}}), std::invalid_argument);
 }
 
-TEST_CASE("a fingertip averages a sine by its sinc and leaves a line as it is", "[physics]") {
+TEST_CASE("averaging over a fingertip multiplies a sine by its sinc and leaves a straight line unchanged",
+          "[physics]") {
   std::vector<double> x, line, wave;
   for (int i = 0; i <= 6000; ++i) {
     x.push_back(0.3 * i / 6000);

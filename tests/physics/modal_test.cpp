@@ -9,7 +9,8 @@
 
 using namespace turnpoint::physics;
 
-TEST_CASE("modes, driven by an exact wedge mode along the straight edge, is that mode", "[physics][oracle]") {
+TEST_CASE("the model modes reproduces the exact mode of a wedge that drives its straight edge",
+          "[physics][oracle]") {
   // Rows of the table of make_wedge.py: slope, frequency, then J_nu(k r) cos(nu theta) along the drive edge
   // as even Chebyshev values, then at points of the centre line.
   for (const auto& row : turnpoint::physics_test::oracle("wedge.csv")) {
@@ -54,14 +55,16 @@ TEST_CASE("modes, driven by an exact wedge mode along the straight edge, is that
   }
 }
 
-TEST_CASE("the last maximum of modes is the wedge's within hundredths of a millimetre", "[physics]") {
+TEST_CASE("the last maximum of the model modes agrees with that of a wedge within hundredths of a millimetre",
+          "[physics]") {
   Surface s = seed_brass();
   s.quality_factor = 60;
   const auto two = make_centre_line(s, 19600, Model::modes), one = make_centre_line(s, 19600, Model::mode);
   CHECK(std::abs(*two->last_peak_m() - *one->last_peak_m()) < 2e-6);
 }
 
-TEST_CASE("refining modes changes a curved taper's field by less than 1e-4", "[physics]") {
+TEST_CASE("a finer resolution of the model modes changes the field of a curved taper by less than 1e-4",
+          "[physics]") {
   Surface s = seed_brass();
   s.quality_factor = 60;
   s.taper = ExponentialTaper{0.03, 0.12};
@@ -80,7 +83,7 @@ TEST_CASE("refining modes changes a curved taper's field by less than 1e-4", "[p
   CHECK(worst < 1e-4 * most);
 }
 
-TEST_CASE("the plate's element matrix is the integral of two mapped Laplacians", "[physics]") {
+TEST_CASE("the element matrix of a plate equals the integral of the product of two Laplacians", "[physics]") {
   // The reference differentiates X(x) Y(y) directly in x and y, with X a basis function of the element and Y
   // a transverse one.
   Surface s = aluminium_plate();
@@ -130,7 +133,8 @@ TEST_CASE("the plate's element matrix is the integral of two mapped Laplacians",
   }
 }
 
-TEST_CASE("a clamped strip carries waves of the clamped dispersion's length", "[physics]") {
+TEST_CASE("waves on a clamped strip have the wavelength that the dispersion of a clamped strip gives",
+          "[physics]") {
   // Dispersion of a clamped strip: q1 tan(q1 W) + q2 tanh(q2 W) = 0, q1^2 = b^2 - kx^2, q2^2 = b^2 + kx^2.
   Surface s = aluminium_plate();
   s.taper = LinearTaper{0.014, 0};
@@ -160,7 +164,7 @@ TEST_CASE("a clamped strip carries waves of the clamped dispersion's length", "[
   CHECK(M_PI * (crossings - 1) / (last - first) == Approx(low).epsilon(1e-5));
 }
 
-TEST_CASE("the plate's one-shape mode follows the converged plate, and converges without it", "[physics]") {
+TEST_CASE("the model mode of a plate agrees with the converged plate, and converges itself", "[physics]") {
   const Surface s = aluminium_plate();
   for (const double f : {22.4e3, 30e3, 45e3}) {
     ModalResolution fine;
@@ -175,7 +179,8 @@ TEST_CASE("the plate's one-shape mode follows the converged plate, and converges
   }
 }
 
-TEST_CASE("a tensioned clamped plate is a membrane that is narrower by its boundary layer", "[physics]") {
+TEST_CASE("a clamped plate under tension acts like a membrane that is narrower by the boundary layer",
+          "[physics]") {
   Surface plate = seed_brass();
   plate.quality_factor = 60;
   Surface membrane = plate;
@@ -197,7 +202,7 @@ TEST_CASE("a tensioned clamped plate is a membrane that is narrower by its bound
   }
 }
 
-TEST_CASE("a lossless plate answers without bound at its resonances", "[physics]") {
+TEST_CASE("the response of a lossless plate grows without bound at its resonances", "[physics]") {
   Surface s = aluminium_plate();
   s.quality_factor = std::numeric_limits<double>::infinity();
   const double f = nearest_resonance_Hz(s, 30e3).value();
@@ -210,7 +215,7 @@ TEST_CASE("a lossless plate answers without bound at its resonances", "[physics]
   CHECK(gain(f + 300) < 20);
 }
 
-TEST_CASE("modes of curved tapers, membrane and clamped plate, match collocation of the strong form",
+TEST_CASE("modes of curved tapers, of a membrane and a clamped plate, match a solution by collocation",
           "[physics][oracle]") {
   const auto rows = turnpoint::physics_test::oracle("collocation.csv");
   REQUIRE(rows.size() == 4);

@@ -47,7 +47,7 @@ Case parse(const std::vector<std::string>& row) {
 
 }  // namespace
 
-TEST_CASE("seed and mode match exact solutions at every extreme of taper, loss and truncation",
+TEST_CASE("the models seed and mode match exact solutions for extreme tapers, losses and lengths",
           "[physics][oracle]") {
   const auto rows = oracle("one_mode.csv");
   REQUIRE(rows.size() >= 700);
@@ -86,7 +86,7 @@ TEST_CASE("seed and mode match exact solutions at every extreme of taper, loss a
   CHECK(worst > 1e-4);  // the errors are large enough to be measured
 }
 
-TEST_CASE("the exact solutions tell the two equations apart", "[physics][oracle]") {
+TEST_CASE("the exact solutions of the two equations differ measurably", "[physics][oracle]") {
   // Negative control: eq. 11 differs from the table of the corrected equation by far more than any tolerance
   // of these tests.
   const Case c = parse(oracle("one_mode.csv")[401]);

@@ -109,7 +109,7 @@ int scenes(int usual) {
 
 }  // namespace
 
-TEST_CASE("the true error of every rung lies inside its bound on a thousand random scenes", "[physics]") {
+TEST_CASE("the true error of every model lies inside its bound on a thousand random scenes", "[physics]") {
   Draw draw(20260101);
   const int count = scenes(1000);
   int compared = 0, violated = 0;
@@ -144,7 +144,7 @@ TEST_CASE("the true error of every rung lies inside its bound on a thousand rand
   CHECK(violated <= compared / 1000);
 }
 
-TEST_CASE("the one-shape mode of a clamped plate is bounded on random plates", "[physics]") {
+TEST_CASE("the error of the model mode lies inside its bound on random clamped plates", "[physics]") {
   Draw draw(20260103);
   int compared = 0;
   for (int i = 0; i < 150; ++i) {
@@ -171,7 +171,8 @@ TEST_CASE("the one-shape mode of a clamped plate is bounded on random plates", "
   CHECK(compared > 200);
 }
 
-TEST_CASE("the second mode's resonances on lossless brass lie inside the mode's bound", "[physics]") {
+TEST_CASE("at resonances of the second mode on lossless brass, the error lies inside the bound",
+          "[physics]") {
   const Surface brass = seed_brass();
   double worst = 0;
   for (int i = 0; i <= 120; ++i) {
@@ -196,7 +197,7 @@ TEST_CASE("the second mode's resonances on lossless brass lie inside the mode's 
   CHECK(worst > 0.4);  // large errors were among those tested
 }
 
-TEST_CASE("the planner's choice is inside the tolerance, and the next cheaper rung mostly is not",
+TEST_CASE("the planner's model is inside the tolerance, and the next cheaper model mostly is not",
           "[physics]") {
   Draw draw(20260102);
   const int count = scenes(400);
@@ -231,7 +232,7 @@ TEST_CASE("the planner's choice is inside the tolerance, and the next cheaper ru
   CHECK(needed > planned / 2);
 }
 
-TEST_CASE("positions alone are left to the closed form, with loss too", "[physics]") {
+TEST_CASE("if only positions are needed, the planner chooses the closed form, also with loss", "[physics]") {
   Surface s = seed_brass();
   PlanRequest request;
   request.tones = {Tone{20e3, 1, 0}};

@@ -15,7 +15,8 @@ const auto never = [](const auto&) { return false; };
 
 }  // namespace
 
-TEST_CASE("halving leaves no number between the ends, whichever end is above", "[root]") {
+TEST_CASE("halving ends when no number is left between the ends, whichever end has the positive value",
+          "[root]") {
   const auto is_above = [](double x) { return x * x > 2; };
   const auto falling = [](double x) { return x * x < 2; };
   const auto right = bisect({2, 0}, is_above), left = bisect({0, 2}, falling);
@@ -31,7 +32,7 @@ TEST_CASE("bisection stops at the given width, and near 0 after a fixed number o
   CHECK(bisect({1, 0}, is_above).above == std::ldexp(1.0, -200));
 }
 
-TEST_CASE("Newton's steps find a root to rounding, inside the bracket", "[root]") {
+TEST_CASE("Newton steps find a root to rounding and stay inside the bracket", "[root]") {
   const auto tangent = [](double x) {
     return Tangent{std::cos(x) - x, x + (std::cos(x) - x) / (std::sin(x) + 1)};
   };
@@ -45,8 +46,9 @@ TEST_CASE("Newton's steps find a root to rounding, inside the bracket", "[root]"
   CHECK(std::abs(newton({5, -4}, 3, leaves, close)) < 1e-15);
 }
 
-TEST_CASE("a point of value 0 ends Newton's steps there, and a tangent without a root goes half way",
-          "[root]") {
+TEST_CASE(
+    "Newton steps end at a point where the function is 0, and go to the middle if the tangent has no root",
+    "[root]") {
   int calls = 0;
   const auto tangent = [&calls](double x) {
     ++calls;
@@ -57,7 +59,7 @@ TEST_CASE("a point of value 0 ends Newton's steps there, and a tangent without a
   CHECK(calls == 2);
 }
 
-TEST_CASE("false position needs no more steps where it creeps", "[root]") {
+TEST_CASE("false position needs few steps even if one end hardly moves", "[root]") {
   // With f = x^9 - .5 on [0, 2], plain false position moves only its left end.
   for (const bool halve_values : {false, true}) {
     int calls = 0;
@@ -68,7 +70,7 @@ TEST_CASE("false position needs no more steps where it creeps", "[root]") {
   }
 }
 
-TEST_CASE("false position works on falling functions and stops at what is enough", "[root]") {
+TEST_CASE("false position works on falling functions and stops when the value is small enough", "[root]") {
   int calls = 0;
   const auto f = [&calls](double x) { return ++calls, 1 - x * x; };
   const double x = false_position({0, 1, 3, -8}, f, {8, true}, 1e-6, never);
@@ -79,7 +81,7 @@ TEST_CASE("false position works on falling functions and stops at what is enough
   CHECK(false_position({0, 1, 3, -8}, f, {8, true}, 0, wide) == 1.5);
 }
 
-TEST_CASE("false position takes a value that is not a number as not above 0, and ends", "[root]") {
+TEST_CASE("false position treats NaN as a value that is not above 0, and ends", "[root]") {
   const double x = false_position(
       {0, -1, 1, 1}, [](double) { return kNan; }, {3}, 0, never);
   CHECK((x > 0 && x <= 1));

@@ -12,15 +12,16 @@
 using namespace turnpoint::physics;
 using std::numbers::pi;
 
-TEST_CASE("the seed's brass membrane has the published wave speed and cut-off", "[physics]") {
+TEST_CASE("the brass membrane of the 1998 paper has the published wave speed and cut-off", "[physics]") {
   const Surface s = seed_brass();
   CHECK(wave_speed_m_s(s) == Approx(794.556).epsilon(1e-6));
   CHECK(cut_off_frequency_Hz(s, 0.03) == Approx(6621.30).epsilon(1e-6));
   CHECK_FALSE(bending_modelled(s));
 }
 
-TEST_CASE("a clamped cut-off solves its equation to rounding, and has the plate's and the membrane's limits",
-          "[physics]") {
+TEST_CASE(
+    "the clamped cut-off solves its equation to rounding, and approaches those of a plate and of a membrane",
+    "[physics]") {
   Surface s = aluminium_plate();
   const double stiffness = bending_stiffness_N_m(s).value();
   CHECK(wavenumber_per_m(s, cut_off_frequency_Hz(s, 0.009)) * 0.009 ==
@@ -47,7 +48,7 @@ TEST_CASE("a clamped cut-off solves its equation to rounding, and has the plate'
   CHECK(std::abs(pi / (2 * k) - 0.014) > 0.5 * layer);
 }
 
-TEST_CASE("bending is modelled where it moves a cut-off, and can be forced", "[physics]") {
+TEST_CASE("bending is modelled if it moves a cut-off, and can be switched on and off", "[physics]") {
   Surface s = seed_brass();
   s.modulus_Pa = 100e9;
   s.poisson = 0.34;
@@ -62,14 +63,14 @@ TEST_CASE("bending is modelled where it moves a cut-off, and can be forced", "[p
   CHECK(warned);
 }
 
-TEST_CASE("dispersion inverts, and loss turns the wavenumber by 1/2Q", "[physics]") {
+TEST_CASE("wavenumber and frequency convert into each other without loss of accuracy", "[physics]") {
   Surface s = aluminium_plate();
   for (const double f : {5e3, 22.4e3, 90e3}) {
     CHECK(frequency_for_wavenumber_Hz(s, wavenumber_per_m(s, f)) == Approx(f).epsilon(1e-14));
   }
 }
 
-TEST_CASE("a tabulated taper through a straight line is that line", "[physics]") {
+TEST_CASE("a tabulated taper with points on a straight line equals the linear taper", "[physics]") {
   Surface line = seed_brass(), table = line;
   table.taper = TabulatedTaper{{{0, 0.03}, {0.07, 0.023}, {0.2, 0.01}, {0.3, 1e-9}}};
   const Taper a(line), b(table);
@@ -80,7 +81,7 @@ TEST_CASE("a tabulated taper through a straight line is that line", "[physics]")
   CHECK(b.position_m(0.0151234).value() == Approx(0.148766).epsilon(1e-7));
 }
 
-TEST_CASE("impossible surfaces are refused by name", "[physics]") {
+TEST_CASE("impossible surfaces are refused, and the message names the quantity", "[physics]") {
   const auto refused = [](auto change, const char* word) {
     Surface s = seed_brass();
     change(s);
@@ -100,7 +101,7 @@ TEST_CASE("impossible surfaces are refused by name", "[physics]") {
   CHECK_NOTHROW(validate(seed_brass()));
 }
 
-TEST_CASE("edges and models read back what they write", "[physics]") {
+TEST_CASE("the text that is written for an edge or a model is read back as the same one", "[physics]") {
   for (const char* text : {"turning", "peak", "p70", "p05", "friction=0.8"})
     CHECK(format(parse_edge(text)) == text);
   for (const char* text : {"", "p5", "p00", "p123", "friction=1", "friction=x", "middle"}) {
@@ -110,7 +111,7 @@ TEST_CASE("edges and models read back what they write", "[physics]") {
   CHECK_THROWS_AS(parse_model("fem"), std::invalid_argument);
 }
 
-TEST_CASE("tension above yield is said", "[physics]") {
+TEST_CASE("a tension above the yield strength causes a warning", "[physics]") {
   Surface s = seed_brass();
   CHECK(surface_warnings(s).empty());
   s.yield_strength_Pa = find_material("brass")->yield_strength_Pa;

@@ -36,7 +36,7 @@ double profile_miss(const CentreLine& line, const std::vector<std::string>& row)
 
 }  // namespace
 
-TEST_CASE("mode and modes of a Mindlin taper match its two-dimensional finite elements", "[physics]") {
+TEST_CASE("the models mode and modes of a Mindlin taper match two-dimensional finite elements", "[physics]") {
   int compared = 0;
   double thin = 0;
   for (const auto& row : oracle("mindlin_taper.csv")) {
@@ -59,7 +59,7 @@ TEST_CASE("mode and modes of a Mindlin taper match its two-dimensional finite el
   CHECK(thin > 0.01);  // negative control: a thin plate's boundary is elsewhere
 }
 
-TEST_CASE("the fields of the thick theories become Kirchhoff's for a thin plate", "[physics]") {
+TEST_CASE("for a thin plate, the fields of the thick-plate theories become Kirchhoff's", "[physics]") {
   for (const auto theory : {PlateTheory::mindlin, PlateTheory::elastic}) {
     // 0.1 mm: the cut-off moves by 0.03 mm; a section too stiff in bending moves the edges by several.
     Surface s = plate_of(PlateTheory::kirchhoff, 60);
@@ -75,7 +75,7 @@ TEST_CASE("the fields of the thick theories become Kirchhoff's for a thin plate"
   }
 }
 
-TEST_CASE("a thick plate's tail is continued beyond its elements, without NaN", "[physics]") {
+TEST_CASE("the field of a thick plate continues beyond its last element without NaN", "[physics]") {
   Surface s = plate_of(PlateTheory::mindlin, 60);
   s.taper = LinearTaper{0.03, 0.1};  // to the apex
   const auto line = make_centre_line(s, 30e3, Model::mode);
@@ -88,7 +88,8 @@ TEST_CASE("a thick plate's tail is continued beyond its elements, without NaN", 
   }
 }
 
-TEST_CASE("maps of thick plates put an edge where their own field has it, and know both ways", "[physics]") {
+TEST_CASE("the map of a thick plate agrees with its field, from frequency to position and back",
+          "[physics]") {
   for (const auto theory : {PlateTheory::mindlin, PlateTheory::elastic}) {
     const Surface s = plate_of(theory, 60);
     CAPTURE(name(theory));

@@ -70,7 +70,8 @@ TEST_CASE("Mindlin's cut-off half-width is within 0.2 % of plane strain for h/W 
   CHECK(kirchhoff > 0.05);
 }
 
-TEST_CASE("a 2 mm aluminium plate's cut-off half-widths are those of plane-strain elasticity", "[physics]") {
+TEST_CASE("the cut-off half-widths of a 2 mm aluminium plate agree with plane-strain elasticity",
+          "[physics]") {
   Surface s = aluminium_plate();
   const double kirchhoff[][2] = {{22.4e3, 11.0849e-3}, {33e3, 9.1327e-3}, {45e3, 7.8207e-3}};
   for (const auto& row : kirchhoff) CHECK(cut_off_half_width_m(s, row[0]) == Approx(row[1]).epsilon(1e-5));
@@ -82,7 +83,9 @@ TEST_CASE("a 2 mm aluminium plate's cut-off half-widths are those of plane-strai
   }
 }
 
-TEST_CASE("thick theories become Kirchhoff's for thin plates, and invert to rounding", "[physics]") {
+TEST_CASE(
+    "thick-plate theories become Kirchhoff's for thin plates, and their inverse functions agree to rounding",
+    "[physics]") {
   for (const auto theory : {PlateTheory::mindlin, PlateTheory::elastic}) {
     Surface s = aluminium_plate();
     s.theory = theory;
@@ -140,7 +143,7 @@ TEST_CASE("waves along a clamped strip match other finite elements and collocati
   CHECK(waves == 22);
 }
 
-TEST_CASE("a thick theory is refused where it does not hold", "[physics]") {
+TEST_CASE("a thick-plate theory is refused for surfaces to which it does not apply", "[physics]") {
   Surface s = aluminium_plate();
   s.theory = PlateTheory::mindlin;
   CHECK_NOTHROW(validate(s));
@@ -157,8 +160,10 @@ TEST_CASE("a thick theory is refused where it does not hold", "[physics]") {
   CHECK_THROWS_AS(parse_plate_theory("thick"), std::invalid_argument);
 }
 
-TEST_CASE("the shift by shear is Kirchhoff's distance from elasticity, and the theory follows the tolerance",
-          "[physics]") {
+TEST_CASE(
+    "shear_shift_m gives the distances between the boundaries of the plate theories, and the tolerance "
+    "decides the theory",
+    "[physics]") {
   // 10.3 and 14.7 mm by plane-strain finite elements of this plate.
   Surface s = aluminium_plate();
   const auto to_elastic = [&](double f) {

@@ -10,7 +10,7 @@
 
 using namespace turnpoint::physics;
 
-TEST_CASE("non-negative least squares meets its optimality conditions", "[physics]") {
+TEST_CASE("the solution of non-negative least squares meets the optimality conditions", "[physics]") {
   // A matrix with correlated columns, the same in every run.
   const std::size_t rows = 60, columns = 12;
   std::vector<double> a, b;
@@ -36,7 +36,8 @@ TEST_CASE("non-negative least squares meets its optimality conditions", "[physic
   CHECK(active < static_cast<int>(columns));  // but not all
 }
 
-TEST_CASE("profiles are reachable as far as physics lets them be", "[physics]") {
+TEST_CASE("profiles that fall with x can be designed, and others are reported as not reachable",
+          "[physics]") {
   Surface s = seed_brass();
   s.quality_factor = 60;
   const auto residual = [&](auto shape) {
@@ -57,7 +58,7 @@ TEST_CASE("profiles are reachable as far as physics lets them be", "[physics]") 
   CHECK_FALSE(band.reachable);
 }
 
-TEST_CASE("a zone has the friction asked for inside and ends at the boundary asked for", "[physics]") {
+TEST_CASE("a zone has the requested friction inside and ends at the requested boundary", "[physics]") {
   const Surface s = aluminium_plate();
   const FrictionMap friction;
   for (const char* edge : {"turning", "p50", "friction=0.8"}) {
@@ -100,7 +101,7 @@ TEST_CASE("a zone has the friction asked for inside and ends at the boundary ask
   }
 }
 
-TEST_CASE("zones that cannot be are refused with what is allowed", "[physics]") {
+TEST_CASE("impossible zones are refused, and the message says what is allowed", "[physics]") {
   const Surface s = aluminium_plate();
   ZoneRequest request;
   request.from_m = 0.06;
@@ -118,7 +119,7 @@ TEST_CASE("zones that cannot be are refused with what is allowed", "[physics]") 
   CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), std::invalid_argument);
 }
 
-TEST_CASE("Schroeder's phases lower the crest factor of a comb, zero phase has its full height",
+TEST_CASE("Schroeder's phases lower the crest factor of a comb of tones, which is highest with equal phases",
           "[physics]") {
   for (const int n : {4, 8, 16, 32}) {
     std::vector<Tone> tones;
@@ -133,7 +134,7 @@ TEST_CASE("Schroeder's phases lower the crest factor of a comb, zero phase has i
   CHECK(crest_factor({&one, 1}) == Approx(std::sqrt(2.0)));
 }
 
-TEST_CASE("audible products of two tones are their difference and third-order ones below 20 kHz",
+TEST_CASE("the audible products of two tones are their difference and the third-order products below 20 kHz",
           "[physics]") {
   const Tone tones[] = {{30e3, 1, 0}, {41e3, 1, 0}};
   const auto products = audible_products(tones);

@@ -40,7 +40,7 @@ double edge_of_field_m(const physics::Surface& surface, const physics::MapOption
 
 }  // namespace
 
-TEST_CASE("a planned tone has its edge where the scene wants it, within the stated bound", "[scene]") {
+TEST_CASE("a planned tone has its edge at the scene's boundary, within the stated bound", "[scene]") {
   const auto rig = simulated();
   Planner planner(rig);
   for (const char* edge : {"p50", "p10", "peak", "friction=0.8"}) {
@@ -72,7 +72,7 @@ TEST_CASE("map, plan and field agree on a p50 edge within 0.01 mm", "[scene]") {
   }
 }
 
-TEST_CASE("a zone's bound is that of the first mode, by which it is designed", "[scene]") {
+TEST_CASE("the error bound of a zone is that of the first mode, with which the zone is designed", "[scene]") {
   Planner planner(simulated());
   auto scene = edge_at(0.160, "p50");
   scene.displacement_m.reset();
@@ -87,7 +87,7 @@ TEST_CASE("a zone's bound is that of the first mode, by which it is designed", "
   CHECK(miss_m > 1e-6);  // negative control: field and first mode do not agree exactly
 }
 
-TEST_CASE("a tone's level is that of the chosen model, whatever the rove", "[scene]") {
+TEST_CASE("roving changes the displacement of a planned tone by exactly the roved decibels", "[scene]") {
   Planner planner(simulated());
   auto scene = edge_at(0.150, "p50");
   scene.rove_dB = -2;
@@ -95,7 +95,10 @@ TEST_CASE("a tone's level is that of the chosen model, whatever the rove", "[sce
   CHECK(plan.tones.at(0).displacement_m == Approx(1e-6 * std::pow(10, -0.1)).epsilon(1e-6));
 }
 
-TEST_CASE("a plan on a rig that leaves the theory open is Kirchhoff's only within the tolerance", "[scene]") {
+TEST_CASE(
+    "if the rig leaves the plate theory open, the plan uses Kirchhoff's only if its error is within the "
+    "tolerance",
+    "[scene]") {
   auto rig = simulated();
   auto scene = edge_at(0.150, "p50");
   scene.tolerance = {20e-3, {}, {}};

@@ -30,7 +30,7 @@ TEST_CASE("the limit is 75 dB in the third-octave bands up to 20 kHz and 110 dB 
   CHECK(terms::allowed_sound_dB(22400) == 110);
 }
 
-TEST_CASE("the powers of tones in one third-octave band add up, those of different bands do not",
+TEST_CASE("the powers of tones in one third-octave band add up, but not those of tones in different bands",
           "[scene][sound]") {
   const auto rig = quick_rig();
   const physics::Tone low{30000, 1e-6, 0}, near{32000, 1e-6, 0}, far{44000, 1e-7, 0};
@@ -54,7 +54,7 @@ TEST_CASE("the band that exceeds its limit most is reported, even if another is 
   CHECK(bound.allowed_dB == 75);
 }
 
-TEST_CASE("without a tone there is no sound, and for a surface too wide for the bound none is stated",
+TEST_CASE("without a tone there is no sound, and for a surface too wide for the bound no level is stated",
           "[scene][sound]") {
   auto rig = quick_rig();
   const physics::Tone tone{44000, 1e-6, 0}, silent{44000, 0, 0};

@@ -69,7 +69,8 @@ std::vector<records::TrialRow> trials_of(const session::Setup& setup, const std:
 
 }  // namespace
 
-TEST_CASE("a slider keeps to its steps and its range, and the surface follows at its own pace", "[session]") {
+TEST_CASE("a slider stays on its steps and in its range, and the surface follows at a limited pace",
+          "[session]") {
   trial::Slider slider({-25, 25, 0.5, -30, 30}, -20);
   CHECK_FALSE(slider.glide_due_ns());
   slider.move(3.3);
@@ -86,7 +87,8 @@ TEST_CASE("a slider keeps to its steps and its range, and the surface follows at
   CHECK(slider.setting() == 25);
 }
 
-TEST_CASE("settings come from their file into rows, with what the surface did", "[session]") {
+TEST_CASE("a protocol file with a slider gives rows with each setting and the movements of the surface",
+          "[session]") {
   const Folder folder;
   const auto setup = setup_in(folder, "sim:threshold=2,bias=4,lapse=0");
   session::Inputs inputs;
@@ -119,7 +121,7 @@ TEST_CASE("settings come from their file into rows, with what the surface did", 
   CHECK(*trials.back().threshold_est == Approx(sum / 18));
 }
 
-TEST_CASE("the same setting stands elsewhere on the screen from trial to trial", "[session]") {
+TEST_CASE("the same setting has a different place on the screen from trial to trial", "[session]") {
   const Folder folder;
   session::Inputs inputs;
   Pages pages;
@@ -135,7 +137,7 @@ TEST_CASE("the same setting stands elsewhere on the screen from trial to trial",
   CHECK(lows.size() > 5);
 }
 
-TEST_CASE("an adjustment that was interrupted goes on with the same settings", "[session]") {
+TEST_CASE("an interrupted adjustment continues with the same settings", "[session]") {
   const Folder folder;
   const auto setup = setup_in(folder, "sim:bias=3");
   session::Inputs inputs;
@@ -274,7 +276,9 @@ TEST_CASE("while the slider moves, the operator's page shows the tone that is pl
   }
 }
 
-TEST_CASE("the mean of settings estimates the point of equality, their scatter its SD", "[procedure]") {
+TEST_CASE(
+    "the mean of settings estimates the point of subjective equality, and their scatter estimates its SD",
+    "[procedure]") {
   procedure::Spec spec;
   spec.name = "settings", spec.level = "offset_mm", spec.kind = procedure::Kind::adjustment;
   spec.values = {-20, 20}, spec.repeats = 2;

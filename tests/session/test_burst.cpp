@@ -14,7 +14,7 @@ drive::Burst one_second() {
 
 }  // namespace
 
-TEST_CASE("a burst carries the rig's marker, and none that outlasts it", "[session]") {
+TEST_CASE("a burst gets the rig's marker, which never lasts longer than the burst", "[session]") {
   rig::Marker marker;
   marker.channel = 1, marker.kind = rig::Marker::Kind::tone, marker.frequency_Hz = 5000,
   marker.duration_s = 2e-3;
@@ -28,7 +28,7 @@ TEST_CASE("a burst carries the rig's marker, and none that outlasts it", "[sessi
   CHECK(burst.marker.frames == burst.length_frames);
 }
 
-TEST_CASE("masking noise differs from interval to interval by its seed alone", "[session]") {
+TEST_CASE("masking noise differs from interval to interval only in its seed", "[session]") {
   auto first = one_second(), second = first;
   session::mask(first, {1, 0.05, 200, 4000}, 7);
   session::mask(second, {1, 0.05, 200, 4000}, 8);

@@ -69,7 +69,7 @@ struct Trial {
 }  // namespace
 
 TEST_CASE(
-    "intervals are played when they were predicted, at the protocol's distances, whatever buffer and scene",
+    "intervals are played at their predicted times and at the protocol's distances, for any buffer and scene",
     "[session][card]") {
   for (const auto* name : {"friction-2ifc", "two-spots-oddity"})
     for (const auto& buffer : kBuffers) {
@@ -98,7 +98,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a scene of twenty tones, whose peak has to be rendered, is played at its distance from one of one tone",
+    "a scene of twenty tones, whose peak must be rendered first, follows a scene of one tone at the right "
+    "distance",
     "[session][card]") {
   for (const auto& buffer : kBuffers) {
     INFO(buffer.periods << " periods of " << buffer.period_frames);
@@ -126,7 +127,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a stop between two intervals cancels the second, and nothing of it is played", "[session][card]") {
+TEST_CASE("a stop between two intervals cancels the second, so that nothing of it is played",
+          "[session][card]") {
   drive::reset_fake_pcm();
   fake_pcm().recorded_channel = 1;
   const auto rig = marked_rig(384, 4);
@@ -142,8 +144,10 @@ TEST_CASE("a stop between two intervals cancels the second, and nothing of it is
   CHECK(pulses().size() == 1);
 }
 
-TEST_CASE("on a converter that is gone nothing is scheduled, and silence is no earlier than now",
-          "[session][card]") {
+TEST_CASE(
+    "if the converter is lost, nothing is scheduled, and the surface counts as silent from now at the "
+    "earliest",
+    "[session][card]") {
   drive::reset_fake_pcm();
   const auto rig = marked_rig(384, 4);
   const auto protocol = protocol::load(source + "/protocols/friction-2ifc.toml");
@@ -281,8 +285,9 @@ struct CardSession {
 
 }  // namespace
 
-TEST_CASE("of a converter that is lost amid a stimulus, what was played until then is booked, and no more",
-          "[session][card][fault]") {
+TEST_CASE(
+    "if the converter is lost during a stimulus, exactly what was played until then is counted as exposure",
+    "[session][card][fault]") {
   CardSession card;
   card.first_answered = false;
   card.repair_s = 2.5;
@@ -323,8 +328,9 @@ TEST_CASE("of a converter that is lost amid a stimulus, what was played until th
         static_cast<std::ptrdiff_t>(card.faults.size()) - 1);
 }
 
-TEST_CASE("a trial is void a second after a converter should have said that it was played",
-          "[session][card][fault]") {
+TEST_CASE(
+    "if the converter does not report that a stimulus was played, the trial becomes void after a second",
+    "[session][card][fault]") {
   CardSession card;
   card.reacts = [&](const session::Page& page) {
     if (page.kind == PageKind::stimulus && card.room.stimuli == 2) fake_pcm().stamps = false;
@@ -344,7 +350,7 @@ TEST_CASE("a trial is void a second after a converter should have said that it w
   CHECK(faults[0].time_ns - silent_ns == Approx(1e9).margin(2e7));
 }
 
-TEST_CASE("a converter that does not say where it is gets no stimulus", "[session][card][fault]") {
+TEST_CASE("a converter that does not report its position gets no stimulus", "[session][card][fault]") {
   CardSession card;
   card.reacts = [&](const session::Page& page) {
     // After the restart the station needs new positions of the card, which it does not get.
@@ -359,8 +365,7 @@ TEST_CASE("a converter that does not say where it is gets no stimulus", "[sessio
   CHECK(live_room::events_of(card.setup.database, card.summary, "stimulus").size() == 2);
 }
 
-TEST_CASE("what is reported late of a repeated trial says nothing about the next one",
-          "[session][card][fault]") {
+TEST_CASE("late reports about a repeated trial do not count for the next one", "[session][card][fault]") {
   CardSession card;
   card.first_answered = false;
   card.reacts = [&](const session::Page& page) {

@@ -133,7 +133,7 @@ TEST_CASE("an enable line that does not follow causes a fault page", "[session][
   CHECK(page.detail == "the line was set high but reads low");
 }
 
-TEST_CASE("lines that are gone have their page", "[session][live][fault]") {
+TEST_CASE("lost GPIO lines cause a fault page", "[session][live][fault]") {
   Mishap mishap;
   mishap.strikes = [&] {
     mishap.chip_gone = true;

@@ -63,7 +63,7 @@ std::map<int, std::int64_t> onsets(const records::TrialRow& trial) {
 
 }  // namespace
 
-TEST_CASE("the pause between intervals is the protocol's to the frame, whatever the buffer and the scene",
+TEST_CASE("the pause between intervals is exactly the protocol's, to the frame, for any buffer and scene",
           "[session][intervals]") {
   for (const auto& buffer : kBuffers)
     for (const auto& [name, apart_s] :
@@ -80,7 +80,7 @@ TEST_CASE("the pause between intervals is the protocol's to the frame, whatever 
     }
 }
 
-TEST_CASE("a scene of twenty tones, whose peak has to be rendered, does not stretch the pause",
+TEST_CASE("a scene of twenty tones, whose peak must be rendered first, does not lengthen the pause",
           "[session][intervals]") {
   const TemporaryFolder folder;
   std::ofstream(folder / "many.toml") << many_tones::protocol_text();
@@ -116,7 +116,7 @@ TEST_CASE("the converter's delay is part of every stored onset", "[session][inte
   }
 }
 
-TEST_CASE("simulated sessions have the latency of the rig's buffer", "[session][intervals]") {
+TEST_CASE("simulated sessions include the latency of the rig's buffer", "[session][intervals]") {
   // A move of the slider reaches the surface one buffer later, so the onset of the last setting is later by
   // the difference of the buffers.
   const auto short_ = session_of(shipped("boundary-adjustment"), kBuffers[0], 0),

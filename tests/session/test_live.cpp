@@ -18,7 +18,7 @@
 using namespace turnpoint;
 using namespace turnpoint::live_room;
 
-TEST_CASE("a live session goes from the operator's arming to answers by buttons, and ends disarmed",
+TEST_CASE("a live session runs from the operator's arming to answers by buttons, and ends disarmed",
           "[session][live]") {
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
@@ -60,7 +60,7 @@ TEST_CASE("a live session goes from the operator's arming to answers by buttons,
   CHECK(events_of(setup.database, summary, "arm").front().value == "armed");
 }
 
-TEST_CASE("without the operator's arming the amplifier is never enabled", "[session][live]") {
+TEST_CASE("the amplifier is never enabled before the operator arms it", "[session][live]") {
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
@@ -80,8 +80,9 @@ TEST_CASE("without the operator's arming the amplifier is never enabled", "[sess
   CHECK(end.trials_total == 2);  // the number of planned trials, not of finished ones
 }
 
-TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the trial and presents it again",
-          "[session][live]") {
+TEST_CASE(
+    "a stop during a stimulus switches the amplifier off and makes the trial void, and the trial is repeated",
+    "[session][live]") {
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
@@ -119,7 +120,8 @@ TEST_CASE("a stop in the middle of a stimulus turns the amplifier off, voids the
 }
 
 TEST_CASE(
-    "lines that vanish turn the amplifier off; arming is refused until they are back, and then it goes on",
+    "lost GPIO lines switch the amplifier off; arming is refused until they return, and then the session "
+    "continues",
     "[session][live]") {
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
@@ -143,7 +145,7 @@ TEST_CASE(
   CHECK_FALSE(room.lines->level(SharedLines::enable));
 }
 
-TEST_CASE("faults that occur on a fault's page are cleared together with it, not one after another",
+TEST_CASE("faults that occur while a fault page is shown are cleared together with the first one",
           "[session][live]") {
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
@@ -169,7 +171,7 @@ TEST_CASE("faults that occur on a fault's page are cleared together with it, not
   CHECK(std::none_of(paused, room.pages.end(), is(PageKind::fault)));
 }
 
-TEST_CASE("who goes on before the buttons are back is told what is missing", "[session][live]") {
+TEST_CASE("continuing before the lost buttons are back shows the fault page again", "[session][live]") {
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
@@ -210,7 +212,8 @@ TEST_CASE("who goes on before the buttons are back is told what is missing", "[s
   CHECK(glitches[0].value == "right: 2 edges within 0.003 ms");
 }
 
-TEST_CASE("the operator's disarming voids the trial; arming again goes on", "[session][live]") {
+TEST_CASE("disarming by the operator makes the trial void, and arming again continues the session",
+          "[session][live]") {
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
@@ -224,7 +227,8 @@ TEST_CASE("the operator's disarming voids the trial; arming again goes on", "[se
   CHECK(summary.answered == 2);
 }
 
-TEST_CASE("a session whose program fails leaves the amplifier's line low", "[session][live]") {
+TEST_CASE("if the program throws an exception during a session, the amplifier's line goes low",
+          "[session][live]") {
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
@@ -238,7 +242,7 @@ TEST_CASE("a session whose program fails leaves the amplifier's line low", "[ses
   CHECK(enables.back().level == 0);
 }
 
-TEST_CASE("a finger's contacts are logged with their place", "[session][live]") {
+TEST_CASE("contacts of a finger are logged with their place", "[session][live]") {
   const TemporaryFolder folder;
   const auto setup = live_setup(folder / "a.sqlite");
   Room room;
@@ -254,7 +258,7 @@ TEST_CASE("a finger's contacts are logged with their place", "[session][live]") 
   CHECK(contacts.front().value == "1 0.25");
 }
 
-TEST_CASE("the interval between trials stretches to keep the duty, and the log says by how much",
+TEST_CASE("the interval between trials is lengthened to keep the limit of duty, and the log says by how much",
           "[session][live]") {
   const TemporaryFolder folder;
   auto setup = live_setup(folder / "a.sqlite");
@@ -292,7 +296,7 @@ TEST_CASE("the interval between trials stretches to keep the duty, and the log s
   REQUIRE(stretched.size() == 1);
 }
 
-TEST_CASE("a session whose time is used up stops with the reason", "[session][live]") {
+TEST_CASE("a session that has used up its time stops and gives the reason", "[session][live]") {
   const TemporaryFolder folder;
   auto setup = live_setup(folder / "a.sqlite");
   setup.rig.limits.session_minutes = 2.5 / 60;
@@ -303,7 +307,7 @@ TEST_CASE("a session whose time is used up stops with the reason", "[session][li
   CHECK(summary.reason.find("session's time") != std::string::npos);
 }
 
-TEST_CASE("a live session refuses a low tone without a measured sound level, before it sounds",
+TEST_CASE("a live session refuses a low tone without a measured sound level before playing it",
           "[session][live]") {
   const TemporaryFolder folder;
   auto setup = live_setup(folder / "a.sqlite");
@@ -320,8 +324,10 @@ TEST_CASE("a live session refuses a low tone without a measured sound level, bef
   CHECK(room.enables().empty());
 }
 
-TEST_CASE("what a session is allowed to resample nowhere plays through alsa-lib's null device",
-          "[session][live][alsa]") {
+TEST_CASE(
+    "a session plays through alsa-lib's null device if the rig allows its plug-ins, but not through a "
+    "resampler",
+    "[session][live][alsa]") {
   ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
   const TemporaryFolder folder;
   setup::RunRequest request;

@@ -9,7 +9,8 @@
 
 using namespace turnpoint;
 
-TEST_CASE("a rehearsed session has the trials, answers and times of one that ran", "[session][rehearsal]") {
+TEST_CASE("a rehearsed session has the same trials, answers and times as a session that runs",
+          "[session][rehearsal]") {
   const auto* protocol = GENERATE("demo", "boundary-adjustment");
   const TemporaryFolder folder;
   session::Setup setup;

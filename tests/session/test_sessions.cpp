@@ -77,7 +77,7 @@ struct Cut : session::Display {
 
 }  // namespace
 
-TEST_CASE("the demo runs from its file to rows in SQLite", "[session]") {
+TEST_CASE("the demo protocol runs and its trials are stored in SQLite", "[session]") {
   const Folder folder;
   const auto summary = run(request_for("demo", folder / "a.sqlite"));
   CHECK(summary.status == records::SessionStatus::completed);
@@ -117,7 +117,7 @@ TEST_CASE("the shipped same-different protocol runs to its end", "[session]") {
 TEST_CASE("the shipped staircase protocol runs to its end", "[session]") {
   runs_to_its_end("friction-staircase");
 }
-TEST_CASE("the shipped control without touch runs to its end", "[session]") {
+TEST_CASE("the shipped control condition without touch runs to its end", "[session]") {
   runs_to_its_end("no-touch-control");
 }
 TEST_CASE("the shipped speed and accuracy protocol runs to its end", "[session]") {
@@ -140,8 +140,9 @@ TEST_CASE("the same seed gives the same trials and answers", "[session]") {
   }
 }
 
-TEST_CASE("a session cut at any page goes on with the very trial that the unbroken one would have shown",
-          "[session]") {
+TEST_CASE(
+    "a session cut at any page continues with the same trial that the uninterrupted session would have shown",
+    "[session]") {
   const Folder folder;
   const auto whole = run(request_for("demo", folder / "whole.sqlite"));
   const auto expected = trials_of(folder / "whole.sqlite", whole.session_id);
@@ -170,8 +171,9 @@ TEST_CASE("a session cut at any page goes on with the very trial that the unbrok
   }
 }
 
-TEST_CASE("an accelerated stochastic approximation cut in the middle of a track goes on at the same level",
-          "[session]") {
+TEST_CASE(
+    "an accelerated stochastic approximation that is interrupted in a track continues at the same level",
+    "[session]") {
   const Folder folder;
   std::ofstream(folder / "asa.toml") << stochastic_approximation();
   const auto request = [&](const std::string& database) {
@@ -209,7 +211,7 @@ TEST_CASE("an accelerated stochastic approximation cut in the middle of a track 
   }
 }
 
-TEST_CASE("a log that belongs to another protocol text is not continued", "[session]") {
+TEST_CASE("a session log is not continued with a different protocol text", "[session]") {
   const Folder folder;
   Cut cut(30);
   session::Inputs inputs;
@@ -222,7 +224,7 @@ TEST_CASE("a log that belongs to another protocol text is not continued", "[sess
   CHECK_THROWS_AS(session::run(*resumed, nullptr, inputs), std::runtime_error);
 }
 
-TEST_CASE("a log whose factors were combined in another way is not continued", "[session]") {
+TEST_CASE("a session log is not continued if factors would be combined in another way", "[session]") {
   // With the levels of a balanced factor in another order, the staircase is the same but the marks are not.
   const Folder folder;
   Cut cut(60);
@@ -242,7 +244,7 @@ TEST_CASE("a log whose factors were combined in another way is not continued", "
   CHECK(refused.find("other values of the factors") != std::string::npos);
 }
 
-TEST_CASE("bad requests are refused all at once, and nothing is written", "[session]") {
+TEST_CASE("all mistakes in a request are reported at once, and nothing is written", "[session]") {
   const Folder folder;
   auto request = request_for("demo", folder / "a.sqlite");
   request.participant = "Jane Doe";
@@ -257,7 +259,7 @@ TEST_CASE("bad requests are refused all at once, and nothing is written", "[sess
   CHECK_FALSE(fs::exists(folder / "a.sqlite"));
 }
 
-TEST_CASE("a monitor is notified before and after every trial, and changes none", "[session]") {
+TEST_CASE("a monitor is notified before and after every trial and does not change any trial", "[session]") {
   const Folder folder;
   Watch watch;
   session::Inputs inputs;
@@ -275,8 +277,10 @@ TEST_CASE("a monitor is notified before and after every trial, and changes none"
   }
 }
 
-TEST_CASE("the response device's latency and the consent form are stored, and no time is corrected",
-          "[session]") {
+TEST_CASE(
+    "the latency of the response device and the consent form are stored, and response times are not "
+    "corrected",
+    "[session]") {
   const Folder folder;
   auto setup = setup::prepare(request_for("demo", folder / "a.sqlite"));
   setup.response_offset_s = 0.0625;
@@ -297,7 +301,7 @@ TEST_CASE("the response device's latency and the consent form are stored, and no
   CHECK(a.front().response_time_s == b.front().response_time_s);
 }
 
-TEST_CASE("a simulated session is not continued by another simulated observer", "[session]") {
+TEST_CASE("a simulated session is not continued with another simulated observer", "[session]") {
   const Folder folder;
   const auto database = folder / "a.sqlite";
   Cut cut(30);

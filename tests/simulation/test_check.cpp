@@ -7,7 +7,8 @@
 
 using namespace turnpoint;
 
-TEST_CASE("check's estimate is a rehearsed session and the time that people need beside it", "[check]") {
+TEST_CASE("the duration estimated by check is that of a rehearsed session plus the time that people need",
+          "[check]") {
   const std::string root = TURNPOINT_SOURCE_DIR;
   const auto path = root + "/protocols/friction-2ifc.toml";
   const auto check = simulation::check(path, root + "/deploy/rigs/simulated.toml", {1});
@@ -29,7 +30,7 @@ TEST_CASE("check's estimate is a rehearsed session and the time that people need
   CHECK(check.duration_s.median == Approx(rehearsal.duration_s + beside_s));
 }
 
-TEST_CASE("check gives people the time to set a slider", "[check]") {
+TEST_CASE("the duration estimated by check includes time to set a slider", "[check]") {
   const std::string root = TURNPOINT_SOURCE_DIR;
   const auto path = root + "/protocols/boundary-adjustment.toml";
   const auto check = simulation::check(path, root + "/deploy/rigs/simulated.toml", {1});

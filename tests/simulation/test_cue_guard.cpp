@@ -82,8 +82,8 @@ Compared compare(unsigned seed, std::map<std::string, int>& features) {
 }  // namespace
 
 TEST_CASE(
-    "what the guard states is what an observer of one cue reaches in whole sessions, within 2 %, for 200 "
-    "random protocols",
+    "for 200 random protocols, the cue guard's accuracy is within 2 % of that of an observer of one cue in "
+    "whole sessions",
     "[cues]") {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   constexpr int count = 8;  // the release build tests all protocols; with a sanitizer a few are enough
@@ -170,7 +170,8 @@ procedures = ["p"]
 }  // namespace
 
 TEST_CASE(
-    "a standard that depends on a factor, and a target on that and the level, are compared in each trial",
+    "if the standard depends on a factor, and the target on the factor and the level, they are compared in "
+    "each trial",
     "[cues]") {
   const auto guard = guard_of(pair_text);
   CHECK(report(guard, "strip width").accuracy == Approx(1));
@@ -178,7 +179,8 @@ TEST_CASE(
   CHECK(report(guard, "always the same key").accuracy == Approx(0.5));
 }
 
-TEST_CASE("a target that differs in both directions is found by whoever knows the standard", "[cues]") {
+TEST_CASE("an observer who knows the standard recognises a target that differs from it in either direction",
+          "[cues]") {
   const auto both = replaced(pair_text, "values = [4.0, 8.0, 16.0]", "values = [-8.0, 8.0]");
   const auto fixed = replaced(both, "levels = [150.0, 158.0]", "levels = [155.0]");
   CHECK(accuracy(fixed, "strip width") == Approx(1));
@@ -191,14 +193,16 @@ TEST_CASE("a target with ramps of its own is recognised by its duration", "[cues
   CHECK(accuracy(text, "duration") == Approx(0.5));
 }
 
-TEST_CASE("of three intervals a leak finds the odd one always, and chance is a third", "[cues]") {
+TEST_CASE(
+    "with three intervals, a leak always reveals the odd one, and guessing is right in a third of trials",
+    "[cues]") {
   const auto guard = guard_of(source("two-spots-oddity.toml"));
   CHECK(report(guard, "strip width").accuracy == Approx(1));
   CHECK(report(guard, "duration").accuracy == Approx(1.0 / 3));
   CHECK(report(guard, "duration").chance == Approx(1.0 / 3));
 }
 
-TEST_CASE("a mark that stays in one place lets the strip's width tell the side, one that moves less so",
+TEST_CASE("with a fixed mark, the strip's width reveals the side; with a moving mark it reveals less",
           "[cues]") {
   const auto text = source("boundary-constant.toml");
   const auto fixed = guard_of(replaced(text, "levels = [152.0, 158.0, 164.0]", "levels = [158.0]"));
@@ -208,7 +212,8 @@ TEST_CASE("a mark that stays in one place lets the strip's width tell the side, 
   CHECK(report(moving, "always the same key").accuracy == Approx(0.5));
 }
 
-TEST_CASE("an answer that depends on the distance from the mark is found by a band of the cue", "[cues]") {
+TEST_CASE("if the answer depends on the distance from the mark, a band of the cue's values reveals it",
+          "[cues]") {
   auto text =
       replaced(source("boundary-constant.toml"), "levels = [152.0, 158.0, 164.0]", "levels = [158.0]");
   text = replaced(text, "correct = { left = \"offset_mm < 0\", right = \"offset_mm > 0\" }",
@@ -216,7 +221,7 @@ TEST_CASE("an answer that depends on the distance from the mark is found by a ba
   CHECK(accuracy(text, "strip width") == Approx(1));
 }
 
-TEST_CASE("practice is kept apart: its levels neither count nor take those of the main blocks away",
+TEST_CASE("the levels of practice do not count, and they do not remove levels from the main blocks",
           "[cues]") {
   const auto with = guard_of(source("boundary-constant.toml"));
   auto text = source("boundary-constant.toml");
@@ -230,7 +235,7 @@ TEST_CASE("practice is kept apart: its levels neither count nor take those of th
   CHECK(accuracy(source("speed-accuracy.toml"), "amplitude at the wide end") > 0.9);
 }
 
-TEST_CASE("trials are weighted by how often they come, catch trials too", "[cues]") {
+TEST_CASE("all trials, including catch trials, are weighted by how often they occur", "[cues]") {
   const auto text =
       replaced(source("boundary-constant.toml"), "values = [-28.0, -16.0, -8.0, -3.0, 3.0, 8.0, 16.0, 28.0]",
                "values = [-3.0, 3.0, 8.0, 16.0]");
@@ -246,7 +251,7 @@ TEST_CASE("trials are weighted by how often they come, catch trials too", "[cues
   CHECK(accuracy(cut, "always the same key") == Approx(0.75));
 }
 
-TEST_CASE("of a list that is not shuffled and cut short only the first levels count", "[cues]") {
+TEST_CASE("if a list of levels is cut short and not shuffled, only its first levels count", "[cues]") {
   const auto text = replaced(pair_text, "values = [4.0, 8.0, 16.0]",
                              "order = { shuffle = \"none\" }\nvalues = [4.0, 8.0, 0.0]");
   const auto cut = replaced(text, "procedures = [\"p\"]", "procedures = [\"p\"]\ntrials = 2");
@@ -272,8 +277,10 @@ std::string roved_staircase(int trials) {
 
 }  // namespace
 
-TEST_CASE("a cue that helps only with the easiest levels is found in sessions that it leads itself",
-          "[cues]") {
+TEST_CASE(
+    "a cue that helps only at the easiest levels is found in sessions in which its own answers choose the "
+    "levels",
+    "[cues]") {
   const auto guard = guard_of(roved_staircase(60));
   const auto& amplitude = report(guard, "amplitude at the wide end");
   REQUIRE(amplitude.whole_sessions);
@@ -285,7 +292,9 @@ TEST_CASE("a cue that helps only with the easiest levels is found in sessions th
   CHECK(report(guard, "duration").whole_sessions->error == 0);
 }
 
-TEST_CASE("easy practice adds nothing to what a cue reaches in sessions that it leads itself", "[cues]") {
+TEST_CASE(
+    "easy practice does not raise a cue's accuracy in sessions in which its own answers choose the levels",
+    "[cues]") {
   const auto main = std::string("[[block]]\nname = \"main\"");
   const auto practised = replaced(roved_staircase(60), main,
                                   "[[block]]\nname = \"practice\"\nlevel = \"level_mm\"\nlevels = [20.0]\n"
@@ -301,7 +310,8 @@ TEST_CASE("easy practice adds nothing to what a cue reaches in sessions that it 
   CHECK(reached(practised) == Approx(reached(roved_staircase(60))).margin(0.03));
 }
 
-TEST_CASE("what a rule reaches is counted on other draws than those that chose it", "[cues]") {
+TEST_CASE("the accuracy of a rule is measured on other random draws than those that chose the rule",
+          "[cues]") {
   // Roving hides the amplitude, which does not depend on the level. The best of many rules fits only the
   // random draws from which it was chosen.
   std::map<std::string, int> features;
@@ -310,7 +320,8 @@ TEST_CASE("what a rule reaches is counted on other draws than those that chose i
   CHECK(amplitude.accuracy - amplitude.chance < 0.01);
 }
 
-TEST_CASE("two cues share their sessions only if they agree on every level that came up", "[cues]") {
+TEST_CASE("two cues share simulated sessions only if they give the same answers at every level that occurred",
+          "[cues]") {
   // The amplitude cannot distinguish 154.6 mm from 158 mm, but the strip's width can.
   std::map<std::string, int> features;
   const auto guard = guard_of(replaced(tests::random_protocol(31103, features), "\"155\"", "\"154.6\""));
@@ -319,7 +330,7 @@ TEST_CASE("two cues share their sessions only if they agree on every level that 
   CHECK(report(guard, "strip width").whole_sessions->accuracy > 0.995);
 }
 
-TEST_CASE("a count of sessions that had to end early says how little precise it is", "[cues]") {
+TEST_CASE("if the count of sessions had to end early, its precision is stated", "[cues]") {
   const auto error_of = [](const std::string& text) {
     const auto guard = guard_of(text);
     const auto& own = report(guard, "amplitude at the wide end").whole_sessions;
@@ -330,13 +341,14 @@ TEST_CASE("a count of sessions that had to end early says how little precise it 
   CHECK(error_of(replaced(roved_staircase(8), "step = [4.0, 2.0]", "step = [12.0]")) > 0.0125);
 }
 
-TEST_CASE("a procedure that tracks an answer is judged with every level equally often", "[cues]") {
+TEST_CASE("a procedure that tracks an answer instead of correctness is judged with every level equally often",
+          "[cues]") {
   const auto guard = guard_of(source("boundary-adaptive.toml"));
   for (const auto& one : guard.reports) CHECK_FALSE(one.whole_sessions);
   CHECK(report(guard, "strip width").accuracy > 0.9);
 }
 
-TEST_CASE("where trials cannot be compared the guard says which, and states no accuracy", "[cues]") {
+TEST_CASE("if trials cannot be compared, the guard says which and states no accuracy", "[cues]") {
   const auto protocol = protocol::parse(source("friction-2ifc.toml"), "p.toml");
   auto survey = protocol::survey(protocol, quick_rig());
   CHECK(simulation::cue_guard(protocol, quick_rig(), survey).not_compared.empty());
@@ -350,7 +362,7 @@ TEST_CASE("where trials cannot be compared the guard says which, and states no a
   CHECK(guard.not_compared.find("scene \"comparison\" at contrast_dB = ") == 0);
 }
 
-TEST_CASE("a task without right answers has nothing that a cue could tell, and the guard says so", "[cues]") {
+TEST_CASE("for a task without right answers, the guard says that a cue can reveal nothing", "[cues]") {
   const auto guard = guard_of(source("boundary-adjustment.toml"));
   CHECK(guard.reports.empty());
   CHECK(guard.not_compared.empty());

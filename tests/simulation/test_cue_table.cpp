@@ -15,7 +15,7 @@ std::string source(const std::string& name) {
 
 }  // namespace
 
-TEST_CASE("the cues of a scene are those of the planner, whatever strength is drawn", "[cues]") {
+TEST_CASE("the cues of a scene equal those of the planner for every strength that is drawn", "[cues]") {
   auto text = source("boundary-constant.toml");
   const auto by_friction = replaced(text, "edge = \"p50\"", "edge = { friction = 0.8 }");
   for (const auto& edge : {text, by_friction}) {
@@ -37,7 +37,7 @@ TEST_CASE("the cues of a scene are those of the planner, whatever strength is dr
   }
 }
 
-TEST_CASE("between the plans of a zone cues are interpolated", "[cues]") {
+TEST_CASE("the cues of a zone are interpolated between its plans", "[cues]") {
   const auto protocol = protocol::parse(source("friction-2ifc.toml"), "p.toml");
   const auto survey = protocol::survey(protocol, quick_rig());
   CHECK(survey.sights.size() < survey.combinations);

@@ -16,7 +16,9 @@ double best(TaskKind task, const std::vector<Look>& looks, const simulation::Gra
 
 }  // namespace
 
-TEST_CASE("the best criterion is found in either direction, and one answer where nothing tells", "[cues]") {
+TEST_CASE(
+    "the best criterion is found in either direction; a cue that reveals nothing gives one constant answer",
+    "[cues]") {
   CHECK(best(TaskKind::single_interval, {single(1, 0), single(2, 0), single(3, 1), single(4, 1)}) == 1);
   CHECK(best(TaskKind::single_interval, {single(1, 1), single(2, 1), single(3, 0), single(4, 0)}) == 1);
   CHECK(best(TaskKind::single_interval, {single(5, 1), single(5, 1), single(5, 0)}) == Approx(2.0 / 3));
@@ -25,13 +27,13 @@ TEST_CASE("the best criterion is found in either direction, and one answer where
   CHECK(simulation::accuracy({}, TaskKind::single_interval, {}) == 0);
 }
 
-TEST_CASE("a band in the middle is found, and not where the values repeat in turn", "[cues]") {
+TEST_CASE("a band in the middle of the cue's values is found, but none in values that alternate", "[cues]") {
   CHECK(best(TaskKind::single_interval, {single(1, 0), single(2, 1), single(3, 1), single(4, 0)}) == 1);
   CHECK(best(TaskKind::single_interval, {single(1, 0), single(2, 1), single(3, 0), single(4, 1)}) ==
         Approx(0.75));
 }
 
-TEST_CASE("of two intervals the larger, the smaller or the unusual one is chosen", "[cues]") {
+TEST_CASE("with two intervals, the rule chooses the larger, the smaller or the unusual one", "[cues]") {
   const auto two = TaskKind::two_interval;
   CHECK(best(two, {{{1, 2, 0}, 1, 1}, {{2, 1, 0}, 0, 1}}) == 1);
   CHECK(best(two, {{{1, 2, 0}, 0, 1}, {{2, 1, 0}, 1, 1}}) == 1);
@@ -39,13 +41,15 @@ TEST_CASE("of two intervals the larger, the smaller or the unusual one is chosen
   CHECK(best(two, {{{5, 5.0005, 0}, 1, 1}, {{5.0005, 5, 0}, 0, 1}}) == Approx(0.5));
 }
 
-TEST_CASE("same and different are recognised by the difference, whichever interval is larger", "[cues]") {
+TEST_CASE(
+    "same and different pairs are recognised by the size of the difference, whichever interval is larger",
+    "[cues]") {
   const auto pair = TaskKind::same_different;
   CHECK(best(pair, {{{1, 1, 0}, 0, 1}, {{2, 2, 0}, 0, 1}, {{1, 2, 0}, 1, 1}, {{2, 1, 0}, 1, 1}}) == 1);
   CHECK(best(pair, {{{1, 1, 0}, 0, 1}, {{1, 1, 0}, 1, 1}}) == Approx(0.5));
 }
 
-TEST_CASE("of three intervals the odd one is found, and equal ones are guessed", "[cues]") {
+TEST_CASE("with three intervals the odd one is found, and equal intervals are guessed", "[cues]") {
   const auto three = TaskKind::oddity;
   CHECK(best(three, {{{1, 1, 2}, 2, 1}, {{2, 1, 2}, 1, 1}}) == 1);
   CHECK(best(three, {{{1, 1, 1}, 2, 1}, {{1, 1, 1}, 0, 1}}) == Approx(1.0 / 3));

@@ -36,7 +36,7 @@ simulation::PowerOptions options(const std::string& observer, int observers, int
 
 }  // namespace
 
-TEST_CASE("an observer's own bias is the point of subjective equality that sessions find", "[power]") {
+TEST_CASE("the point of subjective equality that sessions find is the observer's own bias", "[power]") {
   const auto protocol = shipped("boundary-constant");
   for (const double bias : {0.0, 5.0}) {
     const auto power =
@@ -64,7 +64,7 @@ TEST_CASE("a staircase's truth is where its rule balances, a posterior's where i
   CHECK(observer.share(question, 0) == Approx(1 - 0.5 * std::exp(-1.0)).margin(1e-6));
 }
 
-TEST_CASE("truths are the values that the observer was made with, never estimates", "[power]") {
+TEST_CASE("the true values are the observer's own parameters, never estimates", "[power]") {
   const auto power = simulation::power(shipped("speed-accuracy"), options("sim:threshold=0.15", 6, 6));
   const auto& right = find(power, "accuracy - speed", "proportion correct");
   CHECK(right.mean > 0);  // fast answers are less often right
@@ -88,7 +88,7 @@ TEST_CASE("truths are the values that the observer was made with, never estimate
       CHECK(recovery.truth == find(power, recovery.source, recovery.parameter).truth);
 }
 
-TEST_CASE("a fit should find the observer's own threshold and slope", "[power]") {
+TEST_CASE("a fit finds the observer's own threshold and slope", "[power]") {
   const auto power =
       simulation::power(shipped("friction-2ifc"), options("sim:threshold=-18,slope=1.3,lapse=0", 3));
   CHECK(*find(power, "fit", "slope").truth == 1.3);
@@ -100,7 +100,8 @@ TEST_CASE("a fit should find the observer's own threshold and slope", "[power]")
   CHECK(*find(sides, "fit", "spread").truth == Approx(6 / 0.6744897501960817));
 }
 
-TEST_CASE("slopes and spreads have median and quartiles, and their bias is the median's", "[power]") {
+TEST_CASE("slopes and spreads are summarised by median and quartiles, and their bias is that of the median",
+          "[power]") {
   const auto power = simulation::power(shipped("boundary-constant"), options("sim:threshold=8", 9));
   const auto& spread = find(power, "fit", "spread");
   CHECK(spread.heavy_tailed);
@@ -117,7 +118,7 @@ TEST_CASE("slopes and spreads have median and quartiles, and their bias is the m
   for (const auto& recovery : power.recoveries) CHECK(!recovery.unit.empty());
 }
 
-TEST_CASE("the number of threads changes nothing", "[power]") {
+TEST_CASE("the results do not depend on the number of threads", "[power]") {
   auto one = options("sim", 8), three = one;
   one.threads = 1, three.threads = 3;
   const auto a = simulation::power(shipped("boundary-constant"), one);
@@ -127,7 +128,7 @@ TEST_CASE("the number of threads changes nothing", "[power]") {
     CHECK(a.recoveries[i].estimates == b.recoveries[i].estimates);
 }
 
-TEST_CASE("settings find the observer's bias, with intervals that hold it", "[power]") {
+TEST_CASE("settings estimate the observer's bias, and their intervals contain it", "[power]") {
   const auto power =
       simulation::power(shipped("boundary-adjustment"), options("sim:threshold=4,bias=3,lapse=0", 300, 300));
   REQUIRE(power.recoveries.size() == 1);
@@ -144,7 +145,7 @@ TEST_CASE("options out of range are refused", "[power]") {
   CHECK_THROWS_AS(simulation::power(shipped("demo"), options("sim", 0)), std::invalid_argument);
 }
 
-TEST_CASE("work in parallel is done once each, and a failure arrives", "[power]") {
+TEST_CASE("each parallel task runs once, and an exception in one of them reaches the caller", "[power]") {
   std::atomic<int> sum = 0;
   int last = 0;
   simulation::in_parallel(

@@ -4,7 +4,7 @@
 
 using namespace turnpoint::store;
 
-TEST_CASE("rows of trials, tones and events are never changed or deleted", "[store]") {
+TEST_CASE("rows of trials, tones and events cannot be changed or deleted", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   sample::session(db, 3);
@@ -20,7 +20,7 @@ TEST_CASE("rows of trials, tones and events are never changed or deleted", "[sto
   CHECK(raw.integer("SELECT count(*) FROM trial WHERE trial_index = 2 OR response = 'second'") == 2);
 }
 
-TEST_CASE("without its trigger a trial would be changed: the negative control", "[store]") {
+TEST_CASE("negative control: without its trigger a trial can be changed", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   sample::session(db, 3);
@@ -47,7 +47,8 @@ TEST_CASE("a trial that was not answered has no answer, no score and no response
   CHECK(sample::raw(db).integer("SELECT count(*) FROM trial") == 0);
 }
 
-TEST_CASE("each outcome without an answer is accepted: the negative control", "[store]") {
+TEST_CASE("negative control: each outcome without an answer is accepted if the trial has no answer",
+          "[store]") {
   TemporaryFolder folder;
   auto log = SessionLog::begin(folder / "a.sqlite", sample::start(), sample::segment());
   log.begin_block(sample::block());
@@ -60,9 +61,8 @@ TEST_CASE("each outcome without an answer is accepted: the negative control", "[
   CHECK(log.session().trials == 4);
 }
 
-TEST_CASE(
-    "an answered trial has a response time that is not negative, and a score that agrees with the answer",
-    "[store]") {
+TEST_CASE("an answered trial must have a response time of 0 or more and a score that agrees with the answer",
+          "[store]") {
   TemporaryFolder folder;
   auto log = SessionLog::begin(folder / "a.sqlite", sample::start(), sample::segment());
   log.begin_block(sample::block());
@@ -74,7 +74,7 @@ TEST_CASE(
   CHECK(sample::failure([&] { log.append(trial); }).first == ErrorKind::refused);
 }
 
-TEST_CASE("a trial index comes once in a session", "[store]") {
+TEST_CASE("a trial index can occur only once in a session", "[store]") {
   TemporaryFolder folder;
   auto log = SessionLog::begin(folder / "a.sqlite", sample::start(), sample::segment());
   log.begin_block(sample::block());
@@ -84,7 +84,7 @@ TEST_CASE("a trial index comes once in a session", "[store]") {
   CHECK(log.session().trials == 2);
 }
 
-TEST_CASE("tables are STRICT: a word where a number belongs is refused", "[store]") {
+TEST_CASE("tables are STRICT: a word is refused in a column of numbers", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   sample::session(db, 1);

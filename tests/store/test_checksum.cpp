@@ -152,7 +152,8 @@ struct Damage {
 
 }  // namespace
 
-TEST_CASE("a session's rows are as they were recorded, whatever it went through", "[store]") {
+TEST_CASE("verify finds no changed rows in sessions that were resumed, annotated, interrupted or merged",
+          "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   make(db);
@@ -173,7 +174,7 @@ TEST_CASE("a session's rows are as they were recorded, whatever it went through"
   CHECK(problems_of(other).empty());
 }
 
-TEST_CASE("of 1000 flipped bits, edited rows and missing rows every one is found", "[store]") {
+TEST_CASE("verify finds each of 1000 flipped bits, edited rows and missing rows", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", damaged = folder / "damaged.sqlite";
   make(db);
@@ -199,7 +200,8 @@ TEST_CASE("of 1000 flipped bits, edited rows and missing rows every one is found
   CHECK(problems_of(damaged).empty());
 }
 
-TEST_CASE("rows that were edited and sealed again differ from a checksum exported before", "[store]") {
+TEST_CASE("rows that were edited and got new checksums differ from a checksum that was exported before",
+          "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   make(db);
@@ -220,7 +222,7 @@ TEST_CASE("rows that were edited and sealed again differ from a checksum exporte
   CHECK(problems_of(db).empty());
 }
 
-TEST_CASE("verify compares a database with a sessions.csv that was exported before", "[store]") {
+TEST_CASE("verify compares a database with a sessions.csv that was exported earlier", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   make(db);
@@ -271,7 +273,7 @@ TEST_CASE("verify compares a database with a sessions.csv that was exported befo
   }
 }
 
-TEST_CASE("a session that grew still holds the checksum of an earlier export", "[store]") {
+TEST_CASE("a session that continued after an export still contains the exported checksum", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 3, sample::start(), SessionStatus::interrupted);
@@ -301,7 +303,7 @@ TEST_CASE("a database whose rows were changed is not merged", "[store]") {
   CHECK(list_sessions(a).size() == 1);
 }
 
-TEST_CASE("the first encoding of a session never changes", "[store]") {
+TEST_CASE("the first encoding of a session, which determines its checksums, never changes", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   sample::session(db, 2);
@@ -319,7 +321,7 @@ TEST_CASE("the first encoding of a session never changes", "[store]") {
   CHECK(chain.add().sha256 == "c275fe84323e1a082fe788a852eb881d43a855f55c0f18d3c438929bac35aee8");
 }
 
-TEST_CASE("a column that a later encoding adds leaves earlier checksums alone", "[store]") {
+TEST_CASE("a column that a later encoding adds does not change earlier checksums", "[store]") {
   auto table = event_table();
   auto later = table.fields.back();
   later.name = "force_N";

@@ -43,7 +43,7 @@ void postdate(const std::string& backup) {
 
 }  // namespace
 
-TEST_CASE("neither a new nor a restored database gets the log of a lost one", "[store]") {
+TEST_CASE("neither a new nor a restored database uses the write-ahead log of a lost one", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4);
@@ -67,7 +67,7 @@ TEST_CASE("neither a new nor a restored database gets the log of a lost one", "[
 }
 
 TEST_CASE(
-    "a restore interrupted between two renames can be continued, and no new database is made before that",
+    "a restore interrupted between its two renames can be continued, and until then no new database is made",
     "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
@@ -79,7 +79,7 @@ TEST_CASE(
   CHECK_FALSE(fs::exists(db + ".restored"));
 }
 
-TEST_CASE("a good database that cannot be opened is not replaced", "[store]") {
+TEST_CASE("a restore does not replace an intact database that cannot be opened", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4);
@@ -115,7 +115,7 @@ TEST_CASE("a good database that cannot be opened is not replaced", "[store]") {
   CHECK(sample::bytes_of(db) == before);
 }
 
-TEST_CASE("databases of one name, or of names that begin alike, keep their backups apart", "[store]") {
+TEST_CASE("databases with equal names, or names that begin alike, keep separate backups", "[store]") {
   TemporaryFolder folder;
   const auto dir = folder / "backups";
   fs::create_directory(folder / "other");
@@ -136,7 +136,8 @@ TEST_CASE("databases of one name, or of names that begin alike, keep their backu
   }
 }
 
-TEST_CASE("a lost database whose id nothing tells is not taken for another", "[store]") {
+TEST_CASE("if nothing tells the id of a lost database, a restore does not guess which backups are its own",
+          "[store]") {
   TemporaryFolder folder;
   const auto dir = folder / "backups";
   fs::create_directory(folder / "other");
@@ -158,7 +159,8 @@ TEST_CASE("a lost database whose id nothing tells is not taken for another", "[s
   }
 }
 
-TEST_CASE("backups are numbered: a clock that was ahead loses none", "[store]") {
+TEST_CASE("backups are numbered, so that a clock that was ahead does not cause the loss of new backups",
+          "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 1);
@@ -174,7 +176,7 @@ TEST_CASE("backups are numbered: a clock that was ahead loses none", "[store]") 
   CHECK(restored.trials == 3);
 }
 
-TEST_CASE("a backup that keeps one keeps the one that was just made", "[store]") {
+TEST_CASE("a backup that keeps only one copy keeps the one that was just made", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 1);
@@ -184,7 +186,7 @@ TEST_CASE("a backup that keeps one keeps the one that was just made", "[store]")
   CHECK(fs::exists(second.path));
 }
 
-TEST_CASE("a restore names the sessions that were changed before the backup was made", "[store]") {
+TEST_CASE("a restore names the sessions whose rows were changed before the backup was made", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4);
@@ -201,7 +203,7 @@ TEST_CASE("a restore names the sessions that were changed before the backup was 
   CHECK(restored.changed == (edited ? std::vector<std::string>{changed} : std::vector<std::string>{}));
 }
 
-TEST_CASE("a database is named without a folder as with one", "[store]") {
+TEST_CASE("all commands accept the name of a database without a folder", "[store]") {
   TemporaryFolder folder;
   const auto before = fs::current_path();
   fs::current_path(folder.path);
@@ -215,7 +217,8 @@ TEST_CASE("a database is named without a folder as with one", "[store]") {
   fs::current_path(before);
 }
 
-TEST_CASE("the newest interrupted session is the last one written, whatever the clock said", "[store]") {
+TEST_CASE("the newest interrupted session is the one that was written last, even if the clock was wrong",
+          "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto ahead = sample::session(db, 2, sample::start("P01"), SessionStatus::interrupted);
@@ -226,7 +229,9 @@ TEST_CASE("the newest interrupted session is the last one written, whatever the 
   CHECK(interrupted_session(db, ahead)->age_s < 0);
 }
 
-TEST_CASE("what interrupted operations and migrations have left behind is withdrawn as well", "[store]") {
+TEST_CASE(
+    "withdrawing a participant includes files that interrupted operations and migrations have left behind",
+    "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4, sample::start("XQ77ZK"));
@@ -250,7 +255,8 @@ TEST_CASE("what interrupted operations and migrations have left behind is withdr
     }
 }
 
-TEST_CASE("a withdrawal that was interrupted before the copies is finished by the next", "[store]") {
+TEST_CASE("a withdrawal that was interrupted before it reached the copies is finished by the next one",
+          "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4, sample::start("XQ77ZK"));
@@ -261,7 +267,10 @@ TEST_CASE("a withdrawal that was interrupted before the copies is finished by th
   CHECK_FALSE(fs::exists(old.path));
 }
 
-TEST_CASE("without a list of the backups nothing is withdrawn, and another database's are named", "[store]") {
+TEST_CASE(
+    "a withdrawal fails if the folder of backups is missing, and names backups of other databases that it "
+    "leaves",
+    "[store]") {
   TemporaryFolder folder;
   const auto a = folder / "a.sqlite", b = folder / "b.sqlite", dir = folder / "backups";
   sample::session(b, 4, at_station("P01", "b"));
@@ -276,7 +285,7 @@ TEST_CASE("without a list of the backups nothing is withdrawn, and another datab
   CHECK(fs::exists(other.path));
 }
 
-TEST_CASE("the same code at two stations is two people until somebody joins them", "[store]") {
+TEST_CASE("the same code at two stations stands for two people until somebody joins them", "[store]") {
   TemporaryFolder folder;
   const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
   sample::session(a, 2, at_station("P01", "a"));
@@ -301,7 +310,9 @@ TEST_CASE("the same code at two stations is two people until somebody joins them
   CHECK(sample::failure([&] { join(a, "P99", "P07"); }).first == ErrorKind::missing);
 }
 
-TEST_CASE("a withdrawal takes one of two people of a code, or one station, or one session", "[store]") {
+TEST_CASE(
+    "a withdrawal can be limited to one of two people with the same code, to one station, or to one session",
+    "[store]") {
   TemporaryFolder folder;
   const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
   const auto here = sample::session(a, 2, at_station("P01", "a"));
@@ -331,7 +342,7 @@ TEST_CASE("a withdrawal takes one of two people of a code, or one station, or on
   }
 }
 
-TEST_CASE("participants that BIDS cannot tell apart are kept apart", "[store]") {
+TEST_CASE("participants whose codes BIDS cannot distinguish get different labels", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   for (const auto* code : {"P1", "P-1", "p1", "P2"}) sample::session(db, 1, sample::start(code));

@@ -32,8 +32,9 @@ std::vector<std::string> names_in(const std::string& folder) {
 
 }  // namespace
 
-TEST_CASE("a drill restores the newest backup, compares it with the database, and leaves nothing behind",
-          "[store][drill]") {
+TEST_CASE(
+    "a restore drill restores the newest backup, compares it with the database, and leaves nothing behind",
+    "[store][drill]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4);
@@ -55,8 +56,10 @@ TEST_CASE("a drill restores the newest backup, compares it with the database, an
   CHECK(names_in(folder.path) == beside);
 }
 
-TEST_CASE("a drill finds a backup that is damaged, changed, or of other data than the database",
-          "[store][drill]") {
+TEST_CASE(
+    "a restore drill detects a backup that is damaged, was changed, or does not contain the database's "
+    "sessions",
+    "[store][drill]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   const auto id = sample::session(db, 4);
@@ -100,7 +103,7 @@ TEST_CASE("a drill finds a backup that is damaged, changed, or of other data tha
     CHECK_FALSE(sample::contains(entry.path().filename().string(), ".drill"));
 }
 
-TEST_CASE("what a killed drill has left goes with the next backup", "[store][drill]") {
+TEST_CASE("the next backup removes the files that a killed restore drill has left", "[store][drill]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4);
@@ -111,7 +114,7 @@ TEST_CASE("what a killed drill has left goes with the next backup", "[store][dri
   for (const auto& name : names_in(dir)) CHECK_FALSE(sample::contains(name, ".drill"));
 }
 
-TEST_CASE("the last good backup is noted beside the database, and a failed one is not", "[store]") {
+TEST_CASE("the last good backup is noted in a file beside the database, and a failed one is not", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4);
@@ -140,7 +143,7 @@ TEST_CASE("the last good backup is noted beside the database, and a failed one i
   }
 }
 
-TEST_CASE("a backup that wants a disk is refused where none is mounted", "[store]") {
+TEST_CASE("a backup that requires a separate disk is refused if none is mounted", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   sample::session(db, 2);

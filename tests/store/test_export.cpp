@@ -37,7 +37,7 @@ const char* const kHeader =
 
 }  // namespace
 
-TEST_CASE("trials.csv has the fixed columns, all of them, with the factors in their place", "[store]") {
+TEST_CASE("trials.csv has all fixed columns in order, and the factors at their place", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 5);
@@ -117,7 +117,7 @@ std::string session_of_unlike_values(const std::string& db) {
 
 }  // namespace
 
-TEST_CASE("each value of the four tables is in its column", "[store]") {
+TEST_CASE("each value in the four tables is in its own column", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = session_of_unlike_values(db);
@@ -152,7 +152,7 @@ TEST_CASE("the codebook explains every column of every table", "[store]") {
   }
 }
 
-TEST_CASE("the same data give the same bytes, through a new connection and beside a running session",
+TEST_CASE("exports of the same data are identical, also through a new connection and during a session",
           "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
@@ -169,7 +169,8 @@ TEST_CASE("the same data give the same bytes, through a new connection and besid
     CHECK(sample::bytes_of(first[i].path) == sample::bytes_of(second[i].path));
 }
 
-TEST_CASE("options select by session, participant and protocol; each protocol has a folder", "[store]") {
+TEST_CASE("an export can select sessions, participants and protocols, and each protocol gets its own folder",
+          "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 3);
@@ -195,7 +196,7 @@ TEST_CASE("options select by session, participant and protocol; each protocol ha
   CHECK_FALSE(std::filesystem::exists(folder / "none"));
 }
 
-TEST_CASE("separator and decimal mark are options, and may not be the same", "[store]") {
+TEST_CASE("separator and decimal mark can be chosen, but must differ", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   sample::session(db, 1);
@@ -211,7 +212,8 @@ TEST_CASE("separator and decimal mark are options, and may not be the same", "[s
   CHECK_THROWS_AS(export_data(db, folder / "out", options), turnpoint::terms::UsageError);
 }
 
-TEST_CASE("texts are quoted by RFC 4180, and none is a formula to a spreadsheet", "[store]") {
+TEST_CASE("texts are quoted according to RFC 4180, and no text can act as a formula in a spreadsheet",
+          "[store]") {
   TextTable table({}, {"a", "b"});
   table.row({cell("say \"no\""), cell("a, b")});
   table.row({cell("two\r\nlines"), cell("=HYPERLINK(\"x\")")});

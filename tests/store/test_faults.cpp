@@ -38,8 +38,8 @@ int in_child(const std::function<int()>& action) {
 }  // namespace
 
 TEST_CASE(
-    "a full disk stops the session before its next trial, keeps every earlier row, and the same trial is "
-    "written once there is space",
+    "a full disk stops the session before its next trial and loses no row, and the trial is written once "
+    "there is space",
     "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
@@ -84,7 +84,7 @@ TEST_CASE("a file of 0 bytes is a lost database, not a new one", "[store]") {
   CHECK(std::filesystem::file_size(db) == 0);
 }
 
-TEST_CASE("a file that is no database, or another program's, is not touched", "[store]") {
+TEST_CASE("a file that is not a database, or belongs to another program, is not changed", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   SECTION("text") { write_bytes(db, "participant,response\nP01,left\n" + std::string(5000, 'x')); }
@@ -99,7 +99,7 @@ TEST_CASE("a file that is no database, or another program's, is not touched", "[
   CHECK(sample::bytes_of(db) == before);
 }
 
-TEST_CASE("a damaged database is left as it is, by every command", "[store]") {
+TEST_CASE("no command changes a damaged database", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   sample::session(db, 200);
@@ -123,7 +123,8 @@ TEST_CASE("a damaged database is left as it is, by every command", "[store]") {
   CHECK_FALSE(std::filesystem::exists(folder / "out"));
 }
 
-TEST_CASE("a second station process learns who has the database, and the first continues", "[store]") {
+TEST_CASE("a second station process is told which process uses the database, and the first continues",
+          "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   auto log = SessionLog::begin(db, sample::start(), sample::segment());
@@ -143,7 +144,7 @@ TEST_CASE("a second station process learns who has the database, and the first c
   CHECK(list_sessions(db).size() == 1);  // reading is still allowed
 }
 
-TEST_CASE("the lock goes with its process, however that ends", "[store]") {
+TEST_CASE("the lock on a database ends with its process, however the process ends", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   CHECK(in_child([&] {
@@ -154,8 +155,7 @@ TEST_CASE("the lock goes with its process, however that ends", "[store]") {
   CHECK(sample::session(db, 1).size() == 36);
 }
 
-TEST_CASE("a database that may not be written is refused before the session, and can still be exported",
-          "[store]") {
+TEST_CASE("a read-only database is refused before the session, and can still be exported", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "data/a.sqlite";
   std::filesystem::create_directory(folder / "data");
@@ -181,7 +181,7 @@ TEST_CASE("a database that may not be written is refused before the session, and
   std::filesystem::permissions(folder / "data", std::filesystem::perms::all);
 }
 
-TEST_CASE("a folder that is not there is named", "[store]") {
+TEST_CASE("the error for a missing folder names the folder", "[store]") {
   const auto [fault, message] = sample::failure(
       [] { SessionLog::begin("/nonexistent/folder/a.sqlite", sample::start(), sample::segment()); });
   CHECK(fault == ErrorKind::missing);

@@ -48,7 +48,7 @@ std::string differences(Database& database, const Table<Record>& table) {
 
 }  // namespace
 
-TEST_CASE("the record tables name each column of the schema, with its type", "[store]") {
+TEST_CASE("the records' tables of fields contain each column of the schema with its type", "[store]") {
   Database database(":memory:", Database::Access::create);
   create_schema(database, schema_version());
   CHECK(differences(database, segment_table()).empty());

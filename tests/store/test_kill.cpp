@@ -99,8 +99,7 @@ Toll kill_many(int kills, Acknowledge when) {
 
 }  // namespace
 
-TEST_CASE("of hundreds of writers killed at random moments none loses a trial that it acknowledged",
-          "[store]") {
+TEST_CASE("hundreds of writers killed at random moments lose no trial that they acknowledged", "[store]") {
   const auto toll = kill_many(300, Acknowledge::after_commit);
   CHECK(toll.kills == 300);
   CHECK(toll.acknowledged > 300);
@@ -109,6 +108,6 @@ TEST_CASE("of hundreds of writers killed at random moments none loses a trial th
   CHECK(toll.repeated == 0);
 }
 
-TEST_CASE("a writer that acknowledges before it commits loses trials: the negative control", "[store]") {
+TEST_CASE("negative control: a writer that acknowledges before it commits loses trials", "[store]") {
   CHECK(kill_many(30, Acknowledge::before_commit).lost > 0);
 }

@@ -45,7 +45,7 @@ void begin_session(const std::string& db) {
 
 }  // namespace
 
-TEST_CASE("a session begins, and the start page opens, as quickly on many trials as on few",
+TEST_CASE("a session begins, and the start page opens, as quickly with many stored trials as with few",
           "[store][large]") {
   TemporaryFolder folder;
   const auto few = folder / "few.sqlite", many = folder / "many.sqlite";
@@ -60,8 +60,9 @@ TEST_CASE("a session begins, and the start page opens, as quickly on many trials
   }
 }
 
-TEST_CASE("what reads or copies a whole database costs as much a session, however many there are",
-          "[store][large]") {
+TEST_CASE(
+    "the cost per session of reading or copying a whole database does not grow with the number of sessions",
+    "[store][large]") {
   TemporaryFolder folder;
   const auto few = folder / "few.sqlite", many = folder / "many.sqlite";
   constexpr int sessions = 30, times = 8;
@@ -90,8 +91,10 @@ TEST_CASE("what reads or copies a whole database costs as much a session, howeve
   }
 }
 
-TEST_CASE("damage far from where a session writes keeps nobody from a session, and from a backup",
-          "[store]") {
+TEST_CASE(
+    "damage far from where a session writes does not prevent a session, but backup, verify, export and merge "
+    "detect it",
+    "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   {
@@ -135,7 +138,8 @@ TEST_CASE("a database whose last trial has lost its block is refused before a se
   CHECK(sample::contains(message, "block"));
 }
 
-TEST_CASE("a list of sessions leaves out the long texts, and a session read by its id has them", "[store]") {
+TEST_CASE("a list of sessions leaves out the long texts, and a session that is read by its id includes them",
+          "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 2, sample::start(), SessionStatus::interrupted);

@@ -27,7 +27,8 @@ std::string schema_of(Database& database) {
 
 }  // namespace
 
-TEST_CASE("each released schema step is as it was released", "[store]") {
+TEST_CASE("each released step of the schema still creates the tables that it created when it was released",
+          "[store]") {
   TemporaryFolder folder;
   const int version = GENERATE(range(1, schema_version()));
   make_old(folder / "old.sqlite", version);
@@ -37,7 +38,7 @@ TEST_CASE("each released schema step is as it was released", "[store]") {
   CHECK(schema_of(old) == schema_of(made));
 }
 
-TEST_CASE("a copy of an older database is no more readable than the database", "[store]") {
+TEST_CASE("a copy of an older database has the same file permissions as the database", "[store]") {
   namespace fs = std::filesystem;
   TemporaryFolder folder;
   const auto db = folder / "old.sqlite";
@@ -47,7 +48,7 @@ TEST_CASE("a copy of an older database is no more readable than the database", "
   CHECK(fs::status(copy.path).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
 }
 
-TEST_CASE("an older database is migrated with its rows, and a copy of it is kept", "[store]") {
+TEST_CASE("migrating an older database keeps its rows, and a copy of the old file", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "old.sqlite";
   const int version = GENERATE(range(1, schema_version()));
@@ -72,7 +73,7 @@ TEST_CASE("an older database is migrated with its rows, and a copy of it is kept
   CHECK(sample::raw(kept).integer("SELECT count(*) FROM trial") == 7);
 }
 
-TEST_CASE("an older database is read and exported as it stands, without a byte changed", "[store]") {
+TEST_CASE("an older database can be read and exported without changing it", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "old.sqlite";
   make_old(db, 1);
@@ -91,7 +92,9 @@ TEST_CASE("an older database is read and exported as it stands, without a byte c
   CHECK(first == sample::bytes_of(export_data(other / "old.sqlite", folder / "out", options)[0].path));
 }
 
-TEST_CASE("a database of a newer release is left alone, and the message says to update", "[store]") {
+TEST_CASE(
+    "a database of a newer release is not changed, and the message says that the station must be updated",
+    "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   sample::session(db, 1);

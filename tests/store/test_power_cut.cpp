@@ -68,7 +68,7 @@ TEST_CASE("a power cut at any operation of a commit or checkpoint loses no ackno
   CHECK(toll.damaged == 0);
 }
 
-TEST_CASE("on a disk that ignores syncs trials are lost or the file is damaged: the negative control",
+TEST_CASE("negative control: on a disk that ignores syncs, trials are lost or the file is damaged",
           "[store]") {
   TemporaryFolder folder;
   LossyDisk disk(LossyDisk::Syncs::ignored);
@@ -76,7 +76,7 @@ TEST_CASE("on a disk that ignores syncs trials are lost or the file is damaged: 
   CHECK(toll.lost + toll.damaged > 0);
 }
 
-TEST_CASE("a session is continued after a power cut", "[store]") {
+TEST_CASE("a session can be continued after a power cut", "[store]") {
   TemporaryFolder folder;
   std::vector<Cut> cuts;
   {

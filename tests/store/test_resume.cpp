@@ -48,7 +48,8 @@ TEST_CASE("a resumed session has all its trials, a new segment, and the open tri
   CHECK(stored.events[1].segment_index == 2);
 }
 
-TEST_CASE("a block that starts again is another attempt; the rows of the first stay", "[store]") {
+TEST_CASE("a block that is started again counts as another attempt, and the rows of the first attempt stay",
+          "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = broken_session(db, 2);
@@ -62,7 +63,7 @@ TEST_CASE("a block that starts again is another attempt; the rows of the first s
   CHECK(stored.blocks[1].trials.size() == 1);
 }
 
-TEST_CASE("a block that goes on under another name or instruction is refused", "[store]") {
+TEST_CASE("continuing a block with another name or instruction is refused", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   auto log = SessionLog::resume(db, broken_session(db, 2), sample::segment("resume"));
@@ -72,7 +73,8 @@ TEST_CASE("a block that goes on under another name or instruction is refused", "
   log.begin_block(sample::block());
 }
 
-TEST_CASE("only an interrupted session is resumed, and the message says what the other one is", "[store]") {
+TEST_CASE("only an interrupted session can be resumed, and for another the message states its status",
+          "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 2);
@@ -86,7 +88,7 @@ TEST_CASE("only an interrupted session is resumed, and the message says what the
         ErrorKind::missing);
 }
 
-TEST_CASE("the newest interrupted session is found with its age; sessions without trials are not among them",
+TEST_CASE("the newest interrupted session is found with its age, and sessions without trials are ignored",
           "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";

@@ -37,7 +37,8 @@ TEST_CASE("the database contains exactly what the session log was given", "[stor
   CHECK(stored.events[1].kind == "answer");
 }
 
-TEST_CASE("every call is durable when it returns: another connection reads it at once", "[store]") {
+TEST_CASE("every call's data are stored when it returns, and another connection can read them at once",
+          "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   auto log = SessionLog::begin(db, sample::start(), sample::segment());
@@ -70,7 +71,7 @@ TEST_CASE("events wait for the next commit and keep their order", "[store]") {
   CHECK(reader.text("SELECT status_reason FROM session") == "asked to");
 }
 
-TEST_CASE("participants get sequence indices per protocol, sessions are counted per participant", "[store]") {
+TEST_CASE("participants are numbered within each protocol, and sessions within each participant", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto begin = [&](const std::string& participant, const std::string& protocol) {
@@ -86,7 +87,7 @@ TEST_CASE("participants get sequence indices per protocol, sessions are counted 
   CHECK(begin("P03", "a") == std::pair(2, 1));
 }
 
-TEST_CASE("protocol and rig texts are kept once, however many sessions ran them", "[store]") {
+TEST_CASE("the text of a protocol or rig is stored once, however many sessions use it", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   sample::session(db, 1);
@@ -101,7 +102,8 @@ TEST_CASE("protocol and rig texts are kept once, however many sessions ran them"
 }
 
 TEST_CASE(
-    "a session without trials whose process ended is closed as abandoned, one with trials as interrupted",
+    "if its process ended, a session without trials is closed as abandoned, and one with trials as "
+    "interrupted",
     "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";

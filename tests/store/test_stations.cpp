@@ -39,7 +39,7 @@ std::string all_bytes(const std::string& db) {
 
 }  // namespace
 
-TEST_CASE("merge brings the sessions of another station, whole, and a second time changes nothing",
+TEST_CASE("merging copies complete sessions of another station, and merging again changes nothing",
           "[store]") {
   TemporaryFolder folder;
   const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
@@ -65,7 +65,7 @@ TEST_CASE("merge brings the sessions of another station, whole, and a second tim
   CHECK(report.sessions[0].sha256 == again.sessions[0].sha256);
 }
 
-TEST_CASE("merge carries a session on that went on at its own station", "[store]") {
+TEST_CASE("merging adds the new trials of a session that continued at its own station", "[store]") {
   TemporaryFolder folder;
   const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
   const auto id = sample::session(b, 2, at_station("P01", "b"), SessionStatus::interrupted);
@@ -83,7 +83,7 @@ TEST_CASE("merge carries a session on that went on at its own station", "[store]
   CHECK(merge(b, a).sessions[0].what == MergedSession::What::unchanged);
 }
 
-TEST_CASE("merge refuses rows that contradict, says which, and merges nothing", "[store]") {
+TEST_CASE("merging refuses contradictory rows, says which they are, and changes nothing", "[store]") {
   TemporaryFolder folder;
   const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
   const auto id = sample::session(b, 4, at_station("P01", "b"));
@@ -116,9 +116,8 @@ TEST_CASE("merge refuses rows that contradict, says which, and merges nothing", 
   CHECK(list_sessions(a).size() == sessions_before);
 }
 
-TEST_CASE(
-    "merge takes a backup, refuses one that its checksum does not know, and never merges a file with itself",
-    "[store]") {
+TEST_CASE("a backup can be merged unless its checksum is wrong, and a file is never merged with itself",
+          "[store]") {
   TemporaryFolder folder;
   const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
   sample::session(b, 4, at_station("P01", "b"));
@@ -131,7 +130,8 @@ TEST_CASE(
   CHECK(sample::failure([&] { merge(a, a); }).first == ErrorKind::refused);
 }
 
-TEST_CASE("a backup is made beside a running session, is checked, and older ones rotate out", "[store]") {
+TEST_CASE("a backup can be made during a session, is checked, and the oldest backups are removed",
+          "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4);
@@ -153,7 +153,7 @@ TEST_CASE("a backup is made beside a running session, is checked, and older ones
   CHECK(sample::contains(sample::bytes_of(left[1] + ".sha256"), made[3].sha256));
 }
 
-TEST_CASE("a damaged database is set aside and the newest good backup takes its place", "[store]") {
+TEST_CASE("a restore sets a damaged database aside and puts the newest good backup in its place", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4);
@@ -189,8 +189,10 @@ struct stat status_of(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("what root makes in the station's folder is the station's, and a copy no more readable",
-          "[store]") {
+TEST_CASE(
+    "files that root makes in the station's folder belong to the station, and a backup keeps the database's "
+    "permissions",
+    "[store]") {
   if (::geteuid() != 0) {
     WARN("not root: nothing was tried");
     return;
@@ -221,7 +223,8 @@ TEST_CASE("what root makes in the station's folder is the station's, and a copy 
 }
 
 TEST_CASE(
-    "a database that root names by where it stands is the folder's owner's too, and a lock stays whose it is",
+    "a database that root makes by a relative path belongs to the folder's owner, and a lock file keeps its "
+    "owner",
     "[store]") {
   if (::geteuid() != 0) {
     WARN("not root: nothing was tried");
@@ -241,7 +244,7 @@ TEST_CASE(
   CHECK(status_of(folder / "a.sqlite.lock").st_uid == kStation);
 }
 
-TEST_CASE("a link in the place of the lock is not followed", "[store]") {
+TEST_CASE("a link in place of the lock file is not followed", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", target = folder / "target";
   std::ofstream(target) << "precious";
@@ -254,7 +257,7 @@ TEST_CASE("a link in the place of the lock is not followed", "[store]") {
   CHECK(sample::bytes_of(target) == "precious");
 }
 
-TEST_CASE("a database with a second name is refused, under both", "[store]") {
+TEST_CASE("a database file with a second hard link is refused under both names", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", other = folder / "b.sqlite";
   sample::session(db, 1);
@@ -271,7 +274,7 @@ TEST_CASE("a database with a second name is refused, under both", "[store]") {
   CHECK(sample::bytes_of(db) != before);
 }
 
-TEST_CASE("without a good backup nothing is moved", "[store]") {
+TEST_CASE("a restore without a good backup moves nothing", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   std::ofstream(db, std::ios::binary) << "";
@@ -279,7 +282,7 @@ TEST_CASE("without a good backup nothing is moved", "[store]") {
   CHECK(std::filesystem::exists(db));
 }
 
-TEST_CASE("withdraw lists what it removes and leaves no trace in the file, its log or later backups",
+TEST_CASE("a withdrawal lists what it removes and leaves no trace in the database, its log or later backups",
           "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
@@ -310,7 +313,7 @@ TEST_CASE("withdraw lists what it removes and leaves no trace in the file, its l
   CHECK(sample::failure([&] { sample::session(db, 1, start); }).first == ErrorKind::refused);
 }
 
-TEST_CASE("a plain delete leaves traces: the negative control of the search", "[store]") {
+TEST_CASE("negative control: a plain DELETE leaves traces that the search finds", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 60, sample::start("P01"));
@@ -319,7 +322,8 @@ TEST_CASE("a plain delete leaves traces: the negative control of the search", "[
   CHECK(sample::contains(all_bytes(db), "JKLMNO"));
 }
 
-TEST_CASE("what was withdrawn is not brought back by merge, nor are later sessions of that code", "[store]") {
+TEST_CASE("merging does not bring back withdrawn sessions, nor later sessions with the withdrawn code",
+          "[store]") {
   TemporaryFolder folder;
   const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
   sample::session(b, 4, at_station("P01", "b"));
@@ -338,7 +342,7 @@ TEST_CASE("what was withdrawn is not brought back by merge, nor are later sessio
   CHECK(merge(b, a).withdrawn_there.size() == 1);
 }
 
-TEST_CASE("who comes after a withdrawal takes the place that became free", "[store]") {
+TEST_CASE("the next participant after a withdrawal gets the sequence index that became free", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   for (const auto* code : {"P01", "P02", "P03"}) sample::session(db, 1, sample::start(code));
@@ -347,7 +351,7 @@ TEST_CASE("who comes after a withdrawal takes the place that became free", "[sto
   CHECK(read_session(db, id).session.sequence_index == 1);
 }
 
-TEST_CASE("an interrupted session can be closed for good, a completed one cannot", "[store]") {
+TEST_CASE("an interrupted session can be closed for good, but a completed one cannot", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto open = sample::session(db, 2, sample::start(), SessionStatus::interrupted);

@@ -9,7 +9,7 @@
 using namespace turnpoint::touch;
 using News = EvdevDevice::News;
 
-TEST_CASE("a device is read report by report, with the kernel's stamps", "[touch][evdev]") {
+TEST_CASE("a touch device is read report by report, with the kernel's time stamps", "[touch][evdev]") {
   FakeEvdev fake(0);
   EvdevDevice device(fake.descriptor(), "fake");
   CHECK(device.range(ABS_X).highest == 799);
@@ -62,7 +62,7 @@ TEST_CASE("a lift that the kernel dropped is noticed once the kernel reports dro
   CHECK(again->position.value() == Approx(700.0 / 799));
 }
 
-TEST_CASE("after dropped events fingers are in the slots that the kernel says, at their places",
+TEST_CASE("after dropped events, fingers are in the slots and at the places that the kernel reports",
           "[touch][evdev]") {
   FakeEvdev fake(2);
   EvdevDevice device(fake.descriptor(), "fake");
@@ -99,9 +99,8 @@ TEST_CASE("after dropped events fingers are in the slots that the kernel says, a
   CHECK(device.time_ns() == 40'000);
 }
 
-TEST_CASE(
-    "a touch panel's reader gets touches of the right finger after dropped events, and none without a time",
-    "[touch][evdev]") {
+TEST_CASE("after dropped events, touches belong to the right finger, and no touch is reported without a time",
+          "[touch][evdev]") {
   TouchDecoder decoder({0, 799}, {0, 479});
   const std::vector<Finger> none(2);
   decoder.resynchronise(none);

@@ -69,7 +69,7 @@ TEST_CASE("a finger that is lifted and put down within one report is a new touch
   CHECK(again[0].time_ns == 90 * ms);
 }
 
-TEST_CASE("the toolkit's touch gets the kernel's time of the touch at its place", "[touch]") {
+TEST_CASE("a touch from Qt gets the kernel's time of the touch at the same place", "[touch]") {
   TouchTimes times;
   times.add({100 * ms, 0.20, 0.80});
   times.add({130 * ms, 0.70, 0.80});
@@ -77,14 +77,15 @@ TEST_CASE("the toolkit's touch gets the kernel's time of the touch at its place"
   CHECK(times.claim(0.205, 0.79, 165 * ms) == 100 * ms);
 }
 
-TEST_CASE("a claimed touch is used up", "[touch]") {
+TEST_CASE("each touch from the kernel gives its time to only one touch from Qt", "[touch]") {
   TouchTimes times;
   times.add({100 * ms, 0.2, 0.8});
   REQUIRE(times.claim(0.2, 0.8, 120 * ms));
   CHECK_FALSE(times.claim(0.2, 0.8, 121 * ms));
 }
 
-TEST_CASE("no pair is made from another place, from the future or from long ago", "[touch]") {
+TEST_CASE("a touch from Qt gets no time from a touch at another place, in the future or long ago",
+          "[touch]") {
   TouchTimes times;
   times.add({1000 * ms, 0.2, 0.8});
   CHECK_FALSE(times.claim(0.3, 0.8, 1020 * ms));
@@ -93,7 +94,7 @@ TEST_CASE("no pair is made from another place, from the future or from long ago"
   CHECK(times.claim(0.2, 0.8, 1020 * ms));
 }
 
-TEST_CASE("two touches that both fit make no pair, rather than a guess", "[touch]") {
+TEST_CASE("if two touches from the kernel fit, a touch from Qt gets the time of neither", "[touch]") {
   TouchTimes times;
   times.add({100 * ms, 0.2, 0.8});
   times.add({180 * ms, 0.2, 0.8});
@@ -102,7 +103,7 @@ TEST_CASE("two touches that both fit make no pair, rather than a guess", "[touch
   CHECK(times.claim(0.2, 0.8, 620 * ms) == 600 * ms);
 }
 
-TEST_CASE("a touch panel that is not there is an error that names it", "[touch]") {
+TEST_CASE("opening a missing touch panel is an error that names the panel", "[touch]") {
   try {
     TouchReader reader("No such panel", [](TouchPanelState) {});
     FAIL("opened a panel that does not exist");

@@ -5,7 +5,8 @@
 
 using turnpoint::ui::LateFrames;
 
-TEST_CASE("a frame is lost for each whole refresh beyond the first that a page took", "[frames]") {
+TEST_CASE("each whole refresh beyond the first that a page takes to appear counts as a lost frame",
+          "[frames]") {
   constexpr std::int64_t ms = 1'000'000;
   CHECK(LateFrames::lost(0, 60) == 0);
   CHECK(LateFrames::lost(16 * ms, 60) == 0);
@@ -15,7 +16,7 @@ TEST_CASE("a frame is lost for each whole refresh beyond the first that a page t
   CHECK(LateFrames::lost(34 * ms, 120) == 3);
 }
 
-TEST_CASE("a stall that a page and the loop of events both waited for is counted once", "[frames]") {
+TEST_CASE("a stall that delays both a page and the event loop is counted once", "[frames]") {
   constexpr std::int64_t ms = 1'000'000;
   LateFrames late(60);
   late.waited(1000 * ms, 1016 * ms);
@@ -30,8 +31,7 @@ TEST_CASE("a stall that a page and the loop of events both waited for is counted
   CHECK(late.count() == 10);
 }
 
-TEST_CASE("a loop that stands still during a trial loses frames even where no page was to be shown",
-          "[frames]") {
+TEST_CASE("a blocked event loop loses frames during a trial even if no page was to be shown", "[frames]") {
   constexpr std::int64_t ms = 1'000'000;
   int argc = 1;
   char name[] = "test";

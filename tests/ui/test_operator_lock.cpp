@@ -36,7 +36,8 @@ struct Keypad {
 
 }  // namespace
 
-TEST_CASE("the operator's lock opens by the code, and is compared off the pages' thread", "[lock]") {
+TEST_CASE("the operator's code opens the lock, and it is compared on another thread than that of the pages",
+          "[lock]") {
   Keypad keypad;
   keypad.lock.enter("7391");
   CHECK(keypad.lock.checking());  // enter() returned before the code was compared
@@ -46,7 +47,7 @@ TEST_CASE("the operator's lock opens by the code, and is compared off the pages'
   CHECK(keypad.refused == 0);
 }
 
-TEST_CASE("after wrong codes the lock takes not even the right one until its time is over", "[lock]") {
+TEST_CASE("after wrong codes the lock refuses even the right one until the waiting time is over", "[lock]") {
   Keypad keypad;
   keypad.enter("1111");
   keypad.enter("2222");

@@ -53,7 +53,7 @@ struct PilotSession {
 
 }  // namespace
 
-TEST_CASE("a page whose thread hangs switches the amplifier off, and then says so", "[page]") {
+TEST_CASE("if the pages' thread hangs, the amplifier is switched off, and the next page says so", "[page]") {
   PilotSession session;
   REQUIRE(session.shows(session::PageKind::stimulus));
   // Negative control: while the event loop runs normally for the same time, nothing must happen.

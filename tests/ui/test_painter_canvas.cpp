@@ -46,7 +46,7 @@ const plot::Paint kBlack{"", "#000000", 1, "", 1};
 
 }  // namespace
 
-TEST_CASE("a figure is painted as large as fits, in the middle, with its proportions", "[ui]") {
+TEST_CASE("a figure is painted in the middle, as large as its proportions allow", "[ui]") {
   const auto sheet = painted([](plot::Canvas& canvas) {
     canvas.begin(100, 100, "square");
     canvas.rectangle({0, 0}, 100, 100, kBlack);
@@ -54,7 +54,7 @@ TEST_CASE("a figure is painted as large as fits, in the middle, with its proport
   CHECK(inked(sheet) == QRect(50, 0, 300, 300));
 }
 
-TEST_CASE("what lies outside a clip is not painted, and what comes after it is", "[ui]") {
+TEST_CASE("shapes outside a clip are not painted, and shapes after the clip ends are", "[ui]") {
   const auto clipped = painted([](plot::Canvas& canvas) {
     canvas.begin(400, 300, "clip");
     canvas.begin_clip({100, 100}, 50, 60);
@@ -72,7 +72,7 @@ TEST_CASE("what lies outside a clip is not painted, and what comes after it is",
   CHECK(inked(after) == QRect(0, 0, 20, 30));
 }
 
-TEST_CASE("dashes have the figure's length, whatever the width of the line", "[ui]") {
+TEST_CASE("the length of dashes does not depend on the width of the line", "[ui]") {
   for (const double width : {2.0, 6.0}) {
     const auto sheet = painted([&](plot::Canvas& canvas) {
       canvas.begin(400, 300, "dashes");
@@ -84,7 +84,7 @@ TEST_CASE("dashes have the figure's length, whatever the width of the line", "[u
   }
 }
 
-TEST_CASE("text starts, has its middle or ends where it should, and turns counter-clockwise", "[ui]") {
+TEST_CASE("text is aligned at its start, middle or end, and rotates counter-clockwise", "[ui]") {
   const Screen screen;
   const auto at = [](plot::Anchor anchor, double degrees) {
     return inked(painted([&](plot::Canvas& canvas) {
@@ -101,7 +101,7 @@ TEST_CASE("text starts, has its middle or ends where it should, and turns counte
   CHECK(std::abs(upwards.bottom() - 150) <= 4);
 }
 
-TEST_CASE("on the screen a figure fills the same frame as in a file", "[ui]") {
+TEST_CASE("a figure on the screen fills the same frame as in a file", "[ui]") {
   const Screen screen;
   plot::Figure figure;
   figure.title = "A figure";

@@ -72,7 +72,7 @@ TEST_CASE(
   CHECK(manager.told(10000) == "WATCHDOG=1");
 }
 
-TEST_CASE("signs of life are sent only where the manager wants them from this process", "[watchdog]") {
+TEST_CASE("signs of life are sent only if the service manager wants them from this process", "[watchdog]") {
   const Loop loop;
   const Manager manager;
   if (GENERATE(true, false)) {
@@ -84,7 +84,7 @@ TEST_CASE("signs of life are sent only where the manager wants them from this pr
   CHECK(manager.told(30).empty());
 }
 
-TEST_CASE("without a service manager nothing is said", "[watchdog]") {
+TEST_CASE("without a service manager nothing is sent", "[watchdog]") {
   const Loop loop;
   const Manager manager;
   qunsetenv("NOTIFY_SOCKET");

@@ -114,7 +114,7 @@ struct StartPage {
 
 }  // namespace
 
-TEST_CASE("choosing another protocol abandons the check that runs, and the page never waits for it",
+TEST_CASE("choosing another protocol abandons the running check, and the page never waits for it",
           "[start]") {
   StartPage start;
   start.open();
@@ -136,7 +136,8 @@ TEST_CASE("choosing another protocol abandons the check that runs, and the page 
         std::vector<std::string>{"a.toml", "b.toml"});  // the check that was replaced twice never began
 }
 
-TEST_CASE("a check that ends late says nothing about the protocol chosen since", "[start]") {
+TEST_CASE("the result of a check that ends late is not shown for a protocol that was chosen later",
+          "[start]") {
   StartPage start;
   start.open();
   REQUIRE(start.comes([&] { return start.checks.begun().size() == 1; }));
@@ -151,7 +152,8 @@ TEST_CASE("a check that ends late says nothing about the protocol chosen since",
   CHECK(start.page->problems().front().contains("c.toml:"));
 }
 
-TEST_CASE("a session that cannot be resumed leaves the check of the chosen protocol as it was", "[start]") {
+TEST_CASE("a failed attempt to resume a session does not change the check of the chosen protocol",
+          "[start]") {
   StartPage start;
   setup::RunRequest request;
   request.protocol = kSource + "/protocols/demo.toml";

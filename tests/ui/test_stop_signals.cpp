@@ -55,7 +55,7 @@ bool is(int signal, sighandler_t expected) {
 
 }  // namespace
 
-TEST_CASE("a start that hangs before its event loop ends at once when it is told to", "[stop]") {
+TEST_CASE("a start that hangs before its event loop ends at once on a stop signal", "[stop]") {
   const TemporaryFolder folder;
   Child child({HELD_START}, {"XDG_RUNTIME_DIR=" + folder.path});
   REQUIRE(child.says("held", kPatience_ms));
@@ -80,7 +80,7 @@ TEST_CASE("the station ends promptly whenever it gets a signal during its start"
   CHECK((child.outcome() == -SIGTERM || child.outcome() == 0));
 }
 
-TEST_CASE("with its first page on the screen the station ends in order when it is told to", "[stop]") {
+TEST_CASE("with its first page on the screen, the station ends cleanly on a stop signal", "[stop]") {
   const TemporaryFolder folder;
   Child child(station(folder), without_screen(folder));
   REQUIRE(child.says("first page after", kPatience_ms));
@@ -106,7 +106,9 @@ TEST_CASE("a session stopped during a stimulus is closed in its log, and can be 
   CHECK(sessions[0].status == turnpoint::records::SessionStatus::interrupted);
 }
 
-TEST_CASE("a stop signal ends the event loop once it is taken over, and a second one the process", "[stop]") {
+TEST_CASE(
+    "once stop signals are handled, the first one ends the event loop and the second one ends the process",
+    "[stop]") {
   const Loop loop;
   const KernelsWay kernels_way;
   {
@@ -124,7 +126,7 @@ TEST_CASE("a stop signal ends the event loop once it is taken over, and a second
   CHECK(is(SIGINT, SIG_DFL));
 }
 
-TEST_CASE("a stop signal that whoever started the program has it ignore stays ignored", "[stop]") {
+TEST_CASE("a stop signal that the starting program has set to be ignored stays ignored", "[stop]") {
   const Loop loop;
   const KernelsWay kernels_way;
   ::signal(SIGHUP, SIG_IGN);

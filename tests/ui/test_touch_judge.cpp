@@ -15,7 +15,8 @@ Touch touch(std::int64_t time_ns, int target, double diameter_mm = 0) {
 
 }  // namespace
 
-TEST_CASE("one finger on an answer is the answer, at the time when it came down", "[touch]") {
+TEST_CASE("one finger on an answer gives this answer, with the time at which the finger touched down",
+          "[touch]") {
   TouchJudge judge;
   judge.open();
   judge.down(touch(500 * ms, 1));
@@ -52,8 +53,7 @@ TEST_CASE("the second tap of a double tap is ignored until answers are accepted 
   CHECK_FALSE(judge.decide(1200 * ms));
 }
 
-TEST_CASE("the second tap of a double tap does not displace a first that nobody has asked for yet",
-          "[touch]") {
+TEST_CASE("the second tap of a double tap does not replace the first one before it was read", "[touch]") {
   TouchJudge judge;
   judge.open();
   judge.down(touch(500 * ms, 0));
@@ -63,7 +63,7 @@ TEST_CASE("the second tap of a double tap does not displace a first that nobody 
   CHECK(answer->target == 0);
 }
 
-TEST_CASE("ten fingers at once answer nothing and leave the question open", "[touch]") {
+TEST_CASE("ten fingers at once give no answer and leave the question open", "[touch]") {
   TouchJudge judge;
   judge.open();
   for (int finger = 0; finger < 10; ++finger) {
@@ -84,7 +84,7 @@ TEST_CASE("fingers further apart than the settling time are two taps: the first 
   CHECK(judge.decide(600 * ms)->target == 0);
 }
 
-TEST_CASE("a palm is no answer, a broad thumb is one", "[touch]") {
+TEST_CASE("a palm gives no answer, but a broad thumb does", "[touch]") {
   TouchJudge judge;
   judge.open();
   judge.down(touch(500 * ms, 0, 32));
@@ -101,7 +101,7 @@ TEST_CASE("a hand that rests beside the answers does not block them", "[touch]")
   CHECK(judge.decide(1000 * ms)->target == 0);
 }
 
-TEST_CASE("touches that the system takes away are no answers", "[touch]") {
+TEST_CASE("touches that the system cancels give no answer", "[touch]") {
   TouchJudge judge;
   judge.open();
   judge.down(touch(300 * ms, 0));
