@@ -54,7 +54,7 @@ void add_tones(const simulation::Check& check, CheckWords& words) {
 std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder))
-    // Skip hidden files, which editors make, such as the lock file of Emacs.
+    // Skip hidden files such as the lock files of Emacs.
     if (entry.path().extension() == ".toml" && entry.path().filename().string().front() != '.')
       files.push_back(entry.path());
   std::sort(files.begin(), files.end());
@@ -71,7 +71,7 @@ std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
       if (bad.problems().size() > 1)
         entry.problem += fmt::format(" (and {} more)", bad.problems().size() - 1);
     } catch (const std::exception& error) {
-      // An unreadable file must not hide the others.
+      // Catch the error of this file, so that the list still contains the others.
       entry.problem = error.what();
     }
     list.push_back(std::move(entry));

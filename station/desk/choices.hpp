@@ -12,24 +12,24 @@ namespace turnpoint::desk {
 struct ProtocolEntry {
   std::string path, id, version, title;
   std::vector<std::string> languages;
-  std::string problem;  ///< why the file cannot be used; then all other fields except `path` are empty
+  std::string problem;  ///< why the file cannot be used; if set, all other fields except `path` are empty
 };
 
-/// The protocol files of a folder by name, including unusable ones. Throws std::system_error if the folder
-/// cannot be read.
+/// Returns the protocol files of a folder in the order of their names, including those that cannot be used.
+/// Throws std::system_error if the folder cannot be read.
 std::vector<ProtocolEntry> list_protocols(const std::string& folder);
 
 /// Participant codes in the database, in alphabetical order; empty if there is no database yet.
 std::vector<std::string> known_participants(const std::string& database);
 
-/// The age of the last good backup of the database, according to its record.
+/// The age of the last good backup, as recorded in the database.
 struct BackupNote {
-  /// ahead: in the future, because the clock was set back since
+  /// ahead: the backup has a time in the future, because the clock has been set back
   enum class State { none, recent, old, ahead } state = State::none;
   int hours = 0;
   bool operator==(const BackupNote&) const = default;
 };
-/// A backup is old after 7 days.
+/// Reads the age of the last backup. A backup is old after 7 days.
 BackupNote backup_note(const std::string& database);
 
 /// A session that could be continued.
@@ -40,11 +40,11 @@ struct InterruptedNote {
 };
 std::optional<InterruptedNote> interrupted_note(const std::string& database);
 
-/// The result of a check in words for a page: a description of the session, and unwanted cues.
+/// The result of a check as texts for a page: a description of the session, and cues that give answers away.
 struct CheckWords {
   std::vector<std::string> problems, warnings;
   std::vector<std::pair<std::string, std::string>> facts;  ///< (label, value)
-  /// A cue, how often an observer who uses only this cue would be right, and whether that is notably above
+  /// A cue, how often an observer who uses only this cue would be right, and whether this is clearly above
   /// chance.
   struct Cue {
     std::string name, says;
@@ -54,7 +54,7 @@ struct CheckWords {
 };
 CheckWords words_of(const simulation::Check& check);
 
-/// "3 min", "2 h", "4 days": an age as people say it.
+/// Formats an age as people say it: "3 min", "2 h", "4 days".
 std::string age_in_words(double age_s);
 
 }  // namespace turnpoint::desk

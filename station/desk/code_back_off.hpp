@@ -5,9 +5,10 @@
 
 namespace turnpoint::desk {
 
-/// How long a keypad refuses codes after wrong ones: not at all after the first two, then 5 s, doubled with
-/// each further one, at most 5 min. The right code resets it. Trying ten thousand codes of four digits takes
-/// over a month. Pure: the caller passes the time (s, monotonic).
+/// How long a keypad refuses codes after wrong ones. After the first two wrong codes it accepts another one
+/// at once. Then it waits 5 s, and twice as long after each further wrong code, at most 5 min. The right code
+/// ends the waiting. Trying all ten thousand codes of four digits takes over a month. Pure: the caller passes
+/// the time (s, monotonic).
 class CodeBackOff {
  public:
   static constexpr int free_tries = 2;
@@ -20,7 +21,7 @@ class CodeBackOff {
     until_s_ = now_s + std::min(wait_s, longest_s);
   }
   void right() { *this = {}; }
-  /// Seconds until the next code is accepted; 0 if now.
+  /// Seconds until the next code is accepted; 0 if one is accepted now.
   double wait_s(double now_s) const { return std::max(0.0, until_s_ - now_s); }
   int wrong_tries() const { return wrong_; }
 

@@ -16,10 +16,10 @@ namespace {
 using text::number;
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
-/// For limits: the share of the last 60 s with a stimulus.
+/// Time over which the duty cycle is computed: the limit applies to any 60 s.
 constexpr double kWindow_s = 60;
 
-/// How long a setting is displayed before the next one, so that it can be read.
+/// Each setting of a slider is displayed at least this long, so that it can be read.
 constexpr std::chrono::milliseconds kSettingEvery{200};
 
 std::string percent(double share) { return number(std::round(1000 * share) / 10, 4) + " %"; }
@@ -54,7 +54,8 @@ plot::Figure alone(const char* title, const plot::Chart& panel) {
   return figure;
 }
 
-/// The scheduled duration; an exploration ends with its answer.
+/// Returns for how long the stimulus was presented: its scheduled duration, or for an exploration, the time
+/// until the answer.
 double stimulus_s(const records::TrialRow& row, int rate_Hz) {
   double scheduled_s = 0;
   int intervals = 1;
@@ -209,7 +210,7 @@ void LiveView::push(News news) {
   {
     const std::lock_guard lock(mutex_);
     if (news.setting && !queue_.empty() && queue_.back().setting)
-      queue_.pop_back();  // only the newest one counts
+      queue_.pop_back();  // only the newest setting matters
     queue_.push_back(std::move(news));
   }
   arrived_.notify_one();

@@ -23,11 +23,12 @@ struct LiveState {
   std::string heading;                                                     ///< trial number and level
   std::vector<std::pair<std::string, std::string>> scene, course, limits;  ///< (label, value)
   std::vector<Drawing> surfaces;  ///< one for each scene, in the order of presentation
-  /// profile of all scenes; levels; response times. Empty if there is nothing to show
+  /// figures of the profile of all scenes, of the levels, and of the response times; empty if there are no
+  /// data
   Drawing profile, trace, times;
 };
 
-/// The data kept about a finished trial.
+/// What the live view keeps about a finished trial.
 struct LiveTrial {
   std::string procedure;
   std::optional<double> level;
@@ -36,28 +37,30 @@ struct LiveTrial {
   terms::Outcome outcome = terms::Outcome::answered;
   terms::TrialType type = terms::TrialType::experimental;
   double onset_s = 0, ended_s = 0;  ///< relative to the start of the session
-  double stimulus_s = 0;            ///< time that the stimulus was presented
+  double stimulus_s = 0;            ///< time for which the stimulus was presented
   int xruns = 0, extra_touches = 0;
 };
 
-/// The course of the session in words: accuracy, response times, losses. Pure.
+/// Describes the course of the session in words: accuracy, response times, lost frames. Pure.
 std::vector<std::pair<std::string, std::string>> course_of(const std::vector<LiveTrial>& trials);
 
-/// How much of the rig's limits is used by the stimuli of the last 60 s and the largest displacement of the
-/// current trial (m).
+/// Describes how much of the rig's limits is used up. It considers the stimuli of the last 60 s and the
+/// largest displacement of the current trial (m).
 std::vector<std::pair<std::string, std::string>> limits_used(const std::vector<LiveTrial>& trials,
                                                              std::optional<double> peak_displacement_m,
                                                              const rig::Rig& rig);
 
-/// Levels in order, one series per procedure; open markers are wrong answers, a line is the running estimate.
+/// Plots the levels in order, one series per procedure. Open markers are wrong answers; a line shows the
+/// running estimate.
 std::optional<plot::Figure> live_trace(const std::vector<LiveTrial>& trials, const std::string& label);
 std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials);
 
-/// Follows a session on its own thread, describes and draws the session's plans, and reports a new state
-/// whenever something changes. While a slider moves, it shows the newest setting five times a second.
+/// Follows a session on its own thread. It describes and draws the session's plans, and reports a new state
+/// whenever something changes. While the participant moves a slider, it shows the newest setting five times a
+/// second.
 class LiveView : public session::Monitor {
  public:
-  /// `on_state` is called on the view's own thread.
+  /// Called on the view's own thread.
   using OnState = std::function<void(LiveState)>;
   LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state);
   ~LiveView() override;
@@ -89,13 +92,13 @@ class LiveView : public session::Monitor {
   void tell();
 
   OnState on_state_;
-  std::string level_;     ///< the level's name in the protocol
+  std::string level_;     ///< name of the level in the protocol
   std::string adjusted_;  ///< the factor that a slider sets; "" if there is none
   rig::Rig rig_;
-  // Worker thread only:
+  // used by the worker thread only:
   scene::Planner planner_;
-  Begun trial_;                    ///< with the scenes currently presented
-  std::optional<double> setting_;  ///< setting of the slider, once it has moved
+  Begun trial_;                    ///< the current trial; its scenes are those presented now
+  std::optional<double> setting_;  ///< the slider's setting; empty until it has been moved
   std::chrono::steady_clock::time_point next_setting_;
   std::vector<LiveTrial> trials_;
   std::optional<double> peak_displacement_m_;
@@ -103,7 +106,8 @@ class LiveView : public session::Monitor {
   std::mutex mutex_;
   std::condition_variable_any arrived_;
   std::deque<News> queue_;
-  // The last member, so that the thread is joined before anything that it uses is destroyed.
+  // Keep this member last: its destructor then joins the thread before the objects that the thread uses are
+  // destroyed.
   std::jthread thread_;
 };
 

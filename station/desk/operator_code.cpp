@@ -23,14 +23,14 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kStationFolder = "/etc/turnpoint";
-/// The user and group that the station's service runs as.
+/// The user and the group with which the station's service runs.
 constexpr const char* kStationGroup = "turnpoint";
 
 [[noreturn]] void fail(const std::string& what) {
   throw std::system_error(errno, std::generic_category(), what);
 }
 
-/// Compares in constant time, wherever the first difference is.
+/// Compares two texts in a time that does not depend on where they differ.
 bool equal(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned different = 0;
@@ -46,7 +46,7 @@ std::string crypted(const std::string& text, const std::string& setting) {
   return hash;
 }
 
-/// True for a complete hash; false for a mere setting from which to make one.
+/// True for a complete hash. False for a text that only has the settings for making a hash.
 bool is_hash(const std::string& text) {
   const auto data = std::make_unique<crypt_data>();
   const char* again = ::crypt_r("", text.c_str(), data.get());

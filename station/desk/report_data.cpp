@@ -11,7 +11,7 @@ namespace turnpoint::desk {
 
 namespace {
 
-/// Summarises from the log how late the participant's screen was.
+/// Summarises the logged reports of how many frames the participant's screen was late.
 std::string late_frames(const std::vector<records::EventRow>& events) {
   int frames = 0, trials = 0;
   for (const auto& event : events)
@@ -29,7 +29,8 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
       xruns += row.xruns;
       extra += row.extra_touches;
       if (row.response_time_s) ++quality[row.response_time_quality];
-      offset_s = std::max(offset_s, row.response_offset_s);  // answers by button have no offset
+      offset_s = std::max(offset_s, row.response_offset_s);  // answers by button have an offset of 0, so take
+                                                             // the largest
     }
   std::string qualities;
   for (const auto& [name, count] : quality)

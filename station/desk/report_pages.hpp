@@ -8,15 +8,15 @@
 
 namespace turnpoint::desk {
 
-/// A session's report as pages of a screen: texts and figures.
+/// A session's report as pages of the screen: texts and figures.
 struct ReportPages {
   std::string title;
   std::vector<std::pair<std::string, std::string>> outcomes, fit, speed_accuracy, health;  ///< (label, value)
   std::vector<std::string> statements;  ///< remarks that must be shown with the numbers
-  Drawing trade, fits, levels, times;   ///< figures; empty if there is nothing to show
+  Drawing trade, fits, levels, times;   ///< figures; empty if there are no data
 };
 
-/// Makes the report of a stored session; like report_data() and report::summarise(), takes about 0.3 s.
+/// Makes the report of a stored session with report_data() and report::summarise(). Takes about 0.3 s.
 ReportPages report_pages(const std::string& database, const std::string& session_id);
 ReportPages report_pages(const report::Summary& summary);
 

@@ -22,10 +22,10 @@ plot::Paint stroke(const std::string& colour, double width, const std::string& d
 plot::Paint fill(const std::string& colour, double opacity = 1) { return {"", colour, 1, "", opacity}; }
 
 const std::string kMark = "mark";
-// size and distance of the text that gives the boundary's position
+// text size of the boundary's position, and its distance from the strip
 constexpr double kName_px = 14, kNameAbove_px = 20;
 
-/// A drawing of the surface has a caption only from this height on.
+/// The drawing of a surface has a caption only if it is at least this high.
 constexpr double kCaptionFrom_px = 165;
 
 void require_plan(const SceneLook& look) {
@@ -41,8 +41,8 @@ std::optional<double> mark_of(const SceneLook& look) {
   return value ? std::optional(1e-3 * *value) : std::nullopt;
 }
 
-/// The strip's place on the page, with x from the wide end in either orientation. Slim strips are widened to
-/// be visible.
+/// Where the strip is drawn on the page. x counts from the wide end, whether that is left or right. A slim
+/// strip is drawn wider than to scale, to be visible.
 struct Place {
   double left, right, middle_y, across, length_m;
   bool wide_left;
@@ -74,7 +74,7 @@ Place place_on(const rig::Rig& rig, double width_px, double height_px) {
   for (int i = 0; i <= 20; ++i)
     widest = std::max(widest, physics::half_width_m(at.surface, at.length_m * i / 20));
   const double to_scale = (at.right - at.left) / at.length_m;
-  // There must be room for labels above and below, even if little is left for the strip.
+  // Leave room for labels above and below, even if the strip becomes thin.
   const double most_px = std::min(0.24 * height_px, 0.5 * height_px - (low ? 33 : 46));
   at.across = std::clamp(to_scale, 0.75 * most_px / widest, most_px / widest);
   return at;
@@ -87,7 +87,7 @@ void draw_heat(plot::Canvas& canvas, const SceneLook& look, const Place& at) {
     const double a = profile.x_m[i], b = profile.x_m[i + 1];
     const double value = 0.5 * (profile.displacement_m[i] + profile.displacement_m[i + 1]);
     const auto colour = plot::shade(top > 0 ? value / top : 0);
-    // Each slice extends below the next one, so that no background is visible between them.
+    // Let each slice extend below the next one, so that no gap is visible between them.
     const double under = std::min(at.length_m, b + (b - a));
     canvas.polygon({at.above(a), at.above(under), at.below(under), at.below(a)}, fill(colour));
   }
@@ -111,7 +111,7 @@ void draw_transducer(plot::Canvas& canvas, const Place& at) {
                    fill("#4d565e"));
 }
 
-/// Draws the mark where the participant sees it, with its name on the side away from the boundary.
+/// Draws the mark where the participant sees it. Its name is on the side away from the boundary.
 void draw_mark(plot::Canvas& canvas, const SceneLook& look, const Place& at) {
   const auto mark = mark_of(look);
   if (!mark || *mark <= 0 || *mark >= at.length_m) return;
@@ -122,8 +122,8 @@ void draw_mark(plot::Canvas& canvas, const SceneLook& look, const Place& at) {
               to_left ? plot::Anchor::end : plot::Anchor::start, kInk);
 }
 
-/// The y of the lower end of the boundary's name. If the name would collide with the mark and the mark's
-/// name, it goes above them.
+/// Returns the y coordinate of the lower end of the boundary's name. If the name would overlap the mark or
+/// the mark's name, it is placed above them.
 double boundary_name_y(const SceneLook& look, const Place& at, const std::string& name) {
   const double boundary = *look.plan.boundary_m, own = at.above(boundary).second;
   const auto mark = mark_of(look);
@@ -173,7 +173,7 @@ Drawing drawing_of(plot::Figure figure) {
     try {
       plot::draw(canvas, plot::laid_out(figure, width_px, height_px));
     } catch (const std::invalid_argument&) {
-      // if the legend is too long for that size, keep the original layout and scale it down
+      // If the legend is too long for that size, use the original layout and scale it down.
       plot::draw(canvas, figure);
     }
   };
@@ -182,7 +182,7 @@ Drawing drawing_of(plot::Figure figure) {
 Drawing drawing_of_surface(const SceneLook& look, const rig::Rig& rig) {
   require_plan(look);
   return [look, rig](plot::Canvas& canvas, double width_px, double height_px) {
-    // Below this size there is no room for its scale and labels.
+    // Below this size there is no room for scale and labels, so draw larger and scale down.
     const double larger = std::max({1.0, 240 / width_px, 84 / height_px});
     draw_surface(canvas, look, rig, larger * width_px, larger * height_px);
   };
@@ -215,8 +215,8 @@ plot::Figure profile_figure(const std::vector<SceneLook>& looks) {
     friction.layers.push_back(line);
     for (std::size_t k = 0; k < line.y.size(); ++k) line.y[k] = 1e6 * look.profile.displacement_m[k];
     most_um = std::max(most_um, *std::max_element(line.y.begin(), line.y.end()));
-    // A single scene has one series in each panel, so give its friction curve a different look from its
-    // displacement.
+    // With a single scene, displacement and friction are in different panels but have the same series number.
+    // Give the friction curve another look.
     if (!several) std::get<plot::Line>(friction.layers.back()).series = 1;
     displacement.layers.push_back(line);
   }

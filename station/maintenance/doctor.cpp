@@ -27,8 +27,8 @@ namespace {
 
 using Status = lines::Finding::Status;
 
-// Plays two and a half seconds of silence to measure the device's own clock, or longer if its time stamps are
-// coarse.
+// Measures the device's own clock. It plays silence for two and a half seconds, or longer if the device's
+// time stamps are coarse.
 lines::Finding measured_clock(drive::Stream& stream) {
   for (int k = 0; k < 220; ++k) {
     system::sleep_until_ns(system::monotonic_ns() + 100'000'000);
@@ -46,15 +46,16 @@ lines::Finding measured_clock(drive::Stream& stream) {
           "use another device or kernel driver"};
 }
 
-// The name that amixer uses for the card of alsa:hw:CARD=NAME,DEV=0, or of alsa:hw:NAME,0.
+// Returns the card name for amixer: NAME in alsa:hw:CARD=NAME,DEV=0 or alsa:hw:NAME,0.
 std::string card_of(std::string_view uri) {
   uri.remove_prefix(std::string_view("alsa:hw:").size());
   if (uri.starts_with("CARD=")) uri.remove_prefix(5);
   return std::string(uri.substr(0, uri.find(',')));
 }
 
-// A PCM512x mutes its analogue side after 1024 frames of zeros, 5 ms (TI, PCM512x data sheet, zero data
-// detection), and unmutes it at each onset. Between stimuli the stream of a session consists of zeros.
+// A PCM512x mutes its analogue outputs after 1024 frames of zeros, which last 5 ms, and unmutes them at the
+// next onset (TI, PCM512x data sheet, zero data detection). A session's stream consists of zeros between
+// stimuli.
 void converter_mute(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
   const auto on = drive::card_switch(rig.output.uri, "Auto Mute Switch");
   if (!on) return;
@@ -93,7 +94,8 @@ void converter(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
   }
 }
 
-// A new rig file has a simulated touch panel, which is easily forgotten when a real converter is added.
+// Warns about a simulated touch panel on a rig with a real converter. A new rig file has a simulated panel,
+// and people forget to replace it.
 lines::Finding touch(const rig::Rig& rig) {
   auto check = lines::check_touch("touch", *rig.touch_uri);
   if (check.status == Status::ok && *rig.touch_uri == "sim:" && rig.output.uri.starts_with("alsa:"))
@@ -133,7 +135,8 @@ void display(std::vector<lines::Finding>& checks) {
                         : "connect a screen, or run sessions with --buttons-only or a simulated observer"});
 }
 
-// On a desktop, its display server passes touches on; on a bare screen the program must read the devices.
+// Without a desktop, whose display server passes touches on, the program must be able to read the input
+// devices itself.
 void input(std::vector<lines::Finding>& checks) {
   if (std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY")) return;
   const auto devices = lines::try_input_devices();

@@ -23,21 +23,21 @@ struct LatencyRequest {
   calibration::LatencyReference reference = calibration::LatencyReference::button;
 };
 
-/// The devices for measuring a panel's latency: the touch panel's kernel times, if the rig names the panel,
-/// and the rig's button lines, one of which is the reference.
+/// The devices for measuring the latency of the touch panel: the panel, if the rig names it, and the rig's
+/// button lines, one of which gives the reference time.
 class LatencyDevices {
  public:
   using OnEdge = std::function<void(std::int64_t time_ns)>;
 
-  /// `on_edge` is called on the panel's thread. Throws terms::UsageError for a rig without real buttons, and
-  /// the errors of lines::open_buttons and touch::TouchReader.
+  /// `on_edge` is called on the thread of the buttons. Throws terms::UsageError for a rig without real
+  /// buttons, and the errors of lines::open_buttons and touch::TouchReader.
   LatencyDevices(const rig::Rig& rig, OnEdge on_edge);
 
   ~LatencyDevices();
 
-  /// True if touches get the kernel's time.
+  /// True if touches have the kernel's time.
   bool has_kernel_times() const { return touch_ != nullptr; }
-  /// See touch::TouchReader::claim(); empty without kernel times.
+  /// See touch::TouchReader::claim(). Empty if touches do not have the kernel's time.
   std::optional<std::int64_t> claim(double x, double y, std::int64_t seen_ns);
 
  private:
@@ -45,12 +45,12 @@ class LatencyDevices {
   std::unique_ptr<lines::Buttons> buttons_;
 };
 
-/// The calibration to which a panel's latency is added: the newest one beside the rig if it is still valid,
-/// else a new one that contains nothing else. A latency measured with the other reference is kept. Has
-/// today's date.
+/// Returns the calibration to which the latency of the panel is added: the newest one beside the rig file if
+/// it is still valid, otherwise a new one with nothing else in it. A latency that was measured with the other
+/// reference is kept. The calibration gets today's date.
 calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured);
 
-/// The panel's latency from the newest valid calibration beside the rig.
+/// Returns the panel's latency from the newest valid calibration beside the rig file.
 std::optional<calibration::PanelLatency> known_panel(const rig::Rig& rig);
 
 }  // namespace turnpoint::maintenance

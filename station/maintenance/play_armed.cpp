@@ -19,11 +19,11 @@ namespace turnpoint::maintenance {
 namespace {
 
 constexpr double kLead_s = 0.5, kMargin_s = 0.5;
-constexpr std::int64_t kHeard_ns = 2'000'000'000;  // time limit for the report that everything was played
+constexpr std::int64_t kHeard_ns = 2'000'000'000;  // longest wait for the report that all tones were played
 constexpr std::int64_t kPoll_ns = 5'000'000;
-constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // time limit for the first report of the audio thread
+constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // longest wait for the audio thread's first report
 
-/// The reason why the sound was not played correctly; "" for normal events.
+/// Returns the reason why the tones were not played correctly; "" for normal events.
 std::string trouble_of(const drive::Event& event, const drive::OutputConfig& output) {
   switch (event.kind) {
     case drive::EventKind::underrun:
@@ -45,11 +45,11 @@ std::string trouble_of(const drive::Event& event, const drive::OutputConfig& out
   return "";
 }
 
-/// Polls the stream until `done`, and reports to the guard that the program is alive. Throws if something
-/// went wrong, or after a termination signal.
+/// Polls the stream and reports to the guard until `done` returns true. Throws if something went wrong, or
+/// after a termination signal.
 void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::function<bool()>& done) {
   for (;;) {
-    const bool last = done();  // checked before polling, so that all events until then are processed
+    const bool last = done();  // call done() before polling, so that all events up to then are processed
     amplifier.session_alive();
     while (const auto event = stream.poll())
       if (const auto trouble = trouble_of(*event, stream.config().output); !trouble.empty())
@@ -74,14 +74,14 @@ std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier,
   const auto margin = std::llround(kMargin_s * rate_Hz);
   auto first = bursts.at(0);
   first.start_frame = stream.earliest_frame() + std::llround(kLead_s * rate_Hz);
-  // However long the check of the first burst takes, the others keep their distance to it.
+  // Checking the first burst may take any time. The other bursts keep their distance to its actual start.
   const auto onset = stream.schedule_soon(first).start_frame;
   auto end = onset + first.length_frames;
   for (std::size_t k = 1; k < bursts.size(); ++k) {
     auto burst = bursts[k];
     burst.start_frame += onset - bursts[0].start_frame;
-    // Compare with the render position, not the playback position: with a long device buffer, rendering runs
-    // far ahead.
+    // Compare with the render position, not the playback position. With a long device buffer, rendering runs
+    // far ahead of playback.
     attend(stream, amplifier, [&] { return stream.earliest_frame() + margin >= burst.start_frame; });
     stream.schedule(burst);
     end = burst.start_frame + burst.length_frames;
@@ -111,12 +111,14 @@ drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
                              const std::vector<drive::Burst>& bursts) {
   auto config = session::stream_of(rig);
   config.output.uri = uri;
-  const auto peak = largest_peak(bursts, config);                   // throws before anything is opened
-  const auto amplifier = lines::open_amplifier(rig.amplifier_uri);  // must outlive the stream
+  const auto peak = largest_peak(bursts, config);                   // may throw, so call it before anything
+                                                                    // is opened
+  const auto amplifier = lines::open_amplifier(rig.amplifier_uri);  // the amplifier must outlive the stream
   config.amplifier = amplifier.get();
   system::StopSignals signals;
   signals.take_over();
-  const auto stream = drive::open_realtime(config);  // its destructor ramps down what is sounding
+  const auto stream = drive::open_realtime(config);  // the stream's destructor ramps down tones that are
+                                                     // playing
   attend(*stream, *amplifier, [until_ns = system::monotonic_ns() + kFirstBlocks_ns] {
     return system::monotonic_ns() >= until_ns;
   });

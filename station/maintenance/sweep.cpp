@@ -22,7 +22,7 @@ drive::Burst burst_of(const SweepStep& step, int rate_Hz) {
   return burst;
 }
 
-/// Renders every tone at its own absolute frame, so that a vibrometer can find tones by time.
+/// Renders each tone exactly at its planned frame, so that a vibrometer can find the tones by their times.
 void render(drive::SynchronousStream& stream, const std::vector<drive::Burst>& bursts) {
   for (const auto& burst : bursts) {
     stream.schedule(burst);

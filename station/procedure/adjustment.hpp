@@ -6,8 +6,9 @@
 namespace turnpoint::procedure {
 
 /// The method of adjustment. Starting levels are presented like constant stimuli, and the participant's
-/// settings are recorded. Their mean estimates the point of subjective equality ("pse"), their median is
-/// given as the mode, and their standard deviation as the sd. A trial without a setting is repeated later.
+/// settings are recorded. The mean of the settings estimates the point of subjective equality ("pse"); the
+/// estimate's mode is their median, its sd their standard deviation. A trial without a setting is repeated
+/// later.
 class Adjustment : public ConstantStimuli {
  public:
   using ConstantStimuli::ConstantStimuli;

@@ -13,20 +13,20 @@ namespace {
 
 using Levels = std::vector<std::vector<std::size_t>>;
 
-/// Counting of combinations stops at this number, because no design repeats a value more often.
+/// The number of combinations is not counted beyond this: no design repeats a value more often.
 constexpr std::size_t kMost = 1'000'000;
 
-/// The number of combinations of these factors' levels, up to kMost.
+/// Returns the number of combinations of these factors' levels, at most kMost.
 std::size_t crossed(const Levels& factors) {
   std::size_t cells = 1;
   for (const auto& levels : factors) cells = std::min(cells * levels.size(), kMost);
   return cells;
 }
 
-/// The levels of the balanced factors in one repeat of a value. After any number of repeats, the counts of
-/// combinations differ by at most one, and so do the counts of each factor's levels. To achieve this, all
-/// factors step together, and a factor skips one level whenever it has met the same combination of the
-/// earlier factors before.
+/// Returns the levels of the balanced factors in one repeat of a value. After any number of repeats, each
+/// combination has occurred equally often, or once more than another, and the same holds for each factor's
+/// levels. To achieve this, all factors step to their next level with every repeat. When a factor would meet
+/// a combination of the earlier factors for the second time with the same level, it skips one level.
 std::vector<std::size_t> combination(const Levels& factors, std::size_t repeat) {
   std::vector<std::size_t> result;
   std::size_t before = 1;
@@ -92,7 +92,7 @@ void ConstantStimuli::break_runs(std::vector<Item>& items, random::Draws& draws)
   const auto n = spec_.shuffle == Shuffle::within_repeat ? spec_.values.size() : items.size();
   for (std::size_t at = 0; at < items.size(); ++at) {
     if (!runs_too_long(items, at)) continue;
-    // Swap with a later item of the same repeat that has another right answer.
+    // Swap with a later item of the same repeat that has a different right answer.
     const auto end = std::min(items.size(), (at / n + 1) * n);
     std::vector<std::size_t> others;
     for (std::size_t i = at + 1; i < end; ++i) {
@@ -104,7 +104,8 @@ void ConstantStimuli::break_runs(std::vector<Item>& items, random::Draws& draws)
       std::swap(items[at], items[others[draws.below(others.size())]]);
       continue;
     }
-    // There is no such item, so move an item with another right answer back from earlier in this repeat.
+    // If there is no such item, move the item to an earlier place in this repeat where it makes no run too
+    // long.
     for (std::size_t i = at; i-- > at / n * n;) {
       std::swap(items[at], items[i]);
       bool good = true;
@@ -130,8 +131,8 @@ void ConstantStimuli::record(Answer answer) {
     ++recorded_;
     return;
   }
-  // Insert the trial at a random place among the remaining trials, at least one trial away if possible; after
-  // the last trial, append it.
+  // Insert the trial at a random place among the remaining trials, if possible not as the very next one. If
+  // no trials remain, append it.
   random::Draws draws({key_.seed, random::Stream::level_order, key_.block, key_.attempt, 1 + requeued_++});
   const auto left = queue_.size() - position_;
   const auto offset = left == 0 ? 0 : 1 + draws.below(left);

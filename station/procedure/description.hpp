@@ -11,25 +11,26 @@ namespace turnpoint::procedure {
 /// How a procedure chooses its levels.
 enum class Choice {
   listed,  ///< levels are fixed before the session
-  track,   ///< answers move the level, one step at a time; the report prints the procedure's own estimate
-  /// levels are chosen from the answers and an assumed psychometric function, which the report fits again
+  track,   ///< each answer moves the level by one step; the report prints the procedure's own estimate
+  /// answers update a posterior for an assumed psychometric function, which chooses the levels; the report
+  /// fits that function again
   posterior,
 };
 
-/// Everything that the rest of the station needs to know about a kind of procedure. Each kind defines its own
-/// description, and the table in procedure.cpp lists them.
+/// Everything that the rest of the station needs to know about one kind of procedure. Each kind defines its
+/// own description; the table in procedure.cpp lists them.
 struct Description {
   Kind kind;
   const char* name;  ///< name of the kind in a protocol, such as "up-down"
   Choice choice;
-  /// Reads the keys of this kind from a [[procedure]] table; name, kind, level and copy have been read
-  /// already.
+  /// Reads the keys of this kind from a [[procedure]] table. The keys name, kind, level and copy have already
+  /// been read.
   void (*read)(text::TableReader& reader, Spec& spec);
-  /// Adds the problems of a spec, whatever file it came from.
+  /// Adds the problems of a specification. It does not matter from which file the specification comes.
   void (*validate)(const Spec& spec, std::vector<Problem>& problems);
   std::unique_ptr<Procedure> (*make)(const Spec& spec, const Context& context, const random::Key& key);
-  /// The share of ones on which the levels converge, given the smallest and largest possible share; empty if
-  /// they do not converge or it is unknown.
+  /// Returns the share of answers of 1 on which the levels converge. `least` and `most` are the smallest and
+  /// largest possible share. Empty if the levels do not converge, or if the share is unknown.
   std::optional<double> (*settles_at)(const Spec& spec, double least, double most);
 };
 

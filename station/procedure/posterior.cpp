@@ -12,36 +12,37 @@ namespace turnpoint::procedure {
 
 namespace {
 
-/// The lowest probability of an answer. If an answer were impossible, a single slip would make the posterior
-/// zero everywhere. The value is too small to be noticeable otherwise.
+/// The lowest probability of an answer. With a probability of 0, a single slip would make the posterior zero
+/// everywhere. The value is so small that it has no other effect.
 constexpr double kFloor = 1e-14;
 
-/// Stands for an infinite distance; no finite level has a distance this large.
+/// Used as an infinite distance. Distances of finite levels are always smaller.
 constexpr double kBeyond = 1e300;
-/// Distances that differ by less than this share of the largest one count as equal: the difference is only
-/// rounding.
+/// Two distances count as equal if their difference is below this share of the largest distance. Such
+/// differences are rounding errors.
 constexpr double kSameDistance = 1e-13;
 
 double likely(double p) { return std::clamp(p, kFloor, 1 - kFloor); }
 
-/// Distance of a stimulus above a threshold, on the axis on which the function has a fixed shape.
+/// Returns by how much a stimulus lies above a threshold: the difference of their levels on a linear scale,
+/// the logarithm of their ratio on a logarithmic scale.
 double distance(Scale scale, double level, double threshold) {
   if (scale == Scale::linear) return level - threshold;
   if (level <= 0) return -kBeyond;
   return threshold <= 0 ? kBeyond : random::log(level / threshold);
 }
 
-/// Binary entropy in nats; 0 at 0 and 1.
+/// Returns the binary entropy of a probability in nats; 0 at probabilities 0 and 1.
 double binary_entropy(double p) {
   if (p <= 0 || p >= 1) return 0;
   return -p * random::log(p) - (1 - p) * random::log(1 - p);
 }
 
-/// Number of parallel partial sums in a sum of products.
+/// A sum of products is computed as this number of partial sums in parallel.
 constexpr std::size_t kLanes = 8;
 
-// Compiles a function for several kinds of processor, if the compiler and C library support that. The results
-// are the same on all of them.
+// Functions with this attribute are compiled for several kinds of processor, if compiler and C library
+// support that. The results are the same on all of them.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define TURNPOINT_CLONES __attribute__((target_clones("avx2", "default")))
@@ -49,7 +50,8 @@ constexpr std::size_t kLanes = 8;
 #define TURNPOINT_CLONES
 #endif
 
-/// A sum of products in eight fixed partial sums, so that the result does not depend on the compiler.
+/// A sum of products. It always uses the same eight partial sums, so that the result does not depend on the
+/// compiler.
 struct Products {
   std::array<double, kLanes> lane{};
   double rest = 0;
@@ -59,8 +61,9 @@ struct Products {
   }
 };
 
-/// Two sums that share one factor, computed together so that they need not wait for each other. The partial
-/// sums stay in registers, because the inputs cannot overlap them.
+/// Adds x * y to the first sum and x * z to the second. Both are computed together, which is faster because
+/// neither waits for the other. Local copies of the partial sums can stay in registers, because they cannot
+/// overlap the inputs.
 TURNPOINT_CLONES
 void add(Products& first, Products& second, const double* x, const double* y, const double* z,
          std::size_t n) {
@@ -201,8 +204,8 @@ std::size_t Posterior::index_of(std::size_t point, Parameter parameter) const {
   return point / stride_[parameter] % values_[parameter].size();
 }
 
-/// For each stimulus: the sum over thresholds of factors times its row of a table; both have `length`
-/// entries.
+/// For each stimulus, sums products over all thresholds: `factors` times the stimulus's row of `table`. Both
+/// have `length` entries per threshold.
 std::vector<double> Posterior::sums(const std::vector<double>& factors, const std::vector<double>& table,
                                     std::size_t length) const {
   const std::size_t n = stimuli_.size();
@@ -220,7 +223,8 @@ std::vector<double> Posterior::sums(const std::vector<double>& factors, const st
 }
 
 std::vector<double> Posterior::predictives() const {
-  // The answer's probability is affine in guess and in 1 - guess - lapse, so sum over these first.
+  // The answer's probability is a linear function of guess and of 1 - guess - lapse, so sum over these two
+  // first.
   std::vector<double> range(values_[threshold].size() * padded_slopes_);
   double floor = 0;
   for (std::size_t t = 0; t < values_[threshold].size(); ++t)
@@ -237,8 +241,9 @@ std::vector<double> Posterior::predictives() const {
   return all;
 }
 
-/// The mean over groups of the entropy of the answer, where each group's probability is averaged over the
-/// nuisance parameters. A group's weight, and its part below the function, do not depend on the stimulus.
+/// Groups grid points with the same kept parameters, averages the probability of the answer within each group
+/// (over the nuisance parameters), and returns the weighted mean of the groups' entropies for each stimulus.
+/// A group's weight, and the part of its probability that comes from guessing, do not depend on the stimulus.
 std::vector<double> Posterior::kept_entropies() const {
   std::vector<double> weight(groups_), guess_part(groups_), ones(groups_), entropies;
   for (std::size_t i = 0; i < size(); ++i) {

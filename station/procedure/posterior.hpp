@@ -9,32 +9,35 @@
 
 namespace turnpoint::procedure {
 
-/// The posterior on a grid of threshold, slope, guess and lapse. The functions depend only on the distance
-/// between stimulus and threshold, and are affine in guess and lapse, so the tables are small: the function
-/// between its asymptotes and the entropy of the answer, for each distance that occurs. On grids with
-/// commensurate steps the number of distances is about that of stimuli plus thresholds, otherwise their
-/// product. Memory: 8 bytes per grid point, and 8 for each combination of a distance and a value of slope,
-/// guess and lapse.
+/// The posterior on a grid of threshold, slope, guess and lapse.
+///
+/// The psychometric functions depend only on the distance between stimulus and threshold, and linearly on
+/// guess and lapse. Small tables are therefore enough: for each distance that occurs, the function between
+/// its asymptotes, and the entropy of the answer. If stimuli and thresholds have commensurate steps, the
+/// number of distances is about the number of stimuli plus the number of thresholds; otherwise it is their
+/// product. Memory: 8 bytes per grid point, and 8 bytes for each combination of distance, slope, guess and
+/// lapse.
 class Posterior {
  public:
   enum Parameter { threshold, slope, guess, lapse };
 
   explicit Posterior(const Spec& spec);
 
-  /// Index of the stimulus that is expected to tell most about the kept parameters. It maximises mutual
-  /// information, which is the same as minimising the expected entropy. Ties go to the first.
+  /// Returns the index of the stimulus from which most information about the kept parameters is expected. It
+  /// has the largest mutual information, which means the smallest expected entropy. If several are equal,
+  /// returns the first.
   std::size_t best_stimulus() const;
-  /// Mutual information (nats) of each stimulus.
+  /// Returns the mutual information (nats) of each stimulus.
   std::vector<double> information() const;
-  /// Posterior predictive probability of response 1 at this stimulus.
+  /// Returns the posterior predictive probability of answer 1 at this stimulus.
   double predictive(std::size_t stimulus) const;
   /// Updates the posterior with an answer at a stimulus.
   void update(std::size_t stimulus, bool one);
 
-  /// Mean and sd of the parameter's marginal. The mode is its value at the point of largest weight in the
-  /// whole grid, as in Watson (2017), which need not be the maximum of the marginal.
+  /// Returns mean and sd of the parameter's marginal. The mode is the parameter's value at the grid point of
+  /// largest weight, as in Watson (2017); this need not be the maximum of the marginal.
   Estimate estimate(Parameter parameter) const;
-  /// True if the parameter has more than one value on the grid and is not tied.
+  /// True if the parameter has more than one value on the grid and is not tied to another parameter.
   bool varies(Parameter parameter) const { return values_[parameter].size() > 1; }
   double entropy_nats() const;
   const std::vector<double>& stimuli() const { return stimuli_; }
@@ -61,18 +64,20 @@ class Posterior {
   std::vector<double> stimuli_;
   Axes values_;
   std::array<std::size_t, 4> stride_{};
-  std::size_t slopes_ = 1, padded_slopes_ = 1,
-              /// number of values of the slope, and of combinations of guess and lapse
-      ends_ = 1;
+  /// number of slopes, the same number rounded up for fast sums, and number of combinations of guess and
+  /// lapse
+  std::size_t slopes_ = 1, padded_slopes_ = 1, ends_ = 1;
   /// guess, and 1 - guess - lapse, for each combination of guess and lapse
   std::vector<double> guesses_, ranges_;
   std::vector<double> weights_;      ///< posterior weights, indexed by [threshold][slope][guess][lapse]
-  std::vector<std::uint32_t> rows_;  ///< index of the distance, for [stimulus][threshold]
-  /// value of the function between its asymptotes, 0 to 1, for [distance][slope, padded]
+  std::vector<std::uint32_t> rows_;  ///< index of the distance between stimulus and threshold, for
+                                     ///< [stimulus][threshold]
+  /// value of the function between its asymptotes, from 0 to 1, for [distance][slope, padded]
   std::vector<double> core_;
-  /// entropy of the answer for [distance][slope][guess][lapse], used if there are no nuisance parameters
+  /// entropy of the answer for [distance][slope][guess][lapse]; used only without nuisance parameters
   std::vector<double> entropy_;
-  /// group of kept parameters for each grid point; empty without nuisance parameters
+  /// number of the group with the same kept parameters, for each grid point; empty without nuisance
+  /// parameters
   std::vector<std::uint32_t> kept_;
   std::size_t groups_ = 0;
 };

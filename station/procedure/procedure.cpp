@@ -7,8 +7,8 @@
 
 namespace turnpoint::procedure {
 
-// This is an explicit table, because a linker drops objects of a static library that only register
-// themselves.
+// The kinds are listed here explicitly. They cannot register themselves, because a linker leaves out an
+// object of a static library to which nothing refers.
 extern const Description constant_stimuli;
 extern const Description up_down;
 extern const Description weighted_up_down;

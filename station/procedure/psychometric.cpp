@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kLn10 = 2.302585092994045684;
 
-/// The exponential function, limited so that it cannot overflow. The psychometric functions are flat beyond
-/// the limit.
+/// The exponential function without overflow: its argument is limited. The psychometric functions are flat
+/// beyond the limit.
 double saturating_exp(double x) { return random::exp(std::min(x, 700.0)); }
 
 double core(Function function, Scale scale, double threshold, double slope, double level) {
@@ -40,12 +40,12 @@ double normal_cdf(double z) {
   const double density = random::exp(-0.5 * a * a) * 0.39894228040143267794;
   double tail = 0;
   if (a < 4) {
-    // Phi - 1/2 = density (a + a^3/3 + a^5/15 + ...): all terms are positive, so there is no cancellation.
+    // Phi - 1/2 = density (a + a^3/3 + a^5/15 + ...). All terms are positive, so no digits cancel.
     double term = a, sum = a;
     for (int n = 3; term > 1e-18 * sum; n += 2) term *= a * a / n, sum += term;
     tail = 0.5 - density * sum;
   } else {
-    // Otherwise use Laplace's continued fraction of Mills' ratio.
+    // For larger values use Laplace's continued fraction of Mills' ratio.
     double ratio = a;
     for (int n = 60; n >= 1; --n) ratio = a + n / ratio;
     tail = density / ratio;

@@ -7,9 +7,9 @@
 
 namespace turnpoint::procedure {
 
-/// QUEST+ (Watson 2017), psi (Kontsevich & Tyler 1999: QUEST+ on threshold and slope) and psi-marginal (Prins
-/// 2013: entropy over the kept parameters). An unanswered trial is repeated at the same level. After three
-/// unanswered trials in a row one trial of the budget is used up, so that the procedure always ends.
+/// QUEST+ (Watson 2017), psi (Kontsevich & Tyler 1999; QUEST+ on threshold and slope) and psi-marginal (Prins
+/// 2013; uses the entropy of the kept parameters). An unanswered trial is repeated at the same level. After
+/// three unanswered trials in a row, one trial of the budget is used up, so that the procedure always ends.
 class QuestPlus : public Procedure {
  public:
   explicit QuestPlus(const Spec& spec);
@@ -29,7 +29,7 @@ class QuestPlus : public Procedure {
   Posterior posterior_;
   std::size_t stimulus_ = 0;
   int recorded_ = 0, unanswered_ = 0, spent_ = 0;
-  std::vector<std::uint64_t> history_;  ///< stimulus index and answer of each answered trial
+  std::vector<std::uint64_t> history_;  ///< index of the stimulus, and the answer, of each answered trial
 };
 
 }  // namespace turnpoint::procedure

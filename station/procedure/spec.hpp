@@ -22,17 +22,21 @@ enum class Kind {
 using terms::Function;
 enum class Scale { linear, log10, dB };
 enum class Shuffle { within_repeat, within_block, none };
-enum class StopRule { any, all };  ///< "or": any rule ends the procedure; "and": all must be met
+enum class StopRule {
+  any,
+  all
+};  ///< any ("or"): the first rule that is met ends the procedure; all
+    ///< ("and"): all rules must be met
 enum class Select { min_expected_entropy };
 
 /// The values of one axis of a grid, computed when the file is read: from-to-step, log_from-log_to-count, or
-/// a list. With `tied` = "lapse" this parameter always equals the lapse.
+/// a list. If `tied` is "lapse", this parameter always equals the lapse.
 struct Grid {
   std::vector<double> values;
   std::string tied;
 };
 
-/// Prior over a grid's values; empty: uniform.
+/// Prior over the values of a grid. It is uniform if both members are empty.
 struct Prior {
   std::optional<std::pair<double, double>> normal;  ///< mean and sd of a normal distribution
   std::vector<double> weights;                      ///< one weight for each value of the grid
@@ -44,12 +48,13 @@ struct Stop {
   StopRule rule = StopRule::any;
 };
 
-/// The content of a [[procedure]] table, after `copy`. Keys that the kind does not use are empty.
+/// The content of a [[procedure]] table, after `copy` was applied. Members that the kind does not use are
+/// empty.
 struct Spec {
   std::string name;
   Kind kind = Kind::constant_stimuli;
   std::string level;   ///< the factor that the procedure sets
-  std::string tracks;  ///< the answer that counts as 1; "" if the procedure follows correctness
+  std::string tracks;  ///< the answer that counts as 1; "" if right answers count as 1
   Scale scale = Scale::linear;
 
   // for constant stimuli: the levels
@@ -59,22 +64,22 @@ struct Spec {
   Shuffle shuffle = Shuffle::within_repeat;
   std::optional<int> max_run;
 
-  // for staircases: first level and limits
+  // for staircases: starting level and limits
   std::optional<double> start, min, max;
-  /// sizes of the steps: each reversal moves on to the next size; the last one stays
+  /// sizes of the steps; after each reversal the next size is used, until the last one
   std::vector<double> step, step_down, step_up;
-  /// for weighted staircases: the probability on which the staircase converges
+  /// for weighted staircases: the proportion of answers of 1 on which the staircase converges
   std::optional<double> target;
   int n_down = 1, n_up = 1;
-  /// until the first reversal, this number of right answers causes a step down
+  /// number of right answers in a row that cause a step down, until the first reversal
   std::optional<int> initial_down;
-  int discard_reversals = 0;  ///< number of first reversals that the estimate ignores
+  int discard_reversals = 0;  ///< number of reversals at the start that the estimate leaves out
 
   // for procedures with a posterior
   Function function = Function::weibull;
   Grid stimuli, threshold, slope, guess, lapse;
   Prior prior_threshold, prior_slope, prior_guess, prior_lapse;
-  /// parameters that are summed over before the entropy is computed (psi-marginal)
+  /// parameters over which the posterior is summed before the entropy is computed (psi-marginal)
   std::vector<std::string> nuisance;
   Select select = Select::min_expected_entropy;
 
@@ -90,10 +95,10 @@ struct Problem {
   std::string key, what, allowed;
 };
 
-/// All problems of a spec, whatever file it came from; empty if it can run.
+/// Returns all problems of a specification, from whichever file it comes. Empty if it can run.
 std::vector<Problem> validate(const Spec& spec);
-/// Things that work but are probably mistakes: a one-point grid of stimuli, steps that miss the target, a
-/// grid whose only lapse is 0.
+/// Returns warnings about settings that work but are probably mistakes: a grid with only one stimulus, steps
+/// that miss the target, a grid whose only lapse is 0.
 std::vector<Problem> advise(const Spec& spec);
 
 }  // namespace turnpoint::procedure

@@ -13,7 +13,7 @@ Staircase::Staircase(const Spec& spec) : Track(spec) {
   steps_down_ = spec.step_down.empty() ? spec.step : spec.step_down;
   steps_up_ = spec.step_up.empty() ? spec.step : spec.step_up;
   if (spec.kind == Kind::weighted_up_down) {
-    // With probability p of a step down, the balance is p S_down = (1 - p) S_up.
+    // At the target, p is the probability of a step down, and steps balance if p S_down = (1 - p) S_up.
     const double ratio = *spec.target / (1 - *spec.target);
     if (spec.step_up.empty())
       for (steps_up_ = steps_down_; auto& step : steps_up_) step *= ratio;
@@ -44,7 +44,7 @@ void Staircase::learn(Answer answer) {
 }
 
 std::map<std::string, Estimate> Staircase::estimates() const {
-  // If the number is odd, leave out one more, so that there are as many peaks as valleys.
+  // Use an even number of reversals, as many peaks as valleys. If an odd number is left, leave out one more.
   const auto discarded = static_cast<std::size_t>(spec_.discard_reversals);
   if (reversals_.size() < discarded + 2) return {};
   const std::size_t first = discarded + (reversals_.size() - discarded) % 2;
@@ -125,7 +125,7 @@ std::unique_ptr<Procedure> make_staircase(const Spec& spec, const Context&, cons
   return std::make_unique<Staircase>(spec);
 }
 
-/// The level at which steps down and up balance (Garcia-Perez 1998); equal steps give .5^(1/n).
+/// Returns the proportion at which steps down and up balance (Garcia-Perez 1998). Equal steps give .5^(1/n).
 std::optional<double> staircase_target(const Spec& spec, double, double) {
   if (spec.target) return spec.target;
   const auto& down = spec.step_down.empty() ? spec.step : spec.step_down;

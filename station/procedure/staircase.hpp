@@ -5,9 +5,9 @@
 
 namespace turnpoint::procedure {
 
-/// n-down-m-up (Levitt 1971) and weighted up-down (Kaernbach 1991; step_up = step_down p / (1 - p))
-/// staircases. Each reversal moves on to the next step size. The estimate is the mean of the reversals (or of
-/// their logarithms if steps multiply), without the first `discard_reversals`, and without one more if an odd
+/// Staircases: n-down-m-up (Levitt 1971) and weighted up-down (Kaernbach 1991; step_up = step_down p / (1 -
+/// p)). After each reversal the next step size is used. The estimate is the mean of the reversals, or of
+/// their logarithms if steps multiply. It leaves out the first `discard_reversals`, and one more if an odd
 /// number is left.
 class Staircase : public Track {
  public:

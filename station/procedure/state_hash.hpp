@@ -3,7 +3,7 @@
 
 namespace turnpoint::procedure {
 
-/// FNV-1a over 64-bit words. It only serves to distinguish states.
+/// FNV-1a hash over 64-bit words. It serves to tell states apart, not as protection against tampering.
 class StateHash {
  public:
   void add(std::uint64_t word) {

@@ -16,10 +16,12 @@ namespace {
 ///
 /// x_n is the level of trial n, Z_n its answer (1 or 0), c the "step", phi the "target", and m the number of
 /// changes between a 1 and a 0 among the first n answers. (Kesten's own m leaves out the change at answer n
-/// itself, so his steps are those of one change earlier.) The changes are the reversals: a rule "reversals"
-/// stops at a smallest step, c / (2 + reversals). The level after the last answer is the estimate, as it is
-/// of any stochastic approximation; a single level has no standard deviation. There is none before the first
-/// change, when the levels have moved in one direction only.
+/// itself, so his steps are one change behind.)
+///
+/// Each change counts as a reversal. A stopping rule "reversals" therefore ends the procedure at a smallest
+/// step, c / (2 + reversals). The estimate is the level after the last answer; as a single level it has no
+/// standard deviation. Before the first change there is no estimate, because the levels have moved in one
+/// direction only.
 class StochasticApproximation : public Track {
  public:
   using Track::Track;

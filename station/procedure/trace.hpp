@@ -8,17 +8,17 @@
 
 namespace turnpoint::procedure {
 
-/// The behaviour of a procedure for given answers.
+/// What a procedure does if it gets given answers.
 struct Trace {
   std::vector<double> levels;  ///< one per answer
-  std::optional<double> next;  ///< empty if it has stopped
+  std::optional<double> next;  ///< the next level; empty if the procedure has stopped
   std::map<std::string, Estimate> estimates;
   std::optional<double> entropy_nats;
   std::vector<double> reversals;
 };
 
-/// Runs a procedure on answers of 1 (correct, or the tracked answer) and 0. Throws terms::UsageError for
-/// another character, or for answers after the procedure has stopped.
+/// Runs a procedure on answers of 1 (right, or the tracked answer) and 0. Throws terms::UsageError for any
+/// other character, or for answers after the procedure has stopped.
 Trace trace(const Spec& spec, const Context& context, const std::string& answers,
             const random::Key& key = {});
 

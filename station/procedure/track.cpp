@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kRepeats = 3, kSpentAtMost = 20;
 constexpr double kLargest = 1e300, kSmallest = 1e-300;
-/// Upper limit for the exponent of one step's factor; the level's limits bound the product.
+/// Upper limit for the exponent of a step's factor. After the step, the level's limits apply.
 constexpr double kLargestExponent = 690;
 
 double factor(double exponent) {
@@ -38,7 +38,8 @@ std::optional<Proposal> Track::next() const {
 
 void Track::record(Answer answer) {
   if (answer == Answer::none) {
-    // Repeat the same level, but not for ever: after three repeats one trial of the budget is used up.
+    // Repeat the same level. After three repeats one trial of the budget is used up, so that this cannot go
+    // on for ever.
     if (++unanswered_ > kRepeats) unanswered_ = 0, ++spent_;
     return;
   }
@@ -65,7 +66,7 @@ void Track::move(double size) {
       level_ *= factor(size * 0.11512925464970228420);
       break;
   }
-  // Without limits in the protocol, use limits that keep the level finite, far beyond any unit.
+  // If the protocol sets no limits, these limits keep the level finite. They lie far beyond any useful level.
   const bool multiplies = spec_.scale != Scale::linear;
   level_ = std::clamp(level_, multiplies ? kSmallest : -kLargest, kLargest);
   if (spec_.min) level_ = std::max(level_, *spec_.min);

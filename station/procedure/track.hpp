@@ -6,10 +6,10 @@
 
 namespace turnpoint::procedure {
 
-/// The common part of all procedures that move one level up and down by the answers: its limits and scale,
-/// reversals, and the rules that stop it. A step follows the answer at once; a reversal is the level at which
-/// the direction changed. On a log10 or dB scale steps multiply. An unanswered trial repeats the same level,
-/// at most three times in a row; then one trial of the budget is used up and the track continues.
+/// The common part of all procedures that move one level up and down from the answers: its limits and scale,
+/// reversals, and stopping rules. Each answer is followed at once by a step. A reversal is the level at which
+/// the direction changed. On a log10 or dB scale, steps multiply the level. An unanswered trial repeats the
+/// same level, at most three times in a row; then one trial of the budget is used up and the track continues.
 class Track : public Procedure {
  public:
   explicit Track(const Spec& spec);
@@ -26,9 +26,9 @@ class Track : public Procedure {
   virtual void learn(Answer answer) = 0;
 
   enum class Direction { none, down, up };
-  /// Records a reversal if the direction differs from that of the last step.
+  /// Records a reversal if the direction differs from that of the previous step.
   void turn(Direction direction);
-  /// Moves by this signed amount, on the scale and within the limits.
+  /// Moves the level by this signed amount, on its scale and within its limits.
   void move(double size);
 
   Spec spec_;

@@ -15,7 +15,8 @@ drive::ToneSet tones_of(const scene::DrivePlan& plan) {
     auto& driven = set.tones[static_cast<std::size_t>(set.count++)];
     driven.frequency_Hz = tone.frequency_Hz;
     driven.amplitude = tone.full_scale;
-    // The drive defines the phase of a sine, the surface model that of a cosine, so convert.
+    // The drive plays sines, while the surface model counts phase as for a cosine, so shift by a quarter
+    // turn.
     driven.phase_rad = tone.output_phase_rad + std::numbers::pi / 2;
     driven.channel = tone.channel;
   }

@@ -7,20 +7,21 @@
 
 namespace turnpoint::session {
 
-/// Converts the tones of a plan for the drive. Throws std::length_error if there are too many.
+/// Converts the tones of a plan to the drive's form. Throws std::length_error if there are too many tones.
 drive::ToneSet tones_of(const scene::DrivePlan& plan);
 
-/// Converts one interval to a burst of the drive. The burst plays the plans of the interval's scenes in turn;
-/// the second and later ones begin at `starts_s` from the onset, with a transition of `transition_s`. The
-/// total length is `length_s`, including both ramps. Tone i of a scene glides to tone i of the next. Throws
-/// std::length_error if the drive has no room.
+/// Converts one interval to a burst of the drive. The burst plays the plans of the interval's scenes one
+/// after the other. The second and later plans begin at `starts_s` from the onset, with a transition of
+/// `transition_s`, in which tone i of one scene glides to tone i of the next. The burst lasts `length_s`,
+/// including both ramps. Throws std::length_error if a burst cannot hold that many tones or scenes.
 drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::vector<double>& starts_s,
                       double transition_s, double length_s, int rate_Hz);
 
-/// Adds the rig's marker at the onset and at each change, never longer than the burst.
+/// Adds the rig's marker at the onset and at each change of scene. A marker never lasts longer than the
+/// burst.
 void mark(drive::Burst& burst, const rig::Marker& marker, int rate_Hz);
 
-/// Adds the rig's masking noise. `seed` gives each interval a different noise.
+/// Adds the rig's masking noise. A different `seed` for each interval gives each interval different noise.
 void mask(drive::Burst& burst, const rig::MaskingNoise& noise, std::uint64_t seed);
 
 }  // namespace turnpoint::session

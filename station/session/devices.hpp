@@ -12,7 +12,7 @@
 namespace turnpoint::session {
 
 /// The devices of a real session. `buttons` is null if the rig has neither buttons nor contact. Tests may
-/// replace stream and clocks.
+/// replace the stream and the clocks.
 struct Devices {
   std::unique_ptr<drive::Amplifier> amplifier;
   std::unique_ptr<lines::Buttons> buttons;
@@ -21,12 +21,13 @@ struct Devices {
   std::function<system::Clocks()> clocks = system::read_clocks;
 };
 
-/// Opens the rig's devices: lines by name, the amplifier disarmed and off. `sim:` has the same guard on lines
-/// that exist only in memory. Throws lines::LineError, std::system_error, terms::UsageError.
+/// Opens the rig's devices. Lines are found by name; the amplifier is disarmed and off. With `sim:`, the same
+/// guard works on lines that exist only in memory. Throws lines::LineError, std::system_error or
+/// terms::UsageError.
 Devices open_devices(const rig::Rig& rig, Inputs& inputs);
 
-/// Passes presses, contacts and faults of the buttons to a session as inputs with the kernel's time. `inputs`
-/// must outlive the buttons.
+/// Returns handlers that pass presses, contacts and faults of the buttons to a session, with the kernel's
+/// time. `inputs` must outlive the buttons.
 lines::ButtonsHandlers handlers_for(Inputs& inputs);
 
 }  // namespace turnpoint::session

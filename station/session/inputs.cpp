@@ -64,7 +64,7 @@ void Inputs::push(Input input) {
 }
 
 std::optional<Input> Inputs::wait_until(std::int64_t deadline_ns) {
-  // steady_clock is CLOCK_MONOTONIC here, which is the clock of every time stamp.
+  // On Linux, steady_clock is CLOCK_MONOTONIC, the clock of all time stamps.
   const std::chrono::steady_clock::time_point deadline{std::chrono::nanoseconds(deadline_ns)};
   std::unique_lock lock(mutex_);
   if (!arrived_.wait_until(lock, deadline, [this] { return !queue_.empty(); })) return std::nullopt;

@@ -19,29 +19,30 @@ enum class InputKind {
   answer,      ///< value = index of the chosen answer
   next,        ///< Continue or Done on a page
   slider,      ///< number = the slider's value
-  touch_down,  ///< any touch on the panel, answer or not; only logged
+  touch_down,  ///< any touch on the panel, on an answer or beside it; only logged
   button,      ///< value = index of the response button, in the order of the rig's URI
-  /// value 1: finger on the surface, 0: finger lifted; number: position of the finger along the surface, 0 to
-  /// 1, or below 0 if unknown
+  /// value 1: a finger came onto the surface, 0: it was lifted; number: position of the finger along the
+  /// surface, 0 to 1, or below 0 if unknown
   contact,
-  /// the participant, the operator, or the program named in text wants to stop; completed trials are kept
+  /// the participant, the operator, or the program named in `text` wants to stop the session; completed
+  /// trials are kept
   stop,
   pause,  ///< the operator wants a pause
-  xrun,   ///< the drive lost frames; value 1: frames of the last stimulus, 0: of silence
-  heard,  ///< value = index of the interval that has been played completely; never logged
-  /// a fault of drive, amplifier or panel, with its kind in `fault` and the detail in text; the trial is void
+  xrun,   ///< the drive lost frames; value 1: frames of the last stimulus, 0: frames of silence
+  heard,  ///< value = index of an interval that has been played completely; never logged
+  /// drive, amplifier or panel has a fault: `fault` is its kind, `text` the detail; the trial is void
   fault,
-  failure,      ///< the session cannot continue; text says what happened
-  glitch,       ///< interference on a button or contact line, named in text; only logged
-  notice,       ///< something that is only logged; text says what happened
-  arm,          ///< by the operator: clear a latched fault of the amplifier and arm it
-  disarm,       ///< by the operator: amplifier off, until it is armed again
-  repeat,       ///< by the operator: void the current trial and present it again
-  note,         ///< by the operator: text is stored as an annotation of the session
-  frames_lost,  ///< value = number of frames that the screen was late by in the previous trial
+  failure,      ///< the session cannot continue; `text` says what happened
+  glitch,       ///< interference on the button or contact line named in `text`; only logged
+  notice,       ///< `text` says what happened; only logged
+  arm,          ///< the operator clears a latched fault of the amplifier and arms it
+  disarm,       ///< the operator switches the amplifier off; it stays off until it is armed again
+  repeat,       ///< the operator declares the current trial void; it is presented again
+  note,         ///< the operator writes an annotation of the session; `text` is stored
+  frames_lost,  ///< value = how many frames the screen was late in the previous trial
 };
 
-/// Source of the time stamp: the kernel, a toolkit, or a simulated observer.
+/// Where the time stamp comes from: the kernel, a toolkit, or a simulated observer.
 enum class TimeQuality { kernel, toolkit, simulated };
 const char* name(TimeQuality quality);
 
@@ -58,17 +59,20 @@ struct Input {
 /// Converts the input to an event of the trial machine; empty if the machine does not need it.
 std::optional<trial::Event> event_of(const Input& input);
 
-/// The only queue into the session: any thread pushes, the session thread takes. Unbounded, but always short.
+/// The only queue into the session. Any thread may push; the session thread takes. Its length is not limited,
+/// because it is always short.
 class Inputs {
  public:
   void push(Input input);
-  /// The oldest input by time stamp; empty once `deadline_ns` (CLOCK_MONOTONIC) has passed.
+  /// Waits for an input and returns the one with the oldest time stamp. Returns nothing once `deadline_ns`
+  /// (CLOCK_MONOTONIC) has passed.
   std::optional<Input> wait_until(std::int64_t deadline_ns);
   /// Removes all waiting inputs and returns them for the log.
   std::deque<Input> drain();
 
   /// Reports that the participant's page was alive at this time (CLOCK_MONOTONIC); -1 before its first
-  /// report. A display that has begun to report must continue, because the amplifier's guard then expects it.
+  /// report. Once a display has begun to report, it must go on, because the amplifier guard then expects its
+  /// reports.
   void page_alive(std::int64_t time_ns) noexcept { page_alive_ns_.store(time_ns); }
   std::int64_t page_alive_ns() const noexcept { return page_alive_ns_.load(); }
 

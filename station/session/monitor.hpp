@@ -9,19 +9,19 @@
 
 namespace turnpoint::session {
 
-/// Observes a session for the operator. Called on the session thread; it must copy what it needs and return
-/// at once. A monitor cannot affect what the participant sees or feels.
+/// Observes a session for the operator. Its functions are called on the session thread: they must copy what
+/// they need and return at once. A monitor cannot affect what the participant sees or feels.
 class Monitor {
  public:
   virtual ~Monitor() = default;
 
-  /// A trial is about to begin, and everything that it will present is decided. For each interval, `plans`
-  /// holds the plans of its scenes, exactly as they will be played. They are valid only during the call.
+  /// A trial is about to begin, and all its stimuli are decided. For each interval, `plans` holds the plans
+  /// of the interval's scenes, exactly as they will be played. The plans are valid only during the call.
   virtual void trial_begins(const trial::TrialSpec& spec, const protocol::Block& block,
                             const PlanAhead::Plans& plans) = 0;
 
-  /// The surface follows the slider of an adjustment. It now glides to `plan`; `spec` has the setting among
-  /// its factors. Called at most once every kGlideEvery_s.
+  /// In an adjustment, the slider was moved, and the surface now glides to `plan`. `spec` has the slider's
+  /// setting among its factors. Called at most once every kGlideEvery_s.
   virtual void surface_follows(const trial::TrialSpec& /*spec*/, const scene::DrivePlan& /*plan*/) {}
 
   /// A trial has ended and is stored.

@@ -11,11 +11,12 @@ namespace turnpoint::session {
 
 namespace {
 
-// A button press sooner than this, before anybody can have read the page, does not turn the page.
+// Ignore a button press on a page within this time, because nobody can have read the page yet.
 constexpr std::int64_t kReading_ns = 500'000'000;
 
-/// The answer that a button chooses: the answer with the button's name; otherwise the left button chooses the
-/// first answer and the right one the second.
+/// Returns the answer that a button chooses. If an answer has the button's name, the button chooses that
+/// answer. Otherwise the left button chooses the first answer, the right button the second, and the third
+/// button the third.
 std::optional<int> answer_of(const std::string& button, const protocol::Task& task) {
   const auto& choices = task.choices;
   for (std::size_t i = 0; i < choices.size(); ++i)
@@ -83,7 +84,7 @@ void OperatorGate::keep(const std::function<void()>& write) {
     try {
       return write();
     } catch (const store::StoreError& error) {
-      // In a simulated session there is nobody who could free some space.
+      // In a simulated session nobody could free space, so end it.
       if (error.kind() != store::ErrorKind::disk_full || !setup_.observer.empty()) throw;
       detail = error.what();
     }
@@ -91,7 +92,8 @@ void OperatorGate::keep(const std::function<void()>& write) {
   }
 }
 
-/// Waits until somebody presses Continue because there is space again (true), or stops the session (false).
+/// Waits until somebody presses Continue because there is space again (returns true), or stops the session
+/// (returns false).
 bool OperatorGate::space_again(const std::string& detail) {
   stage_.close_amplifier();
   show(pages_.fault(FaultKind::disk_full, detail, director_));
@@ -122,7 +124,7 @@ Flow OperatorGate::until_armed(const Fault& why) {
     if (input.kind == InputKind::fault) page = pages_.fault(input.fault, input.text, director_);
     if (input.kind == InputKind::arm && !armed()) page.detail = input.text;
   }
-  fault_.reset();  // faults that came while the page was shown have already been shown on it
+  fault_.reset();  // forget faults that occurred while the page was shown, because it has shown them
   return Flow::go_on;
 }
 
@@ -188,7 +190,8 @@ Flow OperatorGate::show_and_wait(Page page, double at_least_s) {
     if (input.kind == InputKind::next) return Flow::go_on;
     if (buttons_turn && input.kind == InputKind::answer && input.time_ns >= read_ns) return Flow::go_on;
     if (input.kind != InputKind::fault && input.kind != InputKind::disarm) continue;
-    // The fault was repaired, and somebody pressed Continue. That also settles an earlier fault.
+    // Leaving a fault or pause page means that the operator has repaired the fault, so the earlier page is
+    // done too.
     if (page.kind == PageKind::fault || page.kind == PageKind::paused) return Flow::go_on;
     show(page);
   }

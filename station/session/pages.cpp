@@ -10,7 +10,7 @@ namespace {
 
 using trial::Phase;
 
-/// The mark that the question refers to: the value of the factor whose name says that it is a mark.
+/// Returns the position of the mark in the question: the value of the factor `mark_mm`.
 std::optional<double> mark_of(const trial::TrialSpec& spec) {
   const auto found = spec.factors.find("mark_mm");
   if (found == spec.factors.end()) return std::nullopt;
@@ -153,7 +153,7 @@ Page Pages::end(const Summary& summary, const trial::Director& director) const {
   auto page = blank(PageKind::end, nullptr, &director);
   const bool whole = summary.status == records::SessionStatus::completed;
   page.title = texts::text(whole ? "thanks" : "thanks_early", setup_.language);
-  // the total is exact only now, because with adaptive procedures it was an estimate
+  // at the end the exact total is known; with adaptive procedures it was an estimate before
   if (whole) page.trials_total = page.trials_done;
   page.summary = {{"Trials", std::to_string(summary.trials)},
                   {"Too late", std::to_string(summary.timeouts)},

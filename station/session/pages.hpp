@@ -9,23 +9,25 @@
 
 namespace turnpoint::session {
 
-/// Makes the pages of one session: texts in its language, the drawing of the surface, progress.
+/// Makes the pages of one session, with texts in its language, the drawing of the surface, and the progress.
 class Pages {
  public:
   Pages(const Setup& setup);
 
-  /// A block's instructions: the text of its instruction if it has one, else the task's question.
+  /// Shows a block's instructions: the text of its speed or accuracy instruction if it has one, otherwise the
+  /// task's question.
   Page instructions(const protocol::Block& block, const trial::Director& director) const;
-  /// Shows the mark that the block's first trial will ask about.
+  /// Adds the mark that the block's first trial will ask about.
   void add_mark(Page& page, const trial::TrialSpec& first) const;
-  /// The page for a phase of a trial.
+  /// Makes the page for one phase of a trial.
   Page of_phase(trial::Phase phase, int interval, const trial::TrialSpec& spec, const protocol::Block& block,
                 const trial::Result& result, const trial::Director& director) const;
-  /// Adds a slider to a phase's page, for an adjustment.
+  /// Adds the slider of an adjustment to the page of a phase.
   void add_slider(Page& page, const trial::SliderSpan& span, double setting) const;
   Page rest(const protocol::Block& block, double min_s, const trial::Director& director) const;
   Page practice_again(const protocol::Block& block, const trial::Director& director) const;
-  /// A fault that stops the session until somebody has fixed it; `detail` is what the station found.
+  /// Makes the page for a fault that stops the session until somebody has repaired it. `detail` is what the
+  /// station found.
   Page fault(FaultKind kind, const std::string& detail, const trial::Director& director) const;
   Page paused(const trial::Director& director) const;
   Page end(const Summary& summary, const trial::Director& director) const;

@@ -16,7 +16,7 @@ namespace turnpoint::session {
 
 namespace {
 
-/// A text that is the same for two trials exactly if their stimuli are the same.
+/// Returns a text that is equal for two trials exactly if their stimuli are equal.
 std::string key_of(const trial::TrialSpec& trial) {
   std::string key = fmt::format("{}/{}/{}", trial.block_index, trial.attempt, trial.trial_in_block);
   for (const auto& [name, value] : trial.factors) {

@@ -16,13 +16,13 @@
 
 namespace turnpoint::session {
 
-/// Plans trials in advance on its own thread, including the peaks of their bursts. The session starts
-/// planning the next trial as soon as the last one is decided, and takes the result at its start. The
-/// planner's results do not depend on when it is called, so neither do the stimuli.
+/// Plans trials in advance on its own thread, including the peaks of their bursts. The session requests the
+/// plan of the next trial as soon as the previous trial is decided, and takes it when the trial starts. Plans
+/// do not depend on when they are computed, so stimuli do not depend on timing.
 class PlanAhead {
  public:
-  /// For each interval of a trial: the plans of its scenes, and the checked burst with its peaks. Start
-  /// frames count from the first interval's onset.
+  /// For each interval of a trial: the plans of its scenes, and the checked burst with its peaks. The start
+  /// frames of bursts count from the first interval's onset.
   using Plans = std::vector<std::vector<scene::DrivePlan>>;
   struct Planned {
     Plans plans;
@@ -34,12 +34,12 @@ class PlanAhead {
   PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol, std::uint64_t seed);
   ~PlanAhead();
 
-  /// Starts planning a trial. An earlier trial that is still waiting is dropped. Starting the same trial
-  /// again has no effect.
+  /// Starts planning a trial. If an earlier trial is still waiting to be planned, it is dropped. Starting the
+  /// same trial again has no effect.
   void begin(const trial::TrialSpec& trial);
   /// True if take() would not have to wait.
   bool ready(const trial::TrialSpec& trial);
-  /// The plans of a trial; waits for them if necessary. If planning failed, throws its exception.
+  /// Returns the plans of a trial, and waits for them if necessary. If planning failed, throws its exception.
   const Planned& take(const trial::TrialSpec& trial);
 
  private:
@@ -54,11 +54,12 @@ class PlanAhead {
   scene::Planner planner_;  // used by the worker thread only
   std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::optional<trial::TrialSpec> wanted_;  ///< the newest requested trial whose planning has not begun
+  std::optional<trial::TrialSpec> wanted_;  ///< the newest requested trial, if its planning has not begun
   std::string wanted_key_, done_key_;
   Planned done_;
   std::exception_ptr failed_;
-  // The last member, so that the thread is joined before the objects that it uses are destroyed.
+  // Keep this member last: its destructor then joins the thread before the objects that the thread uses are
+  // destroyed.
   std::jthread thread_;
 };
 

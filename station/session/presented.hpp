@@ -9,23 +9,24 @@
 
 namespace turnpoint::session {
 
-// Functions on streams that both stages share.
+// Functions on streams that the real and the virtual stage share.
 
-/// The bursts scheduled last, one per interval, kept for later requests.
+/// The burst of one interval of the current trial, kept to find the interval when the drive reports on the
+/// burst.
 struct Presented {
   std::uint32_t burst = 0;
   std::int64_t start_frame = 0, end_frame = 0;
   drive::Ramp ramp;
 };
 
-/// The interval of a burst; empty if the burst belongs to an earlier trial.
+/// Returns the interval to which a burst belongs; empty if the burst belongs to an earlier trial.
 inline std::optional<int> interval_of(const std::vector<Presented>& presented, std::uint32_t burst) {
   for (std::size_t i = 0; i < presented.size(); ++i)
     if (presented[i].burst == burst) return static_cast<int>(i);
   return std::nullopt;
 }
 
-/// Schedules the intervals of a trial. Returns nothing if the stream's time is not known.
+/// Schedules the intervals of a trial. Returns nothing if the stream's clock is not known yet.
 inline std::vector<Onset> schedule(drive::Stream& stream, std::span<const drive::PreparedBurst> intervals,
                                    std::int64_t earliest_ns, std::vector<Presented>& presented) {
   const auto earliest = stream.frame_at(earliest_ns);
@@ -42,7 +43,7 @@ inline std::vector<Onset> schedule(drive::Stream& stream, std::span<const drive:
     if (const auto time_ns = stream.time_of(start)) onsets.push_back({start, *time_ns});
   }
   if (onsets.size() == bursts.size()) return onsets;
-  stream.stop(0, drive::Ramp{});  // the stream's time has become unknown meanwhile
+  stream.stop(0, drive::Ramp{});  // the stream's clock became unknown after some intervals had been scheduled
   return {};
 }
 
@@ -52,7 +53,7 @@ inline std::optional<std::int64_t> glide_to(drive::Stream& stream, const std::ve
   const auto& sounding = presented.back();
   const auto frames = static_cast<std::int64_t>(seconds * stream.config().output.rate_Hz);
   const auto at = std::max(stream.earliest_frame(), sounding.start_frame);
-  // No change can begin while a burst ramps down at its end, and afterwards nothing is playing.
+  // Once a burst ramps down at its end, it can no longer change to other tones.
   if (at + frames + sounding.ramp.frames >= sounding.end_frame) return std::nullopt;
   stream.change(sounding.burst, {at - sounding.start_frame, frames, to});
   return at;
@@ -63,7 +64,7 @@ inline std::optional<ClockFit> fit_of(drive::Stream& stream) {
   return fit.pairs > 0 ? std::optional(ClockFit{fit.ns_per_frame, fit.residual_ns}) : std::nullopt;
 }
 
-/// Ramps everything down. Returns the latest time at which the last ramp ends.
+/// Ramps all bursts down. Returns the latest time at which the last ramp ends.
 inline std::int64_t ramp_down(drive::Stream& stream, const std::vector<Presented>& presented,
                               std::int64_t now_ns) {
   const auto ramp = presented.empty() ? drive::Ramp{} : presented.back().ramp;
@@ -74,7 +75,7 @@ inline std::int64_t ramp_down(drive::Stream& stream, const std::vector<Presented
   return now_ns + frames * 1'000'000'000 / output.rate_Hz;
 }
 
-/// Describes for the record which rights the operating system granted.
+/// Describes, for the record of the session, which rights the operating system granted.
 std::string describe(const system::Rights& rights);
 
 }  // namespace turnpoint::session

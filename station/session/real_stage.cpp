@@ -14,15 +14,15 @@ namespace turnpoint::session {
 
 namespace {
 
-constexpr std::int64_t kPoll_ns = 5'000'000;        // how often drive and guard are polled
-constexpr std::int64_t kClocks_ns = 1'000'000'000;  // how often the clocks are compared
-// time in silence that an amplifier needs after it was switched on
+constexpr std::int64_t kPoll_ns = 5'000'000;        // interval between two polls of drive and guard
+constexpr std::int64_t kClocks_ns = 1'000'000'000;  // interval between two comparisons of the clocks
+// how long an amplifier must be on before it is driven
 constexpr std::int64_t kSettle_ns = 50'000'000;
 constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
-// time limit for the first position of a restarted device
+// longest wait for the first position of a restarted device
 constexpr std::int64_t kFirstPosition_ns = 500'000'000;
-constexpr std::int64_t kHeard_ns = 1'000'000'000;  // time limit for the report that an interval was played
-constexpr std::int64_t kTail_ns = 20'000'000;      // time in silence before the amplifier is switched off
+constexpr std::int64_t kHeard_ns = 1'000'000'000;  // longest wait for the report that an interval was played
+constexpr std::int64_t kTail_ns = 20'000'000;      // how long the amplifier stays on in silence
 
 class RealStage : public Stage {
  public:
@@ -46,7 +46,7 @@ class RealStage : public Stage {
 
   std::vector<Input> drain() override {
     attend();
-    // Late reports about stimuli of the previous trial must not reach the next trial.
+    // Forget the stimuli of the previous trial, so that late reports about them cannot reach the next trial.
     presented_.clear();
     unheard_ = 0;
     lost_ns_.reset();
@@ -63,7 +63,7 @@ class RealStage : public Stage {
 
   std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
                              std::int64_t earliest_ns) override {
-    // An aborted trial may still be ramping down. Its bursts occupy the drive until they are silent.
+    // The bursts of an aborted trial may still be ramping down. They occupy the drive until they are silent.
     wait_for([&] { return now_ns() >= quiet_ns_; });
     const auto until_ns = now_ns() + kFirstPosition_ns;
     wait_for([&] { return stream_->clock().pairs > 0 || now_ns() > until_ns; });
@@ -83,7 +83,7 @@ class RealStage : public Stage {
   }
 
   std::int64_t silence() override {
-    // Cancels bursts that have not begun, so that nobody waits for their reports.
+    // If the last burst is cancelled before it begins, stop waiting for its report.
     const auto from = stream_->earliest_frame();
     if (!presented_.empty() && presented_.back().start_frame >= from) unheard_ = 0;
     const auto silent_ns = ramp_down(*stream_, presented_, now_ns());
@@ -91,8 +91,8 @@ class RealStage : public Stage {
   }
 
   Refusal arm() override {
-    // The audio thread reports that it is alive with its first blocks, which have not been written yet when a
-    // session starts. So wait for them.
+    // The amplifier can be armed only while the audio thread reports to the guard. It reports with its first
+    // blocks, so wait for these when a session starts.
     const auto until_ns = now_ns() + kFirstBlocks_ns;
     const auto begun = 2 * stream_->config().output.period_frames;
     wait_for([&] { return stream_->counters().frames > begun || now_ns() > until_ns; });
@@ -135,14 +135,13 @@ class RealStage : public Stage {
  private:
   drive::Amplifier& amplifier_() { return *devices_.amplifier; }
 
-  /// Reports to the guard that the session is alive, which it is if it calls this. The page reports for
-  /// itself.
+  /// Reports to the guard that the session thread is alive, and passes on the page's own latest report.
   void show_life() {
     amplifier_().session_alive();
     if (const auto page_ns = inputs_.page_alive_ns(); page_ns >= 0) amplifier_().page_alive(page_ns);
   }
 
-  /// Processes news from drive, guard and clocks, and reports to the guard that the session is alive.
+  /// Reports to the guard that the session is alive, and processes news from drive, guard and clocks.
   void attend() {
     const auto now = now_ns();
     show_life();
@@ -180,7 +179,7 @@ class RealStage : public Stage {
     saturated_ = saturated;
   }
 
-  /// The time of a frame this number of frames after an onset.
+  /// Returns the time of the frame that comes `frames` after an onset.
   std::int64_t later(const Onset& onset, std::int64_t frames) const {
     return onset.time_ns + frames * 1'000'000'000 / stream_->config().output.rate_Hz;
   }
@@ -198,13 +197,13 @@ class RealStage : public Stage {
       case drive::EventKind::burst_missed:
         return push_fault(now, FaultKind::stimulus_missed, "a stimulus came too late to be played");
       case drive::EventKind::device_lost:
-        unheard_ = 0;  // no more reports are expected, because the trial is void
+        unheard_ = 0;  // the trial is void, so do not wait for reports about its intervals
         if (!presented_.empty()) lost_ns_ = later(first_onset_, event.frame - first_onset_.frame);
         amplifier_().trip(FaultKind::converter_gone,
                           event.error == 0 ? "" : std::strerror(std::abs(event.error)));
-        return;  // attend() reports the latched fault
+        return;  // attend() will report the fault that the amplifier has latched
       case drive::EventKind::device_back:
-        wrong_rate_.reset();  // the device that is back may be another one
+        wrong_rate_.reset();  // another device may have been plugged in
         return push(InputKind::notice, now, "the sound device is back");
       case drive::EventKind::rate_wrong:
         wrong_rate_ = Fault{FaultKind::converter_rate, fmt::format("{:.1f} Hz instead of {} Hz",
@@ -252,17 +251,16 @@ class RealStage : public Stage {
   }
 
   const std::vector<std::string> no_buttons_;
-  // Declared before the stream, so that on destruction the stream goes silent first and the amplifier's line
-  // goes low afterwards.
+  // Keep this member before the stream. The stream is then destroyed first and goes silent before the
+  // amplifier is switched off.
   Devices devices_;
   Inputs& inputs_;
   std::unique_ptr<drive::Stream> stream_;
   std::vector<Presented> presented_;
   Onset first_onset_;        ///< onset of the trial's first interval
-  std::size_t unheard_ = 0;  ///< number of intervals not yet reported as heard
-  std::optional<std::int64_t>
-      /// time at which the converter was lost while a trial was presented: the surface has been silent since
-      lost_ns_;
+  std::size_t unheard_ = 0;  ///< number of intervals for which no `heard` report has come yet
+  /// time at which the converter was lost during a trial; the surface has been silent since then
+  std::optional<std::int64_t> lost_ns_;
   drive::UnderrunLimit underruns_;
   system::ClockWatch clocks_;
   std::int64_t clocks_due_ns_ = 0;
@@ -270,7 +268,8 @@ class RealStage : public Stage {
   std::int64_t opened_ns_ = 0;  ///< time at which the amplifier was enabled
   bool closing_ = false, fault_told_ = false;
   std::int64_t saturated_ = 0;  ///< number of samples clipped so far
-  Refusal wrong_rate_;          ///< the wrong rate of the converter; set until the device has been reopened
+  Refusal wrong_rate_;          ///< set if the converter runs at the wrong rate, until the device has been
+                                ///< reopened
 };
 
 }  // namespace

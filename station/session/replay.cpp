@@ -14,8 +14,8 @@ namespace turnpoint::session {
 
 namespace {
 
-/// Advances the director to a logged block, by finishing the current one or replaying the restart that
-/// created it.
+/// Advances the director to a block of the log. To do so, it finishes the director's current block, or
+/// repeats the restart that began this attempt.
 void enter_stored(trial::Director& director, const records::BlockStart& block) {
   const auto here = [&] {
     return director.block_index() == block.block_index && director.attempt() == block.attempt;
@@ -30,9 +30,9 @@ void enter_stored(trial::Director& director, const records::BlockStart& block) {
         " is not the block that the protocol runs next; the session and the protocol do not belong together");
 }
 
-/// Passes a stored trial through the director again. Throws std::runtime_error if the director would have
-/// presented another level, or if its state differs afterwards: then the log and the program do not belong
-/// together.
+/// Lets the director process a stored trial again. Throws std::runtime_error if the director would have
+/// presented another level or has another state afterwards. In that case the log comes from a different
+/// program or protocol.
 void replay(trial::Director& director, const records::TrialRow& trial, const protocol::Protocol& protocol) {
   const auto mismatch = [&trial](const std::string& what) {
     throw std::runtime_error(
@@ -66,8 +66,9 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
   if (director.state_hash() != trial.state_hash) mismatch("the state of the procedures differs afterwards");
 }
 
-/// A session answered half by one simulated observer and half by a different one would be useless. Sliders
-/// are not checked, because their row does not contain an answer of the observer.
+/// Checks that this program's observer gives the stored answers, because a session with answers from two
+/// different observers would be useless. Sliders are not checked: their row contains no answer of the
+/// observer.
 void check_observer(const Setup& setup, const store::StoredSession& stored, const trial::TrialSpec& spec,
                     const records::TrialRow& trial) {
   constexpr double tolerance_s = 1e-3;

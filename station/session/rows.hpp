@@ -14,14 +14,14 @@
 
 namespace turnpoint::session {
 
-/// Appends an interval's tones. The trial's boundary, frequency and amplitude are set to those of the
-/// interval's last scene.
+/// Appends the tones of an interval to a trial's row. The trial's boundary, frequency and amplitude become
+/// those of the interval's last scene.
 void add_tones(records::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
                std::int64_t onset_frame, const drive::PreparedBurst& burst);
 
-/// Records that the surface of an adjustment has begun to follow the slider at this frame. Scene 0 remains
-/// what the trial began with, and scene 1 becomes this one. The trial's boundary, frequency and amplitude are
-/// set to those of scene 1.
+/// Records that the surface of an adjustment has begun to follow the slider at this frame. In the row, scene
+/// 0 stays the scene with which the trial began; scene 1 becomes `scene`. The trial's boundary, frequency and
+/// amplitude become those of scene 1.
 void set_scene(records::TrialRow& row, const scene::DrivePlan& scene, std::int64_t frame);
 
 records::EventRow event_row(const Input& input, int trial_index);

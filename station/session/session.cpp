@@ -51,7 +51,8 @@ std::string kernel() {
   return fmt::format("{} {} {}", names.sysname, names.release, names.machine);
 }
 
-/// A seed for a session whose protocol gives none, in the range that JSON and spreadsheets represent exactly.
+/// Draws a seed for a session whose protocol has none. It stays in the range that JSON and spreadsheets
+/// represent exactly.
 std::uint64_t fresh_seed() {
   std::uint64_t bits = 0;
   if (::getrandom(&bits, sizeof bits, 0) != static_cast<ssize_t>(sizeof bits))
@@ -97,7 +98,7 @@ records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std
   return start;
 }
 
-/// `now_ns` is the stage's time: for a simulated session, that of its virtual clock.
+/// `now_ns` is the time on the stage's clock, which is virtual in a simulated session.
 records::SegmentStart segment(const std::string& reason, std::int64_t now_ns) {
   const auto clocks = system::read_clocks();
   return {boot_id(), reason, now_ns, clocks.boottime_ns, clocks.realtime_ns};
@@ -121,20 +122,20 @@ drive::StreamConfig stream_of(const rig::Rig& rig) {
 
 namespace {
 
-/// A simulated session uses no hardware: samples for a real converter are discarded. Files are written, and
-/// so is output to plug-ins that the rig allows.
+/// Returns the configuration of a simulated session's stream. It uses no hardware: if the rig's output is a
+/// converter, samples are discarded. Output to files and to plug-ins that the rig allows is kept.
 drive::StreamConfig simulated_stream(const rig::Rig& rig) {
   auto config = stream_of(rig);
   config.virtual_lead_frames = std::int64_t{config.output.periods} * config.output.period_frames;
   const bool hardware = config.output.uri.starts_with("alsa:") && config.output.allow_plugin.empty();
   if (hardware) config.output.uri = "null:";
-  // A session of half an hour has 300 million frames that nobody hears, so do not compute them.
+  // Do not compute samples that are discarded: half an hour has 300 million frames.
   if (config.output.uri == "null:") config.samples = drive::Samples::passed;
   return config;
 }
 
-/// Read the participant's exposure history before the log is opened for writing, because both use the same
-/// database.
+/// Reads the participant's history of exposure. Call this before the log is opened for writing, because both
+/// use the same database.
 limits::FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
   const double now_s = 1e-9 * static_cast<double>(system::realtime_ns());
   const auto limits = limits::limits_of(setup.rig, setup.run_mode);
@@ -144,7 +145,7 @@ limits::FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
   return limits::FingerAccount(limits, history, origin_ns, now_s);
 }
 
-/// A session's log, and a director in the same state as the log.
+/// A session's log, and a director in the state that corresponds to the log.
 struct Begun {
   store::SessionLog log;
   trial::Director director;
@@ -158,8 +159,8 @@ Begun begin(const Setup& setup, Stage& stage) {
   return {std::move(log), std::move(director)};
 }
 
-/// Replays the stored trials before anything is written, so that a session that cannot be resumed is not
-/// changed.
+/// Replays the stored trials first and writes afterwards, so that a session that cannot be resumed stays
+/// unchanged.
 Begun resume(const Setup& setup, Stage& stage) {
   const auto stored = store::read_session(setup.database, setup.resume_session);
   auto director = replayed(setup, stored);

@@ -16,7 +16,7 @@
 
 namespace turnpoint::session {
 
-/// Where an interrupted session continues. Completed trials stay in the log in any case.
+/// Where an interrupted session continues. In all cases the completed trials stay in the log.
 enum class ResumeAt { next_trial, block_start, session_start };
 
 /// Everything needed to run a session, loaded and checked.
@@ -27,21 +27,22 @@ struct Setup {
   std::string database;
   terms::RunMode run_mode = terms::RunMode::pilot;
   std::string language;
-  /// how the simulated observer is described: "sim" or "sim:threshold=..."; "" for a person
+  /// the text that describes the simulated observer: "sim" or "sim:threshold=..."; "" for a person
   std::string observer;
   std::optional<std::uint64_t> seed;
-  std::string resume_session;  ///< the session to continue; "" begins a new one
+  std::string resume_session;  ///< id of the session to continue; "" begins a new session
   ResumeAt resume_at = ResumeAt::next_trial;
-  /// The current calibration, already applied to `rig`: the SHA-256 of its file, and the file's text; "" if
-  /// there is none.
+  /// The current calibration, which is already applied to `rig`: the SHA-256 of its file, and the file's
+  /// text. Both are "" if there is no calibration.
   std::string calibration_id, calibration_text;
   std::vector<limits::SoundLevel> sound;  ///< measured levels at full scale, in order of frequency
-  /// version of the consent form that the participant signed; "" if none was required
+  /// version of the consent form that the participant signed; "" if the study needs none
   std::string consent_version;
-  /// The touch panel's own latency, stored with each answer by touch, never subtracted.
+  /// The latency of the touch panel. It is stored with each answer that was given by touch, but never
+  /// subtracted.
   double response_offset_s = 0;
-  /// Source of the time stamps for which response_offset_s was measured (kernel | toolkit). Answers with
-  /// another source do not get the offset; "" means that all do.
+  /// The source of time stamps (kernel | toolkit) for which response_offset_s was measured. Answers with time
+  /// stamps from another source are stored without the offset. "" means that all answers by touch get it.
   std::string response_offset_quality;
 };
 
@@ -53,24 +54,27 @@ struct Summary {
   std::uint64_t seed = 0;
   int blocks = 0, trials = 0, answered = 0, timeouts = 0, anticipations = 0, voided = 0;
   std::optional<double> accuracy;  ///< proportion correct of scored, answered, experimental trials
-  double duration_s = 0;           ///< duration on the session's clock
+  double duration_s = 0;           ///< measured on the session's clock
   int xruns = 0;
-  /// how much pauses between trials were extended to keep the limit on the duty cycle
+  /// time by which pauses between trials were extended to keep the limits on exposure
   double stretched_s = 0;
-  std::string realtime_rights;  ///< what the operating system granted to the audio thread
-  std::string checksum;         ///< last link of the chain over the session's rows (`turnpoint verify`)
+  std::string realtime_rights;  ///< rights that the operating system granted to the audio thread
+  std::string checksum;         ///< last link of the checksum chain over the session's rows (`turnpoint
+                                ///< verify`)
   std::vector<trial::ProcedureEstimate> estimates;
 };
 
 /// Runs a session to its end on the calling thread, with the real clock, pages on `display` and input from
-/// `inputs`. If the amplifier is real or the session is live, nothing is presented before an operator has
-/// pushed InputKind::arm, and again after each fault of the amplifier. With an observer in the setup it runs
-/// on the virtual clock and uses no hardware; of `inputs` only a stop is honoured, and only between trials;
-/// `display` may be null. `monitor` may be null. Throws text::BadInput for a setup that cannot run,
-/// store::StoreError, and std::system_error for devices.
+/// `inputs`. If the amplifier is real or the session is live, the surface stays silent until an operator has
+/// pushed InputKind::arm; the same holds after each fault of the amplifier. `monitor` may be null.
+///
+/// If the setup has an observer, the session runs on the virtual clock and uses no hardware. Of `inputs`,
+/// only a stop has an effect, and only between trials. `display` may then be null.
+///
+/// Throws text::BadInput for a setup that cannot run, store::StoreError, and std::system_error for devices.
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor = nullptr);
 
-/// Runs a session with devices that are already open (for a real session only).
+/// Runs a real session with devices that are already open.
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices,
             Monitor* monitor = nullptr);
 

@@ -29,9 +29,9 @@ SessionRun::SessionRun(const Setup& setup, trial::Director director, store::Sess
 
 Summary SessionRun::run() {
   started_ns_ = stage_->now_ns();
-  // In a pilot without an amplifier there is nothing for an operator to arm.
+  // In a pilot session without a real amplifier, nobody has to arm it.
   if (setup_.run_mode != terms::RunMode::live && setup_.rig.amplifier_uri == "sim:")
-    // a refused request shows up below, because the amplifier is then not armed
+    // if arming is refused, until_armed() below shows a page
     static_cast<void>(stage_->arm());
   if (gate_.until_armed({FaultKind::disarmed, ""}) == Flow::go_on)
     while (director_.block() != nullptr)
@@ -72,7 +72,7 @@ Flow SessionRun::run_block() {
 Flow SessionRun::rest_if_due(int trials) {
   const auto& block = *director_.block();
   if (!block.break_after || trials % block.break_after->trials != 0) return Flow::go_on;
-  if (!director_.next()) return Flow::go_on;  // no break after the last trial of a block
+  if (!director_.next()) return Flow::go_on;  // a block's last trial is not followed by a break
   return gate_.show_and_wait(pages_.rest(block, block.break_after->min_s, director_),
                              block.break_after->min_s);
 }

@@ -14,16 +14,16 @@
 
 namespace turnpoint::session {
 
-/// Runs the blocks and trials of a session: connects director, planner, trial machine, stage and store behind
-/// the operator's gate. Everything happens on the thread that calls run(), except for the planning of the
+/// Runs the blocks and trials of a session. It connects director, planner, trial machine, stage and store,
+/// and holds the operator's gate. Everything happens on the thread that calls run(), except planning of the
 /// next trial.
 class SessionRun {
  public:
-  /// `director` must be in the same state as the log.
+  /// `director` must be in the state that corresponds to the log.
   SessionRun(const Setup& setup, trial::Director director, store::SessionLog log,
              std::unique_ptr<Stage> stage, limits::FingerAccount account, Display* display, Monitor* monitor);
 
-  /// Runs to the end of the last block, or until somebody stops it.
+  /// Runs until the last block has ended or somebody stops the session.
   Summary run();
 
  private:
@@ -33,13 +33,13 @@ class SessionRun {
     trial::Machine machine;
     records::TrialRow row;
     std::optional<trial::Slider> slider;  ///< the slider of an adjustment
-    std::vector<Onset> onsets;            ///< onsets of all intervals, once they are scheduled
-    std::size_t begun = 0;                ///< number of intervals that have begun
+    std::vector<Onset> onsets;            ///< onsets of all intervals; set once the intervals are scheduled
+    std::size_t begun = 0;                ///< number of intervals whose presentation has begun
     bool decided = false;
     /// true if the answer came from a button, so that the touch panel's latency does not apply
     bool by_button = false;
   };
-  /// An interval of the trial: scheduled, being presented, or finished.
+  /// Start and end of one interval on the surface.
   struct OnSurface {
     std::int64_t on_ns = 0, off_ns = 0;
   };

@@ -5,7 +5,7 @@
 
 namespace turnpoint::session {
 
-// The part of a session that is specific to adjustments: a slider that the surface follows.
+// This file has the part of SessionRun for adjustments, in which the surface follows a slider.
 
 void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
   auto page = pages_.of_phase(phase, trial.machine.interval(), trial.spec, *director_.block(),
@@ -17,15 +17,15 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
 
 std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Running& trial) {
   if (!trial.slider) return event_of(input);
-  // The slider works only while the surface vibrates, because a setting made in silence cannot be felt.
+  // Ignore slider movements in silence: the participant could not feel their effect.
   if (input.kind == InputKind::slider && trial.machine.phase() == trial::Phase::stimulus)
     trial.slider->move(input.number);
   if (input.kind == InputKind::next) return trial::Event{input.time_ns, trial::EventKind::answer, 0};
   return event_of(input);
 }
 
-/// Makes the surface follow the slider. The row keeps the start and the last setting with its onset; every
-/// move in between is in the log of events.
+/// Makes the surface follow the slider. The trial's row contains the starting scene, and the last scene with
+/// its onset. All movements in between are in the log of events.
 void SessionRun::glide(Running& trial) {
   const double wanted = trial.slider->glide(stage_->now_ns());
   if (trial.machine.phase() != trial::Phase::stimulus) return;

@@ -40,8 +40,8 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
                 {}};
   if (spec.slider) trial.slider.emplace(*spec.slider, spec.level.value_or(spec.slider->low));
   if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block(), plans_.take(spec).plans);
-  // Commit this event before the amplifier is switched on, because a disk may take seconds, during which
-  // nothing else can happen.
+  // Commit this event before the amplifier is switched on. A disk may take seconds, and the session can do
+  // nothing else during that time.
   gate_.keep([&] { log_.presented(trial_index(), stage_->now_ns()); });
   drive_trial(trial, open_amplifier());
   stage_->close_amplifier();
@@ -54,8 +54,8 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   return after_trial(trial.row);
 }
 
-/// Does everything before a trial that may take time or fail: processes inputs since the last trial, gets the
-/// plans, checks the rig's limits, and waits until the amplifier is armed.
+/// Does everything that may take time or fail before a trial. It processes inputs since the previous trial,
+/// gets the plans, checks the rig's limits, and waits until the amplifier is armed.
 Flow SessionRun::prepare_trial(const trial::TrialSpec& spec) {
   plans_.begin(spec);
   try {
@@ -73,15 +73,15 @@ Flow SessionRun::prepare_trial(const trial::TrialSpec& spec) {
   return gate_.until_clear();
 }
 
-/// From here on, anything that keeps the amplifier off makes the trial void.
+/// Switches the amplifier on. From now on, a fault makes the trial void.
 std::optional<trial::EventKind> SessionRun::open_amplifier() {
   if (gate_.stop_asked()) return trial::EventKind::abort;
   if (!gate_.fault()) gate_.set_fault(stage_->open_amplifier());
   return gate_.fault() ? std::optional(trial::EventKind::fault) : std::nullopt;
 }
 
-/// Extends the pause between trials as far as the rig's limits on duty cycle and continuous vibration
-/// require.
+/// Extends the pause before the trial until the rig's limits on duty cycle and continuous vibration allow the
+/// trial.
 Flow SessionRun::keep_limits(const trial::TrialSpec& spec) {
   const auto now = stage_->now_ns();
   const auto begin = account_.earliest_ns(now, limits::stimuli_of(setup_.protocol, spec));
@@ -95,7 +95,7 @@ Flow SessionRun::keep_limits(const trial::TrialSpec& spec) {
   return Flow::go_on;
 }
 
-/// The last check of the scenes before they are presented. Throws limits::LimitExceeded.
+/// Checks the scenes against the rig's limits, just before they are presented. Throws limits::LimitExceeded.
 void SessionRun::check_plans(const trial::TrialSpec& spec) {
   const auto& plans = plans_.take(spec).plans;
   const auto times = trial::interval_times(setup_.protocol, spec);
@@ -179,11 +179,11 @@ void SessionRun::perform(const std::vector<trial::Action>& actions, Running& tri
   if (trial.machine.decided() && !trial.machine.done() && !trial.decided) decide(trial);
 }
 
-/// Presents all intervals at once, so that their distances are exact numbers of frames.
+/// Presents all intervals with one call, so that the distances between them are exact numbers of frames.
 void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
   const auto& bursts = plans_.take(trial.spec).bursts;
   trial.onsets = stage_->present(bursts, earliest_ns);
-  if (trial.onsets.empty()) return;  // a fault that gives the reason will be among the inputs
+  if (trial.onsets.empty()) return;  // a fault among the inputs gives the reason
   const auto times = trial::interval_times(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     const auto on_ns = trial.onsets[i].time_ns;
@@ -193,8 +193,8 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
   ask_observer(trial, trial.onsets.back().time_ns);
 }
 
-/// Appends this interval to the row now, so that the row contains what reaches the surface but not what is
-/// cancelled before.
+/// Appends this interval's tones to the row. This happens only when the interval begins, so that intervals
+/// that are cancelled do not appear in the row.
 void SessionRun::interval_begins(Running& trial) {
   const auto i = trial.begun++;
   const auto& planned = plans_.take(trial.spec);
@@ -214,7 +214,8 @@ void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
     stage_->question(trial::question_of(trial.spec, setup_.protocol, summary_.seed), zero_ns);
 }
 
-/// The outcome is final: record its consequences, and plan the next trial during the pause.
+/// Called once the outcome is final. Records the result, and starts planning of the next trial, which
+/// continues during the pause.
 void SessionRun::decide(Running& trial) {
   trial.decided = true;
   auto& row = trial.row;
@@ -230,7 +231,7 @@ void SessionRun::decide(Running& trial) {
   if (const auto next = director_.next()) plans_.begin(*next);
 }
 
-/// Records what was presented, for the exposure account and for the log.
+/// Records when the surface vibrated, in the exposure account and in the log.
 void SessionRun::leave_surface() {
   for (const auto& left : std::exchange(surface_, {})) {
     if (left.off_ns <= left.on_ns) continue;

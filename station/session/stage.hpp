@@ -24,91 +24,92 @@ struct Onset {
   std::int64_t time_ns = 0;
 };
 
-/// The linear relation between frames and time that was used to predict onsets.
+/// The line that was fitted to pairs of frame and time. It predicts onsets.
 struct ClockFit {
   double slope_ns_per_frame = 0;
   double residual_ns = 0;
 };
 
-/// A deadline that never comes.
+/// The deadline of a wait without a deadline.
 constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
-/// Time, drive, amplifier and inputs of one run. There are two: real (CLOCK_MONOTONIC, a person) and virtual
-/// (a simulated observer, as fast as possible). The code of the session is the same for both. Use it from one
-/// thread.
+/// Time, drive, amplifier and inputs of one run. There are two kinds: the real stage (CLOCK_MONOTONIC, a
+/// person) and the virtual stage (a simulated observer, as fast as possible). The rest of the session is the
+/// same code for both. Use a stage from one thread.
 class Stage {
  public:
   virtual ~Stage() = default;
 
   virtual std::int64_t now_ns() = 0;
 
-  /// Waits for the next input stamped no later than `deadline_ns`; empty once that time has come.
+  /// Waits for the next input with a time stamp up to `deadline_ns`. Returns nothing once that time has come.
   virtual std::optional<Input> wait_until(std::int64_t deadline_ns) = 0;
 
-  /// Removes all waiting inputs for a fresh start, and returns them for the log.
+  /// Removes all waiting inputs before a new trial, and returns them for the log.
   virtual std::vector<Input> drain() = 0;
 
-  /// Waits until `ready` returns true, which another thread brings about. Keeps reporting to the amplifier's
-  /// guard meanwhile. The virtual clock stands still during the wait.
+  /// Waits until another thread has made `ready` return true. Reports to the amplifier guard meanwhile. The
+  /// virtual clock stands still during the wait.
   virtual void wait_for(const std::function<bool()>& ready) = 0;
 
-  /// Schedules the intervals of a trial. The first begins at the earliest safe frame that is not before
-  /// `earliest_ns`, the others at exactly the distances of their start frames from it. Returns their onsets.
-  /// If nothing can be scheduled, returns nothing and reports a fault among the inputs. Lost frames
-  /// (InputKind::xrun), and each interval that was played completely (InputKind::heard), are reported there
-  /// later.
+  /// Schedules the intervals of a trial. The first interval begins at the earliest safe frame that is not
+  /// before `earliest_ns`. The distances of the others from it are exactly those of their start frames.
+  /// Returns the onsets. If scheduling fails, returns nothing and pushes a fault to the inputs. Later, the
+  /// inputs report lost frames (InputKind::xrun), and each interval that was played completely
+  /// (InputKind::heard).
   virtual std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
                                      std::int64_t earliest_ns) = 0;
 
-  /// Makes the sounding burst glide to other tones within `seconds`, beginning now. Returns the frame at
-  /// which the glide begins. If nothing sounds, or it is about to end, does nothing and returns nothing.
+  /// Makes the burst that is playing glide to other tones within `seconds`, beginning now. Returns the frame
+  /// at which the glide begins. If no burst is playing, or the burst is about to end, does nothing and
+  /// returns nothing.
   virtual std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) = 0;
 
-  /// Ramps everything down now, and cancels what has not begun. Returns the time at which the surface will be
-  /// silent: an upper limit if the converter does not report its position, and the time of the loss if the
-  /// converter is gone.
+  /// Ramps all bursts down now, and cancels those that have not begun. Returns the time at which the surface
+  /// will be silent. If the converter does not report its position, this time is an upper limit; if the
+  /// converter is gone, it is the time of the loss.
   virtual std::int64_t silence() = 0;
 
-  /// The reason why the amplifier refused; empty on success.
+  /// Why the amplifier refused a command; empty if it did not.
   using Refusal = std::optional<Fault>;
-  /// For the operator: arms, disarms and clears the amplifier.
+  /// These commands of the operator arm, disarm and clear the amplifier.
   [[nodiscard]] virtual Refusal arm() = 0;
   virtual void disarm() = 0;
   [[nodiscard]] virtual Refusal clear() = 0;
   virtual drive::AmplifierState amplifier() const = 0;
-  /// Switches the amplifier on in silence, before the stimuli of a trial.
+  /// Switches the amplifier on before the stimuli of a trial, while the drive is silent.
   [[nodiscard]] virtual Refusal open_amplifier() = 0;
   /// Switches the amplifier off after the stimuli, as soon as the surface is silent.
   virtual void close_amplifier() = 0;
 
   /// Names of the rig's response buttons, in the order of their indices.
   virtual const std::vector<std::string>& buttons() const = 0;
-  /// Which of buttons and contact are lost at present, and why; "" if none.
+  /// Names the lines (buttons, contact) that are disconnected at present, with the reason; "" if none are.
   virtual std::string missing() const = 0;
 
-  /// Asks a simulated observer to answer this question, with times counted from `zero_ns`. A real stage
-  /// ignores it.
+  /// Asks a simulated observer to answer this question. Times count from `zero_ns`. A real stage does
+  /// nothing.
   virtual void question(const observer::Question& question, std::int64_t zero_ns) = 0;
 
-  /// Asks a simulated observer to set this slider and press Done, with times counted from `zero_ns`.
+  /// Asks a simulated observer to set this slider and press Done. Times count from `zero_ns`.
   virtual void adjustment(const observer::Adjustment& adjustment, std::int64_t zero_ns) = 0;
 
   virtual std::optional<ClockFit> clock_fit() = 0;
   virtual std::string realtime_rights() const = 0;
-  /// Disarms the amplifier and completes a rendered output file. Throws std::system_error.
+  /// Disarms the amplifier. If the output is a file, completes the file. Throws std::system_error.
   virtual void finish() = 0;
 };
 
-/// The stream for a rig's output, with a channel for each of its transducers.
+/// Returns the configuration of the stream for a rig's output, with a channel for each transducer.
 drive::StreamConfig stream_of(const rig::Rig& rig);
 
-/// A stage in real time: CLOCK_MONOTONIC, the audio thread, the amplifier's guard, inputs from a display and
-/// the panel. `inputs` must outlive the stage.
+/// Makes a stage that runs in real time: CLOCK_MONOTONIC, the audio thread, the amplifier guard, and inputs
+/// from a display and the touch panel. `inputs` must outlive the stage.
 std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices devices, Inputs& inputs);
 
-/// A stage on the virtual clock. The drive advances with the clock, and the observer answers and arms a
-/// simulated amplifier. If there is nothing to wait for, the observer presses Continue. `inputs` must outlive
-/// the stage; only `stop` is honoured, and only between trials.
+/// Makes a stage on the virtual clock. The drive advances with the clock. The simulated observer answers,
+/// arms a simulated amplifier, and presses Continue when nothing else is left to do. `inputs` must outlive
+/// the stage. Of `inputs`, only a stop has an effect, and only between trials.
 std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer,
                                      Inputs& inputs);
 

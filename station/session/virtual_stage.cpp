@@ -13,7 +13,7 @@ class VirtualStage : public Stage {
  public:
   VirtualStage(const drive::StreamConfig& config, observer::Observer observer, Inputs& inputs)
       : stream_(drive::open_synchronous(config)), observer_(std::move(observer)), inputs_(inputs) {
-    static_cast<void>(arm());  // a simulated amplifier can always be armed here
+    static_cast<void>(arm());  // a simulated amplifier never refuses at the start
   }
 
   std::int64_t now_ns() override { return now_ns_; }
@@ -40,9 +40,9 @@ class VirtualStage : public Stage {
     return input;
   }
 
-  /// Checks whether somebody wants to stop the session. A stop takes effect only before the next trial,
-  /// because a trial takes milliseconds of real time. A simulated session that is stopped and resumed
-  /// therefore equals an uninterrupted one.
+  /// Looks for a request to stop the session. It takes effect only before the next trial; a trial takes only
+  /// milliseconds of real time. A simulated session that was stopped and resumed therefore equals one that
+  /// was not interrupted.
   std::vector<Input> drain() override {
     script_.clear();
     unheard_.clear();
@@ -56,11 +56,11 @@ class VirtualStage : public Stage {
   }
 
   void wait_for(const std::function<bool()>&) override {
-  }  // nothing to do: the next call that needs the result waits for it, and no virtual time passes
+  }  // nothing to do: the caller's next call waits for the result itself, and no virtual time passes
 
   std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
                              std::int64_t earliest_ns) override {
-    // An aborted trial may still be ramping down. Its bursts occupy the drive until they are silent.
+    // The bursts of an aborted trial may still be ramping down. They occupy the drive until they are silent.
     advance_to(quiet_ns_);
     const auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
     unheard_ = presented_;
@@ -122,7 +122,7 @@ class VirtualStage : public Stage {
   }
 
  private:
-  /// The next interval that is heard to its end, if that is no later than `until_ns`.
+  /// Reports the next interval that has been played completely, if it ends no later than `until_ns`.
   std::optional<Input> next_heard(std::int64_t until_ns) {
     if (unheard_.empty()) return std::nullopt;
     const auto end_ns = stream_->time_of(unheard_.front().end_frame).value();
@@ -137,7 +137,8 @@ class VirtualStage : public Stage {
     return input;
   }
 
-  static constexpr std::int64_t kContinue_ns = 1'000'000'000;  // how long the simulated observer reads a page
+  static constexpr std::int64_t kContinue_ns = 1'000'000'000;  // time for which the simulated observer reads
+                                                               // a page
 
   void advance_to(std::int64_t time_ns) {
     now_ns_ = std::max(now_ns_, time_ns);
@@ -147,8 +148,8 @@ class VirtualStage : public Stage {
     }
   }
 
-  /// The guard's rules, without GPIO lines. It is told that all threads are alive, because on this clock none
-  /// can hang.
+  /// Returns the rules of the amplifier guard, which work here without GPIO lines. All threads are reported
+  /// as alive, because none can hang on the virtual clock.
   lines::Guard& alive() {
     guard_.audio_alive(now_ns_);
     guard_.session_alive(now_ns_);
@@ -165,7 +166,7 @@ class VirtualStage : public Stage {
   Inputs& inputs_;
   std::int64_t now_ns_ = 0;
   std::int64_t quiet_ns_ = 0;  ///< time at which the surface will be silent
-  std::deque<Input> script_;   ///< future actions of the simulated observer, in order of time
+  std::deque<Input> script_;   ///< what the simulated observer will do, in order of time
   std::vector<Presented> presented_, unheard_;
 };
 

@@ -54,8 +54,8 @@ std::vector<Action> Machine::start(std::int64_t now_ns) {
 
 std::vector<Action> Machine::handle(const Event& event) {
   if (phase_ == Phase::idle || phase_ == Phase::done) return {};
-  // Process everything that is due before this event. An onset may lie in the future, so it does not advance
-  // the time.
+  // First process everything that is due before this event. An onset may lie in the future, so it does not
+  // advance the time.
   if (event.kind != EventKind::onset) now_ns_ = std::max(now_ns_, event.time_ns);
   advance(now_ns_);
   if (phase_ == Phase::done) return std::exchange(actions_, {});
@@ -94,7 +94,7 @@ std::vector<Action> Machine::handle(const Event& event) {
 
 std::optional<std::int64_t> Machine::wake_ns() const {
   if (phase_ == Phase::idle || phase_ == Phase::done) return std::nullopt;
-  // while this interval lasts without an outcome, it ends with the last heard event, not at a time
+  // while the outcome is open, the pause between trials ends with the last heard event, not at a set time
   if (phase_ == Phase::interval && !decided()) return std::nullopt;
   const bool answering = phase_ == Phase::stimulus || phase_ == Phase::response;
   const auto deadline = answering ? deadline_at() : kNever;
@@ -118,7 +118,7 @@ void Machine::enter(Phase phase, std::int64_t until_ns) {
   actions_.push_back({ActionKind::enter, static_cast<int>(phase), until_ns});
 }
 
-// The first onset ends the cue, later ones end the gaps.
+// The first onset ends the cue; each later onset ends a gap.
 void Machine::onset(const Event& event) {
   onsets_ns_.at(static_cast<std::size_t>(event.value)) = event.time_ns;
   if (phase_ == Phase::cue && event.value == 0) until_ns_ = event.time_ns;
@@ -238,8 +238,8 @@ void Machine::conclude(Outcome outcome, std::int64_t at_ns) {
   const bool cut = outcome == Outcome::aborted || outcome == Outcome::fault;
   if (cut && !concluded_) return end(outcome, at_ns);
   if (cut) {
-    // The outcome is known, but becomes final only if everything was presented without loss. After a fault
-    // there is nobody to give feedback to.
+    // The trial has a result, but it becomes final only if all intervals were presented without loss. After a
+    // fault, end without feedback.
     if (outcome == Outcome::fault && !decided()) return end(outcome, at_ns);
     return enter(Phase::interval, at_ns);
   }
@@ -249,7 +249,7 @@ void Machine::conclude(Outcome outcome, std::int64_t at_ns) {
   settle(at_ns);
 }
 
-// Ends the trial at once and without a response.
+// Ends the trial at once, without a response.
 void Machine::end(Outcome outcome, std::int64_t at_ns) {
   if (phase_ == Phase::cue || phase_ == Phase::stimulus || phase_ == Phase::gap)
     actions_.push_back({ActionKind::silence, interval_, at_ns});

@@ -8,24 +8,24 @@
 
 namespace turnpoint::trial {
 
-/// The moment from which a response time counts; the names are those of the protocol file.
+/// The moment from which response times are counted. It has the names of the protocol file.
 using terms::ResponseZero;
 
 enum class Phase {
   idle,      ///< the trial has not started
-  cue,       ///< the participant gets ready; the surface is silent, and all intervals are scheduled
+  cue,       ///< the participant gets ready; the surface is silent; all intervals are scheduled
   stimulus,  ///< an interval is being presented
   gap,       ///< silence between two intervals
   response,  ///< silence; an answer is accepted
   feedback,  ///< the page says whether the answer was right
-  late,      ///< the page shows a message after a timeout or an anticipation
+  late,      ///< the page shows a message after a timeout or a premature answer
   interval,  ///< pause between trials
   done,
 };
 
 using terms::Outcome;
 
-/// One interval: its duration, and when its second and later scenes begin, relative to its onset.
+/// One interval: its duration, and the times from its onset at which its second and later scenes begin.
 struct IntervalTiming {
   std::int64_t duration_ns = 0;
   std::vector<std::int64_t> scene_starts_ns;  ///< ascending, without the first scene (which starts at 0)
@@ -36,15 +36,17 @@ struct Timing {
   std::int64_t cue_ns = 0;
   std::vector<IntervalTiming> intervals;
   std::int64_t gap_ns = 0;
-  /// true: the surface may be explored until the answer; false: answers are accepted after the last interval
+  /// true: the participant may explore the surface until the answer; false: answers are accepted after the
+  /// last interval
   bool answer_ends_stimulus = false;
   ResponseZero response_zero = ResponseZero::go_cue;
-  std::int64_t deadline_ns = 0;      ///< counted from response_zero
+  std::int64_t deadline_ns = 0;      ///< longest response time, counted from response_zero; 0 for none
   std::int64_t anticipation_ns = 0;  ///< an answer sooner than this after response_zero is an anticipation
   std::int64_t feedback_ns = 0;      ///< length of the feedback; 0 for none
   std::int64_t late_ns = 0;          ///< length of the message after a late answer; 0 for none
   std::int64_t iti_ns = 0;
-  /// How long a time stamp may take to arrive. Deadlines are decided this much later, by the stamps.
+  /// How long a time stamp may take to arrive. The machine waits this long after a deadline before it decides
+  /// from the time stamps whether an answer was late.
   std::int64_t watermark_ns = 20'000'000;
   int answers = 2;             ///< number of possible answers
   std::optional<int> correct;  ///< index of the right answer; empty if no answer is right or wrong
@@ -52,11 +54,11 @@ struct Timing {
 
 enum class EventKind {
   tick,  ///< time has passed
-  /// value: index of the interval; time_ns: when its first frame reaches the surface (may be in the future)
+  /// value: index of the interval; time_ns: when its first frame reaches the surface, possibly in the future
   onset,
-  heard,    ///< value: index of the interval, all of which has been played as scheduled
+  heard,    ///< value: index of an interval that has been played completely and as scheduled
   answer,   ///< value: index of the answer
-  touch,    ///< a touch outside all answers
+  touch,    ///< a touch beside the answers
   contact,  ///< value 1: finger on the surface; 0: finger lifted
   xrun,     ///< the drive lost frames; value 1: in an interval of this trial, 0: in silence
   fault,    ///< drive, amplifier or panel cannot continue
@@ -70,9 +72,9 @@ struct Event {
 };
 
 enum class ActionKind {
-  enter,  ///< value: the new phase, whose page must be shown
+  enter,  ///< value: the new phase; show its page
   /// schedule all intervals at the plan's distances, the first no earlier than time_ns; reply with an onset
-  /// event for each interval, and with a heard event once it has been played
+  /// event for each interval, and with a heard event once the interval has been played
   present,
   silence,  ///< ramp down what is playing now, and cancel what has not begun
 };
@@ -83,41 +85,43 @@ struct Action {
   std::int64_t time_ns = 0;
 };
 
-/// The result of the trial. It has a response and a response time only if it was answered.
+/// The result of the trial. Response and response time are set only if the trial was answered.
 struct Result {
   Outcome outcome = Outcome::aborted;
   std::optional<int> response;
   std::optional<bool> correct;
-  std::optional<std::int64_t> zero_ns;  ///< time at which response_zero happened
+  std::optional<std::int64_t> zero_ns;  ///< the moment at which response_zero happened
   std::optional<std::int64_t> response_time_ns, decision_time_ns, movement_time_ns;
   std::vector<std::int64_t> onsets_ns;
   std::int64_t started_ns = 0, ended_ns = 0;
-  int extra_touches = 0;  ///< late, early, repeated or outdated touches: logged, never scored
+  int extra_touches = 0;  ///< late, early, repeated or outdated touches; they are logged but never scored
   int xruns = 0;
 };
 
-/// A trial as a pure state machine: time-stamped events in, actions out. Events must come in the order of
-/// their time stamps, except that an answer stamped before a deadline is accepted until watermark_ns after
-/// it. There is no clock and no thread inside; the same events give the same actions.
-/// Whether a stimulus was played without loss is known only some time after it was felt. An outcome is
-/// therefore final only once every interval has been heard. A loss reported before that, however late, makes
-/// the trial void. The phases continue meanwhile, and the trial does not end before its outcome is final.
+/// A trial as a pure state machine: time-stamped events go in, actions come out. It contains no clock and no
+/// thread; the same events give the same actions. Events must come in the order of their time stamps, with
+/// one exception: an answer stamped before a deadline is accepted until watermark_ns after the deadline.
+///
+/// Only some time after a stimulus was felt is it known whether the stimulus was played without loss. An
+/// outcome therefore becomes final only when every interval has been heard. If a loss is reported before
+/// that, the trial is void. The phases continue meanwhile, but the trial does not end before its outcome is
+/// final.
 class Machine {
  public:
-  /// Throws std::invalid_argument for a plan without intervals, with a negative time, no answers, or a
-  /// response_zero that cannot happen (change without a second scene).
+  /// Throws std::invalid_argument for a plan without intervals, with a negative time, without answers, or
+  /// with a response_zero that cannot happen (`change` without a second scene).
   explicit Machine(Timing plan);
 
   std::vector<Action> start(std::int64_t now_ns);
   std::vector<Action> handle(const Event& event);
 
-  /// When the next tick is due; empty if only an event can make progress, or when done.
+  /// The time of the next tick. Empty if the machine waits for an event, or is done.
   std::optional<std::int64_t> wake_ns() const;
 
   Phase phase() const { return phase_; }
   bool done() const { return phase_ == Phase::done; }
   bool answers_open() const;
-  /// True once the outcome is final: later events cannot change it.
+  /// True once the outcome is final. Later events cannot change it.
   bool decided() const;
   int interval() const { return interval_; }
   const Result& result() const { return result_; }

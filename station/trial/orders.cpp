@@ -10,7 +10,7 @@ namespace {
 
 using protocol::TaskKind;
 
-constexpr int kRun = 12;  // length of a run of trials: a common multiple of all possible numbers of orders
+constexpr int kRun = 12;  // length of a run of trials; divisible by every possible number of orders
 
 int choice_index(const protocol::Task& task, const std::string& id) {
   for (std::size_t i = 0; i < task.choices.size(); ++i)

@@ -14,16 +14,18 @@ struct IntervalOrder {
   std::optional<int> correct;
 };
 
-/// All orders that a task can have: 2 for two intervals, 2 or 4 for same-different, 3 or 6 for oddity,
-/// otherwise 1. `correct` is empty if it depends on the factors (single-interval comparisons).
+/// Returns all orders of intervals that a task can have: 2 for two intervals, 2 or 4 for same-different, 3 or
+/// 6 for oddity, otherwise 1. `correct` is empty if the right choice depends on the factors (comparisons with
+/// one interval).
 std::vector<IntervalOrder> orders_of(const protocol::Task& task);
 
-/// The order for a trial. Trials are divided into runs whose length is a multiple of the number of orders.
-/// Each run contains every order equally often, shuffled by draws that are keyed on the run, so that the
-/// order of trial k can be computed alone.
+/// Returns the order for a trial. Trials are divided into runs whose length is a multiple of the number of
+/// orders. Each run contains every order equally often. The draws that shuffle a run have the run's number in
+/// their key, so the order of trial k can be computed without the others.
 IntervalOrder order_for(const protocol::Task& task, std::uint64_t seed, int block, int attempt, int trial);
 
-/// The right choice of a single-interval task for these factors; empty if no comparison is true.
+/// Returns the right choice of a single-interval task for these factors; empty if none of the task's
+/// comparisons is true.
 std::optional<int> correct_choice(const protocol::Task& task, const protocol::Factors& factors);
 
 }  // namespace turnpoint::trial

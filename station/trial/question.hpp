@@ -7,10 +7,10 @@
 
 namespace turnpoint::trial {
 
-/// The question that the trial's last interval asks a simulated observer.
+/// Returns the question that a trial's last interval asks a simulated observer.
 observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& protocol, std::uint64_t seed);
 
-/// The slider that a simulated observer has to set.
+/// Returns the slider that a simulated observer has to set in a trial.
 observer::Adjustment adjustment_of(const TrialSpec& spec, std::uint64_t seed);
 
 }  // namespace turnpoint::trial

@@ -10,10 +10,10 @@ namespace turnpoint::trial {
 
 records::BlockStart block_start(const protocol::Block& block, int block_index, int attempt);
 
-/// A trial's row with everything that is known before it runs.
+/// Returns a trial's row with everything that is known before the trial runs.
 records::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protocol, int trial_index);
 
-/// Fills in outcome, response and times; `origin_ns` is the start of the segment.
+/// Fills in outcome, response and times. `origin_ns` is the start of the segment.
 void fill_result(records::TrialRow& row, const Result& result, const TrialSpec& spec,
                  const protocol::Protocol& protocol, std::int64_t origin_ns);
 

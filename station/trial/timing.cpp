@@ -21,7 +21,8 @@ std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, co
   std::vector<IntervalTimes> times;
   for (const auto& scenes : spec.intervals) {
     IntervalTimes interval;
-    // Explored until the answer, for at most explore_s; without explore_s, until the deadline has passed.
+    // An explored interval lasts until the answer, at most explore_s. Without explore_s, it lasts until the
+    // deadline.
     const double whole = explored(task)
                              ? protocol.timing.explore_s.value_or(spec.foreperiod_s + spec.deadline_s)
                              : task.duration_s.value_or(0);
