@@ -43,7 +43,7 @@ std::vector<StoredBackup> backups_of(const std::string& directory, const std::st
 
 std::string record_path(const std::string& database) { return database + ".last-backup"; }
 
-/// Notes the backup for the operator's page. If the note cannot be written, the backup is still valid.
+/// Records the backup for the operator's page. If the record cannot be written, the backup is still valid.
 void record(BackupReport& report, const std::string& database, const std::string& database_id) {
   try {
     const auto name = record_path(database);
@@ -54,7 +54,7 @@ void record(BackupReport& report, const std::string& database, const std::string
   }
 }
 
-/// Counts what the finished file really contains, which may differ from what was meant to be written.
+/// Counts the sessions and trials in the finished file. A faulty copy may contain fewer than the database.
 void read_back(BackupReport& report, std::int64_t sessions) {
   Database copy(report.path, Database::Access::immutable);
   report.sessions = copy.integer("SELECT count(*) FROM session");

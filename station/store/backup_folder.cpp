@@ -16,10 +16,10 @@ namespace turnpoint::store {
 
 namespace {
 
-/// Older releases wrote STEM-TIME.sqlite; the name is now STEM-NUMBER-TIME.sqlite.
+/// Backups are named STEM-NUMBER-TIME.sqlite. Older releases wrote STEM-TIME.sqlite.
 const std::regex kName(R"((.*?)(?:-(\d{6,12}))?-(\d{8}T\d{6})\.\d{3}Z\.sqlite)");
 
-/// "20240229T120000", UTC.
+/// Converts a UTC time such as "20240229T120000" to ns since 1970.
 std::int64_t nanoseconds_of(const std::string& stamp) {
   std::tm utc{};
   return ::strptime(stamp.c_str(), "%Y%m%dT%H%M%S", &utc) == nullptr
@@ -98,7 +98,7 @@ std::string drill_file(const std::string& backup) { return backup + ".drill"; }
 
 namespace {
 
-/// The file system that a folder is on. Appending "/." makes an automounter mount the disk.
+/// Returns the file system that holds a folder. The "/." makes an automounter mount the disk.
 dev_t file_system_of(const std::string& folder) {
   struct stat status {};
   if (::stat((folder + "/.").c_str(), &status) == 0) return status.st_dev;

@@ -8,36 +8,38 @@
 
 namespace turnpoint::store {
 
-/// A backup found in a folder. Its meta table, not its file name, says which database it is a backup of.
+/// A backup that was found in a folder. The meta table in the backup says which database was backed up; the
+/// file name does not matter.
 struct StoredBackup {
   std::string path;
-  std::string database_id;  ///< id of the database; "" if the backup cannot be read
-  std::string station;      ///< station of one of its sessions; "" if it has no session
-  std::string stem;         ///< file name of the database when the backup was made, without folder and ending
-  /// increases with each backup made into the folder; 0 for backups of older releases
+  std::string database_id;  ///< id of the backed-up database; "" if the backup cannot be read
+  std::string station;      ///< station of one of the sessions in the backup; "" if there are no sessions
+  std::string stem;         ///< file name of the database at the time of the backup, without folder and
+                            ///< ending
+  /// increases with each backup in the folder; 0 for backups of older releases
   std::int64_t number = 0;
-  std::int64_t made_realtime_ns = 0;  ///< time given in the file name
-  std::string trouble;  ///< why the backup could not be read; "" if it was read, or is known to be damaged
+  std::int64_t made_realtime_ns = 0;  ///< time of the backup, read from its file name
+  std::string trouble;  ///< why the backup could not be read; "" if it could be read or is known to be
+                        ///< damaged
   bool readable() const { return !database_id.empty(); }
 };
 
-/// All backups in a folder, of any database, ordered by number and then by name (oldest first). Files with
-/// other names are ignored. Throws StoreError if the folder cannot be listed.
+/// Returns the backups of all databases in a folder, ordered by number and then by name (oldest first). Files
+/// with other names are ignored. Throws StoreError if the folder cannot be listed.
 std::vector<StoredBackup> stored_backups(const std::string& folder);
 
-/// A number greater than that of every backup in the folder, of any database.
+/// Returns a number greater than the numbers of all backups in the folder, of whichever database.
 std::int64_t next_backup_number(const std::string& folder);
 
-/// Writes the values of a StoredBackup into a copy. clear_backup_note() removes them from a restored
-/// database.
+/// Writes stem and number into a backup. clear_backup_note() removes them after the backup was restored.
 void write_backup_note(Database& copy, const std::string& stem, std::int64_t number);
 void clear_backup_note(Database& copy);
 
 /// Removes a backup and its checksum file.
 void remove_backup(const std::string& path);
 
-/// A lock for the one process that changes a folder of backups; others wait. Has no effect on file systems
-/// without locks.
+/// A lock that only one process holds, which may then change a folder of backups. Other processes wait. Has
+/// no effect on file systems without locks.
 class BackupFolderLock {
  public:
   explicit BackupFolderLock(const std::string& folder);
@@ -46,16 +48,17 @@ class BackupFolderLock {
   system::FileDescriptor lock_;
 };
 
-/// Throws StoreError (missing) unless a disk other than the database's is mounted at the folder or at its
-/// parent folder. Without its disk, a mount point is just an empty folder on the system disk.
+/// Throws StoreError (missing) unless a separate disk is mounted at the folder or at its parent folder. The
+/// disk must not be the database's. If a disk is not mounted, its mount point is an ordinary empty folder on
+/// the system disk.
 void require_disk(const std::string& folder, const std::string& database);
 
-/// The file into which a drill restores a backup. If it is left behind, it is removed like the files of an
-/// interrupted backup.
+/// Returns the name of the file into which a drill restores a backup. If the drill is killed, this file is
+/// removed together with the files of interrupted backups.
 std::string drill_file(const std::string& backup);
 
-/// Removes the unfinished files of interrupted backups from a folder, while holding the folder's lock.
-/// Returns what was removed.
+/// Removes the unfinished files of interrupted backups from a folder, and returns their names. Holds the
+/// folder's lock meanwhile.
 std::vector<std::string> remove_interrupted_backups(const std::string& folder);
 
 }  // namespace turnpoint::store

@@ -15,7 +15,7 @@ namespace turnpoint::store {
 
 namespace {
 
-/// Hashes each value with its type and length, so that no two different rows produce the same bytes.
+/// Hashes each value with its type and length. Different rows then always give different bytes.
 void add_row(text::Sha256& hash, const Statement& row) {
   std::string bytes;
   for (int i = 0; i < row.columns(); ++i) {
@@ -34,15 +34,15 @@ void add_row(text::Sha256& hash, const Statement& row) {
 
 }  // namespace
 
-/// Turns the rows of one session into the bytes that are hashed, in a given encoding. Statements are prepared
-/// once, because every trial of a session adds two links.
+/// Turns the rows of one session into the bytes that are hashed, in a given encoding. It prepares its
+/// statements only once, because each trial of a session adds two links.
 class Encoder {
  public:
   Encoder(Database& database, std::string schema, std::string session_id, std::int64_t encoding = kEncoding)
       : database_(database), schema_(std::move(schema)), id_(std::move(session_id)), encoding_(encoding) {}
 
-  /// Hashes the data that the session started with. The session's status changes later and is covered by the
-  /// links.
+  /// Hashes the data with which the session started. The session's status is left out, because it changes
+  /// later and each link contains it.
   void add_provenance(text::Sha256& hash) const {
     auto session = session_table();
     session.fields.resize(session.fields.size() - 2);
@@ -58,7 +58,7 @@ class Encoder {
     while (row.step()) add_row(hash, row);
   }
 
-  /// Hashes the rows after `from` up to `to`, table by table.
+  /// Hashes the rows after `from`, up to and including `to`, table by table.
   void add_rows(text::Sha256& hash, const Extent& from, const Extent& to) {
     add(hash, segment_, segment_table(), "segment_index", "segment_index", from.segment, to.segment);
     add(hash, block_, block_table(), "run_order", "run_order", from.block, to.block);
@@ -87,7 +87,7 @@ class Encoder {
     return last;
   }
 
-  /// True if some tone belongs to a trial that no link covers.
+  /// True if the database has a tone of a trial that no link covers.
   bool tone_beyond(std::int64_t last_trial) const {
     Statement row(database_,
                   "SELECT 1 FROM " + schema_ + ".tone WHERE session_id = ? AND trial_index > ? LIMIT 1");
@@ -142,8 +142,9 @@ Link link_from(const Statement& row) {
   return link;
 }
 
-/// Opening a database changes the status of sessions whose process died, without adding a link. This function
-/// accepts only these exact changes of status and reason.
+/// True if the session may have this status after its last link. Usually the status is that of the link.
+/// Opening a database changes the status of sessions whose process died without adding a link, so exactly
+/// these changes are accepted too.
 bool follows(const Link& last, const std::string& status, const std::string& reason) {
   if (status == last.status && reason == last.status_reason) return true;
   const std::string running = name(SessionStatus::running), interrupted = name(SessionStatus::interrupted);
@@ -167,7 +168,7 @@ std::string place(const Link& previous, const Link& link) {
   return rows.empty() ? "the session's status" : rows;
 }
 
-/// Checks each link against its rows and counts the links. Returns the last one.
+/// Checks each link against the rows that it covers, and counts the links. Returns the last link.
 Link check_links(Database& database, const std::string& schema, VerifiedSession& verified) {
   std::map<std::int64_t, Encoder> encoders;
   Statement rows(database, fmt::format("SELECT {} FROM {}.link WHERE session_id = ? ORDER BY link_index",
@@ -193,10 +194,10 @@ Link check_links(Database& database, const std::string& schema, VerifiedSession&
   return previous;
 }
 
-/// The sessions (or the one given by `session_id`) whose place in the counterbalancing is the one enrolled
-/// for their participant. The place was assigned by the station of one of the participant's sessions, unless
-/// that session has been withdrawn. One query answers for all sessions; a query for each session would read
-/// all sessions every time.
+/// Returns the sessions (all, or the one with `session_id`) whose place in the counterbalancing agrees with
+/// the participant's enrolment. The enrolment must be from the station of one of the participant's sessions.
+/// If the database has tombstones, it may be from any station, because that session may have been withdrawn.
+/// One query checks all sessions, because a query for each session would read all sessions each time.
 std::set<std::string> enrolled(Database& database, const std::string& schema,
                                const std::string& session_id = "") {
   std::set<std::string> ids;

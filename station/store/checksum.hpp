@@ -10,43 +10,45 @@
 
 namespace turnpoint::store {
 
-/// The rule that turns rows into hashed bytes. The bytes of an encoding never change. A later release that
-/// adds columns or tables adds an encoding, and old links are still checked with their own.
+/// Number of the rule that turns rows into the bytes to be hashed. The bytes of an encoding never change. A
+/// later release that adds columns or tables adds an encoding; older links are still checked with the
+/// encoding that they were made with.
 constexpr int kEncoding = 1;
 
-/// The last row of each table that belongs to a session, given by its key. Tables without rows have a value
+/// The last row of a session in each table, given by the row's key. If a table has no rows, the value is
 /// below the first key.
 struct Extent {
   std::int64_t segment = 0;  ///< segment_index of the last segment; the first has index 1
   std::int64_t block = -1;   ///< run_order of the last block
-  std::int64_t trial = -1;   ///< trial_index of the last trial, whose tones are included
+  std::int64_t trial = -1;   ///< trial_index of the last trial; the tones of that trial are included
   std::int64_t event = -1;   ///< event_index of the last event
   bool operator==(const Extent&) const = default;
 };
 
-/// One link of a session's chain. Its checksum covers the previous link, the status and all rows committed
-/// with it: SHA-256 of "turnpoint/ENCODING INDEX PREVIOUS", status, reason and the rows, in this order. The
-/// first link also covers the session's participant, protocol, rig and calibration. Annotations are not
-/// covered, because they are added afterwards.
+/// One link of a session's checksum chain. Its checksum covers the previous link, the session's status, and
+/// all rows committed together with the link: SHA-256 of "turnpoint/ENCODING INDEX PREVIOUS", status, reason
+/// and the rows, in this order. The first link also covers the session's participant, protocol, rig and
+/// calibration. Annotations are not covered, because they may be added afterwards.
 struct Link {
-  std::int64_t index = -1;  ///< position of the link in the chain, from 0; -1 for the empty chain
+  std::int64_t index = -1;  ///< position in the chain, from 0; -1 if the chain is empty
   std::int64_t encoding = kEncoding;
   Extent last;
   std::string status, status_reason;  ///< status of the session when the link was made
-  std::string sha256;                 ///< checksum in hexadecimal; "" for the empty chain
+  std::string sha256;                 ///< checksum in hexadecimal; "" if the chain is empty
 };
 
 class Encoder;
 
-/// Extends the chain of one session. Every transaction that writes rows of the session adds one link.
+/// Extends the chain of one session. Each transaction that writes rows of the session adds one link.
 class Chain {
  public:
-  /// Continues after the last link in the database.
+  /// Continues after the last link that the database contains.
   Chain(Database& database, std::string session_id);
   ~Chain();
-  /// Writes a link over everything written since the last one. Call it inside the caller's transaction.
+  /// Writes a link over all rows that were written since the previous link. Call it inside the transaction
+  /// that wrote the rows.
   Link add();
-  /// Call this once the transaction that wrote this link has been committed.
+  /// Call this after the transaction with this link was committed.
   void accept(Link link) { last_ = std::move(link); }
   const Link& last() const { return last_; }
 
@@ -61,28 +63,30 @@ class Chain {
 struct VerifiedSession {
   std::string session_id, participant, protocol_id;
   std::int64_t trials = 0, links = 0;
-  std::string last_sha256;            ///< "" for a session that an earlier release recorded without a chain
+  std::string last_sha256;            ///< checksum of the last link; "" if an earlier release recorded the
+                                      ///< session without a chain
   std::vector<std::string> problems;  ///< differences from what was recorded; empty if there are none
 };
 
-/// Checks every link of a session against its rows, and the rows against the links. `schema` is "main" or the
-/// name of an attached database. If somebody rewrote both the rows and the links, this check passes: to
-/// detect that, compare the last checksum with one exported earlier (holds_link).
+/// Checks every link of a session against the rows that it covers, and checks that every row is covered.
+/// `schema` is "main" or the name of an attached database. If somebody rewrote both the rows and the links,
+/// this check passes. To detect that, compare the last checksum with one that was exported earlier
+/// (holds_link).
 VerifiedSession verify_session(Database& database, const std::string& session_id,
                                const std::string& schema = "main");
 
-/// Checks every session as verify_session() does. Rows that belong to no session are found by check_pages
+/// Checks every session with verify_session(). Rows that belong to no session are found by check_pages()
 /// (whole_file.hpp).
 std::vector<VerifiedSession> verify_database(Database& database, const std::string& schema = "main");
 
-/// True if the session's chain contains a link with this checksum.
+/// True if one link of the session's chain has this checksum.
 bool holds_link(Database& database, const std::string& session_id, const std::string& sha256);
 
-/// The checksum of a session's last link; "" if it has no chain.
+/// Returns the checksum of a session's last link; "" if the session has no chain.
 std::string last_checksum(Database& database, const std::string& session_id);
 
-/// SHA-256 over every row of a session except its status; annotations are included. It is equal in two
-/// databases exactly if they contain the same session.
+/// Returns the SHA-256 over all rows of a session, annotations included, status excluded. Two databases give
+/// the same value exactly if they contain the same session.
 std::string session_checksum(Database& database, const std::string& schema, const std::string& session_id);
 
 }  // namespace turnpoint::store

@@ -6,20 +6,21 @@
 
 namespace turnpoint::store {
 
-/// Files that contain some of the requested sessions, or that cannot be read and may contain them.
+/// Files beside a database that contain some of the given sessions, or that may contain them because they
+/// cannot be read.
 struct Copies {
-  std::vector<std::string> own;  ///< this database's backups, and its copies from before a migration
-  /// Files that must not be removed without asking: backups of other databases, damaged files that were set
-  /// aside, and files that cannot be read.
+  std::vector<std::string> own;  ///< backups of this database, and its copies from before a migration
+  /// Files that must not be removed without asking somebody: backups of other databases, damaged files that
+  /// were set aside, and files that cannot be read.
   std::vector<std::string> foreign;
 };
 
-/// Searches the folder of the database and, unless it is "", a folder of backups. Throws StoreError if a
-/// folder cannot be listed.
+/// Searches the folder of the database, and a folder of backups unless `backup_folder` is "". Throws
+/// StoreError if a folder cannot be listed.
 Copies copies_of(const std::string& path, Database& database, const std::string& backup_folder,
                  const std::vector<std::string>& session_ids);
 
-/// Removes `own`, and the leftovers of interrupted backups in the folder.
+/// Removes the files in `own`, and what interrupted backups have left in the folder.
 void remove_copies(const Copies& copies, const std::string& backup_folder);
 
 }  // namespace turnpoint::store

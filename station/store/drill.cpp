@@ -18,8 +18,7 @@ namespace {
 std::int64_t sessions_in(Database& database) { return database.integer("SELECT count(*) FROM session"); }
 std::int64_t trials_in(Database& database) { return database.integer("SELECT count(*) FROM trial"); }
 
-/// The newest backup of this database. An unreadable one is not skipped, because it may be the one that a
-/// restore needs.
+/// Returns the newest backup of this database, even if it cannot be read: a restore would need it too.
 StoredBackup newest_backup(const std::string& directory, const std::string& path, const std::string& id) {
   const auto stem = std::filesystem::path(path).stem().string();
   StoredBackup newest;
@@ -37,7 +36,7 @@ StoredBackup newest_backup(const std::string& directory, const std::string& path
   return newest;
 }
 
-/// A restored backup that exists for the duration of the drill.
+/// A restored backup that exists only during the drill.
 class Restored {
  public:
   explicit Restored(const StoredBackup& backup) : path_(drill_file(backup.path)) {
@@ -52,18 +51,19 @@ class Restored {
     try {
       remove_database(path_);
     } catch (const StoreError&) {
-      // The next backup or drill removes the copy that is left.
+      // The next backup or drill removes the file.
     }
   }
   const std::string& path() const { return path_; }
-  /// Throws if the file cannot be removed, because a drill must not leave files behind without saying so.
+  /// Removes the file. Throws if that fails: a drill must not leave a file behind without a message.
   void remove() { remove_database(std::exchange(path_, "")); }
 
  private:
   std::string path_;
 };
 
-/// Since the backup, sessions in the database may have grown or been withdrawn. Returns any other difference.
+/// Compares a session of the backup with the database. Returns a difference; "" if there is none, or if the
+/// session has only grown or been withdrawn since the backup.
 std::string difference(Database& live, const VerifiedSession& session) {
   Statement withdrawn(live, "SELECT 1 FROM tombstone WHERE session_id = ?");
   Statement there(live, "SELECT 1 FROM session WHERE session_id = ?");

@@ -4,19 +4,19 @@
 
 namespace turnpoint::store {
 
-/// The kind of database error, by what the caller can do about it.
+/// The kind of a database error. Kinds differ in what the caller can do about them.
 enum class ErrorKind {
   disk_full,       ///< earlier rows are intact; repeat the same call once there is space
   read_only,       ///< the file, folder or disk cannot be written
   corrupt,         ///< the file is damaged; it was not changed
-  not_a_database,  ///< empty, or not a Turnpoint database
-  newer_schema,    ///< written by a newer release
-  cannot_open,     ///< the file exists but cannot be opened: wrong permissions, or it is a folder
-  busy,            ///< another station process is using it
-  missing,         ///< no such file, session or participant
-  conflict,        ///< rows contradict existing ones
-  refused,         ///< the store's rules forbid it
-  io,              ///< any other disk error
+  not_a_database,  ///< the file is empty, or it is not a Turnpoint database
+  newer_schema,    ///< a newer release wrote the database
+  cannot_open,     ///< the file exists but cannot be opened: its permissions forbid it, or it is a folder
+  busy,            ///< another station process is using the database
+  missing,         ///< there is no such file, session or participant
+  conflict,        ///< rows to be added contradict existing rows
+  refused,         ///< the rules of the store forbid the operation
+  io,              ///< any other error of the disk
 };
 
 /// Every failure of the store. The message says what was tried, on which file, what SQLite or the system

@@ -22,7 +22,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Protocol ids are free text by the researchers, so anything that could leave the folder must be replaced.
+/// Makes a folder name from a protocol id. Researchers may write any text as id, so characters that could
+/// lead out of the folder are replaced.
 std::string folder_name(const std::string& protocol_id) {
   std::string name = protocol_id.empty() || protocol_id.front() == '.' ? "_" : "";
   for (const char c : protocol_id) {
@@ -81,10 +82,10 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
 
 namespace {
 
-/// Size of the text that a table collects before it is written.
+/// Size of the text that is collected before it is written to a table's file.
 constexpr std::size_t kPieceBytes = 1U << 18U;
 
-/// Calls `write` and turns its failure into an export error.
+/// Calls `write`. If it fails, throws an export error instead.
 template <class Write>
 auto writing(const std::string& path, Write write) {
   try {
@@ -166,7 +167,7 @@ std::vector<ExportedFile> export_data(const std::string& path, const std::string
   check_style(options);
   auto database = open_reader(path);
   check_pages(database);
-  // All files come from one snapshot, even if a running session adds rows meanwhile.
+  // Read all files from one snapshot of the database, even if a running session adds rows meanwhile.
   database.execute("BEGIN");
   const auto selections = select(database, directory, options);
   if (selections.empty())
@@ -177,7 +178,7 @@ std::vector<ExportedFile> export_data(const std::string& path, const std::string
             path, path));
   std::vector<ExportedFile> files;
   for (const auto& selection : selections) {
-    // Until the last file is written, files of an earlier export may exist beside new ones.
+    // Mark the folder as incomplete. Until the last file is written, old and new files may be mixed in it.
     const auto mark = selection.folder + "/EXPORT-INCOMPLETE.txt";
     write_file(mark, "An export into this folder did not finish. Export again.\n");
     if (options.format == ExportFormat::bids)

@@ -20,10 +20,10 @@ struct ExportedFile {
   std::size_t rows = 0;
 };
 
-/// Writes one folder per protocol below `directory`: trials.csv, intervals.csv, events.csv, sessions.csv and
-/// codebook.json (or the BIDS set). Only reads the database, through a read-only connection; the same data
-/// give the same bytes. During the export, and after an interrupted one, the folder contains
-/// EXPORT-INCOMPLETE.txt. Throws StoreError.
+/// Writes one folder per protocol below `directory`, with trials.csv, intervals.csv, events.csv, sessions.csv
+/// and codebook.json (or the BIDS set). It opens the database for reading only. The same data give the same
+/// bytes. During the export, and after an interrupted export, the folder contains EXPORT-INCOMPLETE.txt.
+/// Throws StoreError.
 std::vector<ExportedFile> export_data(const std::string& database, const std::string& directory,
                                       const ExportOptions& options);
 

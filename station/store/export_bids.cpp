@@ -31,9 +31,9 @@ struct Labels {
   std::map<std::string, std::string> sessions;      ///< session_id -> label
 };
 
-/// Makes labels that BIDS and any file system can tell apart: only letters and digits, and distinct
-/// regardless of case. If two names would get the same label, part of the name's hash is appended, which is
-/// the same in every export.
+/// Makes labels of letters and digits only, as BIDS requires. They differ even if case is ignored, as some
+/// file systems do. If two names would get the same label, part of the name's hash is appended; it is the
+/// same in every export.
 std::map<std::string, std::string> labels_for(const std::set<std::string>& names) {
   std::map<std::string, int> users;
   const auto folded = [](std::string text) {
@@ -49,8 +49,8 @@ std::map<std::string, std::string> labels_for(const std::set<std::string>& names
   return labels;
 }
 
-/// A person's sessions are numbered. If the person has sessions numbered by two stations, the label also
-/// contains the station.
+/// Labels each person, and numbers each person's sessions. If two stations have numbered sessions of the same
+/// person, the labels of these sessions also contain the station.
 Labels label_all(const ProtocolSelection& selection) {
   Labels labels;
   std::set<std::string> persons;
@@ -73,7 +73,8 @@ Labels label_all(const ProtocolSelection& selection) {
   return labels;
 }
 
-/// Files left by an earlier export would be mistaken for part of this one.
+/// Throws if the folder has files of participants who are not part of this export, because they would look
+/// like part of it.
 void refuse_leftovers(const std::string& folder, const Labels& labels) {
   std::error_code ignored;
   std::set<std::string> expected;

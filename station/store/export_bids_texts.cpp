@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A text of the protocol: a plain string, or one string per language.
+/// Reads a text of the protocol, which is a string, or a table with one string per language.
 std::string text_of(const text::Value* value, const std::string& language) {
   if (value == nullptr) return "";
   if (value->kind == text::Value::Kind::string) return value->string;
@@ -27,7 +27,7 @@ const text::Value* at(const text::Value& table, const std::string& key) {
   return entry == nullptr ? nullptr : &entry->value;
 }
 
-/// The texts of the protocol's newest session.
+/// Texts of a protocol, as its newest session has stored them.
 struct Texts {
   std::string title, instructions;
 };
@@ -44,7 +44,7 @@ Texts texts_of(const SessionStart& start) {
       if (!question.empty()) texts.instructions += (texts.instructions.empty() ? "" : "\n") + question;
     }
   } catch (const text::BadInput&) {
-    // If a text can no longer be read, leave out the explanation: the data are exported anyway.
+    // Leave out texts that this release can no longer read. The data are exported anyway.
   }
   if (texts.title.empty()) texts.title = start.protocol_id;
   return texts;

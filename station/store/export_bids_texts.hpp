@@ -8,25 +8,25 @@
 
 namespace turnpoint::store {
 
-// Texts that describe a BIDS data set, in addition to its tables.
+// Texts that a BIDS data set contains in addition to its tables.
 
 std::string bids_description(const ProtocolSelection& selection);
 std::string bids_readme(const ProtocolSelection& selection);
 
-/// The sidecar of a table, from the newest session: the task, the participant's instructions and the program,
-/// then each column.
+/// Returns the sidecar file of a table. It describes the task, the participant's instructions and the
+/// program, as in the newest session, and then each column.
 std::string bids_sidecar(const SessionStart& start, const std::vector<Column>& columns);
 
-/// The columns of trials.csv. Onset and duration are called stimulus_onset and stimulus_duration, because
-/// BIDS reserves the short names for tables of events.
+/// Returns the columns of trials.csv. Onset and duration are called stimulus_onset and stimulus_duration,
+/// because BIDS reserves the short names for tables of events.
 ExportColumns bids_trial_columns(const std::vector<std::string>& factors);
 std::vector<Column> bids_participant_columns();
 std::vector<Column> bids_event_columns();
 
-/// `origin_ns` is the start of the segment on the station's clock.
+/// Returns the cells of an event. `origin_ns` is the start of the event's segment on the station's clock.
 std::vector<Cell> bids_event_cells(const EventRow& event, std::int64_t origin_ns);
 
-/// The letters and digits of a text, the only characters that a BIDS label may contain.
+/// Returns only the letters and digits of a text. A BIDS label may contain no other characters.
 std::string bids_label(const std::string& text);
 
 }  // namespace turnpoint::store

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Makes a column from the field of `table` that is exported under this name.
+/// Makes a column from the field of `table` that has the name `csv` in exports.
 template <class Record>
 ExportColumn exported(const Table<Record>& table, const std::string& csv, const Record* ExportRow::*record) {
   for (const auto& field : table.fields)
@@ -48,8 +48,9 @@ ExportColumn participant_id() {
       [](const ExportRow& row) { return cell(row.session->person); }};
 }
 
-/// Version 2 of the columns: onset and duration describe the stimulus, as in BIDS. The zero of the response
-/// time and the length of the trial have their own columns. The participant column names a person.
+/// In version 2 of the columns, onset and duration describe the stimulus, as in BIDS. The zero of the
+/// response time and the length of the trial have columns of their own. The participant column names a
+/// person.
 ExportColumn columns_version() {
   return {{"columns_version", "Version of this set of columns", "", ""},
           [](const ExportRow&) { return cell(std::string("2")); }};
@@ -120,7 +121,8 @@ ExportColumn factor_value(const std::string& factor, const std::string& name) {
           }};
 }
 
-/// Every column needs a name of its own: programs disagree on how to read two columns with the same name.
+/// Adds a column for each factor. A factor with the name of another column gets the prefix factor_, because
+/// programs disagree on how to read two columns with the same name.
 void add_factors(ExportColumns& columns, std::ptrdiff_t at, const std::vector<std::string>& factors) {
   const auto fixed = names_of(columns);
   ExportColumns own;

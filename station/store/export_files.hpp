@@ -9,24 +9,24 @@
 
 namespace turnpoint::store {
 
-/// The sessions of one protocol that are to be exported, and the columns of its factors.
+/// The sessions of one protocol that are exported, and the columns of the protocol's factors.
 struct ProtocolSelection {
-  /// folder: where the files of this protocol are written; ends without a slash
+  /// folder: where the files of this protocol are written, without a slash at the end
   std::string protocol_id, folder;
   std::vector<std::string> factors;
   std::vector<SessionRecord> sessions;
 };
 
-/// Writes a file by way of a temporary one, so that readers see either the old or the new bytes. Creates the
-/// folder. Throws StoreError.
+/// Writes the bytes to a temporary file and renames it, so that readers see either the old or the new bytes.
+/// Creates the folder if necessary. Throws StoreError.
 void write_file(const std::string& path, const std::string& bytes);
 
-/// Writes a table of any length row by row, by way of a temporary file.
+/// Writes a table of any length, row by row, to a temporary file.
 class TableFile {
  public:
   TableFile(const std::string& path, const TableStyle& style, const std::vector<std::string>& columns);
   void row(const std::vector<Cell>& cells);
-  /// Gives the file its final name and adds it to `files`.
+  /// Gives the temporary file its final name and adds the file to `files`.
   void finish(std::vector<ExportedFile>& files);
 
  private:
@@ -35,7 +35,7 @@ class TableFile {
   system::FileWriter file_;
 };
 
-/// Write the sessions of one protocol as CSV files, or as a BIDS data set.
+/// These functions write the sessions of one protocol as CSV files or as a BIDS data set.
 void export_csv(Database& database, const ProtocolSelection& selection, const TableStyle& style,
                 std::vector<ExportedFile>& files);
 void export_bids(Database& database, const ProtocolSelection& selection, std::vector<ExportedFile>& files);

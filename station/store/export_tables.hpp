@@ -10,31 +10,31 @@
 
 namespace turnpoint::store {
 
-/// The description of a column in the codebook.
+/// How the codebook describes a column.
 struct Column {
-  std::string name, description, unit, values;  ///< unit and values are "" if there are none
+  std::string name, description, unit, values;  ///< unit and values are "" if the column has none
 };
 
-/// The time span of a trial's stimuli, from the start of the first to the end of the last.
+/// The time from the start of a trial's first stimulus to the end of its last stimulus.
 struct StimulusSpan {
   double onset_s = 0;  ///< start of the first stimulus, relative to the start of the segment
   double duration_s = 0;
 };
 
-/// The spans of a session's trials by trial_index, each relative to the segment in which the trial ended. A
-/// trial that ended before its stimulus has no span.
+/// Returns the spans of a session's trials by trial_index. The onset of a span is relative to the segment in
+/// which its trial ended. A trial that ended before its first stimulus has no span.
 std::map<int, StimulusSpan> stimulus_spans(const StoredSession& stored);
 std::optional<StimulusSpan> span_of(const std::map<int, StimulusSpan>& spans, const TrialRow& trial);
 
-/// The length of a stimulus, read from its event's value; 0 for every other event.
+/// Returns the length of a stimulus, which its event has as value. Returns 0 for all other events.
 double event_length_s(const EventRow& event);
 
-/// Sorts events by the time at which they happened, segment by segment. The database stores them by the time
-/// at which they became known.
+/// Sorts the events of each segment by the time at which they happened. The database has them in the order in
+/// which the session learned of them.
 std::vector<EventRow> in_order_of_time(std::vector<EventRow> events);
 
-/// The data from which one line of an export is made. Each table sets the pointers that it needs; the others
-/// are null.
+/// The data for one line of an export. Each kind of table sets the pointers that it needs; the others are
+/// null.
 struct ExportRow {
   const SessionRecord* session = nullptr;
   const BlockStart* block = nullptr;
@@ -42,18 +42,18 @@ struct ExportRow {
   const ToneRow* tone = nullptr;
   const EventRow* event = nullptr;
   std::int64_t origin_ns = 0;             ///< CLOCK_MONOTONIC at the start of the event's segment
-  std::optional<StimulusSpan> span = {};  ///< span of the trial's stimuli
+  std::optional<StimulusSpan> span = {};  ///< time span of the trial's stimuli
 };
 
-/// A column of an exported table: its description, and the function that gives its value in a line.
+/// A column of an exported table: its description, and the function that computes its value for a line.
 struct ExportColumn {
   Column column;
   std::function<Cell(const ExportRow&)> cell;
 };
 using ExportColumns = std::vector<ExportColumn>;
 
-/// The columns in their fixed order. The protocol's factors have a fixed place among the columns of `trials`;
-/// a factor with the name of another column is exported as factor_NAME.
+/// Return the columns of a table in their fixed order. Among the columns of `trials`, the protocol's factors
+/// have a fixed place. A factor with the name of another column is exported as factor_NAME.
 ExportColumns trial_columns(const std::vector<std::string>& factors);
 ExportColumns interval_columns();
 ExportColumns event_columns();
@@ -63,10 +63,11 @@ std::vector<std::string> names_of(const ExportColumns& columns);
 std::vector<std::string> names_of(const std::vector<Column>& columns);
 std::vector<Cell> cells_of(const ExportColumns& columns, const ExportRow& row);
 
-/// The data dictionary of a folder as JSON, with columns grouped by table.
+/// Returns the data dictionary of a folder as JSON. Columns are grouped by table.
 std::string codebook_json(const std::string& protocol_id, const std::vector<std::string>& factors);
 
-/// Only the columns, as BIDS sidecars and codebooks describe them: name -> Description, Units, Values.
+/// Returns only the columns as JSON, in the form of BIDS sidecars and codebooks: name -> Description, Units,
+/// Values.
 std::string columns_json(const std::vector<Column>& columns);
 std::vector<Column> explanations(const ExportColumns& columns);
 

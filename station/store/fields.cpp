@@ -16,7 +16,7 @@ struct Optional : std::false_type {};
 template <class Value>
 struct Optional<std::optional<Value>> : std::true_type {};
 
-/// How a C++ type is stored in SQLite.
+/// Returns the SQLite type in which a C++ type is stored.
 template <class Value>
 constexpr const char* sql_type() {
   if constexpr (Optional<Value>::value)
@@ -74,7 +74,7 @@ Cell cell_of(const Value& value) {
   if constexpr (Optional<Value>::value)
     return value ? cell_of(*value) : Cell{};
   else if constexpr (std::is_same_v<Value, std::uint64_t>)
-    // all 64 bits are used: print as unsigned, even if the number in the database is negative
+    // the number uses all 64 bits, so SQLite stores large ones as negative; print it unsigned
     return cell(std::to_string(value));
   else if constexpr (std::is_integral_v<Value>)
     return cell(static_cast<std::int64_t>(value));
@@ -93,7 +93,7 @@ struct MemberOf<Value Class::*> {
   using Record = Class;
 };
 
-/// Follows a path of member pointers to a member.
+/// Returns the member of a record to which a path of member pointers leads.
 template <auto First, auto... Rest, class Record>
 auto& member(Record& record) {
   if constexpr (sizeof...(Rest) == 0)
@@ -102,7 +102,7 @@ auto& member(Record& record) {
     return member<Rest...>(record.*First);
 }
 
-/// The fixed properties of a field besides its member.
+/// What a field needs besides its member in the record.
 struct About {
   const char* name;
   const char* csv = "";
@@ -127,13 +127,13 @@ Field<typename MemberOf<decltype(First)>::Record> field(const About& about) {
           [](const Record& r) { return cell_of(member<First, Rest...>(r)); }};
 }
 
-/// A member of the SessionStart inside a SessionRecord.
+/// Makes the field of a member of SessionRecord::start.
 template <auto Member>
 Field<SessionRecord> start(const About& about) {
   return field<&SessionRecord::start, Member>(about);
 }
 
-/// NULL if there is no response time, because a missing time has no quality.
+/// This column is NULL if there is no response time, because a missing time has no quality.
 Field<TrialRow> response_time_quality() {
   auto quality = field<&TrialRow::response_time_quality>({"response_time_quality", "response_time_quality",
                                                           "Clock that gave the time stamp of the answer", "",

@@ -15,26 +15,26 @@
 namespace turnpoint::store {
 
 /// One column of a record: its place in the database, in the C++ struct and in the exports, and its meaning.
-/// All code that handles a record uses these descriptions: the statements that write and read it, the
-/// exports, the codebook and the checksum. The SQL itself is in schema.cpp, because a released schema never
-/// changes; a test compares the two.
+/// All code that handles records uses these descriptions: writing, reading, exports, codebook and checksum.
+/// Only the SQL that creates the tables is separate (schema.cpp), because a released schema never changes. A
+/// test compares the two.
 template <class Record>
 struct Field {
   const char* name;         ///< column in the database
-  const char* csv;          ///< column in the export; "" if it is not exported
+  const char* csv;          ///< column in the exports; "" if the column is not exported
   const char* description;  ///< for the codebook
-  const char* unit;         ///< "" if it has none
-  const char* values;       ///< allowed words; "" if there is no list
+  const char* unit;         ///< "" if the column has no unit
+  const char* values;       ///< the words that may occur; "" if there is no fixed list
   const char* type;         ///< INTEGER, REAL or TEXT
   bool nullable;
   void (*bind)(Statement&, int index, const Record&);
   void (*read)(const Statement&, int column, Record&);
   Cell (*cell)(const Record&);
-  int since = 1;  ///< first encoding of the checksum that covers this column (see checksum.hpp)
+  int since = 1;  ///< the first encoding of the checksum that covers this column (see checksum.hpp)
 };
 
-/// A table of the database. Each row begins with its place (keys and other values that only the log knows),
-/// followed by the fields of its record.
+/// A table of the database. Each row begins with its place: keys and other values that only the log knows.
+/// The fields of the record follow.
 template <class Record>
 struct Table {
   const char* name;
@@ -48,14 +48,15 @@ const Table<TrialRow>& trial_table();
 const Table<ToneRow>& tone_table();
 const Table<EventRow>& event_table();
 
-/// A session's row is spread over four tables, because many sessions share a protocol, a rig and a
-/// calibration. Status and its reason are at the end: only these columns ever change.
+/// The data of a session are in four tables, because many sessions share a protocol, a rig and a calibration.
+/// Status and reason are the last columns, and the only columns that ever change.
 const Table<SessionRecord>& session_table();
 const Table<SessionRecord>& protocol_table();
 const Table<SessionRecord>& rig_table();
 const Table<SessionRecord>& calibration_table();
 
-/// "a, b, c": the names of all columns, the key columns (`place`) first, each preceded by `prefix`.
+/// Returns the names of all columns as "a, b, c", with `prefix` before each name. The key columns (`place`)
+/// come first.
 template <class Record>
 std::string column_list(const Table<Record>& table, const std::string& prefix = "") {
   std::string list;
@@ -65,7 +66,7 @@ std::string column_list(const Table<Record>& table, const std::string& prefix = 
   return list;
 }
 
-/// A copy of the table with only the fields that the given encoding of the checksum covers.
+/// Returns a copy of the table with only the fields that this encoding of the checksum covers.
 template <class Record>
 Table<Record> covered(Table<Record> table, std::int64_t encoding) {
   std::erase_if(table.fields, [&](const auto& field) { return field.since > encoding; });
@@ -79,7 +80,7 @@ std::string insert_sql(const Table<Record>& table) {
   return std::string("INSERT INTO ") + table.name + " (" + column_list(table) + ") VALUES (" + marks + ")";
 }
 
-/// Binds a whole row: the values of its place, then its fields. Returns the statement, ready to run.
+/// Binds all values of a row: its place, then the fields of its record. Returns the statement, ready to run.
 template <class Record, class... Place>
 Statement& bind_row(Statement& statement, const Table<Record>& table, const Record& record,
                     const Place&... place) {
@@ -90,13 +91,13 @@ Statement& bind_row(Statement& statement, const Table<Record>& table, const Reco
   return statement;
 }
 
-/// Reads the fields of a record from consecutive columns, beginning with `column`.
+/// Reads the fields of a record from consecutive columns. The first one is `column`.
 template <class Record>
 void read_fields(const Statement& row, const Table<Record>& table, int column, Record& record) {
   for (const auto& field : table.fields) field.read(row, column++, record);
 }
 
-/// Reads a record from a row with the columns of column_list().
+/// Reads a record from a row whose columns are those of column_list().
 template <class Record>
 Record record_of(const Statement& row, const Table<Record>& table) {
   Record record;
@@ -104,8 +105,8 @@ Record record_of(const Statement& row, const Table<Record>& table) {
   return record;
 }
 
-/// Converts factor values to the JSON object of the `factors` column, and back. The other pair does the same
-/// for a list of names.
+/// Convert factor values to the JSON object of the `factors` column and back, and a list of names to a JSON
+/// list and back.
 std::string to_json(const std::map<std::string, FactorValue>& factors);
 std::string to_json(const std::vector<std::string>& list);
 void from_json(const std::string& text, std::map<std::string, FactorValue>& factors);

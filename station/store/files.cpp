@@ -29,7 +29,7 @@ struct stat status_of(int descriptor, const std::string& path) {
   return status;
 }
 
-/// A file that already belongs to an ordinary user keeps its owner.
+/// If root created the file, gives it to the owner of its folder. A file of an ordinary user keeps its owner.
 void give_to_owner_of_folder(int descriptor, const std::string& path) {
   if (::geteuid() != 0 || status_of(descriptor, path).st_uid != 0) return;
   struct stat folder {};
@@ -67,7 +67,7 @@ std::uint64_t file_size(const std::string& path) {
 
 namespace {
 
-/// Gives all bytes of a file to `take`, piece by piece.
+/// Reads a file and passes its bytes to `take`, piece by piece.
 void read_pieces(const std::string& path, const std::function<void(std::string_view)>& take) try {
   system::FileReader file(path);
   const auto expected = file_size(path);
@@ -76,7 +76,7 @@ void read_pieces(const std::string& path, const std::function<void(std::string_v
     take(piece);
     taken += piece.size();
   }
-  // the file is shorter than the size that the system reported
+  // fewer bytes were read than the system reported as the file's size
   if (taken < expected) throw std::system_error(EIO, std::generic_category(), path);
 } catch (const std::system_error& error) {
   const int code = error.code().value();
@@ -156,7 +156,7 @@ void permit_as(const std::string& original, const std::string& path) {
   struct stat status {};
   status.st_mode = 0640;  // the station's group may read a new database
   if (!original.empty() && ::stat(original.c_str(), &status) != 0) return;
-  // A disk without Unix permissions gives all files the same ones and answers EPERM.
+  // Ignore EPERM: a disk without Unix permissions gives all files the same permissions.
   if (::chmod(path.c_str(), (status.st_mode & 0666) | 0600) != 0 && errno != EPERM)
     fail_system(kind_of_errno(errno), "permissions of " + path, errno, "check the disk");
 }

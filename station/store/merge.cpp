@@ -18,14 +18,15 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A table that is merged: its key, the columns that belong to one database only, and which rows are taken.
+/// A table to be merged: its name and key, the columns that are not compared because each database has its
+/// own values, and the SQL condition for the rows to take.
 struct Part {
   std::string table, key, own_columns, incoming;
 };
 
 const std::string kBySession = "s.session_id IN (SELECT session_id FROM temp.incoming)";
 
-/// Ordered so that each table comes after the tables that it refers to.
+/// Returns the tables to be merged. Each table comes after the tables to which it refers.
 const std::vector<Part>& parts() {
   static const std::vector<Part> all = {
       {"participant", "code", "", "s.code IN (SELECT participant FROM temp.incoming)"},
@@ -69,7 +70,7 @@ std::string same_key(const Part& part, const std::vector<std::string>& columns) 
   return condition;
 }
 
-/// Throws for the first row that both databases have with different values. One pass over the table compares
+/// Throws for the first row that has different values in the two databases. One pass over the table compares
 /// all columns.
 void refuse_conflicts(Database& database, const Part& part) {
   const auto columns = columns_of(database, part.table);
@@ -84,8 +85,8 @@ void refuse_conflicts(Database& database, const Part& part) {
     values += fmt::format(", m.{0} IS NOT s.{0}, m.{0}, s.{0}", column);
   }
   if (compared.empty()) return;
-  // For each incoming row, look up the row with the same key in this database, and not the other way round:
-  // the table in this database may be far larger.
+  // Look up each incoming row in this database. The opposite direction would be slow, because the table in
+  // this database may be far larger.
   Statement rows(
       database,
       fmt::format("SELECT {}{} FROM source.{} s CROSS JOIN main.{} m ON {} WHERE {} AND ({}) LIMIT 1", key,
@@ -102,7 +103,8 @@ void refuse_conflicts(Database& database, const Part& part) {
                       rows.text(3 * i + 3)));
 }
 
-/// If one place in the counterbalancing was given to two people, two databases use the same station name.
+/// Throws if the two databases gave the same place in the counterbalancing to different people. That happens
+/// if two stations use the same name.
 void refuse_shared_places(Database& database) {
   Statement rows(
       database,
@@ -154,7 +156,8 @@ std::vector<MergedSession> list_incoming(Database& database) {
   return sessions;
 }
 
-/// Rows that somebody changed behind the store's back must not spread to other databases.
+/// Throws if rows in `source` were changed after they were recorded. Such changes must not spread to other
+/// databases.
 void refuse_changed(Database& database, const std::string& source) {
   for (const auto& session : verify_database(database, "source"))
     if (!session.problems.empty())
@@ -165,7 +168,7 @@ void refuse_changed(Database& database, const std::string& source) {
                       source, session.session_id, session.participant, session.problems.front(), source));
 }
 
-/// An incoming session takes its status from the database that has its newest rows.
+/// Gives a session the status from `source`, whose rows of this session are newer.
 void take_status(Database& database, const std::string& id) {
   Statement(
       database,
@@ -226,8 +229,8 @@ MergeReport merge_attached(Database& database, const std::string& source) {
   return report;
 }
 
-/// A private, migrated and checked copy of the source. It makes the merge independent of the source's schema
-/// and of a session that is writing to it.
+/// A private, migrated and checked copy of the source. With the copy, the merge does not depend on the
+/// source's schema, nor on a session that may be writing to the source.
 class SourceCopy {
  public:
   SourceCopy(const std::string& source, const std::string& beside) : path_(beside + ".merging") {
@@ -242,7 +245,7 @@ class SourceCopy {
     try {
       remove_database(path_);
     } catch (const StoreError&) {
-      // The next process that writes this database removes the copy.
+      // The next process that writes to this database removes the copy.
     }
   }
   const std::string& path() const { return path_; }

@@ -5,11 +5,11 @@
 
 namespace turnpoint::store {
 
-// The records keep their own names in the store.
+// Lets the code of the store use the names of the records without a prefix.
 using namespace records;
 
-/// These functions convert the database's words back to enums. They throw StoreError (corrupt) for a word
-/// that no release wrote.
+/// Convert the database's words to enums. They throw StoreError (corrupt) for a word that no release has
+/// written.
 RunMode run_mode_named(const std::string& word);
 SessionStatus session_status_named(const std::string& word);
 Outcome trial_outcome_named(const std::string& word);

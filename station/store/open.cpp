@@ -48,7 +48,7 @@ void recover_sessions(Database& database) {
   transaction.commit();
 }
 
-/// SQLite silently opens a file that it may not write as read-only.
+/// Throws if the file cannot be written. SQLite gives no error for that and opens the file read-only.
 void require_writable(Database& database) {
   if (sqlite3_db_readonly(database.handle(), "main") == 0) return;
   throw StoreError(
@@ -58,8 +58,8 @@ void require_writable(Database& database) {
                   database.path()));
 }
 
-/// Some file systems and folders do not allow the shared memory of WAL mode. Only then, and only if there is
-/// no log with data, the file is read without that mode.
+/// Opens a file for reading. Some file systems and folders do not allow the shared memory that WAL mode
+/// needs. The file is then read without it, but only if the log has no data.
 Database open_plain_reader(const std::string& path) {
   try {
     Database database(path, Database::Access::read_only);
@@ -74,8 +74,8 @@ Database open_plain_reader(const std::string& path) {
   return Database(path, Database::Access::immutable);
 }
 
-/// The lock is tied to the file name. Under a second name, another station could write the same file at the
-/// same time.
+/// Refuses a file that has two names. The lock belongs to the name, so under the other name a second station
+/// could write the same file at the same time.
 void refuse_second_name(const std::string& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink < 2) return;
@@ -118,8 +118,8 @@ StationLock::StationLock(const std::string& database) {
 
 void StationLock::remember(const std::string& database_id) { note(database_id); }
 
-/// The text in the lock file only helps somebody who finds the lock taken or the database lost. If the disk
-/// is full and it cannot be written, the station must start all the same.
+/// Writes the process id and the database's id into the lock file. A failure, for example on a full disk, is
+/// ignored: the text only helps somebody who finds the lock taken or the database lost.
 void StationLock::note(const std::string& database_id) {
   const auto text = fmt::format("{}\n{}{}", ::getpid(), database_id, database_id.empty() ? "" : "\n");
   if (::pwrite(lock_.get(), text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()))
@@ -133,8 +133,8 @@ std::string remembered_database_id(const std::string& database) {
 
 namespace {
 
-/// The name for the copy of a database before its migration. An earlier copy, perhaps of another database, is
-/// never overwritten.
+/// Returns a name for the copy of a database before its migration. It never is the name of an existing file,
+/// which may be a copy of another database.
 std::string copy_before_migration(const std::string& path) {
   const auto name = fmt::format("{}.before-v{}", path, schema_version());
   if (!file_exists(name)) return name;

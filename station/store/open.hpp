@@ -6,15 +6,14 @@
 
 namespace turnpoint::store {
 
-/// Held by the one process that may write a database. It is an flock on FILE.lock beside the database, which
-/// the kernel releases however the process ends. Move-only.
+/// A lock for the one process that may write a database: an flock on FILE.lock beside the database. The
+/// kernel releases it, however the process ends. Move-only.
 class StationLock {
  public:
-  /// Throws StoreError (busy) that names the process holding the lock.
+  /// Throws StoreError (busy) if another process has the lock. The message names that process.
   explicit StationLock(const std::string& database);
 
-  /// Stores the database's id in the lock file. If the database is lost, the id tells which backups are its
-  /// own.
+  /// Stores the database's id in the lock file. If the database is lost, this id identifies its backups.
   void remember(const std::string& database_id);
 
  private:
@@ -22,32 +21,33 @@ class StationLock {
   system::FileDescriptor lock_;
 };
 
-/// The id that remember() stored beside this database, available even after the file itself is lost; "" if
+/// Returns the id that remember() stored beside this database, even if the database itself is lost; "" if
 /// there is none.
 std::string remembered_database_id(const std::string& database);
 
-/// A lock and the write connection that it protects.
+/// A connection for writing, and the lock that protects it.
 struct Writer {
   StationLock lock;
   Database database;
 };
 
-/// What open_writer does if there is no file.
+/// What open_writer() does if the file does not exist.
 enum class IfMissing { create, fail };
 
 /// Opens a database for writing (WAL, synchronous FULL, foreign keys).
-/// Checks the file with check_ends(), which takes no longer for a large file than for a small one.
-/// Migrates an older schema after making a copy FILE.before-vN.
-/// A new file appears complete or not at all.
-/// Removes what interrupted operations have left beside the database.
-/// Files that root creates in another user's folder, including the lock, are given to that user.
-/// Sessions that a dead process left running become interrupted; those without trials become abandoned.
-/// Throws StoreError and changes nothing if the file is empty, damaged, newer, or not Turnpoint's.
+/// - It checks the file with check_ends(), which takes no longer for a large file than for a small one.
+/// - It migrates an older schema, and first makes a copy FILE.before-vN.
+/// - It creates a missing file under another name and renames it when it is complete.
+/// - It removes what interrupted operations have left beside the database.
+/// - If root creates files in another user's folder, including the lock, it gives them to that user.
+/// - Sessions that a dead process left running become interrupted; those without trials become abandoned.
+/// Throws StoreError and changes nothing if the file is empty, damaged, from a newer release, or not
+/// Turnpoint's.
 Writer open_writer(const std::string& path, IfMissing if_missing);
 
-/// Opens a database for reading only, and checks it with check_ends(). This works while a session is running
-/// and on a read-only disk. If you copy or judge the whole file, call check_pages() too. An older schema is
-/// read through a migrated copy in a temporary file.
+/// Opens a database for reading only, and checks it with check_ends(). This works while a session is running,
+/// and on a read-only disk. Before copying or verifying the whole file, call check_pages() too. If the schema
+/// is older, a migrated copy in a temporary file is opened instead.
 Database open_reader(const std::string& path);
 
 }  // namespace turnpoint::store

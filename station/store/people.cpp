@@ -31,7 +31,7 @@ std::vector<Pair> pairs_in(Database& database) {
   return pairs;
 }
 
-/// A joined person is named after the code that nobody declared to be another person's.
+/// Sorts the bearers of a joined person. The first is a bearer that was never the second argument of join().
 void put_name_first(std::vector<Bearer>& person, const std::vector<Pair>& pairs) {
   std::sort(person.begin(), person.end());
   const auto second = [&](const Bearer& bearer) {

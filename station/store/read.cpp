@@ -18,7 +18,7 @@ namespace {
 
 enum class LongTexts { read, left_out };
 
-/// The tables from which a SessionRecord is read, in the order of its columns.
+/// Returns the tables from which a SessionRecord is read, in the order of the columns.
 std::vector<Table<SessionRecord>> session_tables(LongTexts texts) {
   std::vector tables = {session_table(), protocol_table(), rig_table(), calibration_table()};
   const std::set<std::string> long_texts = {"text", "canonical"};
@@ -28,7 +28,7 @@ std::vector<Table<SessionRecord>> session_tables(LongTexts texts) {
   return tables;
 }
 
-/// Reads single sessions by their key, without touching the others.
+/// Reads single sessions by their keys, without reading the others.
 class SessionReader {
  public:
   SessionReader(Database& database, LongTexts texts)
@@ -92,7 +92,7 @@ WHERE session.session_id = ?
   Statement rows_, notes_;
 };
 
-/// Reads the rows of one table that belong to a session.
+/// Reads a session's rows from one table.
 template <class Record>
 std::vector<Record> read_rows(Database& database, const Table<Record>& table, const std::string& session_id,
                               const std::string& order) {
@@ -180,7 +180,7 @@ StoredSession read_session(const std::string& path, const std::string& session_i
 
 std::optional<Interrupted> interrupted_session(const std::string& path, const std::string& session_id) {
   auto database = open_reader(path);
-  // Order by trial number, which follows the order of storing. The wall clock may have been changed since.
+  // Use trial ids, which increase in the order of storing. The wall clock may have been set back.
   Statement newest(
       database,
       "SELECT s.session_id, (SELECT max(trial_id) FROM trial t WHERE t.session_id = s.session_id) AS last"

@@ -9,25 +9,25 @@ namespace turnpoint::store {
 
 class Database;
 
-/// Selects sessions; "" selects all. A participant is a code, CODE@STATION, or a SessionRecord::person. A
-/// code that several people have selects all of them.
+/// Selects sessions; an empty member selects all. A participant is written as a code, CODE@STATION, or a
+/// SessionRecord::person. If several people have the code, the sessions of all of them are selected.
 struct SessionFilter {
   std::string session_id, participant, protocol_id;
 };
 
-/// Sessions ordered by person, protocol, index and id. The texts of protocol, rig and calibration are left
-/// out, because many sessions share a few long texts. Only reads; works while a session is running. Throws
-/// StoreError.
+/// Returns sessions ordered by person, protocol, index and id. The texts of protocol, rig and calibration are
+/// left out, because they are long and many sessions share them. Reads only, and works while a session is
+/// running. Throws StoreError.
 std::vector<SessionRecord> list_sessions(const std::string& database, const SessionFilter& filter = {});
 std::vector<SessionRecord> list_sessions(Database& database, const SessionFilter& filter = {});
 
-/// One session with its texts. Throws StoreError (missing) if there is no session with this id.
+/// Returns one session with its texts. Throws StoreError (missing) if there is no session with this id.
 SessionRecord session_record(Database& database, const std::string& session_id);
 
-/// Participant codes of all sessions, in alphabetical order.
+/// Returns the participant codes of all sessions, in alphabetical order.
 std::vector<std::string> participants(const std::string& database);
 
-/// A whole session as stored. Throws StoreError (missing) if there is no session with this id.
+/// All rows of a session. read_session() throws StoreError (missing) if there is no session with this id.
 struct StoredSession {
   SessionRecord session;
   std::vector<SegmentStart> segments;  ///< in order of segment_index, from 1
@@ -42,14 +42,15 @@ StoredSession read_session(Database& database, const SessionRecord& session);
 /// A session that can be continued.
 struct Interrupted {
   SessionRecord session;
-  /// Wall-clock time since its last commit. Negative if the clock was set back since: the age is then
-  /// unknown.
+  /// Wall-clock time since the session's last commit. If the clock was set back, this is negative and the age
+  /// is unknown.
   double age_s = 0;
 };
 
-/// The interrupted session with this id, or for "" the newest one. The newest is found by the order in which
-/// trials were stored, not by the clock; sessions of this database come before merged ones. Empty if there is
-/// none. Sessions without a trial are ignored: the next write access closes them as abandoned.
+/// Returns the interrupted session with this id, or the newest one if the id is "". The newest session is the
+/// one whose trials were stored last, whatever the clock says; sessions of this database come before merged
+/// sessions. Empty if there is none. Sessions without a trial are ignored: they are closed as abandoned when
+/// the database is next opened for writing.
 std::optional<Interrupted> interrupted_session(const std::string& database,
                                                const std::string& session_id = "");
 

@@ -16,8 +16,8 @@ namespace turnpoint::store {
 
 namespace {
 
-/// Only a file that is known to be lost or damaged may be replaced. One that merely cannot be opened or read
-/// right now may be intact.
+/// Throws unless the database is lost or known to be damaged. A database that only cannot be opened or read
+/// at the moment may be intact, and must not be replaced.
 void require_lost(const std::string& path) {
   try {
     auto database = open_reader(path);
@@ -34,14 +34,14 @@ void require_lost(const std::string& path) {
                                path, path));
 }
 
-/// The database's id according to the damaged file, or else its lock file; "" if neither has it.
+/// Returns the database's id from the damaged file, otherwise from its lock file; "" if neither has it.
 std::string id_of_lost(const std::string& path) {
   try {
     Database damaged(path, Database::Access::immutable);
     const auto id = damaged.text("SELECT value FROM meta WHERE key = 'database_id'");
     if (id.size() == 36) return id;
   } catch (const StoreError&) {
-    // The meta table is damaged as well.
+    // The meta table is damaged too, so try the lock file.
   }
   return remembered_database_id(path);
 }
@@ -64,7 +64,7 @@ bool is_damage(const StoreError& error) {
   return error.kind() == ErrorKind::corrupt || error.kind() == ErrorKind::not_a_database;
 }
 
-/// Throws only if the bytes cannot be read.
+/// False if the checksum differs. Throws only if the bytes cannot be read.
 bool agrees_with_checksum(const std::string& path) {
   try {
     verify_checksum_file(path);
@@ -75,7 +75,8 @@ bool agrees_with_checksum(const std::string& path) {
   }
 }
 
-/// A backup that cannot be read, but is not known to be damaged, may be the newest good one.
+/// Throws if a backup cannot be read but is not known to be damaged, because it may be the newest good
+/// backup.
 void refuse_unread(const StoredBackup& backup) {
   if (backup.trouble.empty()) {
     if (!file_exists(backup.path + ".sha256") || !agrees_with_checksum(backup.path)) return;
@@ -88,7 +89,7 @@ void refuse_unread(const StoredBackup& backup) {
 
 struct Candidates {
   std::vector<StoredBackup> backups;    ///< newest first
-  std::vector<std::string> unreadable;  ///< unreadable files that carry this database's name
+  std::vector<std::string> unreadable;  ///< unreadable files with this database's name
 };
 
 Candidates candidates_for(const std::string& path, const RestoreOptions& options) {
@@ -108,8 +109,8 @@ Candidates candidates_for(const std::string& path, const RestoreOptions& options
   return candidates;
 }
 
-/// Returns false for a damaged backup. If its checksum matches, it is not damaged: a failure is then the
-/// disk's, and falling back to an older backup would be wrong.
+/// Returns false for a damaged backup. If the checksum of a backup is right but the backup cannot be read,
+/// the disk is at fault; this throws then, because an older backup would be the wrong choice.
 bool is_good(const StoredBackup& candidate) {
   if (!agrees_with_checksum(candidate.path)) return false;
   try {
@@ -122,7 +123,7 @@ bool is_good(const StoredBackup& candidate) {
   }
 }
 
-/// Makes `path`.restored from the backup and checks it.
+/// Copies the backup to `path`.restored and checks the copy.
 void prepare(const std::string& path, const StoredBackup& candidate) {
   auto good = open_reader(candidate.path);
   copy_to_file(good, path + ".restored", candidate.path, clear_backup_note);

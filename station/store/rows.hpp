@@ -8,13 +8,13 @@
 
 namespace turnpoint::store {
 
-/// The position of a trial in its session.
+/// Which segment, block and attempt of a session a trial belongs to.
 struct TrialPlace {
   std::string session_id;
   int segment_index = 1, block_index = 0, attempt = 0;
 };
 
-/// Statements that a running session uses repeatedly, prepared once.
+/// Prepared statements that a running session uses again and again.
 class RowWriter {
  public:
   explicit RowWriter(Database& database);
@@ -25,7 +25,8 @@ class RowWriter {
   Statement trial_, tone_, event_;
 };
 
-/// A session's trials with their tones, by (block_index, attempt); each list in the order of storing.
+/// Returns a session's trials with their tones, by (block_index, attempt). Each list is in the order in which
+/// the trials were stored.
 std::map<std::pair<int, int>, std::vector<TrialRow>> read_trials(Database& database,
                                                                  const std::string& session_id);
 

@@ -6,8 +6,8 @@ namespace turnpoint::store {
 
 namespace {
 
-// Version 1. Each text (protocol, rig, calibration) is stored once. Rows below a session are keyed by its
-// UUID, so that databases of several stations can be merged without renumbering.
+// Version 1. Each text (protocol, rig, calibration) is stored only once. The keys of a session's rows contain
+// the session's UUID, so databases of several stations can be merged without renumbering.
 const char* const kStep1 = R"sql(
 CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT, WITHOUT ROWID;
 
@@ -200,9 +200,9 @@ CREATE TRIGGER session_keeps_its_provenance BEFORE UPDATE OF session_id, partici
   BEGIN SELECT RAISE(ABORT, 'the provenance of a session is never changed'); END;
 )sql";
 
-// Version 2 supports several stations. A tombstone marks a session that its participant withdrew: its rows
-// may be deleted and must never come back. The participant's code is kept only as a salted hash, so that it
-// is not assigned again.
+// Version 2 supports several stations, and withdrawal. A tombstone marks a session that its participant has
+// withdrawn: the session's rows may be deleted and must never come back. The participant's code is kept only
+// as a salted hash, so that the code is not assigned again.
 const char* const kStep2 = R"sql(
 CREATE TABLE tombstone (
   session_id TEXT PRIMARY KEY CHECK (length(session_id) = 36),
@@ -236,9 +236,9 @@ CREATE TRIGGER session_stays_gone BEFORE INSERT ON session
   BEGIN SELECT RAISE(ABORT, 'the session was withdrawn'); END;
 )sql";
 
-// Version 3 adds a chain of checksums to each session (checksum.hpp). Sessions recorded by an earlier release
-// have no chain until they are resumed. They are listed, so that they can be told from sessions whose chain
-// was removed.
+// Version 3 adds a chain of checksums to each session (checksum.hpp). Sessions that an earlier release
+// recorded have no chain until they are resumed. This version lists them; otherwise they would look like
+// sessions whose chain somebody removed.
 const char* const kStep3 = R"sql(
 CREATE TABLE link (
   session_id TEXT NOT NULL REFERENCES session (session_id),
@@ -264,9 +264,9 @@ CREATE TRIGGER link_is_never_deleted BEFORE DELETE ON link
   BEGIN SELECT RAISE(ABORT, 'link is append-only'); END;
 )sql";
 
-// Version 4: a code belongs to the station that assigned it. Two codes are one person only if a row says so.
+// Version 4. A code belongs to the station that assigned it; two codes are one person only if a row says so.
 // A tombstone names the station of its code; '' in older tombstones means any station. A tombstone without a
-// hash withdraws only a session.
+// hash withdraws only a session, not a code.
 const char* const kStep4 = R"sql(
 CREATE TABLE same_person (
   station_a TEXT NOT NULL,

@@ -22,13 +22,14 @@ namespace turnpoint::store {
 
 namespace {
 
-/// A long session writes several MiB. With less free space than this, it might not be able to finish.
+/// Free space that must be available when a session begins. A long session writes several MiB.
 constexpr std::uint64_t kFreeBytesWanted = 16U << 20U;
 
 void require_space(const std::string& database) {
   struct statvfs disk {};
   auto folder = std::filesystem::absolute(database).parent_path().string();
-  if (::statvfs(folder.c_str(), &disk) != 0) return;  // opening the file gives a better message
+  // if the folder does not exist, opening the file gives a better message
+  if (::statvfs(folder.c_str(), &disk) != 0) return;
   const auto free_bytes = static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize;
   if (free_bytes >= kFreeBytesWanted) return;
   throw StoreError(ErrorKind::disk_full,
@@ -41,8 +42,8 @@ void refuse(Database& database, ErrorKind kind, const std::string& what) {
   throw StoreError(kind, fmt::format("database {}: {}", database.path(), what));
 }
 
-/// Assigns the participant's place in the protocol's counterbalancing: the existing place of a known code,
-/// else the lowest free one, so that withdrawals leave no gaps in the design.
+/// Returns the participant's place in the protocol's counterbalancing. A known participant keeps the existing
+/// place. A new one gets the lowest free place, so that withdrawals leave no gaps in the design.
 int enrol(Database& database, const SessionStart& start) {
   const Bearer bearer{start.station_id, start.participant};
   if (is_withdrawn(database, bearer))
@@ -55,7 +56,7 @@ int enrol(Database& database, const SessionStart& start) {
       database,
       "SELECT sequence_index FROM enrolment WHERE protocol_id = ? AND station_id = ? AND participant = ?");
   auto same = People(database).same_as(bearer);
-  same.insert(same.begin(), bearer);  // prefer the place that this station assigned
+  same.insert(same.begin(), bearer);  // look first for the place that this station assigned
   for (const auto& one : same) {
     known.bind(start.protocol_id, one.station_id, one.code);
     if (known.step()) return static_cast<int>(known.integer(0));
@@ -81,7 +82,8 @@ int enrol(Database& database, const SessionStart& start) {
   return free_index;
 }
 
-/// Stores a text that several sessions share, once, under the hash of its fields. Returns that key.
+/// Stores a text under the hash of its fields, unless another session has stored it already. Returns the
+/// hash.
 std::string keep(Database& database, const Table<SessionRecord>& table, const SessionRecord& session,
                  const std::string& key) {
   auto sql = insert_sql(table);
@@ -144,13 +146,13 @@ void insert_block(Database& database, const std::string& id, const BlockStart& b
 struct SessionLog::Impl {
   explicit Impl(Writer opened) : writer(std::move(opened)), rows(writer.database) {}
 
-  /// Writes the events collected so far, inside the caller's transaction.
+  /// Writes the events kept in memory, inside the caller's transaction.
   void write_events() {
     auto index = next_event;
     for (const auto& event : events) rows.event(place, index++, event);
   }
-  /// Adds a checksum link over what the transaction wrote, and commits. The events collected so far are then
-  /// durable.
+  /// Adds a checksum link over everything that the transaction wrote, and commits. The events kept in memory
+  /// are durable afterwards.
   void commit(Transaction& transaction) {
     auto link = chain->add();
     transaction.commit();
@@ -162,7 +164,7 @@ struct SessionLog::Impl {
 
   Writer writer;
   RowWriter rows;
-  std::optional<Chain> chain;  ///< set once the session is known
+  std::optional<Chain> chain;  ///< set once the session's id is known
   TrialPlace place;
   SessionRecord session;
   std::vector<BlockRecord> blocks;

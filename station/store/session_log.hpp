@@ -8,40 +8,40 @@
 
 namespace turnpoint::store {
 
-/// What a database contains about a session, for resuming and for reports.
+/// What a database knows about a session. Needed to resume the session and to report on it.
 struct SessionRecord {
   std::string session_id;  ///< UUID
   int session_index = 0;   ///< from 1, per participant and protocol
-  int sequence_index = 0;  ///< the participant's place in the protocol's counterbalancing, from 0
+  int sequence_index = 0;  ///< the participant's number in the protocol's counterbalancing, from 0
   SessionStatus status = SessionStatus::running;
   std::string status_reason;
   SessionStart start;
-  std::string person;  ///< name of this participant in this database: the code, or CODE@STATION
+  std::string person;  ///< name of this participant in this database: a code, or CODE@STATION
   int segments = 0;
   int trials = 0;  ///< committed trials of every type and outcome
   /// wall-clock time at which the last trial or segment was committed
   std::int64_t last_activity_realtime_ns = 0;
-  /// increases with every trial of this database, even if the clock goes back
+  /// increases with every trial in this database, even if the clock is set back
   std::int64_t last_trial_id = 0;
   bool merged = false;                   ///< true if the session came from another database
   std::vector<std::string> annotations;  ///< oldest first
-  std::string
-      checksum;  ///< last link of its chain (checksum.hpp); "" if an earlier release recorded the session
+  std::string checksum;  ///< last link of the session's checksum chain (checksum.hpp); "" if an earlier
+                         ///< release recorded the session
 };
 
-/// Writes one session. This is the station's only write connection (WAL, synchronous FULL, foreign keys, an
-/// exclusive lock against a second station). Not thread-safe; it belongs to the session thread. When a call
-/// returns, its rows are durable. Throws StoreError with what was tried, on which file, SQLite's own message
-/// and what to do.
+/// Writes one session. It has the station's only connection for writing (WAL, synchronous FULL, foreign keys)
+/// and holds a lock against a second station. Not thread-safe; it belongs to the session thread. When a
+/// function returns, its rows are durable. Throws StoreError: the message says what was tried, on which file,
+/// what SQLite reported, and what to do.
 class SessionLog {
  public:
-  /// Opens or creates the database (migrating an older schema) and begins a session. A new participant code
-  /// gets the protocol's next free sequence index.
+  /// Opens or creates the database, migrates an older schema, and begins a session. A new participant gets
+  /// the protocol's next free sequence index.
   static SessionLog begin(const std::string& database, const SessionStart& start,
                           const SegmentStart& segment);
 
   /// Opens a new segment of an interrupted session. If a trial was presented but never ended, an event
-  /// `aborted` is added and the session has to present it again.
+  /// `aborted` is added, and the session presents the trial again.
   static SessionLog resume(const std::string& database, const std::string& session_id,
                            const SegmentStart& segment);
 
@@ -50,20 +50,23 @@ class SessionLog {
   ~SessionLog();
 
   const SessionRecord& session() const;                   ///< includes the checksum of the last commit
-  const std::vector<BlockRecord>& stored_blocks() const;  ///< for a resumed session; empty for a new one
+  const std::vector<BlockRecord>& stored_blocks() const;  ///< blocks already in the log of a resumed session;
+                                                          ///< empty for a new session
 
-  /// Begins a block, or continues one that is already in the log (same index and attempt). In that case the
-  /// description must be the same.
+  /// Begins a block. If the log already has a block with this index and attempt, continues that block; its
+  /// other values must then be equal.
   void begin_block(const BlockStart& block);
 
-  /// Stores at once that a stimulus is about to be presented, so that an interrupted trial leaves a trace.
+  /// Stores at once that a stimulus is about to be presented. An interrupted trial then leaves a trace in the
+  /// log.
   void presented(int trial_index, std::int64_t time_ns);
 
-  /// Keeps the event in memory until the next commit of a trial or state change.
+  /// Keeps an event in memory. It is written together with the next trial or change of state.
   void event(EventRow event);
 
-  /// Commits a trial, its tones and the collected events in one transaction. If it throws, nothing was
-  /// written and nothing is lost: make the same call again, for example once a full disk has space.
+  /// Commits a trial, its tones and the events kept in memory, in one transaction. If this throws, nothing
+  /// was written and nothing is lost. Make the same call again, for example once there is space on a full
+  /// disk.
   void append(const TrialRow& trial);
 
   void annotate(const std::string& text);

@@ -72,7 +72,7 @@ int flags_of(Database::Access access) {
   return common;
 }
 
-/// The path as a URI, with special characters escaped.
+/// Returns the path as a URI with special characters escaped.
 std::string uri_of(const std::string& path, Database::Access access) {
   std::string uri = "file:";
   for (const char c : path) {
@@ -141,7 +141,7 @@ void Statement::bind_integer(int index, std::int64_t value) {
   if (const int code = sqlite3_bind_int64(statement_, index, value)) database_->fail(code, "bind");
 }
 void Statement::bind_real(int index, double value) {
-  // SQLite would silently turn NaN into NULL, that is, into a missing value.
+  // SQLite would store NaN as NULL without an error, so the value would be missing.
   if (!std::isfinite(value))
     throw StoreError(ErrorKind::refused,
                      fmt::format("database {}: parameter {} of {} is not a finite number; the row "
@@ -170,8 +170,8 @@ Database::Database(const std::string& path, Access access) : path_(path) {
                                system != 0 ? fmt::format(" ({})", std::strerror(system)) : "", advice(kind)));
 }
 
-// The cached statements are not moved, because they point to the old object. They are prepared again when
-// needed.
+// The cached statements refer to the old object, so they are not moved. They are prepared again at their next
+// use.
 Database::Database(Database&& other) noexcept
     : path_(std::move(other.path_)), handle_(std::exchange(other.handle_, nullptr)) {
   other.begin_.reset();
@@ -220,7 +220,7 @@ void Database::fail(int code, const std::string& what) const {
 Transaction::Transaction(Database& database) : database_(database) { database_.begin_statement().run(); }
 
 Transaction::~Transaction() {
-  // If SQLite has already rolled back by itself, there is nothing left to do.
+  // SQLite may have rolled back by itself; then there is nothing to do.
   if (open_ && sqlite3_get_autocommit(database_.handle()) == 0)
     sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
 }
@@ -234,7 +234,7 @@ void copy_database(Database& from, Database& to) {
   sqlite3_backup* backup = sqlite3_backup_init(to.handle(), "main", from.handle(), "main");
   if (backup == nullptr) to.fail(sqlite3_errcode(to.handle()), "copy " + from.path());
   int code = SQLITE_BUSY;
-  // Copy all pages in one step: this gives a consistent snapshot, and in WAL mode it does not block writers.
+  // Copy all pages in one step. This gives a consistent snapshot and, in WAL mode, does not block writers.
   for (int tries = 0; tries < 1000 && (code == SQLITE_BUSY || code == SQLITE_LOCKED); ++tries) {
     if (tries > 0) sqlite3_sleep(5);
     code = sqlite3_backup_step(backup, -1);

@@ -14,7 +14,7 @@ namespace turnpoint::store {
 
 class Database;
 
-/// A prepared statement. Parameters are bound in order by bind(); text is copied. Move-only; must not outlive
+/// A prepared statement. bind() sets its parameters in order and copies texts. Move-only; must not outlive
 /// its database.
 class Statement {
  public:
@@ -23,8 +23,7 @@ class Statement {
   Statement& operator=(Statement&&) = delete;
   ~Statement();
 
-  /// Binds all parameters, beginning with the first: integers, doubles, text, optionals (an empty one is
-  /// NULL).
+  /// Binds all parameters, from the first on: integers, doubles, texts, and optionals (NULL if empty).
   template <class... Values>
   Statement& bind(const Values&... values) {
     reset();
@@ -33,7 +32,7 @@ class Statement {
     return *this;
   }
 
-  /// Binds one parameter; the first has index 1. Reset the statement before.
+  /// Binds one parameter; the first has index 1. Call reset() before.
   template <class Value>
   void bind_value(int index, const Value& value) {
     if constexpr (std::is_same_v<Value, std::nullopt_t>)
@@ -51,7 +50,7 @@ class Statement {
   }
 
   bool step();  ///< advances to the next row; false if there is none
-  void run();   ///< steps to the end, then resets
+  void run();   ///< steps until there are no more rows, then resets the statement
   void reset();
 
   int columns() const;
@@ -77,7 +76,7 @@ class Statement {
   sqlite3_stmt* statement_ = nullptr;
 };
 
-/// One SQLite connection, used by one thread only.
+/// A connection to an SQLite database. Use it on one thread only.
 class Database {
  public:
   enum class Access { read_only, immutable, read_write, create };
@@ -88,7 +87,7 @@ class Database {
   Database& operator=(Database&&) = delete;
   ~Database();
 
-  void execute(const std::string& sql);  ///< one or more statements; result rows are ignored
+  void execute(const std::string& sql);  ///< runs one or more statements and ignores result rows
   std::int64_t integer(const std::string& sql);
   std::string text(const std::string& sql);
   int changes() const;
@@ -96,11 +95,11 @@ class Database {
   const std::string& path() const { return path_; }
   sqlite3* handle() { return handle_; }
 
-  /// Statements that every transaction needs; prepared when first used.
+  /// Statements that every transaction needs. They are prepared at their first use.
   Statement& begin_statement();
   Statement& commit_statement();
 
-  /// Throws a StoreError for SQLite's last error on this connection.
+  /// Throws a StoreError for the last error that SQLite reported on this connection.
   [[noreturn]] void fail(int code, const std::string& what) const;
 
  private:
@@ -109,7 +108,7 @@ class Database {
   std::unique_ptr<Statement> begin_, commit_;
 };
 
-/// BEGIN IMMEDIATE ... COMMIT; rolls back when destroyed without commit().
+/// BEGIN IMMEDIATE ... COMMIT. Its destructor rolls back unless commit() was called.
 class Transaction {
  public:
   explicit Transaction(Database& database);
@@ -123,7 +122,7 @@ class Transaction {
   bool open_ = true;
 };
 
-/// Copies all pages of one database into another (the online backup interface). Throws StoreError.
+/// Copies all pages of one database into another, with SQLite's online backup. Throws StoreError.
 void copy_database(Database& from, Database& to);
 
 }  // namespace turnpoint::store

@@ -10,8 +10,8 @@ namespace turnpoint::store {
 
 namespace {
 
-/// The setting of a slider is stored as text. A number among these texts needs no protection: a spreadsheet
-/// cannot take it for a formula.
+/// True if the text is a number. Slider settings are stored as text; even a negative one needs no apostrophe,
+/// because a spreadsheet cannot take a number for a formula.
 bool is_number(const std::string& text) {
   double value = 0;
   const auto* end = text.data() + text.size();

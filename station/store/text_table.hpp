@@ -8,7 +8,7 @@
 
 namespace turnpoint::store {
 
-/// One cell of an exported table; monostate is a missing value.
+/// One cell of an exported table. monostate means that the value is missing.
 using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
 
 inline Cell cell(std::int64_t value) { return value; }
@@ -20,24 +20,24 @@ Cell cell(const std::optional<Value>& value) {
   return value ? cell(*value) : Cell{};
 }
 
-/// The format of a table: RFC 4180 (quoted where needed, CRLF) or the tab-separated form of BIDS (never
-/// quoted, LF; tabs and line ends in text become spaces).
+/// The format of a table: RFC 4180 (quotes where needed, CRLF), or the tab-separated form of BIDS (no quotes,
+/// LF; tabs and line ends within a text become spaces).
 struct TableStyle {
   enum class Kind { rfc4180, bids } kind = Kind::rfc4180;
   char separator = ',';
   char decimal = '.';
 };
 
-/// Builds the text of one table. Missing values and empty texts are `n/a`. Numbers are as short as possible
-/// while still reading back the same. A text that a spreadsheet would run as a formula (leading = + - @) gets
-/// an apostrophe.
+/// Builds the text of one table. Missing values and empty texts become `n/a`. Numbers have the shortest form
+/// that reads back as the same number. A text that a spreadsheet would run as a formula (it begins with = + -
+/// or @) gets an apostrophe in front.
 class TextTable {
  public:
   TextTable(const TableStyle& style, const std::vector<std::string>& columns);
   /// Throws std::logic_error unless there are as many cells as columns.
   void row(const std::vector<Cell>& cells);
   const std::string& text() const { return text_; }
-  /// Returns the text added since the last call, so that a large table can be written piece by piece.
+  /// Returns the text added since the previous call, so that a large table can be written piece by piece.
   std::string take() { return std::exchange(text_, ""); }
   std::size_t rows() const { return rows_; }
 
@@ -51,8 +51,8 @@ class TextTable {
   std::string text_;
 };
 
-/// Reads a table in the RFC 4180 form, line by line. The separator is whichever of , ; | and tab occurs first
-/// in its first line.
+/// Reads a table in the RFC 4180 form, line by line. The separator is the first of the characters , ; | and
+/// tab in the first line.
 std::vector<std::vector<std::string>> read_table(const std::string& text);
 
 }  // namespace turnpoint::store

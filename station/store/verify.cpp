@@ -19,7 +19,7 @@ struct Exported {
   std::string session_id, checksum;
 };
 
-/// Reads the sessions and their checksums from an exported sessions.csv.
+/// Reads the sessions and their checksums from a sessions.csv that was exported.
 std::vector<Exported> read_export(const std::string& path) {
   const auto refuse = [&](const std::string& why) -> std::size_t {
     throw StoreError(ErrorKind::missing,
@@ -49,9 +49,9 @@ std::vector<Exported> read_export(const std::string& path) {
   return sessions;
 }
 
-/// Reports what the export contains about a session but the database does not.
+/// Adds a problem if the exported checksum of a session is not in the database.
 void compare(Database& database, const Exported& exported, Verification& result) {
-  if (exported.checksum == "n/a") return;  // the session was recorded by a release without checksums
+  if (exported.checksum == "n/a") return;  // a release without checksums recorded the session
   if (holds_link(database, exported.session_id, exported.checksum)) return;
   const auto problem =
       fmt::format("the session does not contain the exported checksum {}", exported.checksum);

@@ -7,21 +7,21 @@
 namespace turnpoint::store {
 
 struct VerifyOptions {
-  std::string session_id;  ///< only this session; "" checks all
-  std::string against;     ///< a sessions.csv exported earlier; "" for none
+  std::string session_id;  ///< check only this session; "" checks all
+  std::string against;     ///< path of a sessions.csv that was exported earlier; "" for none
 };
 
 struct Verification {
-  /// problems of the file as a whole, and exported sessions missing from it
+  /// problems of the file as a whole, and sessions that were exported but are no longer in the file
   std::vector<std::string> problems;
   std::vector<VerifiedSession> sessions;
   bool good() const;
 };
 
-/// Checks the pages and references of a database and the chain of every session. With `against`, each
-/// exported session must exist and contain the exported checksum as one of its links: a session continued
-/// after the export has more rows, but unchanged old ones. Only reads. Throws StoreError if the file cannot
-/// be read as a database or an export.
+/// Checks the pages and references of a database and the checksum chain of every session. With `against`,
+/// each session of the export must also exist, and one of its links must have the exported checksum. (A
+/// session that was continued after the export has more links, but still the old ones.) Reads only. Throws
+/// StoreError if the database or the export cannot be read.
 Verification verify(const std::string& database, const VerifyOptions& options = {});
 
 }  // namespace turnpoint::store

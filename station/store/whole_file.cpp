@@ -17,7 +17,7 @@ namespace turnpoint::store {
 
 namespace {
 
-/// Opens the finished file again with a new connection, so that nothing comes from a cache, and checks it.
+/// Checks the finished file through a new connection, so that nothing comes from a cache.
 void verify(const std::string& path) {
   for (const auto* suffix : kLogSuffixes)
     if (file_size(path + suffix) > 0)
@@ -30,7 +30,7 @@ void verify(const std::string& path) {
     copy.fail(SQLITE_CORRUPT, "the database has no id");
 }
 
-/// Creates the file `to` by way of a temporary one, which `make` opens, fills and closes.
+/// Creates the file `to`. `make` opens, fills and closes a temporary file, which is then renamed.
 void publish(const std::string& to, const std::string& original,
              const std::function<void(const std::string& temporary)>& make) {
   const auto temporary = to + ".new";
@@ -47,15 +47,15 @@ void publish(const std::string& to, const std::string& original,
     try {
       remove_database(temporary);
     } catch (const StoreError&) {
-      // Report the original failure. The next attempt removes the temporary file.
+      // Ignore this error and report the original one. The next attempt removes the temporary file.
     }
     throw;
   }
   sync_path(folder_of(to));
 }
 
-/// Finds a file that belongs to a database of this name although the database itself does not exist; "" if
-/// there is none.
+/// Returns a file that shows that a database of this name once existed: its log, or an unfinished restore.
+/// Returns "" if there is none.
 std::string orphan_of(const std::string& path) {
   for (const auto* suffix : {"-wal", "-journal"})
     if (file_size(path + suffix) > 0) return path + suffix;
@@ -116,10 +116,10 @@ void refuse_absent(const std::string& path) {
 
 void create_file(const std::string& path) {
   if (!orphan_of(path).empty()) refuse_absent(path);
-  // An empty log or leftover shared memory is of no use to any database.
+  // An empty log or old shared memory has no data that any database needs.
   for (const auto* suffix : kLogSuffixes) remove_file(path + suffix);
   publish(path, "", [](const std::string& temporary) {
-    // Use rollback mode, so that all data are in the one file when the transaction has ended.
+    // In rollback mode, all data are in the one file when the transaction has ended.
     Database database(temporary, Database::Access::read_write);
     database.execute("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA");
     create_schema(database, schema_version());
@@ -132,7 +132,7 @@ void copy_to_file(Database& from, const std::string& to, const std::string& orig
   publish(to, original, [&](const std::string& temporary) {
     Database copy(temporary, Database::Access::read_write);
     copy_database(from, copy);
-    // Take the copy out of WAL mode: a single file can be read from any medium.
+    // Take the copy out of WAL mode, because a file in WAL mode cannot be read on every medium.
     if (copy.text("PRAGMA journal_mode = DELETE") != "delete")
       throw StoreError(ErrorKind::io,
                        "copy " + temporary + ": the copy cannot be taken out of WAL mode; check the disk");
@@ -144,9 +144,9 @@ void copy_to_file(Database& from, const std::string& to, const std::string& orig
 std::string replace_by_restored(const std::string& path) {
   const auto aside = path + ".damaged-" + time_stamp();
   bool moved = false;
-  // Move the database file first. If this is interrupted, the name has no database, which every program
-  // refuses. A log without its file, or the new file with the old log, can then never be mistaken for a
-  // database.
+  // Move the database file first. If this is interrupted, there is no database under this name, and every
+  // program refuses to create one. Otherwise a log without its file, or a new file with an old log, could be
+  // mistaken for a database.
   for (const auto* suffix : {"", "-wal", "-journal", "-shm"}) {
     if (!file_exists(path + suffix)) continue;
     rename_file(path + suffix, aside + suffix);

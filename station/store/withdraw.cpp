@@ -23,7 +23,7 @@ std::string digest(const std::string& salt, const std::string& code) {
   return text::sha256(salt + "/" + code);
 }
 
-/// Looks for tombstones of this code at this station, or at any station if none is given.
+/// True if this code has a tombstone: of this station, or of any station if `station` is "".
 bool has_tombstone(Database& database, const std::string& station, const std::string& code) {
   Statement rows(
       database,
@@ -34,7 +34,7 @@ bool has_tombstone(Database& database, const std::string& station, const std::st
   return false;
 }
 
-/// Nobody of that name has sessions. That is an error unless they were withdrawn before.
+/// Nobody with this name has sessions. Throws unless their sessions were withdrawn before.
 void require_withdrawn_before(Database& database, const WithdrawOptions& options) {
   const auto at = options.participant.rfind('@');
   const auto code = options.participant.substr(0, at);
@@ -46,7 +46,7 @@ void require_withdrawn_before(Database& database, const WithdrawOptions& options
                   options.participant, options.station.empty() ? "" : " at station " + options.station));
 }
 
-/// The person's bearers, limited to one station if one is given.
+/// Returns the person's bearers; only those of one station if a station is given.
 std::vector<Bearer> chosen_bearers(const People& people, const WithdrawOptions& options) {
   auto persons = people.named(options.participant);
   for (auto& person : persons)
@@ -140,7 +140,7 @@ void remove_sessions(Database& database, const Withdrawal& withdrawal) {
   transaction.commit();
 }
 
-/// Deleted rows survive in free pages and in the log. Rewriting the file and truncating the log removes them.
+/// Removes the remains of deleted rows: rewrites the file, which drops its free pages, and empties the log.
 void scrub(Database& database) {
   database.execute("PRAGMA wal_checkpoint(TRUNCATE)");
   database.execute("PRAGMA temp_store = MEMORY; VACUUM");
@@ -181,7 +181,7 @@ Withdrawal withdraw(const std::string& name, const WithdrawOptions& options) {
   auto withdrawal = choose(database, options);
   count_rows(database, withdrawal);
   const auto ids = ids_of(database, withdrawal);
-  // if a folder cannot be read, this throws before anything is deleted
+  // throws before anything is deleted if a folder cannot be read
   copies_of(path, database, options.backup_directory, ids);
   database.execute("PRAGMA secure_delete = ON");
   remove_sessions(database, withdrawal);

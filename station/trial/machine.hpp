@@ -40,7 +40,7 @@ struct Timing {
   /// last interval
   bool answer_ends_stimulus = false;
   ResponseZero response_zero = ResponseZero::go_cue;
-  std::int64_t deadline_ns = 0;      ///< longest response time, counted from response_zero; 0 for none
+  std::int64_t deadline_ns = 0;      ///< longest response time, counted from response_zero
   std::int64_t anticipation_ns = 0;  ///< an answer sooner than this after response_zero is an anticipation
   std::int64_t feedback_ns = 0;      ///< length of the feedback; 0 for none
   std::int64_t late_ns = 0;          ///< length of the message after a late answer; 0 for none
