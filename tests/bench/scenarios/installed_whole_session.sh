@@ -1,5 +1,6 @@
 # proves: a live session on the installed kiosk can be completed by touches and buttons, from the operator's page to the last answer, although panel, sound card and GPIO chip are unplugged for a while and the station hangs once and is killed once during a stimulus; every stimulus that was played has the boundary stored in the database
 # needs: installed screen
+# suite: long
 # timeout: 1800
 gpio_sim AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R
 for line in AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R; do pull $line down; done
