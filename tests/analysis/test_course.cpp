@@ -57,7 +57,8 @@ TEST_CASE(
   for (int i = 0; i < 80; ++i) {
     const double jitter = 0.02 * ((i * 7) % 5 - 2);
     slowing.push_back(answered(i, i % 2, i % 2, 0.5 + 0.002 * i + jitter));
-    // All hard trials, which are also slow, come late: there is a trend only if level is not controlled for.
+    // The hard trials are slow and all come late. This looks like a trend unless the effect of level is
+    // removed.
     steady.push_back(answered(i, i >= 40, i >= 40, (i >= 40 ? 0.9 : 0.5) + jitter));
   }
   const auto found = fatigue(slowing);

@@ -201,9 +201,9 @@ TEST_CASE("A bootstrap depends only on its seed and stream", "[analysis]") {
 }
 
 TEST_CASE("The fit agrees with psignifit 4.3 on the same data", "[analysis]") {
-  // Results of psignifit 4.3 (Python) for 2AFC with sigmoids weibull and norm, default priors and maximum a
-  // posteriori: the threshold is the 50 % point, the width is the 5-95 % range of the core, low and high are
-  // the ends of the threshold's 95 % interval.
+  // Results of psignifit 4.3 (Python) for 2AFC with the sigmoids weibull and norm, default priors and the
+  // maximum a posteriori. `threshold` is the 50 % point and `width` the 5-95 % range of the sigmoid; `low`
+  // and `high` are the ends of the threshold's 95 % interval.
   struct Row {
     Function function;
     double threshold, width, low, high;
@@ -229,10 +229,10 @@ TEST_CASE("The fit agrees with psignifit 4.3 on the same data", "[analysis]") {
 }
 
 TEST_CASE("Bootstrap intervals contain the true value about as often as they claim", "[analysis]") {
-  // A longer run (400 sessions with 300 replicates) gave these coverages of threshold, slope and 75 % point.
-  // Weibull, 6 levels x 40 trials: .95, .93, .94. Normal with tied lapse, 8 levels x 20: .95, .94, .94.
-  // Normal without lapse, 8 levels x 10: .97, .94, .94. This test uses fewer sessions: two standard errors
-  // are .04.
+  // A longer run (400 sessions with 300 replicates) measured how often the intervals of threshold, slope and
+  // 75 % point contain the true value. Weibull, 6 levels x 40 trials: .95, .93, .94. Normal with tied lapse,
+  // 8 levels x 20: .95, .94, .94. Normal without lapse, 8 levels x 10: .97, .94, .94. With the fewer sessions
+  // of this test, two standard errors are .04.
   struct Design {
     FitOptions options;
     Psychometric truth;
@@ -262,12 +262,12 @@ TEST_CASE("Bootstrap intervals contain the true value about as often as they cla
     }
     CHECK(threshold >= 0.91 * sessions);
     CHECK(slope >= 0.90 * sessions);
-    CHECK(narrow < 0.85 * sessions);  // negative control: intervals of half the width fail
+    CHECK(narrow < 0.85 * sessions);  // negative control: intervals of half the width contain it too rarely
   }
 }
 
 TEST_CASE("Trials without a signal determine the rate of false alarms", "[analysis]") {
-  // The data are the expected counts of P = .2 + .78 (1 - exp(-(x/4)^2)). The fit must return these
+  // The data are the expected counts for P = .2 + .78 (1 - exp(-(x/4)^2)), so the fit must return these
   // parameters.
   FitOptions options;
   options.scale = Scale::log10;

@@ -11,7 +11,8 @@ namespace rnd = turnpoint::random;
 
 namespace {
 
-/// A two-down-one-up staircase from -5 dB in steps of 2 dB and then 1 dB, whose levels depend on the answers.
+/// Simulates a two-down-one-up staircase that starts at -5 dB, with steps of 2 dB and then 1 dB. Returns the
+/// counts of answers per level.
 std::vector<LevelCount> staircase(const Psychometric& truth, int trials, int run) {
   rnd::Draws draws({5, rnd::Stream::observer, run, 0, 0});
   std::vector<LevelCount> data;

@@ -15,8 +15,7 @@ using terms::FaultKind;
 
 namespace {
 
-// Waits for something that another thread does, for at most 5 s. The limit only ends the test; it measures
-// nothing.
+// Waits up to 5 s until another thread makes the condition true. The limit only ends a test that hangs.
 template <typename Condition>
 bool eventually(Condition&& condition) {
   const std::int64_t end = system::monotonic_ns() + 5'000'000'000;

@@ -20,7 +20,8 @@ namespace {
 constexpr std::int64_t us = 1'000, ms = 1'000'000;
 }
 
-// The filter's output for edges given as (time in us, level), followed by silence until `until_us`.
+// Returns what the filter reports for these edges, given as (time in us, level), when no further edge comes
+// until `until_us`.
 std::vector<LineChange> changes(EdgeFilter& filter, const std::vector<std::pair<std::int64_t, bool>>& edges,
                                 std::int64_t until_us) {
   std::vector<LineChange> all;

@@ -1,6 +1,6 @@
-// A thread that uses the amplifier loses the processor before, inside or after a call. Meanwhile a fault or a
-// stop becomes active, with or without an edge that the guard sees. The guard must still take the line low,
-// and the line must stay low when the caller continues.
+// In these tests, a thread that calls the amplifier is held up before, inside or after the call, as if it had
+// lost the processor. Meanwhile a fault or a stop becomes active; its edge may be lost. The guard must still
+// take the enable line low, and the line must stay low when the thread continues.
 #include <atomic>
 #include <cstdlib>
 #include <functional>
@@ -21,16 +21,16 @@ namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// A thread that makes one call at a time and can be held at any point of the call.
+/// A thread that makes one call at a time. The test can hold it at any point of the call.
 class Caller {
  public:
   Caller() {
     thread_ = std::jthread([this](const std::stop_token& stop) {
       for (begin_.acquire(); !stop.stop_requested(); begin_.acquire()) {
         points_ = 0;
-        point();  // the point before the call
+        point();  // this point is before the call
         call_();
-        while (points_ <= hold_at_) point();  // hold after a call that had fewer points
+        while (points_ <= hold_at_) point();  // if the call had fewer points, hold after it
         finished_.release();
       }
     });
@@ -40,7 +40,7 @@ class Caller {
     begin_.release();
   }
 
-  /// Begins the call. Returns once the thread is held at the point with this number.
+  /// Begins the call, and returns once the thread is held at point number `hold_at`.
   void begin(std::function<void()> call, int hold_at) {
     call_ = std::move(call), hold_at_ = hold_at;
     begin_.release();
@@ -51,7 +51,8 @@ class Caller {
     finished_.acquire();
   }
 
-  /// Marks a point; called by lines and commands. Holds only the caller's thread.
+  /// Marks a point at which the thread can be held. The simulated lines and the commands call it; for other
+  /// threads it does nothing.
   void point() {
     if (std::this_thread::get_id() != thread_.get_id() || points_++ != hold_at_) return;
     held_.release();
@@ -115,8 +116,8 @@ struct Bench {
 
   bool high() { return lines->level(SharedLines::enable); }
 
-  /// Waits until the guard has handled all edges so far, or, if edges are lost, has read the levels in two
-  /// beats. Gives up after five seconds; the limit measures nothing.
+  /// Waits until the guard has handled all edges so far. If edges are lost, waits until the guard has read
+  /// the levels in two heartbeats. Gives up after five seconds, so that the test ends.
   bool settled() {
     const auto end_ns = system::monotonic_ns() + 5000 * ms;
     const int beats_before = beats;
@@ -171,7 +172,7 @@ TEST_CASE("the enable line is never high during a fault or stop, wherever a call
   for (int round = 0; round < rounds() && violations < 3; ++round) {
     bench.loses_edges = draw(4) == 0;
     bench.enable();
-    if (draw(2) == 0) amplifier.disable();  // disabled, so that a call of enable() changes the line
+    if (draw(2) == 0) amplifier.disable();  // so that the next call of enable() changes the line
     bench.caller.begin(calls[draw(8)], draw(6));
     high_when_held += bench.high() ? 1 : 0;
     const int line = draw(2) == 0 ? SharedLines::fault : SharedLines::stop;

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// A piston of radius `a_m` that moves by `u_m`, in rings of equal width with points of nearly equal
-/// distance.
+/// The sources of a round piston of radius `a_m` that moves by `u_m`. They form rings of equal width and are
+/// nearly equally far from each other.
 std::vector<SoundSource> piston(double a_m, double u_m, int rings) {
   std::vector<SoundSource> sources;
   for (int ring = 0; ring < rings; ++ring) {
@@ -29,8 +29,8 @@ std::vector<SoundSource> piston(double a_m, double u_m, int rings) {
   return sources;
 }
 
-/// The same integral by the midpoint rule on a fine grid, with the clamped strip's first shape by its
-/// equation.
+/// Computes Rayleigh's integral by the midpoint rule on a fine grid. The shape across the strip comes from
+/// the equation of the first mode of a clamped strip.
 std::complex<double> by_midpoints(const Surface& surface, const Tone& tone, Model model, const Place& place) {
   constexpr int across = 400;
   const Air air;
@@ -109,7 +109,7 @@ TEST_CASE(
       const double nearest = std::clamp(place.x_m, 0.0, plate.length_m);
       if (std::hypot(place.x_m - nearest, place.y_m, place.z_m) >= distance) places.push_back(place);
     }
-    for (int i = -600; i <= 600; ++i)  // around the loudest place, along the strip and away from it
+    for (int i = -600; i <= 600; ++i)  // test places around the loudest one, along the strip and away from it
       places.push_back({loudest.place.x_m + 1e-4 * i, 0, std::max(loudest.place.z_m, distance)});
     double most = 0;
     for (const auto& p : radiated_pressure_Pa(sources, f, places)) most = std::max(most, std::abs(p));

@@ -19,7 +19,7 @@ TEST_CASE(
     CAPTURE(t, y.ai, y.dai, y.ln_scale, ai, dai, ln);
     const double factor = std::exp(y.ln_scale - ln);
     const double root = std::sqrt(std::sqrt(std::max(1.0, std::abs(t))));
-    // The argument is rounded, which limits the accuracy of the oscillation's phase.
+    // The argument is rounded to a double, which limits the accuracy of the oscillation's phase.
     const double allowed = 2e-14 + 4e-16 * std::pow(std::abs(t), 1.5);
     CHECK(std::abs(y.ai * factor - ai) <= allowed * (t > 0 ? std::abs(ai) : 1 / root));
     CHECK(std::abs(y.dai * factor - dai) <= allowed * (t > 0 ? std::abs(dai) : root));

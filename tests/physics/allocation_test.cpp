@@ -1,4 +1,5 @@
-// Counts the memory allocations while a model's profile is evaluated: there must be none per point.
+// These tests count memory allocations during the evaluation of a profile. None may depend on the number of
+// points.
 #include <cstdlib>
 #include <new>
 
@@ -66,7 +67,7 @@ TEST_CASE("the field of one tone solves its model only once", "[physics]") {
       describe(surface, {&tone, 1}, evaluate(surface, {&tone, 1}, {&x, 1}, model, Normalise::peak));
     });
     CAPTURE(name(model), solution, field, notes);
-    CHECK(field <= solution + 8);                                            // its own vectors
+    CHECK(field <= solution + 8);                                            // 8 for the field's own vectors
     CHECK(notes > field + 3 * solution / (model == Model::mode ? 1 : 100));  // negative control
   }
 }

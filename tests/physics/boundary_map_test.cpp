@@ -114,7 +114,7 @@ TEST_CASE("a map follows the lossy mode, and states model error and uncertainty 
   const MapAnswer answer = BoundaryMap(s, edge("p50")).at_frequency(20e3);
   const double lossy = make_centre_line(s, 20e3, Model::modes)->level_m(0.5).value();
   CHECK(std::abs(lossy - answer.boundary_m.value()) < answer.error_bound_m + 1e-8);
-  // The edge of the same surface without loss lies far outside the stated bound.
+  // Negative control: the edge of the same surface without loss lies far outside the stated bound.
   const double lossless = BoundaryMap(seed_brass(), edge("p50")).boundary_m(20e3).value();
   CHECK(std::abs(lossy - lossless) > 2 * answer.error_bound_m + 5e-5);
   // The distance from the apex is proportional to the wave speed: a change of 2 % in tension moves the
@@ -168,7 +168,7 @@ TEST_CASE("one frequency solved for alone is the map's", "[physics]") {
         const auto f = solve_frequency_Hz(surface, options, x);
         CAPTURE(edge, x);
         REQUIRE(f);
-        // The table of a friction edge is accurate to 2 um, that of a plate to 0.3 um.
+        // The table of a friction edge is accurate to 2 um, and the table of a plate to 0.3 um.
         CHECK(std::abs(map.boundary_m(*f).value() - x) < 3e-6);
       }
     }
@@ -198,8 +198,8 @@ TEST_CASE("a frequency solved for by modes puts the edge of that field at the po
 }
 
 TEST_CASE("maps of long and of finely tabulated tapers are those of the plain ones", "[physics]") {
-  // An edge is solved for on the part of the surface that moves, so that neither the far end of a hundred
-  // decay lengths nor points beyond it take any steps.
+  // Only the moving part of the surface is solved. The far end, a hundred decay lengths away, and tabulated
+  // points beyond the moving part must take no steps.
   Surface exponential = seed_brass();
   exponential.quality_factor = 60;
   exponential.taper = ExponentialTaper{0.03, 0.1};
@@ -215,7 +215,7 @@ TEST_CASE("maps of long and of finely tabulated tapers are those of the plain on
   for (const double f : {15e3, 25e3, 40e3}) {
     CAPTURE(f);
     CHECK(std::abs(plain.boundary_m(f).value() - long_map.boundary_m(f).value()) < 1e-10);
-    // The table's cubics differ from the exponential by what they are.
+    // The cubics of the tabulated taper differ slightly from the exponential.
     CHECK(std::abs(plain.boundary_m(f).value() - table_map.boundary_m(f).value()) < 1e-7);
     CHECK(long_map.at_frequency(f).error_bound_m ==
           Approx(plain.at_frequency(f).error_bound_m).epsilon(1e-3));
@@ -226,7 +226,7 @@ TEST_CASE("maps of long and of finely tabulated tapers are those of the plain on
     return TaylorMarch(Taper(endless), best_equation(endless, f, Losses::kept), held_m).steps();
   };
   CHECK(steps(moving_part(endless, 25e3).length_m, 25e3) < 40);
-  CHECK(steps(0.6, 25e3) > 100);  // negative control: from further out it takes many
+  CHECK(steps(0.6, 25e3) > 100);  // negative control: a solution from farther out takes many steps
 }
 
 TEST_CASE("a map of a band is the whole map there", "[physics]") {

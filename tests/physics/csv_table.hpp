@@ -1,5 +1,5 @@
 #pragma once
-// Reads the rows of an oracle table.
+// Reads the tables of reference values ("oracles") in tests/physics/oracles.
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -8,7 +8,7 @@
 
 namespace turnpoint::physics_test {
 
-// All rows of the file tests/physics/oracles/NAME, split at commas.
+// Returns all rows of the file tests/physics/oracles/NAME, split at commas.
 inline std::vector<std::vector<std::string>> oracle(const std::string& name) {
   const std::string path = std::string(TURNPOINT_SOURCE_DIR) + "/tests/physics/oracles/" + name;
   std::ifstream file(path);

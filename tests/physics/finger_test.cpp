@@ -38,8 +38,8 @@ TEST_CASE("the unloaded response is the mode's field", "[physics]") {
 
 TEST_CASE("on a lossy uniform strip the response to a force is that of two waves travelling away",
           "[physics]") {
-  // If waves decay before they reach the ends, G = 1 / (2 i kx N W), and the strip's impedance is 2 N W |kx|
-  // / omega.
+  // If waves decay before they reach the ends, the receptance is G = 1 / (2 i kx N W), and the strip's
+  // impedance is 2 N W |kx| / omega.
   Surface s = foil();
   s.taper = LinearTaper{0.02, 0};
   s.length_m = 10;
@@ -65,9 +65,9 @@ TEST_CASE("a finger on the seed's foil takes most of the amplitude and moves the
 
 TEST_CASE("on a lossy uniform clamped strip the response to a force is that of its own four waves",
           "[physics]") {
-  // Solves Kantorovich's equation with constant coefficients, m4 f_xxxx + 2 m2 f_xx + (m0 - k^4 m4) f = F/D
-  // delta: on each side two waves leave the force; at the force the slope is 0 and the third derivative
-  // jumps.
+  // Kantorovich's equation with constant coefficients is m4 f_xxxx + 2 m2 f_xx + (m0 - k^4 m4) f = F/D delta.
+  // In its solution two waves leave the force on each side. At the force the slope is 0 and the third
+  // derivative jumps.
   Surface s = aluminium_plate();
   const double f = 30e3, w = 0.012, b = 2.365020372431352;
   s.taper = LinearTaper{w, 0};

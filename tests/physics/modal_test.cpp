@@ -11,8 +11,8 @@ using namespace turnpoint::physics;
 
 TEST_CASE("the model modes reproduces the exact mode of a wedge that drives its straight edge",
           "[physics][oracle]") {
-  // Rows of the table of make_wedge.py: slope, frequency, then J_nu(k r) cos(nu theta) along the drive edge
-  // as even Chebyshev values, then at points of the centre line.
+  // Columns of wedge.csv (make_wedge.py): slope, frequency, then J_nu(k r) cos(nu theta) at Chebyshev points
+  // along the drive edge, then at points of the centre line.
   for (const auto& row : turnpoint::physics_test::oracle("wedge.csv")) {
     Surface s = seed_brass();
     const double d = std::stod(row[0]), f = std::stod(row[1]);
@@ -26,7 +26,7 @@ TEST_CASE("the model modes reproduces the exact mode of a wedge that drives its 
     for (const int spare : {1, 2, 3}) {
       ModalResolution resolution;
       resolution.spare_functions = spare;
-      // The drive's profile, by barycentric interpolation at Chebyshev points of eta^2.
+      // The displacement of the drive edge, interpolated (barycentric) between Chebyshev points of eta^2.
       resolution.drive = [&](double eta) {
         double top = 0, bottom = 0;
         for (int i = 0; i < edge_points; ++i) {
@@ -84,8 +84,8 @@ TEST_CASE("a finer resolution of the model modes changes the field of a curved t
 }
 
 TEST_CASE("the element matrix of a plate equals the integral of the product of two Laplacians", "[physics]") {
-  // The reference differentiates X(x) Y(y) directly in x and y, with X a basis function of the element and Y
-  // a transverse one.
+  // The reference differentiates X(x) Y(y / W(x)) numerically in x and y. X is a basis function of the
+  // element, and Y a transverse function.
   Surface s = aluminium_plate();
   s.taper = ExponentialTaper{0.014, 0.05};
   s.length_m = 0.1;
@@ -135,7 +135,8 @@ TEST_CASE("the element matrix of a plate equals the integral of the product of t
 
 TEST_CASE("waves on a clamped strip have the wavelength that the dispersion of a clamped strip gives",
           "[physics]") {
-  // Dispersion of a clamped strip: q1 tan(q1 W) + q2 tanh(q2 W) = 0, q1^2 = b^2 - kx^2, q2^2 = b^2 + kx^2.
+  // The dispersion relation of a clamped strip is q1 tan(q1 W) + q2 tanh(q2 W) = 0 with q1^2 = b^2 - kx^2 and
+  // q2^2 = b^2 + kx^2.
   Surface s = aluminium_plate();
   s.taper = LinearTaper{0.014, 0};
   s.quality_factor = std::numeric_limits<double>::infinity();
@@ -151,7 +152,7 @@ TEST_CASE("waves on a clamped strip have the wavelength that the dispersion of a
   double first = 0, last = 0;
   int crossings = 0;
   double before = line->value(0.1).mantissa.real();
-  for (double x = 0.1; x < 0.2; x += 1e-5) {  // leave out the near fields at both ends
+  for (double x = 0.1; x < 0.2; x += 1e-5) {  // stay away from the ends and their near fields
     const double now = line->value(x).mantissa.real();
     if (now * before < 0) {
       const double at = x - 1e-5 * now / (now - before);

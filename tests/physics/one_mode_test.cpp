@@ -75,7 +75,7 @@ TEST_CASE("the models seed and mode match exact solutions for extreme tapers, lo
       const double envelope = std::hypot(1.0, std::abs(line->slope(x[i]).mantissa / here.mantissa) / k);
       const double arg = std::arg(here.mantissa / v0.mantissa);
       const auto miss = std::polar(std::exp(ln[i] - c.points[i].ln), arg) - std::polar(1.0, c.points[i].arg);
-      // The position has a rounding error; where the field decays, that causes an error of the value.
+      // The position has a rounding error. Where the field decays steeply, this causes an error of the value.
       const double scale = allowed * envelope + 4 * eps * c.surface.length_m * k * envelope;
       worst = std::max(worst, std::abs(miss) / scale);
       CHECK(std::abs(miss) <= scale);
@@ -83,7 +83,7 @@ TEST_CASE("the models seed and mode match exact solutions for extreme tapers, lo
     }
   }
   CHECK(worst_evanescent < 1e-10);
-  CHECK(worst > 1e-4);  // the errors are large enough to be measured
+  CHECK(worst > 1e-4);  // negative control: the errors are not zero
 }
 
 TEST_CASE("the exact solutions of the two equations differ measurably", "[physics][oracle]") {

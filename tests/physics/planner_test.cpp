@@ -101,7 +101,7 @@ PlanRequest request_for(Normalise normalise) {
   return request;
 }
 
-/// Number of random scenes; TURNPOINT_SCENES=5000 makes a long run with that many.
+/// Number of random scenes: `usual`, or the value of TURNPOINT_SCENES, for example 5000 for a long run.
 int scenes(int usual) {
   const char* const asked = std::getenv("TURNPOINT_SCENES");
   return asked ? std::stoi(asked) : usual;
@@ -133,8 +133,8 @@ TEST_CASE("the true error of every model lies inside its bound on a thousand ran
                           error->boundary_m <= bound.boundary_bound_m &&
                           error->level_dB <= bound.level_bound_dB;
       violated += inside ? 0 : 1;
-      // The bounds of the 1998 models come from sampling, which can miss a narrow feature, so only `mode`
-      // must always keep its bound.
+      // The bounds of the 1998 models come from samples, which can miss a narrow feature. So only `mode` must
+      // keep its bound in every scene.
       if (model == Model::mode) CHECK(inside);
     }
   }
@@ -194,7 +194,7 @@ TEST_CASE("at resonances of the second mode on lossless brass, the error lies in
     CHECK(error / most <= estimate(brass, request, Model::mode).amplitude_bound);
     worst = std::max(worst, error / most);
   }
-  CHECK(worst > 0.4);  // large errors were among those tested
+  CHECK(worst > 0.4);  // negative control: some of the tested errors are large
 }
 
 TEST_CASE("the planner's model is inside the tolerance, and the next cheaper model mostly is not",
@@ -215,7 +215,7 @@ TEST_CASE("the planner's model is inside the tolerance, and the next cheaper mod
     const auto truth = make_centre_line(s, frequency_Hz, Model::modes);
     const auto error = true_error(s, choice.model, *truth, Normalise::peak);
     met += !error || error->amplitude <= *request.tolerance.amplitude ? 1 : 0;
-    // The smallest true error of the cheaper models, which were rejected.
+    // The smallest true error among the cheaper models, which the planner rejected.
     double best = std::numeric_limits<double>::infinity();
     for (const RungEstimate& rung : choice.considered) {
       if (rung.cost_s >= choice.bound.cost_s || !rung.usable) continue;

@@ -38,7 +38,8 @@ TEST_CASE("Newton steps find a root to rounding and stay inside the bracket", "[
   };
   const auto close = [](double next, double x) { return std::abs(next - x) <= 1e-16; };
   CHECK(newton({0, 1}, 0.5, tangent, close) == Approx(0.73908513321516064).epsilon(1e-15));
-  // Newton's steps for atan diverge from 3 and leave every bracket, so the bracket must be halved first.
+  // From 3, Newton steps for atan diverge and leave every bracket, so the search must halve the bracket
+  // first.
   const auto leaves = [](double x) {
     CHECK((x > -4 && x < 5));
     return Tangent{std::atan(x), x - std::atan(x) * (1 + x * x)};
@@ -60,7 +61,7 @@ TEST_CASE(
 }
 
 TEST_CASE("false position needs few steps even if one end hardly moves", "[root]") {
-  // With f = x^9 - .5 on [0, 2], plain false position moves only its left end.
+  // For f = x^9 - .5 on [0, 2], plain false position moves only the left end and converges slowly.
   for (const bool halve_values : {false, true}) {
     int calls = 0;
     const auto f = [&calls](double x) { return ++calls, std::pow(x, 9) - 0.5; };

@@ -34,7 +34,8 @@ TEST_CASE(
       const double k = wavenumber_per_m(s, f);
       const double k2 = std::sqrt(k * k + line_tension_N_per_m(s) / stiffness);
       CAPTURE(tension, w, k * w);
-      // The dispersion k sin(k W) + k2 tanh(k2 W) cos(k W) must be 0, relative to its terms.
+      // k sin(k W) + k2 tanh(k2 W) cos(k W), the left side of the cut-off equation, must be 0 relative to its
+      // terms.
       CHECK(std::abs(k * std::sin(k * w) + k2 * std::tanh(k2 * w) * std::cos(k * w)) < 1e-12 * (k + k2));
       CHECK(cut_off_half_width_m(s, f) == Approx(w).epsilon(1e-12));
     }

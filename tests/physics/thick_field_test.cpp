@@ -21,7 +21,8 @@ Surface plate_of(PlateTheory theory, double quality_factor) {
   return s;
 }
 
-// Largest difference of |v|, with the last maximum at one, from a row's profile at 0, 10, ... mm.
+// Returns the largest difference between |v| on `line` and the profile in `row`, at 0, 10, ... mm. Both are
+// divided by their last maximum.
 double profile_miss(const CentreLine& line, const std::vector<std::string>& row) {
   const double ln_peak = line.value(line.last_peak_m().value()).ln_magnitude();
   double worst = 0, largest = 1;
@@ -61,7 +62,8 @@ TEST_CASE("the models mode and modes of a Mindlin taper match two-dimensional fi
 
 TEST_CASE("for a thin plate, the fields of the thick-plate theories become Kirchhoff's", "[physics]") {
   for (const auto theory : {PlateTheory::mindlin, PlateTheory::elastic}) {
-    // 0.1 mm: the cut-off moves by 0.03 mm; a section too stiff in bending moves the edges by several.
+    // At a thickness of 0.1 mm the cut-off moves by only 0.03 mm. If the section were too stiff in bending,
+    // the edges would move by several mm.
     Surface s = plate_of(PlateTheory::kirchhoff, 60);
     s.thickness_m = 1e-4;
     const double f = 2e3;
@@ -77,7 +79,7 @@ TEST_CASE("for a thin plate, the fields of the thick-plate theories become Kirch
 
 TEST_CASE("the field of a thick plate continues beyond its last element without NaN", "[physics]") {
   Surface s = plate_of(PlateTheory::mindlin, 60);
-  s.taper = LinearTaper{0.03, 0.1};  // to the apex
+  s.taper = LinearTaper{0.03, 0.1};  // the surface runs to its apex
   const auto line = make_centre_line(s, 30e3, Model::mode);
   double last = line->value(0.24).ln_magnitude();
   for (const double x : {0.26, 0.28, 0.29, 0.299}) {

@@ -16,7 +16,7 @@ using turnpoint::physics_test::oracle;
 
 namespace {
 
-// A clamped plate with shear modulus 1 and density 1, so that lengths and omega have the units of the table.
+// A clamped plate with shear modulus 1 and density 1, the units of the reference table.
 Surface unit_plate(double thickness, double poisson, PlateTheory theory) {
   Surface s = aluminium_plate();
   s.density_kg_m3 = 1;
@@ -37,7 +37,8 @@ TEST_CASE("the elastic section's cut-off matches plane-strain finite elements", 
     if (row[0] != "cut") continue;
     const double nu = number(row[1]), t = number(row[2]), omega = number(row[3]);
     CAPTURE(nu, t);
-    // The remaining error comes from the singularity at the clamp's corner, which grows with Poisson's ratio.
+    // The error comes from the singularity at the corner of the clamp, which is stronger for a larger
+    // Poisson's ratio.
     CHECK(elastic_cut_off(t, nu) == Approx(omega).epsilon(nu <= 0.33 && t <= 0.4 ? 2e-4 : 8e-4));
     const auto& table = ElasticCutOff::of(nu);
     CHECK(table.value(t) == Approx(elastic_cut_off(t, nu)).epsilon(2e-6));
@@ -124,7 +125,8 @@ TEST_CASE("waves along a clamped strip match other finite elements and collocati
       }
       ++waves;
     }
-    if (row[0] == "mindlin" && number(row[6]) == 0) {  // both squares of the wavenumber are real
+    if (row[0] == "mindlin" &&
+        number(row[6]) == 0) {  // only if both squared wavenumbers of this row are real
       const double kappa = number(row[2]), f = number(row[4]) / (2 * std::numbers::pi);
       MindlinPlate plate(unit_plate(number(row[3]), number(row[1]), PlateTheory::mindlin));
       plate.shear_N_per_m *= kappa / shear_factor(number(row[1]));
@@ -164,7 +166,7 @@ TEST_CASE(
     "shear_shift_m gives the distances between the boundaries of the plate theories, and the tolerance "
     "decides the theory",
     "[physics]") {
-  // 10.3 and 14.7 mm by plane-strain finite elements of this plate.
+  // Plane-strain finite elements of this plate gave 10.3 and 14.7 mm.
   Surface s = aluminium_plate();
   const auto to_elastic = [&](double f) {
     s.theory = PlateTheory::mindlin;

@@ -32,7 +32,7 @@ TEST_CASE("the solution of non-negative least squares meets the optimality condi
     if (fit.x[j] > 0) CHECK(std::abs(gradient) < 1e-9);
     active += fit.x[j] == 0 ? 1 : 0;
   }
-  CHECK(active > 0);                          // some values are held at 0 by the constraint
+  CHECK(active > 0);                          // the constraint holds some values at 0
   CHECK(active < static_cast<int>(columns));  // but not all
 }
 
@@ -95,7 +95,7 @@ TEST_CASE("a zone has the requested friction inside and ends at the requested bo
       CHECK(mean / count == Approx(0.6).margin(2e-3));
       ZoneRequest single = request;
       single.tones = 1;
-      // with several tones, the nodes of one are filled by the others
+      // with several tones, each fills the nodes of the others
       CHECK(design.residual < 0.75 * design_zone(s, friction, single).residual);
     }
   }
@@ -112,7 +112,7 @@ TEST_CASE("impossible zones are refused, and the message says what is allowed", 
   request.boundary_m = 0.28;  // such a boundary needs more than 45 kHz
   CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), std::domain_error);
   request.boundary_m = 0.16;
-  request.edge = Edge::friction(0.5);  // an edge at lower friction than the zone's
+  request.edge = Edge::friction(0.5);  // this edge would be at a lower friction than the zone
   CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), std::domain_error);
   request.edge = Edge::turning();
   request.from_m = 0.2;

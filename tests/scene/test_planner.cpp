@@ -13,7 +13,7 @@ namespace {
 
 rig::Rig simulated() { return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml"); }
 
-/// The scene "edge" of protocols/demo.toml with its boundary at this place, without roving.
+/// The scene "edge" of protocols/demo.toml, with its boundary at `boundary_m` and without roving.
 Scene edge_at(double boundary_m, const char* edge) {
   Scene scene;
   scene.name = "edge";
@@ -32,7 +32,7 @@ physics::MapOptions options_of(const Scene& scene, const rig::Rig& rig) {
   return options;
 }
 
-/// The position of the edge in the two-dimensional field of a frequency.
+/// Returns the position of the edge in the two-dimensional field at this frequency.
 double edge_of_field_m(const physics::Surface& surface, const physics::MapOptions& options, double f) {
   const auto line = physics::make_centre_line(surface, f, physics::Model::modes);
   return physics::edge_position_m(surface, f, *line, options).value();
@@ -118,7 +118,8 @@ TEST_CASE(
   CHECK(fine.inside_tolerance);
   CHECK(std::abs(fine.shear_shift_m.value()) < 0.5e-3);
   CHECK(fine.reason.find("shear moves the thin plate's boundary by") != std::string::npos);
-  // The same boundary is a lower tone's: a shear-soft plate has it further out.
+  // With shear, the boundary at a given frequency lies farther out, so the same boundary needs a lower
+  // frequency.
   CHECK(fine.tones.at(0).frequency_Hz < 0.95 * coarse.tones.at(0).frequency_Hz);
   auto mindlin = planner.surface();
   mindlin.theory = physics::PlateTheory::mindlin;

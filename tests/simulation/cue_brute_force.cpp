@@ -26,7 +26,7 @@ constexpr int watched_trials = 50'000, most_watched_sessions = 20'000;
 constexpr std::size_t own_sessions = 400;
 constexpr double own_trials = 25'000;
 
-/// The values of the eight cues in one interval, for its last and for its first scene.
+/// The values of the eight cues in one interval, for the last and the first scene of the interval.
 struct Numbers {
   std::vector<double> last, first;
 };
@@ -40,7 +40,8 @@ struct Seen {
   int correct = 0;
 };
 
-/// Counts in one session: the observer's right answers, and the right answers of always pressing each key.
+/// Counts for one session: right answers of the observer, and right answers that pressing always the same key
+/// would give, for each key.
 struct Count {
   double trials = 0, right = 0;
   std::array<double, 3> keys{};
@@ -134,7 +135,8 @@ Strategy band(double lowest, double highest, int inside, bool distance) {
   };
 }
 
-// Criteria for the cue: at most 80 places between values that differ, and one below and one above all values.
+// Possible criteria for the cue: at most 80 places between different values, and one below and one above all
+// values.
 std::vector<double> cuts_of(const Shown& shown, double grain, bool distance) {
   std::vector<double> values, between;
   for (const auto& [trial, count] : shown) values.push_back(banded(trial.first, distance));
@@ -152,10 +154,11 @@ std::vector<double> cuts_of(const Shown& shown, double grain, bool distance) {
   return cuts;
 }
 
-// Tries every pair of criteria, with each of the two answers between them.
+// Finds the best pair of criteria. It tries all pairs, and each of the two answers for values between them.
 Strategy best_cuts(const Shown& shown, double grain, bool distance) {
   const auto cuts = cuts_of(shown, grain, distance);
-  // Number of trials below each criterion for which each answer is right.
+  // For each criterion and each answer, the number of trials below the criterion for which the answer is
+  // right.
   std::vector<std::array<double, 2>> below(cuts.size(), {0, 0});
   for (std::size_t c = 0; c < cuts.size(); ++c)
     for (const auto& [trial, count] : shown)
@@ -240,8 +243,8 @@ bool follows_right_answers(const protocol::Protocol& protocol) {
   return follows_answers(protocol.procedures.front()) && protocol.procedures.front().tracks.empty();
 }
 
-/// Collects what an observer can perceive in whole sessions. A level that would depend on the answers is
-/// replaced by a random one that its procedure can present.
+/// Collects what an observer can perceive in whole sessions. If a procedure chooses levels by the answers, a
+/// random level that it can present is used instead.
 std::vector<Seen> watch(const protocol::Protocol& protocol, World& world) {
   std::vector<Seen> seen;
   std::mt19937 random(1);
@@ -269,8 +272,8 @@ struct OwnSessions {
   double gain = 0, error = 0;
 };
 
-/// Simulates whole sessions in which the observer gives all answers. Returns by how much its accuracy exceeds
-/// that of guessing or of a single key.
+/// Simulates whole sessions in which the observer gives all answers. Returns how much more accurate it is
+/// than guessing, or than always pressing the same key.
 OwnSessions do_sessions(const protocol::Protocol& protocol, World& world, std::size_t cue, int feature,
                         const Strategy& strategy) {
   std::vector<Count> each;

@@ -45,7 +45,7 @@ class Maker {
     return text;
   }
 
-  // Writes scenes in which the target differs from the standard in place, in strength, or in both.
+  // Writes the scenes. The target differs from the standard in place, in strength, or in both.
   std::string scenes() {
     const std::string mark = marks_ > 0 ? "mark_mm" : "155";
     standard_moves_ = marks_ > 0 && chance(0.5);
@@ -166,7 +166,7 @@ class Maker {
              "[[sequence]]\nname = \"main\"\ndesign = \"latin-square\"\nover = \"mark_mm\"\nblock = { " +
              block + " }\n";
     }
-    // Writes the same keys with one per line.
+    // Writes the keys of the block, one per line.
     std::string lines = "[[block]]\nname = \"main\"\n";
     int depth = 0;
     for (std::size_t i = 0; i < block.size(); ++i) {

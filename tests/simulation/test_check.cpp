@@ -17,8 +17,8 @@ TEST_CASE("the duration estimated by check is that of a rehearsed session plus t
       simulation::rehearse(protocol, 0, 0, simulation::rehearser(observer::Observer(observer::Parameters{})));
   REQUIRE(check.simulated_sessions == 1);
   CHECK(check.trials.median == rehearsal.trials);
-  // With two intervals per trial nobody explores, so only instructions and breaks are added to the trials'
-  // time.
+  // In a task with two intervals nobody explores the surface. So the estimate adds only instructions and
+  // breaks to the time of the trials.
   const auto order = protocol::block_order(protocol, 0);
   double beside_s = 0;
   for (const auto& [start, trials] : rehearsal.blocks) {

@@ -1,5 +1,5 @@
-// Compares the cue guard with an observer that does whole sessions (cue_brute_force.hpp), and tests its
-// report on protocols with a known leak.
+// Compares the cue guard with a simulated observer in whole sessions (cue_brute_force.hpp), and tests the
+// guard's report on protocols in which a cue is known to reveal the answer.
 #include "station/simulation/cue_guard.hpp"
 
 #include <algorithm>
@@ -122,7 +122,8 @@ TEST_CASE(
 
 namespace {
 
-/// A pair of scenes: the standard depends on one factor, the target on that factor and on the level.
+/// A protocol with a pair of scenes. The standard depends on one factor; the target depends on that factor
+/// and on the level.
 const std::string pair_text = R"(format = "friction-protocol/1"
 [protocol]
 id = "pair"
@@ -246,7 +247,7 @@ TEST_CASE("all trials, including catch trials, are weighted by how often they oc
   // Half of all trials are catch trials, so "right" is correct in 0.5 x 0.75 of all trials, "left" in the
   // others.
   CHECK(accuracy(caught, "always the same key") == Approx(0.625));
-  // The session ends after 12 of its 40 trials; which ones these are is random.
+  // The session ends after 12 of its 40 trials, which are drawn at random.
   const auto cut = replaced(text, block, block + "\ntrials = 12");
   CHECK(accuracy(cut, "always the same key") == Approx(0.75));
 }
@@ -261,7 +262,7 @@ TEST_CASE("if a list of levels is cut short and not shuffled, only its first lev
 
 namespace {
 
-/// A staircase with roving that changes loudness and amplitude more than most levels do.
+/// A staircase with roving. The roving changes the amplitude more than most levels do.
 std::string roved_staircase(int trials) {
   auto text = replaced(pair_text, "kind = \"constant-stimuli\"", "kind = \"up-down\"");
   text = replaced(text, "values = [4.0, 8.0, 16.0]\nrepeats = 8",

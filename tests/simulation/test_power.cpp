@@ -72,8 +72,8 @@ TEST_CASE("the true values are the observer's own parameters, never estimates", 
   REQUIRE((right.truth && right.coverage && right.interval_width));
   CHECK(right.coverage->trials == static_cast<int>(right.estimates.size()));
   CHECK(std::fabs(*right.bias) < 2 * *right.interval_width);
-  // With a deadline of 0.8 s, residual and travel leave 0.3 s for the decision, so the bound is sqrt(0.35 x
-  // 0.3); EZ's boundary a is 0.2 times the bound.
+  // With a deadline of 0.8 s, residual and travel time leave 0.3 s for the decision, so the bound is
+  // sqrt(0.35 x 0.3). The boundary a of EZ-diffusion is 0.2 times the bound.
   const double hurried = std::sqrt(0.35 * 0.3), careful = std::sqrt(0.35 * 1.5);
   CHECK(*find(power, "accuracy - speed", "boundary").truth == Approx(0.2 * (careful - hurried)));
   CHECK(*find(power, "accuracy - speed", "time outside the decision").truth == 0);

@@ -62,8 +62,9 @@ FakeEvdev::~FakeEvdev() {
   if (ends_[1] >= 0) ::close(ends_[1]);
 }
 
-// Afterwards the program that has opened the path holds a descriptor that cannot be read, and is woken to
-// notice that. This does not use dup3(), because a sanitizer would report it as an error of the reader.
+// Replaces the descriptor of the program that has opened the path by one that cannot be read, and wakes this
+// program so that it notices. dup3() is not used, because a sanitizer would report it as an error of the
+// reader.
 void FakeEvdev::unplug() {
   if (path_.empty() || ends_[1] < 0) return;
   const int unreadable = ::open("/", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -80,7 +81,8 @@ bool FakeEvdev::is(int descriptor) const {
   struct stat mine {
   }, found{};
   if (path_.empty()) return descriptor == ends_[0];
-  // Use stat() with the path, because a sanitizer would report fstat() as a use of the reader's descriptor.
+  // stat() with the path is used, because a sanitizer would report fstat() as a use of the reader's
+  // descriptor.
   const auto path = "/proc/self/fd/" + std::to_string(descriptor);
   return ::fstat(ends_[1], &mine) == 0 && ::stat(path.c_str(), &found) == 0 && found.st_dev == mine.st_dev &&
          found.st_ino == mine.st_ino;

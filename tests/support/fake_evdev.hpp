@@ -5,27 +5,28 @@
 #include <string>
 #include <vector>
 
-/// Simulates an input device. libevdev queries its properties and state by ioctl, as it queries the kernel,
-/// and reads the events that the test sends. (The test program's own ioctl() takes precedence over the
-/// library's.)
+/// Simulates an input device. libevdev queries its properties and state by ioctl(), as with a real device,
+/// and reads the events that the test sends. The test program defines its own ioctl(), which replaces that of
+/// the C library.
 class FakeEvdev {
  public:
   /// A panel of 800 x 480 with this many slots for fingers; with 0 slots it cannot tell fingers apart.
   explicit FakeEvdev(int slot_count);
-  /// The same panel at a path, for programs that open their device by its path.
+  /// The same panel, for programs that open a device by its path.
   FakeEvdev(int slot_count, const std::string& path);
   FakeEvdev(const FakeEvdev&) = delete;
   FakeEvdev& operator=(const FakeEvdev&) = delete;
   ~FakeEvdev();
 
-  /// A descriptor of the device, which the caller owns and must close; a device with a path has none.
+  /// A descriptor of the device. The caller owns and must close it. A device with a path has no descriptor
+  /// here.
   int descriptor() const { return ends_[0]; }
   /// Removes a device that has a path; reading it then gives an error.
   void unplug();
   /// Sends an event; time in microseconds.
   void send(long time_us, int type, int code, int value);
 
-  /// Whether the kernel considers the panel touched now, with or without an event that says so.
+  /// Whether the simulated kernel considers the panel touched now, even if no event has said so.
   bool touched = false;
   std::map<int, int> axes;                      ///< current value of each axis
   std::vector<std::map<int, int>> slot_values;  ///< current ABS_MT_... values of each slot

@@ -12,8 +12,8 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-/// The simulated rig's file, changed to simply supported sides and a thicker plate. Its map is nearly the
-/// same but has a closed form, so that a survey is fast.
+/// The file of the simulated rig, changed to simply supported sides and a thicker plate. Its boundary map is
+/// nearly the same but has a closed form, so that surveys of protocols are fast.
 inline std::string quick_rig_source() {
   const auto text =
       turnpoint::system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml");

@@ -5,7 +5,7 @@
 namespace reference {
 
 /// Computes the posterior of a psychometric function by Metropolis sampling, from the formulas of the papers.
-/// Shares only the random numbers with the station's code, not its grid.
+/// Unlike the station, it uses no grid; it shares only the random numbers with the station's code.
 enum class Shape { weibull_dB, normal };
 
 struct Level {
@@ -16,9 +16,9 @@ struct Level {
 /// Sorts the levels and merges equal ones.
 std::vector<Level> merged(std::vector<Level> levels);
 
-/// A prior that is uniform in threshold, logarithm of the slope, lapse rate and guess rate; equal ends fix a
-/// parameter. At both ends of their ranges, the density of the first two falls linearly to 0 over
-/// `falling_share` of the range.
+/// A prior that is uniform in the threshold, the logarithm of the slope, the lapse rate and the guess rate.
+/// If both ends of a range are equal, the parameter is fixed. For threshold and slope, the density falls
+/// linearly to 0 over `falling_share` of the range at each end.
 struct Prior {
   double threshold_low = 0, threshold_high = 1, slope_low = 1, slope_high = 2, lapse_low = 0, lapse_high = 0,
          guess_low = 0, guess_high = 0;
@@ -31,9 +31,9 @@ struct Samples {
   std::vector<double> threshold, slope, lapse, guess, level_75;
 };
 
-/// Draws samples from the posterior: one in five of `steps` steps, after discarding a tenth as many at the
-/// start. Step sizes range from a thousandth of the prior's range to all of it, so that narrow and wide
-/// posteriors need no tuning.
+/// Draws samples from the posterior. It makes `steps` Metropolis steps, after a tenth as many that are
+/// discarded, and keeps every fifth. Step sizes range from a thousandth of the prior's range to all of it, so
+/// that they suit narrow and wide posteriors.
 Samples sample(Shape shape, const std::vector<Level>& data, const Prior& prior, int steps,
                std::uint64_t seed);
 

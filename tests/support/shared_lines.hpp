@@ -4,8 +4,8 @@
 #include "station/lines/guarded_amplifier.hpp"
 #include "station/lines/simulated_lines.hpp"
 
-/// Simulated lines for an amplifier with the real guard. The test can move them, and reads their log at the
-/// end.
+/// Simulated lines for an amplifier with the real guard. The test can change their levels, and read a log of
+/// all changes at the end.
 struct SharedLines : turnpoint::lines::Lines {
   static constexpr int enable = 0, heartbeat = 1, fault = 2, stop = 3, count = 4;
 
@@ -20,7 +20,7 @@ struct SharedLines : turnpoint::lines::Lines {
   std::shared_ptr<turnpoint::lines::SimulatedLines> lines;
 };
 
-/// Opens the lines like those of a real chip: fails while the chip is missing.
+/// Returns a function that opens the lines. Like that of a real chip, it fails while the chip is missing.
 inline turnpoint::lines::OpenLines opener(const std::shared_ptr<turnpoint::lines::SimulatedLines>& lines) {
   return [lines] {
     static_cast<void>(lines->level(0));

@@ -14,7 +14,7 @@ struct Box {
   double left, top, right, bottom;
 };
 
-/// A text that is not rotated, with a box at least as large as the drawn text.
+/// A text that is not rotated, with a box that is at least as large as the drawn text.
 struct Text {
   std::string words, colour;
   double size_px;
@@ -37,7 +37,7 @@ inline double number(const std::string& element, const std::string& name) {
   return text.empty() ? 0 : std::stod(text);
 }
 
-/// All elements of one kind, each as its attributes (for a text also its words).
+/// Returns all elements of one kind. Each is given as its attributes; a text also includes its words.
 inline std::vector<std::string> elements(const std::string& svg, const std::string& kind) {
   std::vector<std::string> found;
   const auto start = "<" + kind + " ";

@@ -86,7 +86,7 @@ TEST_CASE("after dropped events, fingers are in the slots and at the places that
   CHECK(device.slot(0, ABS_MT_TRACKING_ID) == -1);
   CHECK(device.slot(1, ABS_MT_TRACKING_ID) == 6);
   CHECK(device.slot(1, ABS_MT_POSITION_X) == 720);
-  // The kernel does not repeat the slot: the next event belongs to the slot that is now current.
+  // The kernel does not send the slot again, so the next event belongs to the slot that is now current.
   fake.send(30, EV_ABS, ABS_MT_TRACKING_ID, -1);
   fake.send(30, EV_SYN, SYN_REPORT, 0);
   fake.send(40, EV_ABS, ABS_MT_TRACKING_ID, 7);

@@ -20,7 +20,7 @@ constexpr std::int64_t ms = 1'000'000;
 
 TouchDecoder decoder() { return {{0, 799}, {0, 479}}; }
 
-/// Waits for at most ten seconds. The limit only ends the test; it measures nothing.
+/// Waits up to ten seconds until the condition is true. The limit only ends a test that hangs.
 template <typename Condition>
 bool comes(Condition condition) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(10);

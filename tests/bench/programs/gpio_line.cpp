@@ -57,7 +57,7 @@ long long now_ns() {
   return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
 }
 
-// / Waits without sleeping. In a guest on a busy host, even a short sleep can take far too long.
+/// Waits without sleeping. In a guest on a busy host, even a short sleep can take far too long.
 void busy_wait_ns(long long length_ns) {
   for (const auto end = now_ns() + length_ns; now_ns() < end;) {
   }
@@ -86,7 +86,7 @@ int press(const char* file, int ms, int bounces) {
   return 0;
 }
 
-// / Pulls an input up and measures how long it takes until another line is low.
+/// Pulls an input up and measures how long it takes until another line is low.
 int until_low(const char* pull_file, const char* value_file) {
   const int pull = ::open(pull_file, O_WRONLY | O_CLOEXEC), value = ::open(value_file, O_RDONLY | O_CLOEXEC);
   const auto start = now_ns();
