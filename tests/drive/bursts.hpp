@@ -3,7 +3,7 @@
 
 namespace turnpoint::drive {
 
-/// Makes a burst of half a second with one tone on channel 0 at 192 kHz, ramped over 50 ms.
+/// Makes a burst of half a second at 192 kHz: one tone on channel 0 with ramps of 50 ms.
 inline Burst one_tone(double frequency_Hz, double amplitude, double phase_rad = 0) {
   Burst burst;
   burst.length_frames = 96000;

@@ -36,7 +36,7 @@ void called() {
 FakePcm& fake_pcm() { return card; }
 void reset_fake_pcm() { card = {}; }
 
-// Overwrites played samples with silence at once, as alsa-lib does at the station's request.
+// Overwrites samples with silence once they are played. The station asks alsa-lib to do the same.
 void FakePcm::pass(std::int64_t frames) {
   for (std::int64_t n = 0; n < frames; ++n, ++now) {
     std::int32_t sample = 0;

@@ -5,10 +5,10 @@
 
 namespace turnpoint::drive {
 
-/// A sound card in memory, below the station's own ALSA output. In a program that links fake_pcm.cpp, its
-/// functions replace those of alsa-lib, and its clock replaces CLOCK_MONOTONIC. Time passes only when the
-/// test says so or the program waits. In each frame of time it plays one frame of the buffer, or silence if
-/// the buffer is empty.
+/// A simulated sound card, which the station's own ALSA output uses. In a program that links fake_pcm.cpp,
+/// the card's functions replace those of alsa-lib, and its clock replaces CLOCK_MONOTONIC. Time passes only
+/// when the test says so or when the program waits. For each frame of time the card plays one frame of its
+/// buffer, or silence if the buffer is empty.
 struct FakePcm {
   enum class State { prepared, running, xrun, suspended, gone };
 
@@ -31,8 +31,8 @@ struct FakePcm {
   std::function<void()> before_call, before_write;
 
   void pass(std::int64_t frames);
-  /// Stops the device by itself: with an underrun (xrun), a suspend of the machine (suspended), or unplugged
-  /// (gone).
+  /// Makes the device stop by itself: by an underrun (xrun), because the machine is suspended (suspended), or
+  /// because it is unplugged (gone).
   void fail(State how) { state = how; }
   std::int64_t queued() const { return written - played; }
   std::int64_t now_ns() const { return 1'000'000'000 + now * 1'000'000'000 / rate_Hz; }

@@ -6,7 +6,7 @@
 
 namespace turnpoint::drive {
 
-/// Fourier transform in place (radix 2); the size must be a power of two.
+/// Computes the Fourier transform in place (radix 2). The size must be a power of two.
 inline void transform(std::vector<std::complex<double>>& a) {
   const std::size_t n = a.size();
   for (std::size_t i = 1, j = 0; i < n; ++i) {
@@ -37,8 +37,8 @@ inline double bessel_i0(double x) {
   return sum;
 }
 
-/// Levels of the spectrum's bins 0 ... n/2 in dB re full scale; a tone of amplitude 1 on a bin has 0 dB. Uses
-/// a Kaiser window with beta 36: side lobes below -270 dB, main lobe +-12 bins.
+/// Returns the levels of the spectrum's bins 0 ... n/2 in dB re full scale; a tone of amplitude 1 on a bin
+/// has 0 dB. The Kaiser window (beta 36) has side lobes below -270 dB and a main lobe of +-12 bins.
 inline std::vector<double> levels_dB(const std::vector<double>& samples) {
   constexpr double beta = 36;
   const std::size_t n = samples.size();
@@ -56,7 +56,7 @@ inline std::vector<double> levels_dB(const std::vector<double>& samples) {
   return levels;
 }
 
-/// The largest level farther than `guard` bins from all of `bins`.
+/// Returns the largest level that is more than `guard` bins away from all `bins`.
 inline double largest_elsewhere_dB(const std::vector<double>& levels, const std::vector<std::size_t>& bins,
                                    std::size_t guard) {
   double largest = -400;

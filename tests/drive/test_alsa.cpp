@@ -37,7 +37,8 @@ bool opens(const OutputConfig& config) {
   }
 }
 
-// Whether a program that merely asks for an exact rate would accept the device.
+// Opens the device as a program would that checks nothing but the rate. Returns true if alsa-lib accepts the
+// exact rate.
 bool accepts_exact_rate(const char* name, unsigned rate) {
   snd_pcm_t* pcm = nullptr;
   if (snd_pcm_open(&pcm, name, SND_PCM_STREAM_PLAYBACK, SND_PCM_NONBLOCK) < 0) return false;
@@ -78,7 +79,7 @@ TEST_CASE("a resampler behind an allowed plug-in is refused as well", "[drive][a
 
 TEST_CASE("requesting an exact rate is not enough: alsa-lib's plug-ins accept it and resample",
           "[drive][alsa]") {
-  // Negative control of the two tests above: these devices can be opened and do claim to run at 192 kHz.
+  // Negative control for the two tests above: these devices can be opened, and claim to run at 192 kHz.
   for (const char* name :
        {"rated", "rated_linear", "plugged", "file_over_rate", "copy_over_rate", "asym_over_rate",
         "empty_over_rate", "hooks_over_rate", "route_over_rate", "multi_over_rate"}) {

@@ -20,8 +20,8 @@ void steps(DeviceStream& stream, int count) {
   for (int k = 0; k < count; ++k) stream.step();
 }
 
-/// Error, in frames, of the frame that the stream takes to be the current one. The card must be playing, and
-/// the initial silence be over.
+/// Returns the stream's estimate of the current frame minus the frame that the card is playing. The card must
+/// be playing, and the initial silence must be over.
 double error_frames(DeviceStream& stream) {
   const auto& card = fake_pcm();
   const auto next = stream.counters().frames;
@@ -48,11 +48,11 @@ TEST_CASE("before the device has reported its position, its time is unknown", "[
 TEST_CASE("a restart of the device is noticed even if nobody reads the positions for a long time",
           "[drive][clock]") {
   DeviceStream stream(on_fake_card());
-  steps(stream, 5000);  // ten seconds, in which the ring of positions fills up
+  steps(stream, 5000);  // ten seconds: the ring of positions fills up
   fake_pcm().fail(FakePcm::State::xrun);
   fake_pcm().pass(5000);
   stream.step();
-  CHECK_FALSE(stream.time_of(0));  // all positions in the ring are from before the restart
+  CHECK_FALSE(stream.time_of(0));  // the ring contains only positions from before the restart
   steps(stream, 3);
   CHECK(std::abs(error_frames(stream)) <= 1);
   steps(stream, 200);
@@ -76,7 +76,7 @@ TEST_CASE("while the device is missing its time is unknown, and after its return
   steps(stream, 2);
   CHECK(std::abs(error_frames(stream)) <= 1);
   CHECK_FALSE(stream.measured_rate());
-  // The device that has come back runs 400 ppm fast: every 2500th frame takes no time.
+  // After its return the device runs 400 ppm fast: every 2500th frame takes no time.
   std::int64_t due = card.now + 2500;
   card.before_call = [&] {
     if (card.now < due) return;

@@ -7,9 +7,9 @@
 #include "tests/drive/fake_pcm.hpp"
 #include "tests/support/catch.hpp"
 
-// Runs the station's ALSA output, its stream and its trial machine step by step on a sound card in memory.
-// Whether a trial must be void depends on what the card really played, not on what the program believes: the
-// card's samples are compared with those of an uninterrupted synthesis.
+// These tests run the station's ALSA output, its stream and its trial machine step by step on a simulated
+// sound card. Whether a trial must be void depends on what the card really played, not on what the program
+// believes. Therefore the tests compare the card's samples with those of an uninterrupted synthesis.
 
 using namespace turnpoint;
 using namespace turnpoint::drive;
@@ -42,7 +42,8 @@ std::vector<std::int32_t> unbroken(std::span<const PreparedBurst> bursts, const 
   return channel;
 }
 
-/// Number of places where sound rises from silence above a twentieth of its amplitude within 16 frames.
+/// Counts the places where the sound rises within 16 frames from silence to more than a twentieth of its
+/// amplitude.
 int abrupt_onsets(const std::vector<std::int32_t>& heard) {
   int abrupt = 0;
   std::size_t silent = 0;
@@ -64,7 +65,8 @@ int abrupt_onsets(const std::vector<std::int32_t>& heard) {
 
 enum class Mishap { stall, stall_in_write, xrun, suspend, unplug };
 
-/// Two bursts with a pause on a card that has mishaps, and what the stream reported about them.
+/// One run: two bursts with a pause on a card that has mishaps, and what the stream reported about the
+/// bursts.
 struct Run {
   std::vector<Scheduled> scheduled;
   std::vector<PreparedBurst> bursts;
@@ -74,8 +76,8 @@ struct Run {
   bool restarted = false;
   trial::Result result;
   bool told_after_answer = false;  ///< a loss reported after the answer made the trial void
-  /// Time passed between a write and the check whether the device had overtaken the written frames. Whether
-  /// that happened before the write cannot be known, so the block counts as lost.
+  /// True if time passed between a write and the check whether the device had already played past the written
+  /// frames. The stream cannot know whether that happened before the write, so it counts the block as lost.
   bool doubtful = false;
 
   bool both_heard() const { return heard.size() == 2; }
@@ -105,9 +107,9 @@ class Bench {
     config_.output.periods = pick({2, 3, 4, 8});
   }
 
-  /// A trial with `mishaps` of the given kinds, each at a random moment between shortly before the first
-  /// onset and shortly after the last end. A void trial is not silenced here but keeps playing, so that all
-  /// of it can be judged.
+  /// Runs a trial with this number of mishaps of the given kinds. Each happens at a random moment, from
+  /// shortly before the first onset to shortly after the last end. A void trial goes on playing here, so that
+  /// the test can judge all of it.
   Run run(int mishaps, const std::vector<Mishap>& kinds) {
     DeviceStream stream(config_);
     for (int k = 0; k < 4 || stream.clock().pairs < 2; ++k) stream.step();
@@ -258,14 +260,18 @@ Tally judge(int runs, std::uint64_t seed, const std::vector<Mishap>& kinds) {
     const Truth truth = truth_of(run, bench.output());
     INFO("seed " << seed + static_cast<std::uint64_t>(k));
     const bool good = truth.whole && truth.on_time;
-    if (run.both_heard() && !good) FAIL("said to be heard, and was not");
-    if (run.answered() && !good) FAIL("a trial that was not felt whole counts");
-    // A restart invalidates earlier predictions, even if they happen to be right.
+    if (run.both_heard() && !good)
+      FAIL("the stream reported both bursts as heard, but the card did not play them in time");
+    if (run.answered() && !good)
+      FAIL("the trial counts as answered, but the card did not play all of it in time");
+    // A restart makes earlier predictions invalid, even if they happen to be right.
     const bool may_be_void = run.restarted || run.doubtful;
-    if (!run.both_heard() && good && !may_be_void) FAIL("said to have lost frames, and had not");
-    if (!run.answered() && good && !may_be_void) FAIL("a trial that was felt whole is void");
+    if (!run.both_heard() && good && !may_be_void)
+      FAIL("the stream reported lost frames, but the card played all of them in time");
+    if (!run.answered() && good && !may_be_void)
+      FAIL("the trial is void, but the card played all of it in time");
     if (kinds.front() != Mishap::stall_in_write && abrupt_onsets(fake_pcm().heard) != 0)
-      FAIL("a block set in abruptly");
+      FAIL("a block of sound started abruptly");
     tally.void_in_doubt += good && !run.answered() ? 1 : 0;
     ++(good ? tally.whole : truth.whole ? tally.late : tally.broken);
     tally.gaps += static_cast<int>(run.losses.size());

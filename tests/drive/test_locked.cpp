@@ -1,6 +1,6 @@
-// The station may record "memory locked" only if that is true. This test looks in /proc/self/smaps for the
-// audio thread's stack and for all memory that engine and output allocate. They allocate on a thread whose
-// memory is separate from the program's heap.
+// The station may record "memory locked" only if that is true. These tests look up in /proc/self/smaps
+// whether the audio thread's stack is locked, and all memory that the stream and its output allocate. The
+// stream is opened on a thread of its own, so that its memory is separate from the program's heap.
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
@@ -62,7 +62,7 @@ std::vector<Mapping> mappings() {
   return all;
 }
 
-/// Number of bytes from `start` on that are not in a locked mapping.
+/// Returns how many of the `length` bytes from `start` are not in a locked mapping.
 std::size_t unlocked(const std::vector<Mapping>& all, std::uintptr_t start, std::size_t length) {
   std::size_t locked = 0;
   for (const auto& m : all)
@@ -103,7 +103,7 @@ TEST_CASE("if memory is recorded as locked, the audio thread's stack, its blocks
     }
     CHECK(engine > 150'000);
     CHECK(left_out <= 32'768);
-    std::vector<char> other(1 << 20);  // negative control: memory that nobody has locked
+    std::vector<char> other(1 << 20);  // negative control: this memory is not locked
     CHECK(unlocked(all, reinterpret_cast<std::uintptr_t>(other.data()), other.size()) > 0);
   }).join();
 }

@@ -60,7 +60,7 @@ TEST_CASE("the audio thread's code allocates, locks and logs nothing, whatever c
 
 TEST_CASE("writing through alsa-lib allocates, locks and logs nothing", "[drive][realtime][alsa]") {
   ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
-  // alsa-lib protects plug-ins (but never hardware) with its own mutex. Switch that off, so that the null
+  // alsa-lib locks a mutex around plug-ins, but not around hardware. Switch this mutex off, so that the null
   // plug-in behaves like hardware.
   ::setenv("LIBASOUND_THREAD_SAFE", "0", 1);
   OutputConfig config;

@@ -40,8 +40,8 @@ TEST_CASE(
 
 TEST_CASE("a burst whose check takes longer than the buffer lasts begins later, and is not missed",
           "[drive][realtime][threads]") {
-  // The amplitudes add up to more than full scale. Only rendering all 10 s shows that the peak stays below
-  // it.
+  // The amplitudes add up to more than full scale. Only by rendering all 10 s can the stream find that the
+  // peak stays below full scale.
   Burst burst = one_tone(20000, 0.07);
   burst.tones.count = 16;
   for (int k = 1; k < 16; ++k)
@@ -49,7 +49,7 @@ TEST_CASE("a burst whose check takes longer than the buffer lasts begins later, 
   burst.length_frames = 1920000;
   const auto stream = open_realtime({});
   burst.start_frame = stream->earliest_frame();
-  // checking it took so long that its start frame has passed
+  // the check takes so long that the start frame is already past
   CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);
   const auto scheduled = stream->schedule_soon(burst);
   CHECK(scheduled.start_frame > burst.start_frame);

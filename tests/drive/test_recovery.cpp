@@ -75,7 +75,7 @@ TEST_CASE("more than three underruns within a minute are too many", "[drive][rec
 
 TEST_CASE("a device whose real rate differs from the nominal rate is detected within seconds",
           "[drive][rate]") {
-  // The device updates its position only every `tick_s`, so a reported position can be that old.
+  // The device updates its position only every `tick_s` seconds, so a reported position can be that old.
   const auto measured = [](double real_rate_Hz, double tick_s, double seconds) {
     RateCheck check(192000);
     for (int i = 0; i < seconds / 0.002; ++i) {

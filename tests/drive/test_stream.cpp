@@ -182,14 +182,15 @@ TEST_CASE(
   stream->change(id, louder);
   Burst second = one_tone(20500, 0.45);
   second.start_frame = 60'000;
-  // 0.6 + 0.45 > 1, although the first burst has not reached 0.6 yet
+  // refused because 0.6 + 0.45 > 1, although the first burst has not reached 0.6 yet
   CHECK_THROWS_AS(stream->schedule(second), BurstRefused);
   second.tones.tones[0].amplitude = 0.39;
   stream->schedule(second);
   louder.at_frame = 80'000;
   louder.to.tones[0].amplitude = 0.65;
-  CHECK_THROWS_AS(stream->change(id, louder), BurstRefused);  // too loud together with the second burst
-  // Once the second burst is over, the change is allowed.
+  CHECK_THROWS_AS(stream->change(id, louder),
+                  BurstRefused);  // it would be too loud together with the second burst
+  // The change is allowed once the second burst is over.
   stream->advance(200'000);
   louder.at_frame = 250'000;
   CHECK_NOTHROW(stream->change(id, louder));
@@ -208,7 +209,8 @@ TEST_CASE("after a live change makes a burst louder, other bursts may be only th
   stream->change(id, Change{30'000, 9600, one_tone(20000, 0.7).tones});
   Burst second = one_tone(20500, 0.45);
   second.start_frame = 60'000;
-  CHECK_THROWS_AS(stream->schedule(second), BurstRefused);  // 0.7 + 0.45 > 1; beside 0.2 it would fit
+  CHECK_THROWS_AS(stream->schedule(second),
+                  BurstRefused);  // 0.7 + 0.45 > 1; without the change, 0.2 + 0.45 fits
   second.tones.tones[0].amplitude = 0.29;
   stream->schedule(second);
   stream->advance(400'000);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int rate = 192000;
 
-// Renders channel 0 of `frames` frames from frame `from` on, in blocks of `block` frames.
+// Renders `frames` frames from frame `from` on, in blocks of `block` frames, and returns channel 0.
 std::vector<double> rendered(Synth& synth, std::int64_t from, std::size_t frames, std::size_t block = 384) {
   std::vector<double> out, samples;
   for (std::size_t done = 0; done < frames; done += block) {
@@ -37,7 +37,7 @@ std::vector<double> rendered(const Burst& burst, const Kernels& kernels = best_k
   return rendered(synth, 0, static_cast<std::size_t>(burst.start_frame + burst.length_frames));
 }
 
-// A long burst of eight tones; spectra are computed from its middle part.
+// A long burst of eight tones. Spectra are computed from the middle of it.
 Burst eight_tones() {
   Burst burst;
   burst.length_frames = 300000;
@@ -115,8 +115,8 @@ TEST_CASE("samples do not depend on how the stream is divided into blocks", "[dr
 }
 
 TEST_CASE("the phase is exact after ten days", "[drive][synth]") {
-  // 10 days at 192 kHz are 165 888 000 000 frames. A tone of 20 kHz has then completed whole cycles, so its
-  // phase must be exact to the last bit.
+  // 10 days at 192 kHz are 165 888 000 000 frames. In this time a tone of 20 kHz makes a whole number of
+  // cycles, so its phase must be exact to the last bit.
   Burst burst = one_tone(20000, 0.5, 1.0);
   Synth late({rate, 2, 24});
   burst.length_frames = 170'000'000'000;
@@ -225,8 +225,9 @@ TEST_CASE("successive stops continue from the current gain, and each can only br
   render(14'000);
   synth.stop(0, 0, {9'600});
   render(2'000);
-  synth.stop(0, 36'500, {1'000});  // takes effect at frame 36 500; earlier stops continue until then
-  synth.stop(0, 0, {48'000});      // would end later than the others, so it changes nothing
+  synth.stop(0, 36'500,
+             {1'000});         // this stop takes effect at frame 36 500; until then the earlier stops go on
+  synth.stop(0, 0, {48'000});  // this stop would end later than the others, so it changes nothing
   render(4'000);
   double largest_step = 0;
   for (std::size_t k = 20'000; k < samples.size(); ++k) {

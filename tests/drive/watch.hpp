@@ -4,9 +4,9 @@
 
 namespace turnpoint::drive {
 
-/// Counts what an audio thread must not do: allocate or free memory, lock mutexes, write text.
-/// violations_in() counts such calls of the calling thread while `function` runs. The C library's functions
-/// are intercepted, so calls from alsa-lib count as well.
+/// Counts calls that an audio thread must not make: allocating or freeing memory, locking mutexes, writing
+/// text. violations_in() counts these calls of the current thread while `function` runs. The functions of the
+/// C library are intercepted, so calls from alsa-lib count as well.
 void begin_watch() noexcept;
 int end_watch() noexcept;
 

@@ -9,7 +9,7 @@
 
 #include "station/drive/engine.hpp"
 
-/// A real stream for which the test can simulate faults of the device.
+/// Faults that a FaultyStream reports in addition to those of the real stream.
 struct Misfortunes {
   std::mutex mutex;
   std::optional<turnpoint::drive::Event> event;

@@ -1,4 +1,4 @@
-// Everything that live sessions in real time need: the person in the room, the protocol, and simulated lines.
+// What tests of live sessions in real time need: people in the room, a protocol, and simulated GPIO lines.
 #pragma once
 #include <algorithm>
 #include <functional>
@@ -61,7 +61,8 @@ procedures = ["levels"]
 )";
 }
 
-/// The person in the room. show() gets each page on the session's thread, and may push inputs and move lines.
+/// The people in the room. The session's thread calls show() with each page; `reacts` may then push inputs
+/// and change lines.
 struct Room : session::Display {
   session::Inputs inputs;
   std::shared_ptr<lines::SimulatedLines> lines = std::make_shared<lines::SimulatedLines>(SharedLines::count);
@@ -84,7 +85,7 @@ struct Room : session::Display {
     reacts(page);
   }
 
-  /// Acts like a cooperative participant, and an operator who clears every fault.
+  /// Reacts like a cooperative participant, and like an operator who clears every fault.
   void cooperate(const session::Page& page) {
     if (page.kind == PageKind::instructions || page.kind == PageKind::paused) push(InputKind::next);
     if (page.kind == PageKind::stimulus) press(0);

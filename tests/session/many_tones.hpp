@@ -1,6 +1,6 @@
-// A protocol whose two intervals take different times to prepare: one has one tone, the other twenty. The
-// bound on the peak of the masking noise is above full scale, so the station must render each burst to find
-// its real peak.
+// A protocol whose two intervals take different times to prepare, because one has one tone and the other
+// twenty. With masking noise, the bound on the peak is above full scale. The station must therefore render
+// each burst to find its real peak.
 #pragma once
 #include <fstream>
 #include <iterator>
@@ -66,7 +66,8 @@ inline std::string rig_text() {
   return std::string(std::istreambuf_iterator<char>(file), {}) + "\n[noise]\nchannel = 2\nrms = 0.15\n";
 }
 
-/// Returns true if the burst passed only because its peak was rendered; its bound is above full scale.
+/// Returns true if the burst was accepted only because its peak was rendered: the bound on its peak is above
+/// full scale.
 inline bool peak_was_rendered(const drive::PreparedBurst& burst) {
   const auto limit = drive::SynthLimits{}.peak;
   return drive::peak_bound(burst)[2] > limit && burst.peak[2] <= limit;

@@ -38,7 +38,7 @@ struct Folder {
   ~Folder() { fs::remove_all(path); }
 };
 
-/// Records the pages with a slider, and simulates a crash after a number of pages.
+/// Records the pages with a slider. It can simulate a crash after a number of pages.
 struct Pages : session::Display {
   int left = std::numeric_limits<int>::max();
   std::vector<session::Page> sliders;
@@ -113,7 +113,8 @@ TEST_CASE("a protocol file with a slider gives rows with each setting and the mo
     CHECK(trial.tones[1].scene_index == 1);
     CHECK(trial.tones[1].onset_frame >= trial.tones[0].onset_frame + trial.tones[0].length_frames);
   }
-  // 18 settings with an SD of 2 / 0.674: the mean lies within four standard errors of the bias.
+  // The SD of a setting is 2 / 0.6745, so the mean of 18 settings lies within four standard errors of the
+  // bias.
   CHECK(sum / 18 == Approx(4).margin(4 * 2 / 0.6745 / std::sqrt(18.0)));
   REQUIRE(summary.estimates.size() == 1);
   CHECK(summary.estimates[0].parameter == "pse");
@@ -165,7 +166,7 @@ struct KeptStream : FaultyStream {
   std::vector<drive::ToneSet>& glides;
 };
 
-/// A tone as it was played, or as the operator's page shows it.
+/// A tone that was played, or that the operator's page shows.
 struct Tone {
   double frequency_Hz = 0, full_scale = 0;
 };
@@ -178,7 +179,7 @@ Tone read_tone(const desk::LiveState& state) {
   return {};
 }
 
-/// An operator who looks at the live view whenever the session reports something.
+/// An operator who looks at the live view each time the session reports something.
 struct Operator : session::Monitor {
   explicit Operator(const session::Setup& setup)
       : view(setup.protocol, setup.rig, [this](desk::LiveState state) {
@@ -201,8 +202,7 @@ struct Operator : session::Monitor {
   }
   void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override {}
 
-  /// Waits for a new state of the live view, for at most ten seconds. The limit only ends the test; it
-  /// measures nothing.
+  /// Waits up to ten seconds for a new state of the live view. The limit only ends a test that hangs.
   void look(const std::function<void()>& tell) {
     std::unique_lock lock(mutex);
     const auto before = told;
@@ -210,7 +210,7 @@ struct Operator : session::Monitor {
     tell();
     lock.lock();
     if (!changed.wait_for(lock, std::chrono::seconds(10), [&] { return told > before; }))
-      throw std::runtime_error("the view shows nothing new");
+      throw std::runtime_error("the live view did not change within ten seconds");
   }
 
   std::function<void()> next_move;

@@ -15,9 +15,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Tests what a session schedules, with the station's real stream and output on a sound card in memory: when
-// intervals are really played (a marker on the second channel shows their onset), and whole sessions on the
-// card's clock.
+// These tests run the station's real stream and output on a simulated sound card. Some find out when
+// intervals are really played, by a marker on the second channel; others run whole sessions on the card's
+// clock.
 
 using namespace turnpoint;
 using drive::fake_pcm;
@@ -48,7 +48,7 @@ void steps(drive::DeviceStream& stream, int count) {
   for (int k = 0; k < count; ++k) stream.step();
 }
 
-/// The frames of the card at which a pulse of the marker was played.
+/// Returns the frames at which the card played a pulse of the marker.
 std::vector<std::int64_t> pulses() {
   std::vector<std::int64_t> found;
   const auto& heard = fake_pcm().heard;
@@ -57,7 +57,7 @@ std::vector<std::int64_t> pulses() {
   return found;
 }
 
-/// The next trial of a protocol, planned and checked as a session does.
+/// The next trial of a protocol, planned and checked as in a session.
 struct Trial {
   Trial(const rig::Rig& rig, const protocol::Protocol& protocol)
       : director(protocol, 0, 3), plans(rig, protocol, 3), spec(*director.next()) {}
@@ -161,7 +161,8 @@ TEST_CASE(
   fake_pcm().fail(drive::FakePcm::State::gone);
   fake_pcm().present = false;
   steps(stream, 3);
-  // The time of silence is after the onset, so the trial's record includes the stimulus up to now.
+  // The surface counts as silent only from now on, so that the trial's record includes the stimulus up to
+  // now.
   const auto now_ns = fake_pcm().now_ns();
   const auto silent_ns = session::ramp_down(stream, presented, now_ns);
   CHECK(silent_ns > onset.time_ns);
@@ -179,7 +180,7 @@ using terms::FaultKind;
 
 constexpr std::int64_t kRate_Hz = 192000;
 
-/// A real stream that advances whenever the session polls it, so that a session takes as long as the card
+/// A real stream that advances each time the session polls it. The session then takes as long as the card
 /// plays.
 struct SteppedStream : drive::DeviceStream {
   SteppedStream(const drive::StreamConfig& config, const bool& holds, const std::function<void()>& then)
@@ -188,7 +189,8 @@ struct SteppedStream : drive::DeviceStream {
   std::optional<drive::Event> poll() override {
     step();
     after_step();
-    if (fake_pcm().now > 300 * kRate_Hz) throw std::runtime_error("the session waits for ever");
+    if (fake_pcm().now > 300 * kRate_Hz)
+      throw std::runtime_error("the session did not end within 300 s of the card's time");
     auto event = DeviceStream::poll();
     if (event && event->kind == drive::EventKind::burst_heard) {
       held.push_back(*event);
@@ -205,7 +207,7 @@ struct SteppedStream : drive::DeviceStream {
   std::deque<drive::Event> held;
 };
 
-/// An amplifier with the guard's rules on the card's clock, without a thread of its own.
+/// An amplifier that follows the guard's rules on the card's clock. It has no thread of its own.
 struct RuledAmplifier : drive::Amplifier {
   using Answer = std::optional<lines::Guard::Refusal>;
   static Refusal refusal(const Answer& why) {
@@ -308,8 +310,7 @@ TEST_CASE(
   CHECK(trials[0].outcome == terms::Outcome::fault);
   const auto stimuli = live_room::events_of(card.setup.database, card.summary, "stimulus");
   REQUIRE(stimuli.size() == 3);
-  // Compares the recorded stimulation, in frames from the onset, with what the card really played in that
-  // time.
+  // Compare the recorded duration of stimulation, in frames from the onset, with what the card really played.
   const auto onset = (stimuli[0].time_ns - 1'000'000'000) * kRate_Hz / 1'000'000'000;
   const auto booked = std::stod(stimuli[0].value) * static_cast<double>(kRate_Hz);
   const auto& heard = fake_pcm().heard;
@@ -320,8 +321,8 @@ TEST_CASE(
   const auto played = static_cast<double>(lost_at - onset);
   CHECK(std::any_of(end - 20, end, sounds));
   CHECK(std::abs(booked - played) <= 384);  // the station reads the converter's position once per period
-  // There is one page before the first arming, and further pages only for this fault, however long the repair
-  // takes.
+  // There is one fault page before the first arming. All further fault pages are for this fault, however long
+  // the repair takes.
   REQUIRE(card.faults.size() >= 2);
   CHECK(card.faults.front() == FaultKind::disarmed);
   CHECK(std::count(card.faults.begin() + 1, card.faults.end(), FaultKind::converter_gone) ==
@@ -353,7 +354,7 @@ TEST_CASE(
 TEST_CASE("a converter that does not report its position gets no stimulus", "[session][card][fault]") {
   CardSession card;
   card.reacts = [&](const session::Page& page) {
-    // After the restart the station needs new positions of the card, which it does not get.
+    // After the restart the station needs new positions of the card, but the card reports none.
     if (page.kind == PageKind::instructions) fake_pcm().fail(drive::FakePcm::State::xrun);
     if (page.kind == PageKind::instructions) fake_pcm().stamps = false;
     if (page.kind == PageKind::fault) fake_pcm().stamps = true;
@@ -374,8 +375,8 @@ TEST_CASE("late reports about a repeated trial do not count for the next one", "
       card.room.push(InputKind::repeat);
     }
     if (page.kind == PageKind::cue && card.room.stimuli == 1) card.holding = false;
-    // From the second stimulus on, the card no longer reports its position, so that what was played stays
-    // unknown.
+    // From the second stimulus on, the card no longer reports its position, so the station cannot know what
+    // was played.
     if (page.kind == PageKind::stimulus && card.room.stimuli == 2) fake_pcm().stamps = false;
     if (page.kind == PageKind::fault) fake_pcm().stamps = true;
   };

@@ -1,7 +1,7 @@
-// Each fault that can switch the amplifier off is caused where it arises, and followed to the page that
-// explains it. The trial must be void, the line must be low before the page is shown, and the trial must be
-// repeated once the operator has cleared the fault. Faults of touch panel and disk are tested in
-// tests/ui/tst_faults.qml.
+// For each fault that can switch the amplifier off, a test causes it at its source and checks the page that
+// explains it. The trial must be void, the enable line must be low before the page is shown, and the trial
+// must be repeated after the operator has cleared the fault. tests/ui/tst_faults.qml tests faults of the
+// touch panel and the disk.
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
@@ -31,7 +31,7 @@ struct BrokenLines : SharedLines {
   std::atomic<bool>& broken;
 };
 
-/// A room in which one fault happens during the first stimulus.
+/// Runs a session in which one fault happens during the first stimulus.
 struct Mishap {
   TemporaryFolder folder;
   session::Setup setup = live_setup(folder / "a.sqlite");
@@ -97,8 +97,8 @@ struct Mishap {
   session::Page runs() { return runs(devices()); }
 };
 
-/// Waits until the guard has switched off, for at most ten seconds. The limit only ends the test; it measures
-/// nothing.
+/// Waits up to ten seconds until the guard has switched the amplifier off. The limit only ends a test that
+/// hangs.
 void until_low(const Room& room) {
   const auto end_ns = system::monotonic_ns() + 10'000'000'000;
   while (room.lines->level(SharedLines::enable) && system::monotonic_ns() < end_ns) std::this_thread::yield();

@@ -13,8 +13,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Tests when intervals reach the surface, according to the records of simulated sessions, for buffers of any
-// length.
+// Tests when intervals reach the surface, for buffers of different lengths. The times come from the records
+// of simulated sessions.
 
 using namespace turnpoint;
 
@@ -54,7 +54,7 @@ std::vector<records::TrialRow> session_of(const std::string& protocol, const Buf
   return trials;
 }
 
-/// The first frame of each interval of a trial.
+/// Returns the first frame of each interval of a trial.
 std::map<int, std::int64_t> onsets(const records::TrialRow& trial) {
   std::map<int, std::int64_t> first;
   for (const auto& tone : trial.tones) first.try_emplace(tone.interval_index, tone.onset_frame);
@@ -117,8 +117,8 @@ TEST_CASE("the converter's delay is part of every stored onset", "[session][inte
 }
 
 TEST_CASE("simulated sessions include the latency of the rig's buffer", "[session][intervals]") {
-  // A move of the slider reaches the surface one buffer later, so the onset of the last setting is later by
-  // the difference of the buffers.
+  // A move of the slider reaches the surface one buffer later. With a longer buffer, the last onset is
+  // therefore later by the difference between the buffers.
   const auto short_ = session_of(shipped("boundary-adjustment"), kBuffers[0], 0),
              long_ = session_of(shipped("boundary-adjustment"), kBuffers[2], 0);
   REQUIRE(short_.size() == long_.size());
@@ -139,7 +139,7 @@ TEST_CASE("on the virtual clock, a trial that follows an aborted one waits until
           "[session][intervals]") {
   const auto stream =
       session::stream_of(rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml"));
-  // Three intervals at almost full scale: nothing else could play at the same time.
+  // Three intervals at almost full scale, so that nothing else can be played at the same time.
   drive::Burst interval;
   interval.length_frames = 192000;
   interval.ramp.frames = 3840;

@@ -11,9 +11,9 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Runs live sessions in real time with a person at buttons, an operator, and the guard on simulated lines.
-// The sound output is alsa-lib's null device (allowed as a plug-in) or no device at all. Checks of the
-// amplifier read the log of its line.
+// These tests run live sessions in real time, with a participant who presses buttons, an operator, and the
+// guard on simulated lines. The sound output is alsa-lib's null device, which is allowed as a plug-in, or no
+// device at all. The tests check the amplifier by the log of its enable line.
 
 using namespace turnpoint;
 using namespace turnpoint::live_room;
@@ -49,7 +49,7 @@ TEST_CASE("a live session runs from the operator's arming to answers by buttons,
                off_ns =
                    on_ns + static_cast<std::int64_t>(1e9 * std::strtod(stimuli[k].value.c_str(), nullptr));
     CHECK(enables[2 * k].level == 1);
-    // However slow the disk is, `presented` is stored durably before the amplifier is enabled.
+    // The event `presented` must be stored durably before the amplifier is enabled, however slow the disk is.
     CHECK(enables[2 * k].time_ns > presented[k].time_ns);
     CHECK(enables[2 * k].time_ns < on_ns - 20'000'000);
     CHECK(enables[2 * k + 1].level == 0);
@@ -77,7 +77,7 @@ TEST_CASE("the amplifier is never enabled before the operator arms it", "[sessio
   const auto& end = room.pages.back();
   CHECK(end.kind == PageKind::end);
   CHECK(end.trials_done == 0);
-  CHECK(end.trials_total == 2);  // the number of planned trials, not of finished ones
+  CHECK(end.trials_total == 2);  // the number of planned trials, not of completed ones
 }
 
 TEST_CASE(
@@ -154,7 +154,8 @@ TEST_CASE("faults that occur while a fault page is shown are cleared together wi
   room.reacts = [&](const auto& page) {
     if (page.kind == PageKind::stimulus && room.stimuli == 1) return room.push(InputKind::fault);
     if (page.kind == PageKind::fault && room.stimuli == 1 && !std::exchange(pressed, true)) {
-      CHECK(page.amplifier.empty());  // this fault does not disarm, so the page offers only Continue
+      // this fault does not disarm the amplifier, so the page offers only Continue
+      CHECK(page.amplifier.empty());
       return room.lines->set(SharedLines::stop, true, system::monotonic_ns());
     }
     if (page.kind == PageKind::fault && pressed && room.lines->level(SharedLines::stop)) {
@@ -262,10 +263,10 @@ TEST_CASE("the interval between trials is lengthened to keep the limit of duty, 
           "[session][live]") {
   const TemporaryFolder folder;
   auto setup = live_setup(folder / "a.sqlite");
-  setup.rig.limits.duty = 0.04;  // 2.4 s per minute: enough for one stimulus of 2 s, not for two
+  setup.rig.limits.duty = 0.04;  // 2.4 s per minute, enough for one stimulus of 2 s only
   Room room;
   room.reacts = [&](const auto& page) {
-    if (page.kind == PageKind::stimulus) return;  // explore until the end, and answer afterwards
+    if (page.kind == PageKind::stimulus) return;  // explore until the stimulus ends, and answer afterwards
     if (page.kind == PageKind::response) return room.press(1);
     if (page.kind == PageKind::interval && room.stimuli == 1) return room.push(InputKind::stop);
     room.cooperate(page);
@@ -275,7 +276,8 @@ TEST_CASE("the interval between trials is lengthened to keep the limit of duty, 
   // The same participant starts a new session at once. The exposure of the first session must count, because
   // it is in the database.
   Room again;
-  std::jthread stops;  // Declared after the room, so that the thread ends before the room is destroyed.
+  // This is declared after the room, so that its thread ends before the room is destroyed.
+  std::jthread stops;
   again.reacts = [&](const auto& page) {
     if (page.kind == PageKind::instructions) {
       again.push(InputKind::next);

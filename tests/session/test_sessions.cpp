@@ -66,7 +66,7 @@ struct Watch : session::Monitor {
   }
 };
 
-/// Simulates a crash by throwing after a number of pages.
+/// Simulates a crash: it throws an exception after a number of pages.
 struct Cut : session::Display {
   int pages;
   explicit Cut(int n) : pages(n) {}
@@ -225,7 +225,8 @@ TEST_CASE("a session log is not continued with a different protocol text", "[ses
 }
 
 TEST_CASE("a session log is not continued if factors would be combined in another way", "[session]") {
-  // With the levels of a balanced factor in another order, the staircase is the same but the marks are not.
+  // If the levels of a balanced factor are in another order, the staircase stays the same but the marks
+  // change.
   const Folder folder;
   Cut cut(60);
   session::Inputs inputs;

@@ -13,7 +13,8 @@ std::atomic<std::int64_t> left = std::numeric_limits<std::int64_t>::max();
 sqlite3_vfs* real = nullptr;
 sqlite3_vfs shim;
 int (*real_write)(sqlite3_file*, const void*, int, sqlite3_int64) = nullptr;
-/// Databases and journals have different sets of methods, but the same function writes for both.
+/// SQLite has different method tables for databases and journals. The same write function replaces the one in
+/// both.
 std::map<const sqlite3_io_methods*, sqlite3_io_methods> methods;
 
 int write(sqlite3_file* file, const void* data, int size, sqlite3_int64 offset) {
@@ -22,7 +23,7 @@ int write(sqlite3_file* file, const void* data, int size, sqlite3_int64 offset) 
   return real_write(file, data, size, offset);
 }
 
-/// Opens a file with the real methods, except for writing.
+/// Opens a file with SQLite's own methods, but replaces the method that writes.
 int open(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, int* out_flags) {
   const int code = real->xOpen(real, name, file, flags, out_flags);
   if (code != SQLITE_OK || file->pMethods == nullptr) return code;

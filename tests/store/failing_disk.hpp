@@ -1,9 +1,9 @@
 #pragma once
 #include <cstdint>
 
-/// Makes SQLite write to a disk that fills up. While an object exists, connections are opened on it by
-/// default; other operations go to the real file system. Only one object may exist at a time; bytes_left()
-/// and space_again() may be called from any thread.
+/// Makes SQLite write to a simulated disk that fills up. While an object exists, new connections use this
+/// disk by default; everything except writing goes to the real file system. Only one object may exist at a
+/// time. bytes_left() and space_again() may be called from any thread.
 class FailingDisk {
  public:
   FailingDisk();

@@ -20,7 +20,7 @@ struct Change {
   bool truncates = false;
 };
 
-/// The durable content of a file, and the writes that are still only in the cache.
+/// The durable content of a file, and the writes that are so far only in the disk's cache.
 struct Platter {
   std::string durable;
   std::vector<Change> waiting;
@@ -33,7 +33,7 @@ std::map<std::string, Platter> platters;
 std::map<sqlite3_file*, std::string> names;
 std::function<void()> hook;
 LossyDisk::Syncs mode;
-// The real methods. The functions for writing, truncating, syncing and closing are the same for all files.
+// SQLite's own methods. Those for writing, truncating, syncing and closing are the same for all files.
 const sqlite3_io_methods* any_real = nullptr;
 
 void apply(std::string& bytes, const Change& change) {

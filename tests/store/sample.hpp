@@ -127,10 +127,11 @@ inline std::string bytes_of(const std::string& path) {
   return all.str();
 }
 
-/// A connection for the test that bypasses the store's access rules.
+/// Opens a connection with which a test bypasses the access rules of the store.
 inline Database raw(const std::string& path) { return Database(path, Database::Access::read_write); }
 
-/// The kind and message of the error that `action` throws; ErrorKind io and "" if it throws nothing.
+/// Returns the kind and message of the error that `action` throws. If it throws nothing, returns
+/// ErrorKind::io and "".
 template <class Action>
 std::pair<ErrorKind, std::string> failure(Action&& action) {
   try {

@@ -22,7 +22,8 @@ using namespace turnpoint::store;
 
 namespace {
 
-/// All problems that `turnpoint verify` finds in pages, references, and each session's chain of checksums.
+/// Returns all problems that `turnpoint verify` finds in the database's pages, its references, and the chain
+/// of checksums of each session.
 std::vector<std::string> problems_of(const std::string& db) {
   Database database(db, Database::Access::read_only);
   std::vector<std::string> problems;
@@ -50,7 +51,7 @@ void make(const std::string& db) {
   log = SessionLog(std::move(log));
 }
 
-/// Removes the triggers that protect rows, as somebody with an SQLite shell could do.
+/// Opens the database and removes the triggers that protect rows, as anybody with an SQLite shell could.
 Database unguarded(const std::string& db) {
   auto database = sample::raw(db);
   std::vector<std::string> triggers;
@@ -82,7 +83,7 @@ struct Damage {
 
   std::uint64_t below(std::uint64_t n) { return random() % n; }
 
-  /// An SQL condition that selects one random row of the table.
+  /// Returns an SQL condition that selects one random row of the table.
   std::string some_row(Database& database, const std::string& table, const std::string& key) {
     const auto count = database.integer("SELECT count(*) FROM " + table);
     return "(" + key + ") = (SELECT " + key + " FROM " + table + " ORDER BY " + key + " LIMIT 1 OFFSET " +
@@ -100,7 +101,7 @@ struct Damage {
       while (rows.step()) columns.push_back(rows.text(0));
     }
     const auto& column = columns[below(columns.size())];
-    // a row number, which is not protected because merging assigns new ones
+    // the checksums leave out this row number, because merging assigns new ones
     if (column == "trial_id") return false;
     const auto row = some_row(database, table, key);
     Statement value(database, "SELECT " + column + " FROM " + table + " WHERE " + row);
@@ -123,7 +124,7 @@ struct Damage {
     return run(update);
   }
 
-  /// Changes a value so that the schema still allows it, and only the chain of checksums can detect the
+  /// Changes a value to another one that the schema allows. Only the chain of checksums can detect this
   /// change.
   bool edit(Database& database) {
     const std::vector<std::string> edits = {

@@ -1,5 +1,5 @@
-// Tests backups, restored files and withdrawn participants: which files belong to which database, and which
-// may be replaced.
+// Tests of backing up, restoring and withdrawing: which files belong to which database, and which files may
+// be replaced.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,7 +23,8 @@ SessionStart at_station(const std::string& participant, const std::string& stati
   return start;
 }
 
-/// Leaves files as a killed session does: the database, and a log (WAL) that contains some of its pages.
+/// Leaves the files that a killed session leaves: the database, and a write-ahead log that contains some of
+/// its pages.
 void leave_log(const std::string& db) {
   auto raw = sample::raw(db);
   raw.execute("CREATE TABLE filler (a); INSERT INTO filler SELECT randomblob(9000) FROM event");
@@ -32,7 +33,7 @@ void leave_log(const std::string& db) {
 
 void damage(const std::string& db) { fs::resize_file(db, 6000); }
 
-/// Gives a backup the date of a computer whose clock is years ahead.
+/// Renames a backup as if a computer had made it whose clock is years ahead.
 void postdate(const std::string& backup) {
   const auto at = backup.rfind("-20");
   REQUIRE(at != std::string::npos);
@@ -73,7 +74,7 @@ TEST_CASE(
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4);
   backup(db, {dir, 9});
-  fs::rename(db, db + ".restored");  // as after the first of the two renames of a restore
+  fs::rename(db, db + ".restored");  // the state between the two renames of a restore
   CHECK(sample::failure([&] { sample::session(db, 1); }).first == ErrorKind::missing);
   CHECK(restore_backup(db, {dir, ""}).trials == 4);
   CHECK_FALSE(fs::exists(db + ".restored"));
@@ -301,7 +302,7 @@ TEST_CASE("the same code at two stations stands for two people until somebody jo
   CHECK(sample::failure([&] { withdraw(a, {"P01", "", "", ""}); }).first == ErrorKind::refused);
   CHECK(join(a, "P01@a", "P07") == "P01@a");
   CHECK(persons() == std::vector<std::string>{"P01@a", "P01@a", "P01@b"});
-  // The joined person's sessions continue to be numbered, at any station.
+  // Numbering of the joined person's sessions continues at any station.
   const auto id = sample::session(a, 1, at_station("P01", "a"));
   CHECK(read_session(a, id).session.session_index == 2);
   CHECK(join(a, "P01@a", "P07", Relation::two_people) == "P01@a");
@@ -322,7 +323,7 @@ TEST_CASE(
   SECTION("one of two people") {
     CHECK(withdraw(a, {"P01@b", "", "", ""}).trials == 3);
     CHECK(list_sessions(a).size() == 2);
-    // The P01 of station a has not withdrawn, so a new session is allowed.
+    // The other P01, of station a, has not withdrawn and may do another session.
     CHECK(sample::session(a, 1, at_station("P01", "a")).size() == 36);
     CHECK(sample::failure([&] { sample::session(a, 1, at_station("P01", "b")); }).first ==
           ErrorKind::refused);
@@ -354,5 +355,5 @@ TEST_CASE("participants whose codes BIDS cannot distinguish get different labels
   for (const auto& entry : fs::directory_iterator(folder / "one/two-boundaries"))
     subjects += entry.path().filename().string().rfind("sub-", 0) == 0 ? 1 : 0;
   CHECK(subjects == 5);
-  export_data(db, folder / "one", options);  // a second export gives participants the same labels
+  export_data(db, folder / "one", options);  // a second export must give participants the same labels
 }

@@ -1,5 +1,5 @@
-// Tests the trial run of a restore, the note about the last backup for the start page, and backups that
-// require a separate disk.
+// Tests of the restore drill (a trial run of a restore), of the note about the last backup that the start
+// page reads, and of backups that require a separate disk.
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The names of the files in the folder, except for those that SQLite keeps beside a database while it is
-/// read.
+/// Returns the names of the files in the folder, without those that SQLite keeps beside a database while
+/// reading it.
 std::vector<std::string> names_in(const std::string& folder) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder))
@@ -160,7 +160,7 @@ TEST_CASE("a backup that requires a separate disk is refused if none is mounted"
   }, build{};
   if (::stat("/dev/shm", &memory) != 0 || ::stat(TURNPOINT_BINARY_DIR, &build) != 0 ||
       memory.st_dev == build.st_dev) {
-    WARN("/dev/shm is no file system of its own here");
+    WARN("part of this test was skipped: /dev/shm is not a separate file system here");
     return;
   }
   const auto dir = "/dev/shm/turnpoint-" + new_uuid(), other = TURNPOINT_BINARY_DIR "/drill-" + new_uuid();

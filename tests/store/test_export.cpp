@@ -62,7 +62,7 @@ TEST_CASE("trials.csv has all fixed columns in order, and the factors at their p
 
 namespace {
 
-/// A session in which no two fields of a row have the same value, so that swapped columns are detected.
+/// Makes a session in which no two fields of a row have equal values, so that swapped columns are detected.
 std::string session_of_unlike_values(const std::string& db) {
   auto start = sample::start("P07");
   start.run_mode = RunMode::pilot;
@@ -100,7 +100,7 @@ std::string session_of_unlike_values(const std::string& db) {
     trial.tones[3].friction.reset();
     log.presented(1, 4'000'000'001);
     log.event({4'100'000'002, "touch", "0.1 0.2", std::nullopt});
-    // the event is logged only after the stimulus has ended, so it is older than the row before
+    // this event is logged only after the stimulus has ended, so its time is before that of the previous row
     log.event({4'050'000'000, "stimulus", "0.75", 1});
     log.append(trial);
     log.finish(SessionStatus::interrupted, "the participant left");

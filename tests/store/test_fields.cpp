@@ -15,7 +15,7 @@ struct Kept {
   bool nullable = false;
 };
 
-/// The columns of a table, according to the database's schema.
+/// Returns the columns of a table according to the schema of the database.
 std::map<std::string, Kept> columns_in_schema(Database& database, const std::string& table) {
   std::map<std::string, Kept> columns;
   Statement rows(database, "SELECT name, type, \"notnull\", pk FROM pragma_table_info(?)");
@@ -24,7 +24,7 @@ std::map<std::string, Kept> columns_in_schema(Database& database, const std::str
   return columns;
 }
 
-/// The differences between a record's fields and the schema, one per line.
+/// Returns the differences between the fields of a record and the schema, one per line.
 template <class Record>
 std::string differences(Database& database, const Table<Record>& table) {
   std::string found;

@@ -17,8 +17,8 @@ enum class Acknowledge { after_commit, before_commit };
 // number of trials that the careless writer collects before it commits them
 constexpr std::size_t kHeldBack = 8;
 
-/// Continues the interrupted session of a database, or begins one, and appends trials for ever. Writes the
-/// index of each trial to the pipe once it is reported durable.
+/// Continues the interrupted session of a database, or begins a new one, and appends trials for ever.
+/// Acknowledges each trial by writing its index to the pipe.
 [[noreturn]] void write_for_ever(const std::string& db, int pipe, Acknowledge when) {
   const auto interrupted = std::filesystem::exists(db) ? interrupted_session(db) : std::nullopt;
   auto log = interrupted ? SessionLog::resume(db, interrupted->session.session_id, sample::segment("resume"))
@@ -56,8 +56,8 @@ void kill_once(const std::string& db, Acknowledge when, std::mt19937& random, To
     }
   }
   ::close(ends[1]);
-  // Half of the processes are killed while they begin, the others after some trials, however slow the machine
-  // is.
+  // On a machine of any speed, half of the processes are killed while they begin, and the others after some
+  // trials.
   const int wanted = std::uniform_int_distribution<>(-5, 5)(random);
   int last = -1, index = 0;
   for (int seen = 0; seen < wanted && ::read(ends[0], &index, sizeof index) == sizeof index; ++seen) {
@@ -68,7 +68,7 @@ void kill_once(const std::string& db, Acknowledge when, std::mt19937& random, To
   ::kill(child, SIGKILL);
   int status = 0;
   ::waitpid(child, &status, 0);
-  REQUIRE(WIFSIGNALED(status));  // the process was killed and did not end by itself
+  REQUIRE(WIFSIGNALED(status));  // the process must not have ended by itself
   while (::read(ends[0], &index, sizeof index) == sizeof index) {
     last = index;
     ++toll.acknowledged;

@@ -1,5 +1,5 @@
-// Measures the cost of a large database in steps of SQLite's virtual machine, because these are the same on
-// every machine.
+// These tests measure the cost of large databases in steps of SQLite's virtual machine. Unlike time, the
+// number of steps is the same on every computer.
 #include <sqlite3.h>
 
 #include <functional>
@@ -29,7 +29,8 @@ int count_every_connection(sqlite3* connection, const char** /*error*/, const vo
   return SQLITE_OK;
 }
 
-/// Steps of SQLite's virtual machine, in hundreds, on all connections that `action` opens.
+/// Runs `action` and returns the number of steps of SQLite's virtual machine on all its connections, in
+/// hundreds.
 std::int64_t steps_of(const std::function<void()>& action) {
   const auto extension = reinterpret_cast<void (*)()>(count_every_connection);
   sqlite3_auto_extension(extension);

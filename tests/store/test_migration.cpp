@@ -9,7 +9,7 @@ using namespace turnpoint::store;
 
 namespace {
 
-/// Makes a database as an older release wrote it, from a dump of its content.
+/// Makes a database of an older schema version, from a dump of a database that the older release wrote.
 void make_old(const std::string& path, int version) {
   Database database(path, Database::Access::create);
   database.execute("PRAGMA journal_mode = WAL");

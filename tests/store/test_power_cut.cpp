@@ -18,7 +18,7 @@ struct Toll {
   int cuts = 0, lost = 0, damaged = 0;
 };
 
-/// Writes one session of many trials. Power fails at random operations, in every phase of commits and
+/// Writes one session of many trials and makes power cuts at random operations, in every phase of commits and
 /// checkpoints.
 std::vector<Cut> cut_at_random(const TemporaryFolder& folder, LossyDisk& disk, int trials) {
   const auto db = folder / "a.sqlite";

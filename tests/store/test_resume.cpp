@@ -6,7 +6,8 @@ using namespace turnpoint::store;
 
 namespace {
 
-/// Simulates a process that appends `trials` trials of block 0, presents one more, and ends abruptly.
+/// Simulates a process that stores `trials` trials of block 0, presents one more, and ends abruptly. Returns
+/// the session's id.
 std::string broken_session(const std::string& db, int trials, const SessionStart& start = sample::start()) {
   auto log = SessionLog::begin(db, start, sample::segment());
   log.begin_block(sample::block());

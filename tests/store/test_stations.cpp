@@ -29,7 +29,7 @@ std::string trials_csv(const std::string& db, const std::string& out) {
   return sample::bytes_of(export_data(db, out, {})[0].path);
 }
 
-/// The content of all files in the folder whose names begin with the database's name, as one string.
+/// Returns the content of all files whose names begin with the name of the database, as one string.
 std::string all_bytes(const std::string& db) {
   std::string all;
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(db).parent_path()))

@@ -1,6 +1,6 @@
-// cut_off_session PROTOCOL RIG DATABASE MODE: runs a session of participant T1 whose process is killed
-// (SIGKILL) in the middle of its third trial's stimulus, as by a power cut. Before that it always answers the
-// second choice.
+// cut_off_session PROTOCOL RIG DATABASE MODE: runs a session of participant T1, who always gives the second
+// answer. In the middle of the stimulus of the third trial, the process kills itself (SIGKILL), to simulate a
+// power cut.
 #include <signal.h>
 
 #include <chrono>
@@ -20,7 +20,7 @@ class Room : public session::Display {
 
   void show(const session::Page& page) override {
     using session::PageKind;
-    // a live session begins disarmed, so arm first
+    // a live session begins disarmed, so arm the amplifier first
     if (page.kind == PageKind::fault) push(session::InputKind::arm);
     if (page.kind == PageKind::instructions) push(session::InputKind::next);
     if (page.kind == PageKind::rest && page.remaining_s == 0) push(session::InputKind::next);

@@ -127,7 +127,7 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
     page.to_do = text.to_do;
     page.detail = detail;
     if (kind == FaultKind::disarmed) page.amplifier = "disarmed";
-    // These faults do not affect the amplifier, which stays armed.
+    // The amplifier stays armed during these faults.
     const auto armed = {FaultKind::disarmed,  FaultKind::limits,          FaultKind::touch_gone,
                         FaultKind::disk_full, FaultKind::stimulus_missed, FaultKind::other};
     if (std::find(armed.begin(), armed.end(), kind) == armed.end()) page.amplifier = "faulted";

@@ -6,7 +6,7 @@
 
 namespace turnpoint::ui {
 
-/// A page as a session would show it, with the name of its screenshot.
+/// A page as a session shows it, and the name of its screenshot.
 struct Exhibit {
   std::string name;
   session::Page page;

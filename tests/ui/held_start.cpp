@@ -1,5 +1,6 @@
-// held_start: simulates a start that takes very long. Makes the application object on the panel's own frame
-// buffer (if there is none, Qt continues without a screen), prints "held", and never reaches its event loop.
+// held_start: simulates a program whose start hangs. It creates the application object on the frame buffer of
+// the panel, prints "held", and never reaches its event loop. If there is no frame buffer, Qt continues
+// without a screen.
 #include <unistd.h>
 
 #include <cstdio>

@@ -10,8 +10,8 @@
 
 namespace turnpoint::ui {
 
-/// For tests of the operator's pages: the real controller with the shipped protocols and one that has
-/// mistakes, a database in a temporary folder, and a live model that the test fills.
+/// The real controller of the operator's pages, for tests. It has the shipped protocols and one with
+/// mistakes, a database in a temporary folder, and a live view whose content the test sets.
 class OperatorDesk : public QObject {
   Q_OBJECT
   Q_PROPERTY(turnpoint::ui::OperatorController* operating READ operating CONSTANT)

@@ -48,7 +48,7 @@ bool has_ideographs(const QString& word) {
   return std::any_of(word.begin(), word.end(), [](QChar c) { return c.unicode() >= 0x2e80; });
 }
 
-/// The area that the letters of a text cover, in pixels of the window.
+/// Returns the area that the letters of a text cover, in pixels of the window.
 QRectF letters(const QQuickItem& text) {
   const double width = text.property("contentWidth").toDouble();
   const double height = text.property("contentHeight").toDouble();
@@ -92,7 +92,7 @@ QStringList PageInspector::brokenWords(QQuickItem* page) const {
   each_text(*page, [&](const QQuickItem& text) {
     if (text.property("lineCount").toInt() < 2) return;
     QFont font = text.property("font").value<QFont>();
-    // The font size to which the text was shrunk to fit.
+    // The size to which Qt has shrunk the font so that the text fits.
     font.setPixelSize(text.property("fontInfo").value<QJSValue>().property("pixelSize").toInt());
     const QFontMetricsF metrics(font);
     for (const auto& word : text.property("text").toString().split(QRegularExpression("\\s+")))

@@ -6,7 +6,7 @@
 
 namespace turnpoint::ui {
 
-/// Inspects the pixels that were rendered, as a participant sees them, and not what a page was asked to draw.
+/// Inspects the rendered pixels, which a participant sees, instead of the properties of the items on a page.
 class PageInspector : public QObject {
   Q_OBJECT
 
@@ -27,7 +27,7 @@ class PageInspector : public QObject {
   /// Number of texts on the page that the other functions inspect.
   Q_INVOKABLE int texts(QQuickItem* page) const;
 
-  /// Path of a picture that nobody has opened yet. From now on opened() counts how often it is opened.
+  /// Makes a picture and returns its path. From then on opened() returns how often the picture was opened.
   Q_INVOKABLE QString picture();
   Q_INVOKABLE int opened();
 

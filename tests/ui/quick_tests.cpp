@@ -17,7 +17,7 @@ class Setup : public QObject {
   Q_OBJECT
 
  public slots:
-  // The application owns these objects, because their timers and pending calls must not outlive it.
+  // The application owns these objects, because their timers and pending calls must end before it does.
   void applicationAvailable() {
     script_ = new turnpoint::ui::ScriptedSession(QCoreApplication::instance());
     desk_ = new turnpoint::ui::OperatorDesk(*script_->bridge(), QCoreApplication::instance());

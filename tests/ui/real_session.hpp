@@ -12,9 +12,9 @@
 
 namespace turnpoint::ui {
 
-/// Runs real sessions for tests, one after another, each on its own thread with its own database in a
-/// temporary folder. Everything is real: protocol file, physics, drive to the null device, the amplifier's
-/// guard on simulated lines, and SQLite on a disk that may fill up.
+/// Runs sessions for tests, one after another. Each has its own thread, and its own database in a temporary
+/// folder. The session is the real one: protocol file, physics, output to the null device, the amplifier's
+/// guard on simulated lines, and SQLite on a simulated disk that can fill up.
 class RealSession : public QObject {
   Q_OBJECT
   Q_PROPERTY(turnpoint::ui::SessionBridge* bridge READ bridge CONSTANT)
@@ -29,16 +29,17 @@ class RealSession : public QObject {
   QString failure() const { return failure_; }
 
   Q_INVOKABLE void start(const QString& protocol);
-  /// These simulate events in the room: the emergency stop, the amplifier's fault line, a full disk, and any
-  /// other fault of the station ("touch_gone", ...), reported as the device's thread would.
+  /// These functions simulate the emergency stop, the amplifier's fault line, a full disk, and any other
+  /// fault ("touch_gone", ...). The other faults are reported as by the thread of the device.
   Q_INVOKABLE void setStop(bool pressed);
   Q_INVOKABLE void setAmplifierFault(bool active);
   Q_INVOKABLE void setDiskFull(bool full);
   Q_INVOKABLE void find(const QString& fault);
   Q_INVOKABLE void loseFrames(int frames) { bridge_.frames_lost(frames); }
-  /// The values of one column of the exported trials.csv in the order of its rows, separated by spaces.
+  /// Returns the values of one column of the exported trials.csv, in the order of its rows and separated by
+  /// spaces.
   Q_INVOKABLE QString column(const QString& name) const;
-  /// The values of all events of a kind, in the same form as column().
+  /// Returns the values of all events of a kind, in the same form as column().
   Q_INVOKABLE QString events(const QString& kind) const;
 
  signals:

@@ -33,7 +33,8 @@ using turnpoint::ui::StartController;
 
 const QStringList kLanguages{"en", "de", "ja"};
 
-/// The panels to render for: their size in pixels, and the pixel density of a common panel of that size.
+/// A panel for which pages are rendered: its size in pixels, and the pixel density of a common panel of this
+/// size.
 struct Panel {
   QSize size;
   double pixels_per_mm;
@@ -83,13 +84,13 @@ class Camera {
   void shoot(const turnpoint::session::Page& page, const QString& name) {
     bridge_.show(page);
     QGuiApplication::processEvents();
-    // The page with numbers that only the operator can open.
+    // Only the operator can open this page with numbers.
     window_->findChild<QQuickItem*>("participantView")->setProperty("counting", name == "end-operator");
     shoot(name);
   }
 
-  /// Renders the keypad for the operator's code, at the start of a locked station and over a participant's
-  /// page.
+  /// Renders the keypad for the operator's code: once at the start of a locked station, and once over a
+  /// participant's page.
   void shoot_gate() {
     auto* gate = window_->findChild<QQuickItem*>("gate");
     gate->setVisible(true);
@@ -114,7 +115,7 @@ class Camera {
   int count_ = 0;
 };
 
-/// Renders one of the operator's pages alone in a window. These pages exist only in English.
+/// Renders a single operator's page in a window of its own. These pages exist only in English.
 class OperatorCamera {
  public:
   OperatorCamera(const QString& out, const Panel& panel, const QString& prefix)
@@ -172,7 +173,7 @@ class OperatorCamera {
   int count_ = 0;
 };
 
-/// Lets the event loop run until `ready`, at most for a minute.
+/// Runs the event loop until `ready` returns true, for at most a minute.
 template <typename Ready>
 void wait_for(Ready ready) {
   for (int i = 0; i < 6000 && !ready(); ++i) QTest::qWait(10);

@@ -6,8 +6,8 @@
 
 namespace turnpoint::ui {
 
-/// For tests of single pages: shows pages of the gallery and records the page's replies as text ("answer 1",
-/// "next", "slider 31", "stop", "pause").
+/// Shows pages of the gallery, for tests of single pages. It records what the user does on a page as text
+/// ("answer 1", "next", "slider 31", "stop", "pause").
 class ScriptedSession : public QObject {
   Q_OBJECT
   Q_PROPERTY(turnpoint::ui::SessionBridge* bridge READ bridge CONSTANT)
@@ -24,10 +24,10 @@ class ScriptedSession : public QObject {
   static QStringList pages();
 
   Q_INVOKABLE void show(const QString& name, const QString& language);
-  /// Shows the same page with this text in every place where a text comes from a file or a device.
+  /// Shows the page with this text in every place whose text comes from a file or a device.
   Q_INVOKABLE void showWith(const QString& name, const QString& text);
   Q_INVOKABLE void forget();
-  /// From now on, the kernel's time stamp of every touch is this many milliseconds earlier than Qt's.
+  /// Sets how many milliseconds earlier than Qt's time stamp the kernel's time stamp of each touch is.
   Q_INVOKABLE void setKernelLead(double ms);
   Q_INVOKABLE void forgetKernel();
   /// Where the last answer's time stamp comes from: "kernel" or "toolkit".

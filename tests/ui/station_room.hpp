@@ -13,8 +13,8 @@
 
 namespace turnpoint::ui {
 
-/// Runs the whole program for tests: its own window with real controllers and sessions, in a folder with one
-/// protocol and the simulated rig. Tests read the database by exporting it.
+/// Runs the whole program for tests, with its own window, real controllers and real sessions. It runs in a
+/// temporary folder with one protocol and the simulated rig. Tests read the database by exporting it.
 class StationRoom : public QObject {
   Q_OBJECT
   Q_PROPERTY(QQuickItem* screen READ screen NOTIFY opened)  ///< content of the participant's window
@@ -34,13 +34,13 @@ class StationRoom : public QObject {
   OperatorController* operating() const { return operating_.get(); }
   LatencyController* latency() { return &latency_; }
 
-  /// Starts the program in an empty folder with this operator's code.
+  /// Starts the program in an empty folder. `code` is the operator's code.
   Q_INVOKABLE void open(const QString& code);
   /// Changes the title of the protocol in the folder.
   Q_INVOKABLE void entitle(const QString& title);
   /// Ends the program and starts it again in the same folder.
   Q_INVOKABLE void reopen(const QString& code);
-  /// The same, but the station starts locked.
+  /// Does the same, but the station starts locked.
   Q_INVOKABLE void reopenLocked(const QString& code);
   Q_INVOKABLE void close();
   Q_INVOKABLE void addSecondScreen();
@@ -52,23 +52,23 @@ class StationRoom : public QObject {
   Q_INVOKABLE void pressed(double ago_ms);
   Q_INVOKABLE double keepLatency();
 
-  /// Runs a session of participant T1 on this rig, which is killed in its third trial. Returns its exit code:
-  /// -9 if it was killed, 0 if it did not end within a minute.
+  /// Runs a session of participant T1 on this rig in another process, which is killed in the third trial.
+  /// Returns -9 if the process was killed, and 0 if it did not end within a minute.
   Q_INVOKABLE int cutOffSession(const QString& mode);
 
-  /// The levels of the first session of this protocol, in order, if nothing interrupts it.
+  /// Returns the levels, in order, of the first session of this protocol if nothing interrupts it.
   Q_INVOKABLE QStringList plannedLevels() const;
 
-  /// lookOn() starts a 60 Hz timer on the pages' thread. stallsSeen() stops it and returns how many refreshes
-  /// this thread was late by, rounded up. A page of this test cannot be delayed by anything else.
+  /// lookOn() starts a timer of 60 Hz on the thread of the pages. stallsSeen() stops the timer and returns by
+  /// how many refreshes this thread was late, rounded up. In these tests nothing else can delay a page.
   Q_INVOKABLE void lookOn();
   Q_INVOKABLE int stallsSeen();
 
   /// Blocks the pages' thread for this time, as if it hung.
   Q_INVOKABLE void block(int ms);
 
-  /// The values of one column of an exported file (trials.csv, events.csv, ...) in the order of its rows. If
-  /// `where` is given, only of rows whose column `where` is `is`.
+  /// Returns the values of the column `name` of an exported file (trials.csv, events.csv, ...), in the order
+  /// of its rows. If `where` is given, only rows are included in which the column `where` has the value `is`.
   Q_INVOKABLE QStringList column(const QString& file, const QString& name, const QString& where = {},
                                  const QString& is = {}) const;
 

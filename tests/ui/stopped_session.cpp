@@ -1,6 +1,6 @@
-// stopped_session PROTOCOL RIG DATABASE: runs a session on the screen, started as by the program itself. In
-// the middle of its second trial's stimulus the process gets SIGTERM. Before that it answers the second
-// choice.
+// stopped_session PROTOCOL RIG DATABASE: runs a session on the screen in the same way as the program. The
+// simulated participant gives the second answer in the first trial. In the middle of the second trial's
+// stimulus, the process sends itself SIGTERM.
 #include <signal.h>
 
 #include <QGuiApplication>
@@ -30,7 +30,7 @@ void take_part(ui::SessionBridge& bridge) {
   bridge.answer(1, bridge.now_ns() + 300'000'000);
 }
 
-/// Called once the program's window exists. Simulates a person in front of it.
+/// Simulates a participant. The program calls it once its window exists.
 void sit_down() {
   for (auto* window : QGuiApplication::topLevelWindows()) {
     auto* bridge = window->property("bridge").value<ui::SessionBridge*>();

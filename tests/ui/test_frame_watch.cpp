@@ -10,7 +10,7 @@ TEST_CASE("each whole refresh beyond the first that a page takes to appear count
   constexpr std::int64_t ms = 1'000'000;
   CHECK(LateFrames::lost(0, 60) == 0);
   CHECK(LateFrames::lost(16 * ms, 60) == 0);
-  CHECK(LateFrames::lost(33 * ms, 60) == 0);  // a page may be shown two refreshes after the request
+  CHECK(LateFrames::lost(33 * ms, 60) == 0);  // two refreshes from the request to the shown page are allowed
   CHECK(LateFrames::lost(34 * ms, 60) == 1);
   CHECK(LateFrames::lost(1000 * ms, 60) == 59);
   CHECK(LateFrames::lost(34 * ms, 120) == 3);
@@ -24,7 +24,7 @@ TEST_CASE("a stall that delays both a page and the event loop is counted once", 
   CHECK(late.count() == 0);
   late.waited(1032 * ms, 1132 * ms);  // the event loop was blocked for 100 ms
   CHECK(late.count() == 5);
-  late.waited(1040 * ms, 1140 * ms);  // a page that was requested meanwhile waited for the same delay
+  late.waited(1040 * ms, 1140 * ms);  // this page was requested meanwhile and waited for the same delay
   CHECK(late.count() == 5);
   late.waited(1132 * ms, 1148 * ms);
   late.waited(1140 * ms, 1240 * ms);  // now drawing is slow while the event loop runs
@@ -47,5 +47,5 @@ TEST_CASE("a blocked event loop loses frames during a trial even if no page was 
   now += 100 * ms;
   CHECK(watch.end() == 5);
   now += 1000 * ms;
-  CHECK(watch.end() == 0);  // the loss was already reported, and time between trials does not count
+  CHECK(watch.end() == 0);  // the loss was already reported, and delays between trials do not count
 }

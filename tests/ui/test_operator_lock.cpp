@@ -8,10 +8,10 @@ using namespace turnpoint;
 
 namespace {
 
-/// The longest time to wait, enough for a busy machine. A test that waits in vain must still end.
+/// The longest time that a test waits. It is long enough for a busy machine, and only ends a test that hangs.
 constexpr std::chrono::seconds kPatience{20};
 
-/// The operator's lock without its page, on a clock that the test moves.
+/// The operator's lock without its page. The test sets its clock.
 struct Keypad {
   int argc = 1;
   char name[5] = "test";

@@ -1,5 +1,5 @@
-// Tests what the screen can do to a session: the amplifier's guard expects reports of the participant's page,
-// and a touch panel can be unplugged.
+// Tests how the screen affects a session. The amplifier's guard expects regular reports from the
+// participant's page, and a touch panel can be unplugged.
 #include <QCoreApplication>
 #include <chrono>
 #include <memory>
@@ -15,7 +15,7 @@ using namespace turnpoint;
 
 namespace {
 
-/// A pilot session on simulated lines, with stimuli of half a minute.
+/// A pilot session on simulated GPIO lines, with stimuli of half a minute.
 struct PilotSession {
   int argc = 1;
   char name[5] = "test";
@@ -38,8 +38,8 @@ struct PilotSession {
 
   const session::Page& page() { return runner.bridge().page()->page(); }
 
-  /// Runs the event loop until this kind of page is shown, for at most half a minute. The limit only ends the
-  /// test; it measures nothing.
+  /// Runs the event loop until this kind of page is shown, for at most half a minute. The limit only ends a
+  /// test that hangs.
   bool shows(session::PageKind kind) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     while (page().kind != kind) {

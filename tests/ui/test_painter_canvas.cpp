@@ -13,7 +13,7 @@ namespace {
 
 constexpr QRgb kPaper = qRgb(255, 255, 255);
 
-/// The picture that `draw` paints into the middle of a sheet of 400 x 300.
+/// Returns the picture that `draw` paints into the middle of a sheet of 400 x 300 pixels.
 template <class Draw>
 QImage painted(Draw draw) {
   QImage sheet(400, 300, QImage::Format_RGB32);
@@ -24,7 +24,7 @@ QImage painted(Draw draw) {
   return sheet;
 }
 
-/// The smallest rectangle that holds everything that is not paper.
+/// Returns the smallest rectangle that contains all pixels that are not white paper.
 QRect inked(const QImage& sheet) {
   QRect all;
   for (int y = 0; y < sheet.height(); ++y)
@@ -33,7 +33,7 @@ QRect inked(const QImage& sheet) {
   return all;
 }
 
-/// Fonts need an application.
+/// An application object without a screen, because fonts need one.
 struct Screen {
   bool offscreen = qputenv("QT_QPA_PLATFORM", "offscreen");
   int argc = 1;
@@ -112,6 +112,6 @@ TEST_CASE("a figure on the screen fills the same frame as in a file", "[ui]") {
   const auto sheet = painted([&](plot::Canvas& canvas) { plot::draw(canvas, figure); });
   int above = 0;
   for (int x = 0; x < 400; ++x) above += sheet.pixel(x, 4) != kPaper ? 1 : 0;
-  CHECK(above == 0);  // the line leaves the chart, but not its frame
+  CHECK(above == 0);  // the line leaves the chart's range, but is clipped at its frame
   CHECK(inked(sheet).width() > 350);
 }

@@ -7,7 +7,7 @@
 
 namespace {
 
-/// Number of texts on a page that Qt might interpret as rich text.
+/// Returns the number of texts on a page that Qt might interpret as rich text.
 int rich_texts(const std::string& qml) {
   static const std::regex rich(R"((^|[^A-Za-z])(Text|TextEdit|TextArea|Label)\s*\{)");
   return static_cast<int>(

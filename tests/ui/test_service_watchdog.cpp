@@ -15,7 +15,7 @@ using turnpoint::ui::ServiceWatchdog;
 
 namespace {
 
-/// Plays the service manager: an abstract datagram socket, whose name is in NOTIFY_SOCKET.
+/// Simulates the service manager: opens an abstract datagram socket and stores its name in NOTIFY_SOCKET.
 class Manager {
  public:
   Manager() : socket_(::socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK, 0)) {
@@ -33,7 +33,8 @@ class Manager {
     ::close(socket_);
   }
 
-  /// Runs the event loop until a message arrives and returns it; returns "" after `patience_ms`.
+  /// Runs the event loop until a message arrives, and returns the message. Returns "" if none arrives within
+  /// `patience_ms`.
   std::string told(int patience_ms) const {
     char text[64] = {};
     const QDeadlineTimer deadline(patience_ms);

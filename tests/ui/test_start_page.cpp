@@ -20,11 +20,10 @@ using ui::OperatorController;
 namespace {
 
 const std::string kSource = TURNPOINT_SOURCE_DIR;
-/// The longest time to wait, enough for a busy machine. A test that waits in vain must still end.
+/// The longest time that a test waits. It is long enough for a busy machine, and only ends a test that hangs.
 constexpr std::chrono::seconds kPatience{20};
 
-/// Simulates checks of protocols that take as long as the test wants, and do not notice when they are no
-/// longer needed.
+/// Simulates checks of protocols. Each takes until the test ends it, even if its result is no longer needed.
 class HeldChecks {
  public:
   simulation::Check operator()(const std::string& protocol, const std::stop_token& stop) {
@@ -66,7 +65,7 @@ class HeldChecks {
   bool open_ = false;
 };
 
-/// The start page without its window, with three protocols: two can be used, one cannot.
+/// The start page without its window. It has three protocols, of which one cannot be used.
 struct StartPage {
   int argc = 1;
   char name[5] = "test";
@@ -133,7 +132,8 @@ TEST_CASE("choosing another protocol abandons the running check, and the page ne
   REQUIRE(start.comes([&] { return !start.page->checking(); }));
   CHECK(start.shown() == "b.toml");
   CHECK(start.checks.begun() ==
-        std::vector<std::string>{"a.toml", "b.toml"});  // the check that was replaced twice never began
+        std::vector<std::string>{"a.toml",
+                                 "b.toml"});  // checks that were replaced while they waited never began
 }
 
 TEST_CASE("the result of a check that ends late is not shown for a protocol that was chosen later",

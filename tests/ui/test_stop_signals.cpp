@@ -13,9 +13,10 @@ using turnpoint::ui::StopSignals;
 
 namespace {
 
-/// The longest time to wait, enough for a busy machine. A test of an ignored request must still end.
+/// The longest time that a test waits. It is long enough for a busy machine, and ends a test in which the
+/// program ignores the signal.
 constexpr int kPatience_ms = 20000;
-/// Longest time allowed from the signal to the end of the process. A service manager kills after 5 s.
+/// The process must end within this time after the signal. A service manager would kill it after 5 s.
 constexpr int kPrompt_ms = 1000;
 
 const std::string kSource = TURNPOINT_SOURCE_DIR;
@@ -36,7 +37,7 @@ struct Loop {
   QCoreApplication application{argc, argv};
 };
 
-/// Gives signals their default action during a test, because the test framework installs handlers.
+/// Gives signals their default action during a test, because the test framework has installed handlers.
 struct KernelsWay {
   KernelsWay() { set(SIG_DFL, SIG_DFL); }
   ~KernelsWay() { set(terminate, interrupt); }
@@ -75,8 +76,8 @@ TEST_CASE("the station ends promptly whenever it gets a signal during its start"
   REQUIRE_FALSE(child.ends_within(delay_ms));
   child.signal(SIGTERM);
   REQUIRE(child.ends_within(kPrompt_ms));
-  // Before the first page the signal kills the process, afterwards the program ends cleanly. A service
-  // manager accepts both.
+  // Before the first page the signal kills the process; afterwards the program ends cleanly. A service
+  // manager accepts both results.
   CHECK((child.outcome() == -SIGTERM || child.outcome() == 0));
 }
 
