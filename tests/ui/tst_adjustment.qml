@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// A whole adjustment session by touch: the slider, the surface and the stored row must agree.
+// Runs a whole adjustment session by touch. The slider, the surface and the stored row must agree.
 Item {
     id: stage
     width: 800
@@ -37,7 +37,7 @@ Item {
             tryVerify(() => find(view, name)?.armed, 20000, name)
             mouseClick(find(view, name))
         }
-        /// The position on the slider that belongs to a value.
+        /// Returns the position on the slider that belongs to a value.
         function place(slider, value) {
             const knob = slider.knob
             return knob / 2 + (value - page.sliderMin) / (page.sliderMax - page.sliderMin) * (slider.width - knob)
@@ -48,7 +48,7 @@ Item {
             return find(view, "slider")
         }
 
-        function test_settings_by_slider_and_steps_reach_the_rows() {
+        function test_settings_by_slider_and_step_buttons_are_stored() {
             session.bridge.watch(stage.Window.window)
             session.start("adjust.toml")
             tap("proceed")
@@ -69,7 +69,8 @@ Item {
 
             tryVerify(() => page.kind !== PageModel.Adjust, 5000)
 
-            // Do not move the second slider until the surface is silent. A later move could not be felt.
+            // Wait until the surface is silent before moving the second slider, so that the move cannot be
+            // felt.
             slider = adjusting()
             fuzzyCompare(page.slider, -20, 1e-9)
             tap("stepDown")

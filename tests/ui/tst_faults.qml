@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// Tests a real session with every fault that can happen in the room.
+// Tests a real session in which each fault happens that somebody in the room can cause.
 Item {
     id: stage
     width: 800
@@ -44,7 +44,7 @@ Item {
             wait(1200)
             mouseRelease(button)
         }
-        /// Waits for the next question, and continues if the break after two trials comes first.
+        /// Waits for the next question. If the break after two trials comes first, continues after it.
         function untilAsked() {
             tryVerify(() => page.answersOpen && page.kind === PageModel.Stimulus
                             || page.kind === PageModel.Rest && page.remainingSeconds === 0, 20000)
@@ -61,7 +61,7 @@ Item {
             tryVerify(() => page.kind === PageModel.Fault && page.text.includes(text), 20000, text)
             verify(page.safe !== "" && page.toDo !== "")
             wait(100)  // wait for the layout
-            // A long path in the detail may be cut off on the page; the log contains all of it.
+            // A long path in the detail may be cut off on the page, because the log contains it in full.
             compare(inspector.cutTexts(view).filter(cut => cut !== page.detail), [])
         }
         function arm() {
@@ -73,7 +73,7 @@ Item {
             hold("holdToArm")
         }
 
-        function test_after_each_fault_the_session_goes_on_where_it_was() {
+        function test_after_each_fault_the_session_continues_where_it_was() {
             session.bridge.watch(stage.Window.window)
             session.start("short.toml")
             tap("proceed")
@@ -104,7 +104,7 @@ Item {
             const before = shown.count
             tap("proceed")
             tryVerify(() => shown.count > before, 5000)
-            // the same page again, because the disk is still full
+            // the page appears again, because the disk is still full
             explained("disk is full")
             session.setDiskFull(false)
             tap("proceed")

@@ -29,7 +29,7 @@ Item {
             return grabImage(stage).pixel(place.x, place.y).toString()
         }
 
-        function test_taps_flash_and_their_latency_is_kept_once_there_are_enough() {
+        function test_taps_flash_and_their_latency_can_be_kept_once_there_are_enough() {
             const keep = findChild(page, "latencyKeep")
             tryVerify(() => centre() === "#000000")
             for (let k = 0; k < 10; ++k) {
@@ -37,7 +37,7 @@ Item {
                 desk.pressed(50)
                 tap()
                 if (k === 0) tryVerify(() => centre() === "#ffffff")
-                wait(410)  // longer than the time within which an edge is matched with a tap
+                wait(410)  // an edge is matched with a tap only within a shorter time
             }
             tryCompare(desk.latency, "pairs", 10)
             compare(inspector.cutTexts(page), [])

@@ -2,8 +2,8 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// Checks every rendered page on a small and on a larger panel: no text may be faint or cut off, and no word
-// broken.
+// Checks every rendered page on a small and on a larger panel. No text may be faint or cut off, and no word
+// may be broken.
 Item {
     id: stage
     width: 800
@@ -73,20 +73,20 @@ Item {
             return found
         }
 
-        function test_answers_are_written_in_one_size_however_long_they_are_data() {
+        function test_answers_on_one_page_have_the_same_font_size_however_long_they_are_data() {
             return [{ tag: "long", page: "explore-speed", language: "de", panel: { width: 1280, height: 800, mm: 5.9 } },
                     { tag: "short", page: "explore", language: "en", panel: { width: 800, height: 480, mm: 5.2 } }]
         }
-        function test_answers_are_written_in_one_size_however_long_they_are(row) {
+        function test_answers_on_one_page_have_the_same_font_size_however_long_they_are(row) {
             place(row)
             const first = findChild(view, "answer0").children[0], second = findChild(view, "answer1").children[0]
             compare(first.font.pixelSize, second.font.pixelSize)
             verify(first.font.pixelSize >= 3.4 * row.panel.mm)
-            // Only short texts have the normal size of answers.
+            // Only if all answers are short do they have their normal size.
             compare(first.font.pixelSize === Math.round(4 * Math.min(row.panel.width / 80, row.panel.height / 48)), row.tag === "short")
         }
 
-        function test_what_is_faint_or_cut_is_found() {
+        function test_text_that_is_faint_or_cut_off_is_detected() {
             control.visible = true
             compare(inspector.texts(control), 1)
             compare(inspector.faintTexts(control, 7), ["faint or cut: 4.48"])
@@ -107,7 +107,7 @@ Item {
             control.visible = false
         }
 
-        function test_every_text_stands_out_by_seven_to_one_and_is_whole_data() {
+        function test_every_text_has_a_contrast_of_seven_to_one_and_is_complete_data() {
             const rows = []
             for (const panel of [{ width: 800, height: 480, mm: 5.2 }, { width: 1280, height: 800, mm: 5.9 }])
                 for (const language of ["en", "de", "ja"])
@@ -115,7 +115,7 @@ Item {
                         rows.push({ tag: page + " " + language + " " + panel.width, page: page, language: language, panel: panel })
             return rows
         }
-        function test_every_text_stands_out_by_seven_to_one_and_is_whole(row) {
+        function test_every_text_has_a_contrast_of_seven_to_one_and_is_complete(row) {
             place(row)
             compare(inspector.faintTexts(view, 7), [])
             compare(inspector.cutTexts(view), [])

@@ -59,12 +59,12 @@ Item {
             verify(find(page.item, "backupDue") !== null)
             page.active = false
         }
-        function test_the_age_of_the_last_backup_is_told_in_each_language_data() {
+        function test_the_age_of_the_last_backup_is_shown_in_each_language_data() {
             return [{ tag: "en", age: "3 h ago", old: "9 days ago, older than 7 days" },
                     { tag: "de", age: "vor 3 h", old: "vor 9 Tagen, älter als 7 Tage" },
                     { tag: "ja", age: "3時間前", old: "9日前" }]
         }
-        function test_the_age_of_the_last_backup_is_told_in_each_language(row) {
+        function test_the_age_of_the_last_backup_is_shown_in_each_language(row) {
             words.language = row.tag
             const told = backup => words.lastBackup(backup).replace(/\u2060/g, "")
             verify(told({ state: "recent", hours: 3 }).includes(row.age))
@@ -85,7 +85,7 @@ Item {
             return operating.protocols.findIndex(protocol => protocol.id === id)
         }
 
-        function test_an_operator_chooses_who_what_and_how() {
+        function test_an_operator_chooses_participant_protocol_and_mode() {
             page.active = true
             liveView.visible = false
             operating.select(indexOf("demo"))
@@ -140,7 +140,7 @@ Item {
             page.active = false
         }
 
-        function test_a_protocol_with_mistakes_says_them_and_cannot_begin() {
+        function test_a_protocol_with_mistakes_lists_them_and_cannot_begin() {
             page.active = true
             operating.select(indexOf("mistaken.toml"))
             tryVerify(() => operating.problems.length > 0)
@@ -169,7 +169,7 @@ Item {
             liveView.visible = false
         }
 
-        function test_where_three_pictures_have_no_room_buttons_choose_one() {
+        function test_where_three_pictures_do_not_fit_buttons_choose_one() {
             liveView.visible = true
             verify(find(liveView, "livePicture1") === null)
             stage.width = 800
@@ -184,7 +184,7 @@ Item {
             liveView.visible = false
         }
 
-        function test_nothing_new_is_shown_to_the_operator_while_a_stimulus_runs() {
+        function test_nothing_new_is_shown_to_the_operator_during_a_stimulus() {
             const shown = spy.count
             script.show("explore", "en")
             tryVerify(() => spy.count > shown)
@@ -196,7 +196,7 @@ Item {
             tryVerify(() => desk.live.heading.includes("level 7"), 2000)
         }
 
-        function test_in_an_adjustment_the_words_follow_and_the_pictures_wait() {
+        function test_in_an_adjustment_the_texts_are_updated_at_once_and_the_pictures_later() {
             liveView.visible = true
             script.show("between-trials", "en")
             tryCompare(desk.live, "held", false)

@@ -23,7 +23,7 @@ Item {
         function initTestCase() { script.bridge.watch(stage.Window.window) }
 
         function init() {
-            // taps that follow each other too fast are ignored, so wait after the previous test
+            // the page ignores taps that follow each other too fast, so wait after the previous test
             wait(2 * settleMs)
             show("between-trials")
             script.forget()
@@ -75,12 +75,12 @@ Item {
             tryCompare(script, "inputs", ["answer 1"])
             verify(script.answerAgeMs() >= settleMs)
             mouseClick(item("answer0"))
-            // counts only the second tap, because the first became the answer
+            // only the second tap is counted here, because the first one became the answer
             tryCompare(script, "touches", 1)
             compare(script.inputs, ["answer 1"])
         }
 
-        function test_an_answer_has_the_kernels_time_where_it_is_known() {
+        function test_an_answer_has_the_kernels_time_if_it_is_known() {
             show("explore")
             mouseClick(item("answer0"))
             tryCompare(script, "inputs", ["answer 0"])
@@ -117,7 +117,7 @@ Item {
             compare(script.inputs, [])
         }
 
-        function test_ten_fingers_are_no_answer() {
+        function test_ten_fingers_give_no_answer() {
             show("explore")
             const touch = touchEvent(stage)
             for (let finger = 0; finger < 10; ++finger) touch.press(finger, stage, 60 + 70 * finger, 380)
@@ -140,10 +140,10 @@ Item {
             compare(script.inputs, [])
         }
 
-        function test_answers_are_large_apart_and_symmetric_data() {
+        function test_answers_are_large_and_far_apart_and_symmetric_data() {
             return [{ tag: "two", page: "response" }, { tag: "three", page: "response-3" }]
         }
-        function test_answers_are_large_apart_and_symmetric(row) {
+        function test_answers_are_large_and_far_apart_and_symmetric(row) {
             show(row.page)
             const count = script.bridge.page.answers.length
             const first = item("answer0"), last = item("answer" + (count - 1)), second = item("answer1")
@@ -155,7 +155,7 @@ Item {
             compare(first.color, last.color)
         }
 
-        function test_continue_waits_for_taps_of_the_page_before() {
+        function test_continue_ignores_late_taps_from_the_previous_page() {
             show("instructions")
             tap("proceed")
             compare(script.inputs, [])
@@ -189,12 +189,12 @@ Item {
             compare(script.inputs, ["slider 100", "next"])
         }
 
-        function test_every_fault_says_what_happened_what_is_safe_and_what_to_do_data() {
+        function test_every_fault_page_says_what_happened_what_is_safe_and_what_to_do_data() {
             const goOn = ["touch_gone", "disk_full", "limits", "stimulus_missed"]
             return ["converter_gone", "converter_rate", "converter_saturated", "suspended", "amplifier", "enable_line",
                 "stop_pressed", ...goOn].map(kind => ({ tag: kind, arms: !goOn.includes(kind) }))
         }
-        function test_every_fault_says_what_happened_what_is_safe_and_what_to_do(row) {
+        function test_every_fault_page_says_what_happened_what_is_safe_and_what_to_do(row) {
             show("fault-" + row.tag)
             const page = script.bridge.page
             for (const says of [page.text, page.safe, page.toDo, page.detail]) {
@@ -207,7 +207,7 @@ Item {
                 compare(script.inputs, ["next"])
                 return
             }
-            // Only an operator may arm: somebody who touches the screen by accident must not be able to.
+            // Only an operator may arm the amplifier. An accidental touch must not be able to.
             arming.clear()
             tap("operatorArms")
             compare(arming.count, 1)
@@ -223,7 +223,7 @@ Item {
 
         SignalSpy { id: arming; target: view; signalName: "armingWanted" }
 
-        function test_the_left_handed_layout_moves_what_the_hand_needs_and_no_answer() {
+        function test_the_left_handed_layout_moves_the_buttons_of_the_hand_but_no_answer() {
             show("explore")
             const pause = visibleItem("pause")
             const right = pause.mapToItem(stage, 0, 0).x
@@ -236,7 +236,7 @@ Item {
             view.leftHanded = false
         }
 
-        function test_ending_asks_once_more() {
+        function test_ending_asks_for_confirmation() {
             show("paused")
             untilArmed()
             tap("end")
@@ -257,7 +257,7 @@ Item {
             compare(script.inputs, ["pause"])
         }
 
-        function test_every_page_says_that_a_run_is_no_live_one() {
+        function test_every_page_says_if_a_run_is_not_live() {
             show("explore-pilot")
             verify(findText(view, "PILOT RUN"))
             show("explore-simulated")
@@ -275,14 +275,14 @@ Item {
             return false
         }
 
-        function test_nothing_is_painted_anew_while_a_stimulus_runs() {
+        function test_nothing_is_repainted_during_a_stimulus() {
             show("explore")
             wait(50)
             const before = grabImage(view)
             wait(400)
             verify(grabImage(view).equals(before))
         }
-        function test_what_moves_would_be_seen() {
+        function test_what_moves_is_detected_as_repainting() {
             show("rest")
             const before = grabImage(view)
             tryVerify(() => !grabImage(view).equals(before), 3000)

@@ -23,7 +23,7 @@ Item {
         name: "Phrases"
         when: windowShown
 
-        /// The pieces of a text between two possible line breaks.
+        /// Returns the pieces of a text between possible line breaks.
         function pieces(text) {
             const joined = japanese.phrased(text), found = [""]
             for (let i = 0; i < joined.length; ++i) {
@@ -47,8 +47,8 @@ Item {
         }
         function test_a_japanese_text_breaks_where_a_phrase_ends(row) {
             const wanted = row.tag.split("|"), text = wanted.join("")
-            // A line cannot break between two hiragana, so a piece may consist of two phrases, but never of
-            // half a phrase.
+            // No line break is allowed between two hiragana. A piece may therefore contain two phrases, but
+            // never half a phrase.
             let begun = 0
             const starts = wanted.map(piece => (begun += piece.length) - piece.length)
             begun = 0
@@ -60,7 +60,7 @@ Item {
             verify(pieces(text).length > 1)
         }
 
-        function test_a_shown_line_ends_with_a_phrase() {
+        function test_a_shown_line_ends_where_a_phrase_ends() {
             const text = "なめらかな部分が印で終わるように、つまみを動かしてください。"
             shown.width = widthOf("なめらかな部分が印で終わるように、つまみを動かしてく") + 2
             shown.text = text
@@ -71,10 +71,10 @@ Item {
             compare(shown.lineCount, 2)
             fuzzyCompare(shown.lines[0], widthOf("なめらかな部分が印で終わるように、つまみを"), 2)
             shown.width = widthOf("なめらか")
-            verify(shown.contentWidth <= shown.width + 1)  // a phrase that is longer than a line is broken
+            verify(shown.contentWidth <= shown.width + 1)  // so a phrase that is longer than a line is broken
         }
 
-        function test_words_of_other_languages_and_writings_are_left_alone() {
+        function test_words_in_other_languages_and_scripts_are_not_changed() {
             compare(german.phrased("Bitte auf Fertig tippen."), "Bitte auf Fertig tippen.")
             compare(japanese.phrased("turnpoint doctor 44.1 kHz"), "turnpoint doctor 44.1 kHz")
         }

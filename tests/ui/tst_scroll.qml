@@ -40,7 +40,7 @@ Item {
         name: "Scrolling"
         when: windowShown
 
-        function test_the_cue_shows_what_part_is_seen_and_where_it_is() {
+        function test_the_cue_shows_which_part_is_visible() {
             place.contentHeight = 520
             place.contentY = 0
             verify(cue.visible)
@@ -50,7 +50,7 @@ Item {
             fuzzyCompare(cue.y + cue.height, 20 + 260, 0.5)
             verify(cue.x >= place.x + place.width && cue.x + cue.width <= card.width)
         }
-        /// The darkness (0 to 1) of the darkest pixel near the middle of a symbol at (0, y).
+        /// Returns the darkness (0 to 1) of the darkest pixel near the middle of the symbol at (0, y).
         function darkest(y) {
             const image = grabImage(stage)
             let least = 1
@@ -58,7 +58,7 @@ Item {
                 for (let dy = 0; dy < 40; ++dy) least = Math.min(least, image.red(x, y + dy) / 255)
             return least
         }
-        function test_a_sign_is_kept_within_the_place_that_clips_it() {
+        function test_a_symbol_stays_inside_the_area_that_clips_it() {
             sign.y = 30
             verify(darkest(30) < 0.3)
             sign.y = 110
@@ -67,7 +67,7 @@ Item {
             verify(darkest(30) < 0.3)
         }
 
-        function test_where_all_is_seen_there_is_no_cue() {
+        function test_there_is_no_cue_if_everything_is_visible() {
             place.contentHeight = 260
             verify(!cue.visible)
             place.contentHeight = 300

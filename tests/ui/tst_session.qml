@@ -48,9 +48,9 @@ Item {
             }
         }
 
-        // The answers given here do not depend on the levels: each row must contain the answer that was
+        // The answers do not depend on the levels, so that each row can be compared with the answer that was
         // tapped.
-        function test_a_whole_session_tapped_through_is_in_the_database() {
+        function test_a_whole_session_answered_by_taps_is_in_the_database() {
             session.bridge.watch(stage.Window.window)
             session.start("short.toml")
             tryCompare(page, "kind", PageModel.Instructions, 30000)

@@ -2,8 +2,8 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// Tests the whole program in its own window during a day in the laboratory: operator's page, participant's
-// pages, real sessions and their rows.
+// Tests the whole program in its own window, as on a day in the laboratory: the operator's page, the
+// participant's pages, real sessions, and the rows that they store.
 Item {
     id: stage
     width: 800
@@ -92,7 +92,7 @@ Item {
             tap("proceed")
         }
         function ends() { tryCompare(page, "kind", PageModel.End, 20000) }
-        /// Arms as an operator at the participant's screen does.
+        /// Arms the amplifier as an operator does at the participant's screen.
         function arm() {
             tryCompare(page, "awaitsArming", true, 20000)
             tap("operatorArms")
@@ -108,7 +108,7 @@ Item {
                 room.pressed(50)
                 mousePress(field)
                 mouseRelease(field)
-                wait(410)  // longer than the time within which an edge is matched with a tap
+                wait(410)  // an edge is matched with a tap only within a shorter time
             }
             tryCompare(room.latency, "pairs", 10)
             const offset = room.keepLatency()
@@ -116,7 +116,7 @@ Item {
             return offset
         }
 
-        function test_a_live_session_on_the_screen_from_calibration_to_report() {
+        function test_a_live_session_runs_on_the_screen_from_calibration_to_report() {
             room.open("7391")
             tryVerify(() => operating.mayBegin, 20000)
             tap("live")
@@ -169,7 +169,7 @@ Item {
             compare(room.column("trials.csv", "response_time_quality"), ["toolkit", "toolkit", "toolkit", "toolkit"])
             compare(room.column("events.csv", "value", "kind", "arm"), ["armed"])
             compare(room.column("sessions.csv", "status"), ["completed"])
-            // The panel's latency is stored with each answer that it applies to, but not subtracted from
+            // The panel's latency is stored with each answer to which it applies. It is not subtracted from
             // response times.
             for (const stored of room.column("trials.csv", "response_offset_s"))
                 fuzzyCompare(Number(stored), offset, 1e-6)
@@ -177,9 +177,9 @@ Item {
             verify(/^[0-9a-f]{64}$/.test(hashes[0]), hashes[0])
         }
 
-        /// Runs four trials and blocks the pages' thread for this time in the second. Returns {trial: frames
-        /// lost}, with `seen` for the count of the test's own timer (which may miss a delay that was split
-        /// between two of its ticks).
+        /// Runs four trials, and blocks the pages' thread for `blocked_ms` in the second one. Returns {trial:
+        /// lost frames}. `seen` is the count by the test's own timer, which may miss a delay that is split
+        /// between two of its ticks.
         function framesLost(blocked_ms) {
             room.open("7391")
             begin("T2")
@@ -216,11 +216,11 @@ Item {
 
         function test_a_session_whose_pages_are_in_time_counts_no_late_frame() {
             const lost = framesLost(0)
-            // not more than this machine was late by
+            // at most the number of refreshes by which this machine was late
             verify(lost.total <= lost.seen + 1, JSON.stringify(lost))
         }
 
-        function test_a_session_that_was_cut_off_goes_on_at_its_very_trial() {
+        function test_a_session_that_was_cut_off_continues_at_the_same_trial() {
             room.open("7391")
             room.calibrate()
             compare(room.cutOffSession("live"), -9)
@@ -249,7 +249,7 @@ Item {
             compare(room.column("sessions.csv", "status"), ["completed"])
         }
 
-        function test_the_second_screen_is_the_operators_alone() {
+        function test_the_second_screen_belongs_only_to_the_operator() {
             room.open("7391")
             room.addSecondScreen()
             room.calibrate()
@@ -281,7 +281,7 @@ Item {
             compare(inspector.cutTexts(room.second), [])
         }
 
-        function test_no_participant_gets_to_the_operators_pages() {
+        function test_no_participant_can_open_the_operators_pages() {
             room.open("7391")
             begin("T4")
             hold("operatorCorner", 300)
@@ -324,7 +324,7 @@ Item {
             appears("operatorPage")
         }
 
-        function test_a_locked_station_begins_behind_the_code() {
+        function test_a_locked_station_starts_with_the_page_for_the_code() {
             room.open("7391")
             room.reopenLocked("7391")
             appears("gate")

@@ -30,7 +30,7 @@ Item {
         }
         function hostile() { return "<b>bold</b><img src=\"file://" + inspector.picture() + "\">" }
 
-        function test_text_as_qt_takes_it_by_itself_opens_the_picture() {
+        function test_text_in_qts_automatic_format_opens_the_picture() {
             rich.text = hostile()
             tryVerify(() => inspector.opened() > 0, 5000)
             rich.text = ""

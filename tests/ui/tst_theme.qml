@@ -23,24 +23,24 @@ TestCase {
         fuzzyCompare(contrast(Qt.color("#777777"), Qt.color("#ffffff")), 4.48, 0.01)
     }
 
-    function test_texts_stand_out_by_seven_to_one_data() {
+    function test_texts_have_a_contrast_of_seven_to_one_data() {
         return [["ink", "paper"], ["ink", "raised"], ["quiet", "paper"], ["quiet", "raised"],
                 ["actionText", "action"], ["action", "raised"], ["action", "paper"], ["right", "paper"],
                 ["right", "raised"], ["wrong", "paper"], ["wrong", "raised"], ["actionText", "right"],
                 ["actionText", "wrong"], ["actionText", "ink"], ["warningText", "warning"],
                 ["actionText", "simulated"]].map(pair => ({ tag: pair.join(" on "), text: pair[0], under: pair[1] }))
     }
-    function test_texts_stand_out_by_seven_to_one(row) {
+    function test_texts_have_a_contrast_of_seven_to_one(row) {
         const theme = made.createObject(null, { width: 800, height: 480, pixelsPerMm: 5.2 })
         const found = contrast(theme[row.text], theme[row.under])
         verify(found >= 7, row.tag + ": " + found.toFixed(2))
     }
 
-    function test_targets_have_their_size_in_the_hand_data() {
+    function test_targets_have_their_size_in_millimetres_data() {
         return [{ tag: "7 inch", w: 800, h: 480, mm: 5.2 }, { tag: "10 inch", w: 1280, h: 800, mm: 5.9 },
                 { tag: "15 inch", w: 1920, h: 1080, mm: 5.6 }, { tag: "dense 5 inch", w: 1280, h: 720, mm: 11.6 }]
     }
-    function test_targets_have_their_size_in_the_hand(row) {
+    function test_targets_have_their_size_in_millimetres(row) {
         const theme = made.createObject(null, { width: row.w, height: row.h, pixelsPerMm: row.mm })
         verify(theme.targetMin >= 20 * row.mm)
         verify(theme.targetGap >= 5 * row.mm)
