@@ -21,7 +21,7 @@ constexpr double reference_Pa = 20e-6;
 // Displacement across the strip divided by the displacement of its centre, with eta = y / W.
 double transverse_shape(bool clamped_plate, double eta) {
   if (!clamped_plate) return std::cos(0.5 * std::numbers::pi * eta);
-  constexpr double b = 2.36502;  // root of tan b + tanh b = 0
+  constexpr double b = 2.36502;  // the root of tan b + tanh b = 0
   static const double at_edge = std::cos(b) / std::cosh(b);
   return (std::cos(b * eta) - at_edge * std::cosh(b * eta)) / (1 - at_edge);
 }

@@ -45,7 +45,7 @@ std::vector<SoundSource> sound_sources(const Surface& surface, const Tone& tone,
                                        const Air& air = {});
 
 struct LoudestSound {
-  double level_dB = 0;  // rms level relative to 20 uPa
+  double level_dB = 0;  // rms sound level relative to 20 uPa
   Place place;
 };
 

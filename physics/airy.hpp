@@ -5,9 +5,9 @@
 namespace turnpoint::physics {
 
 // Ai(t) = ai exp(ln_scale) and Ai'(t) = dai exp(ln_scale), with ln_scale = -2/3 t^(3/2) for t above 10, else
-// 0. The error is below 1e-14 of the local envelope (oscillatory side) or of the value. For |t| above 10 the
-// function uses the series in DLMF 9.7; otherwise a table of Taylor polynomials, made by solving y'' = t y
-// from 10 downwards, the direction in which the solution is stable.
+// 0. The error is below 1e-14, relative to the local envelope where Ai oscillates (t < 0), and to the value
+// elsewhere. For |t| above 10 the function uses the series in DLMF 9.7; otherwise it uses a table of Taylor
+// polynomials, made by solving y'' = t y from 10 downwards, the direction in which the solution is stable.
 struct Airy {
   double ai;
   double dai;

@@ -21,7 +21,7 @@ double crest_factor(std::span<const Tone> tones);
 // from two of them).
 struct Product {
   double frequency_Hz;
-  int order;  // 2 or 3
+  int order;  // 2: from two tones; 3: third order
 };
 
 // All products of order 2 and 3 between 0 and below_Hz, ascending. Products within 1 Hz of each other are

@@ -27,7 +27,7 @@ struct Dispersion {
   bool clamped_bending() const noexcept { return bending && clamped; }
 
   double stiffness_N_m = 0;    // bending stiffness D; 0 if bending is not modelled
-  double tension_N_per_m = 0;  // N
+  double tension_N_per_m = 0;  // line tension N
   double mass_kg_per_m2 = 0;   // mass per area, rho h
   double speed_m_s = 0;        // wave speed c of the membrane
   bool bending = false;

@@ -14,14 +14,14 @@ namespace turnpoint::physics {
 struct EdgeTable {
   static constexpr int degree = 12;
   struct Piece {
-    double low, high;  // ends of the piece, in ln f
+    double low, high;  // the piece covers ln f from low to high
     std::array<double, degree + 1> coefficient;
   };
   double low_Hz = 0;   // lowest frequency at which the edge lies on the surface
   double high_Hz = 0;  // highest such frequency; infinity on a linear taper that runs to its apex
   double constant = 1;
-  std::vector<Piece> pieces;  // ascending; the edge does not exist at frequencies in gaps between pieces
-  double error_m = 0;         // largest error found at check points between the nodes
+  std::vector<Piece> pieces;  // ascending; in a gap between two pieces the edge does not exist
+  double error_m = 0;         // largest error at the check points, which lie between the nodes
   bool closed = true;
 
   std::optional<double> ratio(double frequency_Hz) const noexcept;

@@ -14,7 +14,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// k W of a thin clamped strip at its cut-off: the root of tan b + tanh b = 0.
+// Wavenumber times half-width, k W, of a thin clamped strip at its cut-off: the root of tan b + tanh b = 0.
 constexpr double thin_root = 2.3650203724313520;
 
 }  // namespace

@@ -27,8 +27,8 @@ class ElasticCutOff {
  private:
   static constexpr std::size_t terms = 18;
   static constexpr double largest = 2;
-  std::array<double, terms> coefficient_{};  // Chebyshev coefficients of the ratio of value to Kirchhoff's
-  double kirchhoff_;                         // value divided by h/W for a thin plate
+  std::array<double, terms> coefficient_{};  // Chebyshev series of value() divided by Kirchhoff's value
+  double kirchhoff_;                         // Kirchhoff's value divided by h/W
 };
 
 // Computes omega W / c_s by finite elements, without the table. The error against a mesh refined towards the

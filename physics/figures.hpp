@@ -9,7 +9,7 @@ namespace turnpoint::physics {
 struct Curve {
   std::string label;
   std::vector<double> x_mm;
-  std::vector<double> value;  // displacement divided by the last maximum
+  std::vector<double> value;  // displacement divided by its last maximum
 };
 
 struct Mark {
@@ -21,15 +21,15 @@ struct Mark {
 struct FigurePanel {
   std::string title;
   std::string y_label;
-  std::vector<Curve> curves;  // curves, all at the same points
-  std::vector<Mark> marks;    // marks at the turning points
+  std::vector<Curve> curves;  // all curves have the same points
+  std::vector<Mark> marks;    // the turning points
 };
 
 struct Figure {
   std::string id;  // such as "figure-3"; also the name of the figure's file
   std::string title;
   std::string x_label;
-  std::string note;  // a note on what was fitted, and on what differs from the paper
+  std::string note;  // says what was fitted, and what differs from the paper
   std::vector<FigurePanel> panels;
 };
 

@@ -52,7 +52,7 @@ double share_at(const LoadSharing& m, double displacement_m, double ln_guess) {
     const double share = std::exp(x);
     const double gap = m.rest_gap_m - m.decay_length_m * x;
     const double e = displacement_m / gap;
-    if (e >= 1) return Tangent{1, x};  // more than the gap allows: halve the bracket instead
+    if (e >= 1) return Tangent{1, x};  // the displacement exceeds the gap: halve the bracket
     const double r = 2.5 * e * e / ((1 - e) * (1 + e));
     const double root = std::sqrt(1 + r);
     const double miss = m.ambient_Pa / m.pressure_Pa * r / (1 + root) - (1 - share);

@@ -8,9 +8,9 @@
 namespace turnpoint::physics {
 
 struct MapBounds {
-  double equation_m = 0;     // error of the model against the exact (or best) first transverse mode
-  double drive_modes_m = 0;  // effect of the drive edge's higher transverse modes
-  double uncertainty_m = 0;  // one standard deviation, computed from the surface's `sd`
+  double equation_m = 0;     // difference between the model and the best equation of the first mode
+  double drive_modes_m = 0;  // shift by higher transverse modes from the drive edge
+  double uncertainty_m = 0;  // one standard deviation, caused by the surface's `sd`
   std::string reason;
   double error_m() const { return equation_m + drive_modes_m; }
 };

@@ -43,10 +43,10 @@ struct MindlinPlate {
   // symmetric about the centre line and has kx^2 = `along_per_m2`. `along_per_m2` may be below zero.
   double characteristic(double frequency_Hz, double half_width_m, double along_per_m2) const noexcept;
 
-  double stiffness_N_m = 0;      // D
-  double shear_N_per_m = 0;      // S
+  double stiffness_N_m = 0;      // bending stiffness D
+  double shear_N_per_m = 0;      // shear stiffness S
   double mass_kg_per_m2 = 0;     // mass per area, rho h
-  double rotary_inertia_kg = 0;  // J
+  double rotary_inertia_kg = 0;  // rotary inertia per area, J
   double twist_N_m = 0;          // twisting stiffness, D (1 - nu) / 2
 
  private:

@@ -64,7 +64,7 @@ class ModalAssembler {
   double slope_unit_m_;
   Quadrature rule_;
   std::vector<BasisValues> table_;
-  Eigen::Matrix4d single_bend_;  // the integrals across_.bend of the first function
+  Eigen::Matrix4d single_bend_;  // across_.bend for the first transverse function only
 };
 
 }  // namespace turnpoint::physics

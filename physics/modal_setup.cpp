@@ -81,7 +81,7 @@ std::vector<ModalElement> make_modal_elements(const ModalSetup& s, const ModalRe
       if (piece.x0 > x * (1 + 1e-12) && piece.x0 < end) end = piece.x0;
     }
     if (x + 1.5 * h > end) h = x + h >= end ? end - x : 0.5 * (end - x);
-    if (!(h > 1e-9 * w0)) break;  // this is the apex itself
+    if (!(h > 1e-9 * w0)) break;  // the apex is reached
     const int wanted = static_cast<int>(std::ceil(s.k * w / pi)) + s.spare;
     ModalElement& e = elements.emplace_back();
     e.x0 = x;

@@ -28,13 +28,13 @@ constexpr double plate_piston = 0.9;
 constexpr double plate_second_mode =
     // cut-off half-width of the second symmetric mode divided by the first's
     2.3246;
-constexpr double plate_shift = 1.2e-3;      // shift of an edge, in cut-off half-widths
-constexpr double thick_shift = 2.5e-3;      // the same for Mindlin's and the elastic section's shapes
+constexpr double plate_shift = 1.2e-3;      // shift of any edge, in cut-off half-widths
+constexpr double thick_shift = 2.5e-3;      // the same for the theories mindlin and elastic
 constexpr double plate_slope_shift = 0.15;  // shift of an edge divided by W'^2
 constexpr double end_shift = 0.15;          // the same, from a clamped end just beyond the turning point
 // shift of an edge in cut-off half-widths, divided by the share of higher modes
 constexpr double shallow = 6;
-constexpr double largest = 2;  // a larger bound has no meaning
+constexpr double largest = 2;  // a bound above this would tell nothing
 
 // The equation of the n-th symmetric transverse mode, n = 1, 2, ... On a wedge, the order of its Bessel
 // function is exact to the second power of the slope.

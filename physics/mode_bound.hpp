@@ -13,14 +13,14 @@ namespace turnpoint::physics {
 struct ModeBound {
   double shape = 0;     // error of |v| if the last maximum is set to one, relative to the largest value
   double drive = 0;     // error of |v| if v(0) is set to one, relative to the largest value
-  double level_dB = 0;  // error of the ratio of the last maximum to the drive edge
+  double level_dB = 0;  // error of |v| at the last maximum divided by |v(0)|
   // error of an edge's position from the one-mode equation, on a curved or steep taper
   double equation_m = 0;
   // error of an edge's position, caused by higher modes from the drive edge and by a straight clamped end
   // nearby
   double drive_m = 0;
   double position_m() const { return equation_m + drive_m; }
-  double higher_modes = 0;  // the part of `shape` that the drive edge's higher modes cause
+  double higher_modes = 0;  // the part of `shape` that higher modes from the drive edge cause
 };
 
 // Computes the bounds. `conditioning` is CentreLine::drive_conditioning of the first mode. `last_peak_m` is

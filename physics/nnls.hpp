@@ -7,7 +7,7 @@ namespace turnpoint::physics {
 
 struct NnlsResult {
   std::vector<double> x;     // weight of each column, at least 0
-  double residual_norm = 0;  // |A x - b|
+  double residual_norm = 0;  // the norm |A x - b|
   int iterations = 0;
 };
 

@@ -29,13 +29,13 @@ struct RungEstimate {
   double boundary_bound_m = 0;  // error of any edge's position
   double amplitude_bound = 0;   // error of |v|, relative to its largest value
   double level_bound_dB = 0;    // error of the level at the last maximum
-  double cost_s = 0;            // time on one core of a 3 GHz machine
+  double cost_s = 0;            // computing time on one core of a 3 GHz machine
   std::string reason;
 };
 
 struct PlanRequest {
   std::vector<Tone> tones;
-  int points = 0;  // 0: only positions are needed
+  int points = 0;  // number of points of the profile; 0 if only positions are needed
   Edge edge = Edge::turning();
   Normalise normalise = Normalise::peak;
   Tolerance tolerance;

@@ -10,8 +10,8 @@ namespace turnpoint::physics {
 // An interval in which a function changes its sign. The function is above 0 at the end `above`, which may be
 // left or right, and 0 or below at the other end.
 struct Bracket {
-  double above;      // f > 0
-  double not_above;  // f <= 0
+  double above;      // here the function is > 0
+  double not_above;  // here the function is <= 0
 
   double middle() const { return 0.5 * (above + not_above); }
   double width() const { return std::abs(above - not_above); }

@@ -57,7 +57,7 @@ struct SectionElements {
 
   LineFunctions across, through;
   SectionPencil pencil;
-  double lame;  // Lame's constant divided by the shear modulus, lambda / G
+  double lame;  // Lame's constant lambda divided by the shear modulus G
 };
 
 }  // namespace turnpoint::physics

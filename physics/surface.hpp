@@ -28,7 +28,7 @@ enum class Bending { automatic, on, off };
 // Kirchhoff's cut-off half-width is 3 to 6 % larger than that of the elastic cross-section. Mindlin's is
 // within 0.2 % of it (h/W to 0.4, Poisson's ratio 0 to 0.4).
 enum class PlateTheory {
-  kirchhoff,  // thin plate: D lap^2 v = rho h omega^2 v, and tension if there is any
+  kirchhoff,  // thin plate: D lap^2 v = rho h omega^2 v, plus the term of tension
   // includes shear and rotary inertia; the shear factor depends on Poisson's ratio (mindlin_plate.hpp)
   mindlin,
   elastic  // three-dimensional elasticity of the cross-section (elastic_section.hpp)
@@ -72,8 +72,8 @@ struct ParameterSd {
   double thickness_m = 0;
   double modulus_Pa = 0;
   double half_width_m = 0;
-  double slope = 0;           // of a linear taper's slope
-  double decay_length_m = 0;  // of an exponential taper's decay length
+  double slope = 0;           // for the slope of a linear taper
+  double decay_length_m = 0;  // for the decay length of an exponential taper
 };
 
 // How the displacement of the drive edge (x = 0) varies with y. It is 1 at the centre line.

@@ -13,12 +13,12 @@ inline constexpr int taylor_order = 32;
 // imaginary parts.
 struct TaylorStep {
   double x_start;   // outer end of the step (m); tau = (x_start - x) / scale
-  double scale;     // m
+  double scale;     // length in m that corresponds to tau = 1
   double length;    // the step covers x_start - length ... x_start
   double ln_scale;  // logarithm of the factor that multiplies the coefficients
   double re[taylor_order + 1];
   double im[taylor_order + 1];
-  int order = taylor_order;  // of the last coefficient that is not negligible
+  int order = taylor_order;  // index of the last coefficient that is not negligible
 };
 
 // Evaluates the step's polynomial at n points.

@@ -47,7 +47,7 @@ struct TaylorMarch::State {
   MarchEquation equation;
   std::optional<ApexSeries> apex;  // the solution for x > apex->inner_m()
   std::vector<TaylorStep> steps;   // from the tip to x = 0, or to the last maximum
-  double held_m;                   // where v is zero
+  double held_m;                   // the outer end, where v is set to zero
 
   enum class Until { drive_edge, last_peak };
   void march(TaylorState from, Until until);

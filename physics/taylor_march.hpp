@@ -18,9 +18,9 @@
 namespace turnpoint::physics {
 
 struct MarchEquation {
-  std::complex<double> a;  // 1/m^2
-  double b = 0;            // factor of 1/W^2
-  double c = 0;            // factor of W'^2/W^2
+  std::complex<double> a;  // A, in 1/m^2
+  double b = 0;            // B, the factor of 1/W^2
+  double c = 0;            // C, the factor of W'^2/W^2
   double w_power = 0;      // exponent in the displacement v = g W^-w_power
 };
 

@@ -10,7 +10,7 @@ namespace {
 
 // The series is cut off where its terms, relative to the larger of the first two, are below
 // exp(ln_truncation).
-constexpr double ln_truncation = -39.8;  // 5e-18
+constexpr double ln_truncation = -39.8;  // that is, 5e-18
 
 // 1/((n + 1)(n + 2))
 constexpr auto inverse_products = [] {
@@ -24,7 +24,7 @@ constexpr auto inverse_products = [] {
 double exact_length(const TaylorStep& step) {
   const double size =
       std::max({std::abs(step.re[0]), std::abs(step.im[0]), std::abs(step.re[1]), std::abs(step.im[1])});
-  double ln_ratio = std::numbers::ln2 * 2;  // limits a step to four trial scales
+  double ln_ratio = std::numbers::ln2 * 2;  // a step is at most four trial scales long
   for (int n = taylor_order - 2; n <= taylor_order; ++n) {
     const double term = std::max(std::abs(step.re[n]), std::abs(step.im[n]));
     if (term > 0) ln_ratio = std::min(ln_ratio, (std::log(size / term) + ln_truncation) / n);

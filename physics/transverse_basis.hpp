@@ -35,12 +35,12 @@ class TransverseBasis {
   Matrix shear;                               // integrals of eta^2 Y_i' Y_j'
   Matrix stiff;                               // integrals of Y_i' Y_j'
   std::array<std::array<Matrix, 4>, 4> bend;  // integrals of all products of (Y, eta Y', eta^2 Y'', Y'')
-  Eigen::VectorXd centre;                     // Y_i(0)
+  Eigen::VectorXd centre;                     // the values Y_i(0)
 
  private:
   void integrate();
   Quadrature rule_;
-  Matrix value_, first_, second_;  // at the quadrature nodes: one row per function, one column per node
+  Matrix value_, first_, second_;  // Y_i and its derivatives: a row per function, a column per node
 };
 
 }  // namespace turnpoint::physics

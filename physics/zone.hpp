@@ -37,7 +37,7 @@ struct ZoneRequest {
 struct ZoneDesign {
   // highest frequency first; amplitudes are at the drive edge, and phases give a low crest factor
   std::vector<Tone> tones;
-  double boundary_m = 0;  // the actual boundary, defined by the requested edge
+  double boundary_m = 0;  // where the requested edge actually lies
   double friction = 0;    // the mean friction that was reached
   double residual = 0;    // rms deviation of the fingertip-averaged friction from its mean in the zone
   double node_fill = 0;   // smallest squared amplitude in the zone, summed over tones, divided by its mean

@@ -11,7 +11,7 @@ namespace turnpoint::physics {
 // requires.
 struct ToneShape {
   double frequency_Hz = 0;
-  double drive_gain = 1;  // |v(0)| if the last maximum is 1
+  double drive_gain = 1;  // |v(0)| divided by |v| at the last maximum
   std::vector<double> square;
 };
 
@@ -52,7 +52,7 @@ class ZoneProfile {
   std::vector<ToneShape> shapes_;
   std::vector<double> weights_;          // weight of each tone's squared amplitude
   std::vector<double> weights_of_mean_;  // weight of each point's friction in the zone's mean
-  double scale_ = 1e-12;                 // squared displacement (m^2) for a weighted sum of 1
+  double scale_ = 1e-12;                 // squared displacement (m^2) where the weighted sum of squares is 1
   bool scaled_before_ = false;           // true once a scale was found; the next search starts from it
 };
 
