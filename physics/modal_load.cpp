@@ -1,85 +1,279 @@
 #include "physics/modal_load.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "physics/dispersion.hpp"
+#include "physics/field.hpp"
 #include "physics/modal_setup.hpp"
+#include "physics/section_basis.hpp"
+#include "physics/section_field.hpp"
 
 namespace turnpoint::physics {
 namespace {
 
 using Matrix = Eigen::MatrixXcd;
+using Vector = Eigen::VectorXcd;
 
-// Static condensation: the stiffness of the `kept` unknowns when no force acts on the `others`.
-Matrix condensed(const Matrix& kept, const Matrix& coupling, const Matrix& others) {
-  return kept - coupling * others.partialPivLu().solve(coupling.transpose());
+// The field's elements with all that a load needs. Matrices describe half of the strip.
+struct Strip {
+  ModalSetup setup;
+  std::vector<ModalElement> elements;
+  std::vector<Matrix> matrices;
+  Eigen::VectorXd drive;  // unknowns of the drive edge
+  int other_functions;    // number of functions before those of the deflection, which are bubbles_at
+  int power;              // of this power
+  Parity parity;
+  std::complex<double> compliance;  // turns 1 / matrix into metres per newton
+};
+
+// The unknowns of an element in their order: those of the left vertex, the bubbles and the right vertex.
+struct Sizes {
+  Eigen::Index left, right;
+  Sizes(const ModalElement& e, int per_vertex) : left(per_vertex * e.left), right(per_vertex * e.right) {}
+};
+
+// Eliminates the elements' bubbles, and then the vertices from the tip to the drive edge.
+class Chain {
+ public:
+  Chain(const Strip& strip);
+  // load^T matrix^-1 load of loads on consecutive elements, with the drive edge held.
+  std::complex<double> quadratic(std::size_t first, const std::vector<Vector>& loads) const;
+  // The unknowns of each element for a motion of the drive edge.
+  std::vector<Vector> driven(const Eigen::VectorXd& drive) const;
+
+ private:
+  struct Link {
+    Eigen::Index left, right;
+    Eigen::PartialPivLU<Matrix> bubbles;
+    Matrix follow;                                // bubbles = -follow (left, right)
+    Eigen::PartialPivLU<Matrix> right_stiffness;  // of the right vertex and everything beyond it
+    Matrix pull;                                  // right vertex = -pull left vertex
+  };
+  std::vector<Link> links_;
+};
+
+Chain::Chain(const Strip& strip) {
+  links_.resize(strip.elements.size());
+  Matrix tail;
+  for (std::size_t i = links_.size(); i-- > 0;) {
+    Link& link = links_[i];
+    const Sizes size(strip.elements[i], strip.setup.along.per_vertex);
+    link.left = size.left, link.right = size.right;
+    const Matrix& k = strip.matrices[i];
+    const Eigen::Index ends = link.left + link.right, inner = k.rows() - ends;
+    Matrix coupling(inner, ends), outer(ends, ends);
+    coupling << k.block(link.left, 0, inner, link.left),
+        k.block(link.left, link.left + inner, inner, link.right);
+    outer << k.topLeftCorner(link.left, link.left), k.topRightCorner(link.left, link.right),
+        k.bottomLeftCorner(link.right, link.left), k.bottomRightCorner(link.right, link.right);
+    link.bubbles.compute(k.block(link.left, link.left, inner, inner));
+    link.follow = link.bubbles.solve(coupling);
+    outer -= coupling.transpose() * link.follow;
+    Matrix left = outer.topLeftCorner(link.left, link.left);
+    if (link.right > 0) {
+      link.right_stiffness.compute(outer.bottomRightCorner(link.right, link.right) + tail);
+      link.pull = link.right_stiffness.solve(outer.bottomLeftCorner(link.right, link.left));
+      left -= outer.topRightCorner(link.left, link.right) * link.pull;
+    }
+    tail = left;
+  }
 }
 
-// Returns, for each element, the inverse of the stiffness at its unknowns. That stiffness includes all
-// elements on both sides. Unknowns that are held, at the drive edge and at the far end, are left out.
-std::vector<Matrix> inverses(const ModalSetup& setup, const ModalAssembler& assembler,
-                             const std::vector<ModalElement>& elements) {
-  const Eigen::Index ends = setup.along.per_vertex;
-  std::vector<Matrix> seen;
-  for (const ModalElement& e : elements) seen.push_back(assembler.matrix(e));
-  const std::vector<Matrix> own = seen;
-  for (std::size_t i = seen.size(); i-- > 1;) {
-    const Eigen::Index rest = seen[i].rows() - ends;
-    const Matrix tail = condensed(seen[i].topLeftCorner(ends, ends), seen[i].topRightCorner(ends, rest),
-                                  seen[i].bottomRightCorner(rest, rest));
-    seen[i - 1].bottomRightCorner(ends, ends) += tail;
-  }
-  Matrix head;  // stiffness at the left vertex of all elements before it, drive edge held
-  for (std::size_t i = 0; i < seen.size(); ++i) {
-    Matrix before = own[i];
-    if (i == 0) {
-      const Eigen::Index rest = before.rows() - ends;
-      seen[i] = Matrix(seen[i].bottomRightCorner(rest, rest));
-      before = Matrix(before.bottomRightCorner(rest, rest));
-    } else {
-      seen[i].topLeftCorner(ends, ends) += head;
-      before.topLeftCorner(ends, ends) += head;
+std::complex<double> Chain::quadratic(std::size_t first, const std::vector<Vector>& loads) const {
+  std::complex<double> sum = 0;
+  Vector vertex;  // the load on the left vertex of the element beyond, after elimination
+  for (std::size_t i = first + loads.size(); i-- > 0;) {
+    const Link& link = links_[i];
+    Vector left = Vector::Zero(link.left), right = Vector::Zero(link.right);
+    if (vertex.size() > 0) right = vertex;
+    if (i >= first) {
+      const Vector& load = loads[i - first];
+      const Vector bubbles = load.segment(link.left, load.size() - link.left - link.right);
+      sum += (bubbles.transpose() * link.bubbles.solve(bubbles))(0, 0);
+      const Vector ends = link.follow.transpose() * bubbles;
+      left = load.head(link.left) - ends.head(link.left);
+      right += load.tail(link.right) - ends.tail(link.right);
     }
-    const Eigen::Index rest = before.rows() - ends;
-    if (i + 1 < seen.size())
-      head = condensed(before.bottomRightCorner(ends, ends), before.bottomLeftCorner(ends, rest),
-                       before.topLeftCorner(rest, rest));
-    seen[i] = Matrix(seen[i].partialPivLu().inverse());
+    if (link.right > 0) {
+      sum += (right.transpose() * link.right_stiffness.solve(right))(0, 0);
+      left -= link.pull.transpose() * right;
+    }
+    vertex = left;
   }
-  return seen;
+  return sum;
+}
+
+std::vector<Vector> Chain::driven(const Eigen::VectorXd& drive) const {
+  std::vector<Vector> all;
+  Vector left = drive.cast<std::complex<double>>();
+  for (const Link& link : links_) {
+    Vector ends(link.left + link.right);
+    ends.head(link.left) = left;
+    if (link.right > 0) ends.tail(link.right) = -(link.pull * left);
+    Vector& u = all.emplace_back(ends.size() + link.follow.rows());
+    u << left, -(link.follow * ends), ends.tail(link.right);
+    left = ends.tail(link.right);
+  }
+  return all;
+}
+
+// The motion of the drive edge as the unknowns of the first vertex, with 1 at the centre.
+Eigen::VectorXd at_first_vertex(const ModalElement& first, int per_vertex, const Eigen::VectorXd& shape,
+                                const Eigen::VectorXd& centre) {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(per_vertex * first.left);
+  all.head(first.left) = shape.head(first.left) / shape.head(first.left).dot(centre.head(first.left));
+  return all;
+}
+
+// Half of the strip by Mindlin's theory, whose unknowns are two rotations and the deflection.
+Strip thick_strip(const Surface& surface, double f, Parity parity) {
+  Surface plate = surface;
+  plate.theory = PlateTheory::mindlin;
+  ModalSetup setup = make_modal_setup(plate, f, Losses::kept, {});
+  double match_m = 0;
+  auto elements = make_modal_elements(setup, {}, match_m);
+  const int each = setup.across.count();
+  const SectionBasis section = mindlin_polynomials(plate, each, parity);
+  const std::complex<double> loss = std::pow(std::complex<double>(1, -0.5 / plate.quality_factor), 4);
+  const std::complex<double> omega2 = std::pow(2 * std::numbers::pi * f, 2) * loss;
+  std::vector<Matrix> matrices;
+  for (ModalElement& e : elements) {
+    e.left = e.right = static_cast<int>(section.count());
+    matrices.push_back(section_element_matrix(section, setup, omega2, e));
+  }
+  elements.back().right = 0;
+  const Eigen::Index kept = matrices.back().rows() - section.count();
+  matrices.back() = Matrix(matrices.back().topLeftCorner(kept, kept));
+  Eigen::VectorXd drive = section.drive;
+  if (parity == Parity::even) drive = at_first_vertex(elements.front(), 1, section.drive, section.centre);
+  return {std::move(setup), std::move(elements), std::move(matrices), drive, 2 * each, 1, parity, 0.5 * loss};
+}
+
+// Half of a thin strip; the matrices are divided by the bending stiffness, or by the tension of a membrane.
+Strip thin_strip(const Surface& surface, const ModalSetup& setup, Parity parity) {
+  double match_m = 0;
+  auto elements = make_modal_elements(setup, {}, match_m);
+  const int power = setup.along.per_vertex;
+  const auto across = TransverseBasis::polynomials(setup.across.count(), power, parity);
+  const ModalAssembler assembler(setup.taper, across, setup.along, setup.equation,
+                                 setup.taper.half_width_m(0));
+  std::vector<Matrix> matrices;
+  for (const ModalElement& e : elements) matrices.push_back(assembler.matrix(e));
+  Eigen::VectorXd drive = Eigen::VectorXd::Zero(power * elements.front().left);
+  if (parity == Parity::even)
+    drive = at_first_vertex(elements.front(), power, across.project(drive_shape(surface, setup.equation)),
+                            across.centre);
+  return {setup, std::move(elements), std::move(matrices), drive, 0, power, parity, 0.5};
+}
+
+// The strips whose responses add up to the surface's.
+std::vector<Strip> make_strips(const Surface& surface, double f, Parity parity) {
+  const Dispersion dispersion(surface);
+  if (dispersion.clamped_bending() && surface.theory != PlateTheory::kirchhoff)
+    return {thick_strip(surface, f, parity)};
+  ModalSetup setup = make_modal_setup(surface, f, Losses::kept, {});
+  std::vector<Strip> all{thin_strip(surface, setup, parity)};
+  const std::complex<double> inertia = setup.equation.inertia;
+  const double lossless = make_modal_setup(surface, f, Losses::left_out, {}).equation.inertia.real();
+  const double tension = line_tension_N_per_m(surface), bending = dispersion.stiffness_N_m;
+  if (!dispersion.bending || dispersion.clamped) {
+    all[0].compliance *= inertia / lossless / (dispersion.bending ? bending : tension);
+    return all;
+  }
+  // Simply supported sides: D (lap + k^2) (lap - k2^2) v = force, so the response is that of a membrane with
+  // k^2 less that of one with -k2^2.
+  const std::complex<double> evanescent = inertia + tension / bending;
+  const std::complex<double> loss = inertia * evanescent / (lossless * (lossless + tension / bending));
+  setup.equation.inertia = -evanescent;
+  all.push_back(thin_strip(surface, setup, parity));
+  all[0].compliance *= loss / (bending * (inertia + evanescent));
+  all[1].compliance = -all[0].compliance;
+  all[1].drive.setZero();
+  return all;
+}
+
+// The mean over the disc as a load on consecutive elements.
+struct DiscLoad {
+  std::size_t first = 0;
+  std::vector<Vector> loads;
+};
+
+// Integrals of the deflection's functions across the disc at one x.
+Eigen::VectorXd across_disc(const Strip& strip, int functions, double half_width, double from, double to) {
+  const Quadrature rule = gauss_legendre(14);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(functions);
+  if (!(from < to)) return sum;
+  for (std::size_t i = 0; i < rule.x.size(); ++i)
+    sum += (to - from) * rule.w[i] *
+           bubbles_at(functions, strip.power, strip.parity, (from + (to - from) * rule.x[i]) / half_width);
+  return sum;
+}
+
+Vector element_load(const Strip& strip, const ModalElement& e, double x_m, const Disc& disc) {
+  const ElementBasis& along = strip.setup.along;
+  const int functions = e.left, deflections = functions - strip.other_functions;
+  Vector load = Vector::Zero(along.count() * functions);
+  const double from = std::max(e.x0, x_m - disc.radius_m), to = std::min(e.x0 + e.h, x_m + disc.radius_m);
+  const double area = std::numbers::pi * disc.radius_m * disc.radius_m;
+  const double slope_factor = 0.5 * e.h / strip.setup.taper.half_width_m(0);
+  const Quadrature rule = gauss_legendre(12);
+  for (std::size_t i = 0; i < rule.x.size(); ++i) {
+    const double x = from + (to - from) * rule.x[i], w = strip.setup.taper.half_width_m(x);
+    const double chord = std::sqrt(std::max(0.0, disc.radius_m * disc.radius_m - (x - x_m) * (x - x_m)));
+    const Eigen::VectorXd across = across_disc(strip, deflections, w, std::max(-w, disc.beside_m - chord),
+                                               std::min(w, disc.beside_m + chord)) *
+                                   ((to - from) * rule.w[i] / area);
+    const BasisValues basis = along.at(2 * (x - e.x0) / e.h - 1);
+    for (int a = 0; a < along.count(); ++a) {
+      const bool slope = along.per_vertex == 2 && (a == 1 || a == along.count() - 1);
+      load.segment(a * functions + strip.other_functions, deflections) +=
+          across * (basis.value[static_cast<std::size_t>(a)] * (slope ? slope_factor : 1));
+    }
+  }
+  // The right vertex may have fewer functions.
+  const Eigen::Index rest = (along.count() - along.per_vertex) * functions;
+  Vector kept(rest + along.per_vertex * e.right);
+  kept.head(rest) = load.head(rest);
+  for (int v = 0; v < along.per_vertex; ++v)
+    kept.segment(rest + v * e.right, e.right) = load.segment(rest + v * functions, e.right);
+  return kept;
+}
+
+DiscLoad disc_load(const Strip& strip, double x_m, const Disc& disc) {
+  DiscLoad all;
+  for (std::size_t i = 0; i < strip.elements.size(); ++i) {
+    const ModalElement& e = strip.elements[i];
+    if (e.x0 + e.h <= x_m - disc.radius_m || e.x0 >= x_m + disc.radius_m) continue;
+    if (all.loads.empty()) all.first = i;
+    all.loads.push_back(element_load(strip, e, x_m, disc));
+  }
+  return all;
+}
+
+void add_responses(const Strip& strip, const Disc& disc, const std::vector<double>& x_m,
+                   std::vector<DiscResponse>& all) {
+  const Chain chain(strip);
+  const std::vector<Vector> driven = chain.driven(strip.drive);
+  for (std::size_t i = 0; i < x_m.size(); ++i) {
+    const DiscLoad load = disc_load(strip, x_m[i], disc);
+    if (load.loads.empty()) continue;
+    for (std::size_t j = 0; j < load.loads.size(); ++j)
+      all[i].unloaded += (load.loads[j].transpose() * driven[load.first + j])(0, 0);
+    all[i].receptance_m_per_N += strip.compliance * chain.quadratic(load.first, load.loads);
+  }
 }
 
 }  // namespace
 
-std::vector<std::complex<double>> plate_receptance_m_per_N(const Surface& surface, double f,
-                                                           const std::vector<double>& x_m) {
-  ModalResolution resolution;
-  resolution.across = ModalResolution::Across::cut_off_shape;
-  const ModalSetup setup = make_modal_setup(surface, f, Losses::kept, resolution);
-  double match_m = 0;
-  const auto elements = make_modal_elements(setup, resolution, match_m);
-  const ModalAssembler assembler(setup.taper, setup.across, setup.along, setup.equation,
-                                 setup.taper.half_width_m(0));
-  const auto inverse = inverses(setup, assembler, elements);
-  // The elements' matrices describe half of the strip and are divided by D.
-  const double unit = 1 / (2 * Dispersion(surface).stiffness_N_m);
-  std::vector<std::complex<double>> answer;
-  for (const double x : x_m) {
-    auto e = std::partition_point(elements.begin(), elements.end(),
-                                  [x](const ModalElement& one) { return one.x0 + one.h < x; });
-    if (e == elements.end()) --e;
-    const BasisValues basis = setup.along.at(std::clamp(2 * (x - e->x0) / e->h - 1, -1.0, 1.0));
-    Eigen::VectorXcd load(setup.along.count());
-    for (int a = 0; a < setup.along.count(); ++a) {
-      const bool slope = setup.along.per_vertex == 2 && (a == 1 || a == setup.along.count() - 1);
-      load[a] = basis.value[static_cast<std::size_t>(a)] * (slope ? assembler.slope_factor(*e) : 1);
-    }
-    const auto& k = inverse[static_cast<std::size_t>(e - elements.begin())];
-    const Eigen::Index skipped = e == elements.begin() ? setup.along.per_vertex : 0;
-    const Eigen::VectorXcd acts = load.segment(skipped, k.rows());
-    answer.push_back(unit * (acts.transpose() * k * acts)(0, 0));
-  }
-  return answer;
+std::vector<DiscResponse> disc_responses(const Surface& surface, double f, const Disc& disc,
+                                         const std::vector<double>& x_m) {
+  std::vector<DiscResponse> all(x_m.size());
+  for (const Strip& strip : make_strips(surface, f, Parity::even)) add_responses(strip, disc, x_m, all);
+  if (disc.beside_m == 0) return all;
+  for (const Strip& strip : make_strips(surface, f, Parity::odd)) add_responses(strip, disc, x_m, all);
+  return all;
 }
 
 }  // namespace turnpoint::physics

@@ -65,6 +65,20 @@ ModalSetup make_modal_setup(const Surface& surface, double f, Losses losses,
           spare_functions(dispersion, f, resolution)};
 }
 
+std::function<double(double)> drive_shape(const Surface& surface, const ModalEquation& equation) {
+  if (surface.drive == DriveShape::piston) return [](double) { return 1.0; };
+  if (!equation.plate()) return [](double eta) { return std::cos(pi / 2 * eta); };
+  const Dispersion dispersion(surface);
+  const double w = half_width_m(surface, 0);
+  const double b = w * dispersion.wavenumber_per_m(dispersion.cut_off_frequency_Hz(w));
+  const double g = std::sqrt(b * b + w * w * equation.tension);
+  const auto cosh_ratio = [g](double eta) {  // cosh(g eta)/cosh g in a form that does not overflow
+    return std::exp(g * (eta - 1)) * (1 + std::exp(-2 * g * eta)) / (1 + std::exp(-2 * g));
+  };
+  const double unit = 1 / std::cos(b) - cosh_ratio(0);
+  return [=](double eta) { return (std::cos(b * eta) / std::cos(b) - cosh_ratio(eta)) / unit; };
+}
+
 std::vector<ModalElement> make_modal_elements(const ModalSetup& s, const ModalResolution& resolution,
                                               double& match_m) {
   std::vector<ModalElement> elements;

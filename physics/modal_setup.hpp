@@ -1,5 +1,6 @@
 #pragma once
 // Prepares a solution by finite elements: taper, equation, basis functions and the elements themselves.
+#include <functional>
 #include <vector>
 
 #include "physics/modal_elements.hpp"
@@ -20,6 +21,10 @@ struct ModalSetup {
 
 ModalSetup make_modal_setup(const Surface& surface, double frequency_Hz, Losses losses,
                             const ModalResolution& resolution);
+
+// Returns the displacement of the drive edge as a function of eta: that of a piston, or of the first
+// transverse mode at its cut-off.
+std::function<double(double)> drive_shape(const Surface& surface, const ModalEquation& equation);
 
 // Divides the surface from the drive edge to the far end into elements. They are finer near the corners of
 // the drive edge, and elements end at the knots of a tabulated taper. Sets match_m to the position beyond

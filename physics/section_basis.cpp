@@ -77,18 +77,19 @@ SectionMatrix stacked(const SectionMatrix& a, const SectionMatrix& b, const Sect
 }
 
 // The functions for a Mindlin plate: first those of the rotations beta_x and beta_y, then those of the
-// deflection w.
-SectionBasis mindlin_section(const MindlinPlate& plate, int each) {
+// deflection w, which has the given parity.
+SectionBasis mindlin_section(const MindlinPlate& plate, int each, Parity parity = Parity::even) {
   const Quadrature rule = gauss_legendre(2 * each + 6);
   const auto nodes = static_cast<Eigen::Index>(rule.x.size());
   const Eigen::Map<const Eigen::VectorXd> eta(rule.x.data(), nodes), weight(rule.w.data(), nodes);
-  SectionMatrix even, even1, odd, odd1;
-  Eigen::VectorXd even_start, odd_start;
-  bubbles(each, 0, rule, even, even1, even_start);
-  bubbles(each, 1, rule, odd, odd1, odd_start);
+  const int first = parity == Parity::odd;
+  SectionMatrix same, same1, other, other1;  // functions of the same parity as w, and of the other
+  Eigen::VectorXd same_start, other_start;
+  bubbles(each, first, rule, same, same1, same_start);
+  bubbles(each, 1 - first, rule, other, other1, other_start);
   const SectionMatrix none = SectionMatrix::Zero(each, nodes);
-  const Components motion{stacked(even, none, none), stacked(none, odd, none), stacked(none, none, even)};
-  const Components slope{stacked(even1, none, none), stacked(none, odd1, none), stacked(none, none, even1)};
+  const Components motion{stacked(same, none, none), stacked(none, other, none), stacked(none, none, same)};
+  const Components slope{stacked(same1, none, none), stacked(none, other1, none), stacked(none, none, same1)};
   Components stretched;
   for (const SectionMatrix& one : slope) stretched.push_back(one * eta.asDiagonal());
   const SectionMatrix zero = SectionMatrix::Zero(3 * each, nodes);
@@ -107,7 +108,7 @@ SectionBasis mindlin_section(const MindlinPlate& plate, int each) {
   SectionBasis basis =
       integrate_section({by_x(motion), by_x(stretched), by_y, local}, law, motion, inertia, weight);
   basis.centre = Eigen::VectorXd::Zero(3 * each);
-  basis.centre.tail(each) = even_start;
+  if (parity == Parity::even) basis.centre.tail(each) = same_start;
   return basis;
 }
 
@@ -311,9 +312,10 @@ SectionBasis elastic_shapes(const Surface& surface, double f) {
 
 }  // namespace
 
-SectionBasis mindlin_polynomials(const Surface& surface, int each) {
-  SectionBasis basis = mindlin_section(MindlinPlate(surface), each);
-  basis.drive = mindlin_columns(basis, half_width_m(surface, 0), each).col(0);
+SectionBasis mindlin_polynomials(const Surface& surface, int each, Parity parity) {
+  SectionBasis basis = mindlin_section(MindlinPlate(surface), each, parity);
+  basis.drive = Eigen::VectorXd::Zero(basis.count());
+  if (parity == Parity::even) basis.drive = mindlin_columns(basis, half_width_m(surface, 0), each).col(0);
   return basis;
 }
 

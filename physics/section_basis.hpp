@@ -5,6 +5,7 @@
 #include <array>
 
 #include "physics/surface.hpp"
+#include "physics/transverse_basis.hpp"
 
 namespace turnpoint::physics {
 
@@ -26,8 +27,8 @@ struct SectionBasis {
 };
 
 // Makes polynomials of eta for the deflection and both rotations of a Mindlin plate. They can describe its
-// full two-dimensional field.
-SectionBasis mindlin_polynomials(const Surface& surface, int each);
+// full two-dimensional field. The parity is that of the deflection; odd fields have no drive.
+SectionBasis mindlin_polynomials(const Surface& surface, int each, Parity parity = Parity::even);
 
 // Makes functions from four shapes: the cut-off shapes at three half-widths, and the shape of the travelling
 // wave at the drive edge. Each shape gives one function for the motion in the cross-section and two for the

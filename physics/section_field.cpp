@@ -4,8 +4,6 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "physics/section_basis.hpp"
-
 namespace turnpoint::physics {
 namespace {
 
@@ -17,10 +15,10 @@ SectionBasis make_section(const Surface& surface, double f, const ModalResolutio
   return mindlin_polynomials(surface, setup.across.count());
 }
 
-// The symmetric matrix of an element. Its unknowns are ordered by basis function along x, then by function
-// over the cross-section.
-Eigen::MatrixXcd element_matrix(const SectionBasis& section, const ModalSetup& setup,
-                                std::complex<double> omega2, const ModalElement& e) {
+}  // namespace
+
+Eigen::MatrixXcd section_element_matrix(const SectionBasis& section, const ModalSetup& setup,
+                                        std::complex<double> omega2, const ModalElement& e) {
   using S = SectionBasis;
   const Eigen::Index n = section.count(), count = setup.along.count();
   Eigen::MatrixXd stiffness = Eigen::MatrixXd::Zero(n * count, n * count), mass = stiffness;
@@ -53,8 +51,6 @@ Eigen::MatrixXcd element_matrix(const SectionBasis& section, const ModalSetup& s
   return stiffness - omega2 * mass;
 }
 
-}  // namespace
-
 void solve_section_elements(const Surface& surface, double f, Losses losses,
                             const ModalResolution& resolution, const ModalSetup& setup,
                             std::vector<ModalElement>& elements) {
@@ -65,7 +61,7 @@ void solve_section_elements(const Surface& surface, double f, Losses losses,
   const Eigen::Index n = section.count(), inner = setup.along.degree * n;
   Eigen::MatrixXcd tail;  // stiffness of all elements beyond this one, far end held
   for (auto e = elements.rbegin(); e != elements.rend(); ++e) {
-    Eigen::MatrixXcd k = element_matrix(section, setup, omega2, *e);
+    Eigen::MatrixXcd k = section_element_matrix(section, setup, omega2, *e);
     Eigen::Index rest = inner;
     if (tail.size() == 0) {
       rest -= n;

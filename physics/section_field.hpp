@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "physics/modal_setup.hpp"
+#include "physics/section_basis.hpp"
 
 namespace turnpoint::physics {
 
@@ -14,5 +15,10 @@ namespace turnpoint::physics {
 void solve_section_elements(const Surface& surface, double frequency_Hz, Losses losses,
                             const ModalResolution& resolution, const ModalSetup& setup,
                             std::vector<ModalElement>& elements);
+
+// The symmetric matrix of an element for the squared angular frequency `omega2`. Unknowns are ordered by
+// basis function along x, then by function of the section.
+Eigen::MatrixXcd section_element_matrix(const SectionBasis& section, const ModalSetup& setup,
+                                        std::complex<double> omega2, const ModalElement& element);
 
 }  // namespace turnpoint::physics

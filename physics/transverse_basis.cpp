@@ -48,7 +48,19 @@ Quadrature gauss_legendre(int n) {
   return n >= 1 && n <= kept ? rules[static_cast<std::size_t>(n)] : make_gauss_legendre(n);
 }
 
-TransverseBasis TransverseBasis::polynomials(int count, int power) {
+Eigen::VectorXd bubbles_at(int count, int power, Parity parity, double eta) {
+  Eigen::VectorXd all(count);
+  const double bubble = std::pow(1 - eta * eta, power);
+  double p0 = 1, p1 = eta;
+  for (int k = 0; k < 2 * count; ++k) {
+    if (k % 2 == (parity == Parity::odd)) all[k / 2] = std::sqrt(2 * k + 1.0) * bubble * p0;
+    const double p2 = ((2 * k + 3) * eta * p1 - (k + 1) * p0) / (k + 2);
+    p0 = p1, p1 = p2;
+  }
+  return all;
+}
+
+TransverseBasis TransverseBasis::polynomials(int count, int power, Parity parity) {
   TransverseBasis basis;
   basis.rule_ = gauss_legendre(count + 10 + 2 * power);
   const auto nodes = static_cast<Eigen::Index>(basis.rule_.x.size());
@@ -67,7 +79,7 @@ TransverseBasis TransverseBasis::polynomials(int count, int power) {
     const double b2 = power == 1 ? -2 : -4 * u + 8 * t * t;
     double p0 = 1, p1 = t, d0 = 0, d1 = 1, s0 = 0, s1 = 0;
     for (int k = 0; k < 2 * count; ++k) {
-      if (k % 2 == 0) {
+      if (k % 2 == (parity == Parity::odd)) {
         const double scale = std::sqrt(2 * k + 1.0);
         if (q == nodes) {
           basis.centre[k / 2] = scale * b * p0;

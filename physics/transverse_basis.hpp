@@ -14,14 +14,20 @@ struct Quadrature {
 };
 Quadrature gauss_legendre(int n);
 
-// Even functions Y_i of eta that vanish at eta = 1. They are (1 - eta^2)^m P_2j(eta), with m = 1 for
+// Whether functions are symmetric or antisymmetric about the centre line.
+enum class Parity { even, odd };
+
+// Returns (1 - eta^2)^power P_k(eta) sqrt(2k + 1) at one eta, for the first `count` even or odd k.
+Eigen::VectorXd bubbles_at(int count, int power, Parity parity, double eta);
+
+// Even or odd functions Y_i of eta that vanish at eta = 1. They are (1 - eta^2)^m P_k(eta), with m = 1 for
 // membranes and m = 2 if the slope must vanish, too; or there is just one function, a given shape. Integrals
 // are over [0, 1].
 class TransverseBasis {
  public:
   using Matrix = Eigen::MatrixXd;
 
-  static TransverseBasis polynomials(int count, int power);
+  static TransverseBasis polynomials(int count, int power, Parity parity = Parity::even);
   // A basis of one function, the shape of a clamped strip at its cut-off: cos(b eta) / cos b - cosh(g eta) /
   // cosh g.
   static TransverseBasis clamped_shape(double b, double g);
