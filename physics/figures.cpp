@@ -81,17 +81,16 @@ Figure figure(const char* id, const char* title, const std::string& note) {
 
 std::vector<Figure> figures() {
   const std::string shapes =
-      "Lossless shapes. The corrected mode keeps the energy flux: against eq. 11 it grows towards the "
-      "boundary "
-      "by sqrt(W0/W).";
+      "Shapes without loss. The corrected mode conserves the energy flux: compared with eq. 11, it grows by "
+      "sqrt(W0/W) towards the boundary.";
   Figure f3 = figure("figure-3", "Brass membrane, 19.6 kHz", shapes);
   f3.panels = {tone_panel(seed_brass(), 19600)};
   Figure f5 = figure("figure-5", "Brass membrane, 20 and 40 kHz", shapes);
   f5.panels = {tone_panel(seed_brass(), 20000), tone_panel(seed_brass(), 40000)};
   Figure f8 =
       figure("figure-8", "Rubber membrane, 30 and 40 Hz",
-             "Tension and taper of the rubber are not published: fitted, so that 30 Hz turns at 150 mm as "
-             "read from the paper. " +
+             "Tension and taper of the rubber are not published. They are fitted so that the turning point "
+             "for 30 Hz is at 150 mm, as in the paper. " +
                  shapes);
   f8.panels = {tone_panel(rubber(), 30), tone_panel(rubber(), 40)};
   Figure f10 = figure("figure-10", "Brass membrane, 8 and 45 kHz, alone and together", shapes);

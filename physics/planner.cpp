@@ -146,7 +146,7 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
                               Model model) {
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, model, request.points);
-  e.reason = "compared with mode at probe points";
+  e.reason = "error measured by comparison with mode at probe points";
   const bool drive = request.normalise != Normalise::peak;
   if (model == Model::modes && surface.theory == PlateTheory::elastic)
     throw std::domain_error("model modes is not available for plate theory elastic");
@@ -257,7 +257,7 @@ PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
     text << "; " << name(below->model) << ": " << numbers(*below, request.tolerance);
     break;
   }
-  if (!choice.inside) text << "; no model is inside the tolerance";
+  if (!choice.inside) text << "; no model meets the tolerance";
   choice.reason = text.str();
   return choice;
 }

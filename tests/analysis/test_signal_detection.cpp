@@ -154,7 +154,7 @@ TEST_CASE("d' for left/right answers and for forced choice follows its definitio
   const auto forced = detect(trials, {}, Detecting::forced_choice, 1);
   CHECK(*forced[0].level == -12);
   CHECK(forced[0].d_prime->value == Approx(direct.d_prime / std::sqrt(2.0)));
-  trials.resize(100);  // keep only the trials with a signal: no d'
+  trials.resize(100);  // only trials with a signal are left, so there is no d'
   CHECK_FALSE(detect(trials, {}, Detecting::forced_choice, 1)[0].d_prime);
 }
 

@@ -196,7 +196,7 @@ TEST_CASE("The conditional accuracy function has bins of equal counts", "[analys
   std::vector<bool> correct;
   for (int i = 0; i < 102; ++i) {
     times.push_back(1.02 - 0.01 * i);
-    correct.push_back(i < 51);  // slow answers are right, fast ones wrong
+    correct.push_back(i < 51);  // slow answers are right, and fast ones are wrong
   }
   const auto bins = conditional_accuracy(times, correct, 5);
   REQUIRE(bins.size() == 5);

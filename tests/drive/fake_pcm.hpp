@@ -18,7 +18,7 @@ struct FakePcm {
   State state = State::prepared;
   std::int64_t now = 0;                  ///< time in frames since the beginning, including frames in which
                                          ///< nothing played
-  std::int64_t written = 0, played = 0;  ///< frames since the device was last started
+  std::int64_t written = 0, played = 0;  ///< number of frames since the last start
   int recorded_channel = 0;
   std::vector<std::int32_t> ring;
   std::vector<std::int32_t> heard;  ///< what channel 0 played, one sample per frame of time

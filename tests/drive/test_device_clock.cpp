@@ -37,7 +37,7 @@ TEST_CASE("before the device has reported its position, its time is unknown", "[
   CHECK(stream.clock().pairs == 0);
   CHECK_FALSE(stream.time_of(0));
   CHECK_FALSE(stream.frame_at(1'000'000'000));
-  fake_pcm().stamps = false;  // a device that never reports its position
+  fake_pcm().stamps = false;  // this device never reports its position
   steps(stream, 50);
   CHECK_FALSE(stream.time_of(0));
   fake_pcm().stamps = true;

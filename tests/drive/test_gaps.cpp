@@ -75,7 +75,7 @@ struct Run {
   std::vector<Event> losses;
   bool restarted = false;
   trial::Result result;
-  bool told_after_answer = false;  ///< a loss reported after the answer made the trial void
+  bool told_after_answer = false;  ///< true if a loss reported after the answer made the trial void
   /// True if time passed between a write and the check whether the device had already played past the written
   /// frames. The stream cannot know whether that happened before the write, so it counts the block as lost.
   bool doubtful = false;
@@ -231,7 +231,7 @@ class Bench {
 };
 
 struct Truth {
-  bool whole = false;    ///< both bursts and the pause between them were played sample by sample
+  bool whole = false;    ///< the card played every sample of both bursts and of the pause between them
   bool on_time = false;  ///< both bursts began at the predicted time
 };
 

@@ -133,7 +133,7 @@ TEST_CASE(
   burst.start_frame = 2000;
   stream->schedule(burst);
   stream->schedule(burst);
-  CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);  // 3 * 0.4
+  CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);  // refused because 3 * 0.4 > 1
   burst.tones.tones[0].amplitude = 0.01;
   stream->schedule(burst);
   stream->schedule(burst);

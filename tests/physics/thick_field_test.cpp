@@ -57,7 +57,7 @@ TEST_CASE("the models mode and modes of a Mindlin taper match two-dimensional fi
     ++compared;
   }
   CHECK(compared == 6);
-  CHECK(thin > 0.01);  // negative control: a thin plate's boundary is elsewhere
+  CHECK(thin > 0.01);  // negative control: the thin plate's boundary is more than 10 mm away
 }
 
 TEST_CASE("for a thin plate, the fields of the thick-plate theories become Kirchhoff's", "[physics]") {

@@ -202,7 +202,7 @@ struct SteppedStream : drive::DeviceStream {
     return event;
   }
 
-  const bool& holding;  ///< while true, reports of what was heard are delayed
+  const bool& holding;  ///< while true, the stream delays its reports of what was played
   const std::function<void()> after_step;
   std::deque<drive::Event> held;
 };
@@ -237,7 +237,7 @@ struct CardSession {
   live_room::Room room;
   bool holding = false;
   bool first_answered = true;  ///< whether the participant answers the first stimulus
-  double repair_s = 0;         ///< time that the operator takes to clear a fault
+  double repair_s = 0;         ///< time that the operator takes before clearing a fault
   std::vector<std::pair<std::int64_t, std::function<void()>>> agenda;
   std::function<void(const session::Page&)> reacts = [](const auto&) {};
   std::vector<FaultKind> faults;

@@ -84,7 +84,7 @@ TEST_CASE("the true values are the observer's own parameters, never estimates", 
   CHECK(other.recoveries.size() == power.recoveries.size());
   for (const auto& recovery : other.recoveries)
     if (recovery.parameter !=
-        "proportion correct")  // of all presented trials; the other parameters leave out timeouts
+        "proportion correct")  // this is a proportion of all trials; the other parameters leave out timeouts
       CHECK(recovery.truth == find(power, recovery.source, recovery.parameter).truth);
 }
 

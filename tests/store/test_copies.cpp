@@ -223,7 +223,7 @@ TEST_CASE("the newest interrupted session is the one that was written last, even
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto ahead = sample::session(db, 2, sample::start("P01"), SessionStatus::interrupted);
-  sample::raw(db).execute("UPDATE segment SET realtime_ns = 4102444800000000000");  // 2100
+  sample::raw(db).execute("UPDATE segment SET realtime_ns = 4102444800000000000");  // the year 2100
   const auto last = sample::session(db, 2, sample::start("P02"), SessionStatus::interrupted);
   REQUIRE(interrupted_session(db));
   CHECK(interrupted_session(db)->session.session_id == last);

@@ -44,7 +44,9 @@ Panel panel_of(const QString& text) {
   const auto parts = text.split('x');
   if (parts.size() != 2) qFatal("--sizes: %s; allowed: WIDTHxHEIGHT", qPrintable(text));
   const QSize size(parts[0].toInt(), parts[1].toInt());
-  return {size, size.width() <= 800 ? 5.2 : size.width() <= 1280 ? 5.9 : 5.6};  // 7", 10.1", 15.6"
+  return {size, size.width() <= 800    ? 5.2
+                : size.width() <= 1280 ? 5.9
+                                       : 5.6};  // for diagonals of 7", 10.1" and 15.6"
 }
 
 /// Renders the station's window for one panel in one language.
