@@ -60,6 +60,7 @@ Fatigue fatigue(const std::vector<TrialRecord>& trials);
 struct OutcomeCounts {
   int presented = 0, answered = 0, timeouts = 0, anticipations = 0, aborted = 0, faults = 0;
 };
-OutcomeCounts count_outcomes(const std::vector<TrialRecord>& trials);  ///< without practice trials
+/// Counts trials by outcome. Practice is left out.
+OutcomeCounts count_outcomes(const std::vector<TrialRecord>& trials);
 
 }  // namespace turnpoint::analysis

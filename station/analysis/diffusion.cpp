@@ -9,8 +9,8 @@ namespace turnpoint::analysis {
 
 namespace {
 
-constexpr double kNearChance = 1e-3;  ///< if Pc is nearer than this to 1/2, use the limits, because L^3 loses
-                                      ///< precision
+/// if Pc is nearer than this to 1/2, use the limits, because L^3 loses precision
+constexpr double kNearChance = 1e-3;
 
 /// The factor h(L) of the variance of the decision time, which is (a / s)^4 h(L).
 double h(double L) {

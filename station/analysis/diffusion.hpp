@@ -14,7 +14,7 @@ constexpr double kDiffusionScale = 0.1;
 struct EzMoments {
   double proportion_correct = 0;
   double variance_s2 = 0, mean_s = 0;
-  int trials = 0;  ///< answered trials
+  int trials = 0;  ///< number of answered trials
 };
 
 /// Drift rate v (per s), boundary separation a, and non-decision time Ter.

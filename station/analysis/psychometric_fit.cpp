@@ -85,12 +85,13 @@ std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitO
                                            std::to_string(options.minimum_levels) + "."};
   if (auto reason = unusable(data, options)) return reason;
   if (positive == trials)
-    return Statement{"all-positive",
-                     "The answer was the same (or right) at every level: the threshold lies below the levels "
-                     "shown, and cannot be estimated."};
+    return Statement{
+        "all-positive",
+        "Every answer was right (or the tracked one), at every level: the threshold lies below the levels "
+        "shown, and cannot be estimated."};
   if (positive == 0)
     return Statement{"none-positive",
-                     "The answer was never right (or never the tracked one): the threshold lies above the "
+                     "No answer was right (or the tracked one), at any level: the threshold lies above the "
                      "levels shown, and cannot be estimated."};
   if (trend(axis_counts(data, options.function, options.scale)) <= 0)
     return Statement{"flat", "The answers do not change with the level: no threshold can be estimated."};
@@ -125,13 +126,16 @@ void note_bounds(PsychometricFit& fit, const Theta& theta, const ThetaBounds& bo
   if (rate_high)
     fit.statements.push_back({"step",
                               "The answers change between two neighbouring levels: the function is a "
-                              "step, and its slope only limited, not estimated."});
+                              "step. The data set a limit to its slope, but do not determine it."});
   if (rate_low)
-    fit.statements.push_back({"slope-bound", "The function is so shallow that its slope is only limited."});
+    fit.statements.push_back(
+        {"slope-bound",
+         "The function is so shallow that the data set a limit to its slope, but do not determine it."});
   if (fit.at_bound.lapse_high)
-    fit.statements.push_back({"lapse-bound", "The lapse rate is at its upper bound, " +
-                                                 text::number(bounds.high[2]) +
-                                                 ": attention or the response mapping may be the reason."});
+    fit.statements.push_back(
+        {"lapse-bound",
+         "The lapse rate is at its upper bound, " + text::number(bounds.high[2]) +
+             ". The participant may have been inattentive, or may have confused the answers."});
 }
 
 }  // namespace
@@ -144,7 +148,7 @@ std::vector<LevelCount> checked(const std::vector<LevelCount>& data, const FitOp
 std::optional<Statement> unusable(const std::vector<LevelCount>& data, const FitOptions& options) {
   int trials = 0;
   for (const auto& point : data) trials += point.trials;
-  if (trials == 0) return Statement{"no-trials", "No answered trial: nothing to fit."};
+  if (trials == 0) return Statement{"no-trials", "No trial was answered, so there is nothing to fit."};
   if (trials < options.minimum_trials)
     return Statement{"too-few-trials", std::to_string(trials) + " answered trials: a fit needs at least " +
                                            std::to_string(options.minimum_trials) + "."};

@@ -29,8 +29,8 @@ struct FitOptions {
   Function function = Function::weibull;
   Scale scale = Scale::linear;
   Guess guess = Guess::fixed;
-  double guess_value = 0.5;                     ///< used by Guess::fixed
-  double guess_low = 0, guess_high = 0.5;       ///< used by Guess::fitted
+  double guess_value = 0.5;                     ///< the lower asymptote, if it is fixed
+  double guess_low = 0, guess_high = 0.5;       ///< bounds of the lower asymptote, if it is fitted
   double lapse_low = 0, lapse_high = 0.06;      ///< the lapse rate is fixed if both are equal
   int minimum_levels = 3, minimum_trials = 15;  ///< with fewer levels or trials, a statement replaces the fit
 };
@@ -62,8 +62,8 @@ PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitO
 
 struct ParameterInterval {
   Interval interval;
-  bool touches_low = false, touches_high = false;  ///< true if that end lies on a bound, so that the data do
-                                                   ///< not limit it
+  /// true if that end lies on a bound, so that the data do not limit it
+  bool touches_low = false, touches_high = false;
 };
 
 /// The prior of threshold and slope. The threshold lies between low and high, in the unit of the level; its
@@ -73,7 +73,7 @@ struct ParameterInterval {
 struct Prior {
   double threshold_low = 0, threshold_high = 1;
   double slope_low = 0, slope_high = 1;
-  double falling_share = 0;  ///< 0 to 0.5
+  double falling_share = 0;  ///< from 0 to 0.5
 };
 
 enum class IntervalMethod { none, bootstrap, posterior };
@@ -83,16 +83,17 @@ enum class IntervalMethod { none, bootstrap, posterior };
 /// interval is empty and a statement says so.
 struct PsychometricIntervals {
   IntervalMethod method = IntervalMethod::none;
-  int replicates = 0;          ///< for a bootstrap
-  std::optional<Prior> prior;  ///< for a posterior
+  int replicates = 0;          ///< number of resamples; set for a bootstrap only
+  std::optional<Prior> prior;  ///< set for a posterior only
   double confidence = 0.95;
   std::optional<ParameterInterval> threshold, slope, lapse, guess;
   /// level at which the fitted probability is 0.75, if there is one
   std::optional<double> level_75;
-  std::optional<ParameterInterval> interval_75;         ///< interval of level_75
-  std::optional<double> deviance_p;                     ///< share of bootstrap replicates with at least the
-                                                        ///< fit's deviance
-  std::vector<double> band_level, band_low, band_high;  ///< probability at `band_level`
+  std::optional<ParameterInterval> interval_75;  ///< interval of level_75
+  /// share of bootstrap replicates with at least the fit's deviance
+  std::optional<double> deviance_p;
+  /// band of the fitted probability: its lower and upper end at each `band_level`
+  std::vector<double> band_level, band_low, band_high;
   std::vector<Statement> statements;
 };
 
@@ -101,7 +102,7 @@ struct BootstrapOptions {
   double confidence = 0.95;
   std::uint64_t seed = 1;
   int stream = 0;        ///< number of the fit: gives each fit of a session different random draws
-  int band_points = 61;  ///< 0: no band
+  int band_points = 61;  ///< number of levels at which the band is computed; 0: no band
 };
 
 /// Computes intervals by a parametric bootstrap of a fit (Wichmann & Hill 2001b).

@@ -21,7 +21,7 @@ struct Psychometric {
 /// exp(-exp z), normal Phi(z), logistic 1 / (1 + exp(-z)). core_derivative() is its derivative.
 double core(Function function, double z);
 double core_derivative(Function function, double z);
-double core_inverse(Function function, double p);  ///< p in (0, 1)
+double core_inverse(Function function, double p);  ///< p must be above 0 and below 1
 
 /// Returns the position u of a level on an axis on which slope and threshold only stretch and shift the
 /// function: z = rate(slope) (u - u(threshold)). Throws std::invalid_argument for a level that is not

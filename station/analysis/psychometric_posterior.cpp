@@ -31,7 +31,7 @@ void check(const Prior& prior) {
                                 text::number(prior.threshold_high) + ", slope " +
                                 text::number(prior.slope_low) + " to " + text::number(prior.slope_high) +
                                 ", falling over " + text::number(prior.falling_share) +
-                                "; low < high is allowed, a slope above 0, and a share up to 0.5");
+                                "; low must be below high, a slope above 0, and the share at most 0.5");
 }
 
 Cells between(double one, double other) { return {std::min(one, other), std::max(one, other), 1}; }
@@ -130,8 +130,8 @@ class Reading {
   void say_off_centre(const std::string& what) {
     result_.fit.statements.push_back(
         {what + "-off-centre", "The " + what +
-                                   " lies outside the middle half of what the prior allows: there "
-                                   "fewer than 95 % of such intervals may hold the true value."});
+                                   " lies outside the middle half of the prior's range. There, fewer than "
+                                   "95 % of such intervals may contain the true value."});
   }
 
   template <class Map>
@@ -163,7 +163,7 @@ class Reading {
 Prior prior_around(Function function, Scale scale, const Range& levels, const std::optional<Range>& slopes) {
   if (!(levels.first < levels.second))
     throw std::invalid_argument("prior: levels from " + text::number(levels.first) + " to " +
-                                text::number(levels.second) + "; low < high is allowed");
+                                text::number(levels.second) + "; the first must be below the second");
   const double low = axis_position(function, scale, levels.first),
                high = axis_position(function, scale, levels.second), range = high - low;
   double rate_low = kShallow / range, rate_high = kSteep / range;

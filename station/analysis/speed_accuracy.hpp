@@ -36,9 +36,9 @@ std::vector<CafBin> conditional_accuracy(const std::vector<double>& times_s, con
 
 struct ResponseTimes {
   int count = 0;
-  double mean_s = 0, sd_s = 0, median_s = 0, mad_s = 0;  ///< mad: median absolute deviation, without the
-                                                         ///< factor 1.4826
-  std::vector<double> deciles_s;                         ///< deciles from 10 % to 90 %
+  /// mad: median absolute deviation, without the factor 1.4826
+  double mean_s = 0, sd_s = 0, median_s = 0, mad_s = 0;
+  std::vector<double> deciles_s;  ///< deciles from 10 % to 90 %
 };
 /// Summarises response times; empty if there are none.
 std::optional<ResponseTimes> describe_times(const std::vector<double>& times_s);

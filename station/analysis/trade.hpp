@@ -44,16 +44,16 @@ struct Difference {
 };
 
 struct Trade {
-  std::vector<InstructionResult> instructions;  ///< one for each condition, in the order of
-                                                ///< TradeOptions::order
+  /// one for each condition, in the order of TradeOptions::order
+  std::vector<InstructionResult> instructions;
   /// one for each pair of conditions; the earlier condition is `first`
   std::vector<Difference> differences;
   std::vector<Statement> statements;
 };
 
 struct TradeOptions {
-  std::vector<std::string> order;  ///< order of conditions; conditions not listed follow in the order in
-                                   ///< which they first occur
+  /// order of conditions; conditions not listed follow in the order in which they first occur
+  std::vector<std::string> order;
   TimeExclusion exclusion;
   int caf_bins = 5;
   int replicates = 1000;

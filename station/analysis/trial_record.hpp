@@ -18,8 +18,8 @@ struct TrialRecord {
   std::string block;
   TrialType type = TrialType::experimental;
   std::string procedure;
-  std::optional<double> level;      ///< in the unit of the protocol's factor; signed if it has two sides,
-                                    ///< such as left and right
+  /// in the unit of the protocol's factor; signed if it has two sides, such as left and right
+  std::optional<double> level;
   std::optional<int> right_choice;  ///< index of the correct choice; empty if there is none
   std::optional<int> response;      ///< index of the chosen answer
   std::optional<bool> correct;

@@ -43,7 +43,7 @@ std::optional<InterruptedNote> interrupted_note(const std::string& database);
 /// The result of a check as texts for a page: a description of the session, and cues that give answers away.
 struct CheckWords {
   std::vector<std::string> problems, warnings;
-  std::vector<std::pair<std::string, std::string>> facts;  ///< (label, value)
+  std::vector<std::pair<std::string, std::string>> facts;  ///< pairs of a label and a value
   /// A cue, how often an observer who uses only this cue would be right, and whether this is clearly above
   /// chance.
   struct Cue {

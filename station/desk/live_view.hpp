@@ -20,8 +20,9 @@ namespace turnpoint::desk {
 
 /// A running session as the operator sees it: texts and figures, ready to be shown.
 struct LiveState {
-  std::string heading;                                                     ///< trial number and level
-  std::vector<std::pair<std::string, std::string>> scene, course, limits;  ///< (label, value)
+  /// number and level of the current trial
+  std::string heading;
+  std::vector<std::pair<std::string, std::string>> scene, course, limits;  ///< pairs of a label and a value
   std::vector<Drawing> surfaces;  ///< one for each scene, in the order of presentation
   /// figures of the profile of all scenes, of the levels, and of the response times; empty if there are no
   /// data
@@ -95,7 +96,7 @@ class LiveView : public session::Monitor {
   std::string level_;     ///< name of the level in the protocol
   std::string adjusted_;  ///< the factor that a slider sets; "" if there is none
   rig::Rig rig_;
-  // used by the worker thread only:
+  // The following members are used by the worker thread only.
   scene::Planner planner_;
   Begun trial_;                    ///< the current trial; its scenes are those presented now
   std::optional<double> setting_;  ///< the slider's setting; empty until it has been moved

@@ -13,7 +13,7 @@ class OperatorCode {
   static constexpr const char* built_in = "2468";
   static constexpr std::size_t shortest = 4, longest = 12;
 
-  /// The built-in code.
+  /// Makes the built-in code.
   OperatorCode() = default;
   /// Hashes a new code, which takes some tens of milliseconds. Throws terms::UsageError for the built-in
   /// code, and for a code that does not have 4 to 12 digits.

@@ -12,7 +12,7 @@ namespace turnpoint::desk {
 /// The options of `turnpoint preview`.
 struct PreviewRequest {
   std::string protocol, rig, scene;  ///< name of the scene; "" for the first one
-  std::vector<std::string> set;      ///< "factor=value"
+  std::vector<std::string> set;      ///< values of factors, each written as "factor=value"
 };
 
 /// A factor on which a scene depends, as a value that can be adjusted.

@@ -29,8 +29,8 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
       xruns += row.xruns;
       extra += row.extra_touches;
       if (row.response_time_s) ++quality[row.response_time_quality];
-      offset_s = std::max(offset_s, row.response_offset_s);  // answers by button have an offset of 0, so take
-                                                             // the largest
+      // answers by button have an offset of 0, so take the largest
+      offset_s = std::max(offset_s, row.response_offset_s);
     }
   std::string qualities;
   for (const auto& [name, count] : quality)

@@ -200,7 +200,7 @@ lines::Finding check_swap(const std::string& swaps) {
   std::ifstream file(swaps);
   if (!file) return {"swap", Status::warning, swaps + " cannot be read", "check with: swapon --show"};
   std::string line, active;
-  std::getline(file, line);  // skip the heading
+  std::getline(file, line);  // skip the heading of the table
   while (std::getline(file, line))
     if (const auto name = line.substr(0, line.find_first_of(" \t")); !name.empty())
       active += (active.empty() ? "" : ", ") + name;

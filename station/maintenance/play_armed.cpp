@@ -111,14 +111,14 @@ drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
                              const std::vector<drive::Burst>& bursts) {
   auto config = session::stream_of(rig);
   config.output.uri = uri;
-  const auto peak = largest_peak(bursts, config);                   // may throw, so call it before anything
-                                                                    // is opened
+  // may throw, so call it before anything is opened
+  const auto peak = largest_peak(bursts, config);
   const auto amplifier = lines::open_amplifier(rig.amplifier_uri);  // the amplifier must outlive the stream
   config.amplifier = amplifier.get();
   system::StopSignals signals;
   signals.take_over();
-  const auto stream = drive::open_realtime(config);  // the stream's destructor ramps down tones that are
-                                                     // playing
+  // the stream's destructor ramps down tones that are playing
+  const auto stream = drive::open_realtime(config);
   attend(*stream, *amplifier, [until_ns = system::monotonic_ns() + kFirstBlocks_ns] {
     return system::monotonic_ns() >= until_ns;
   });

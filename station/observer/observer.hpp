@@ -26,18 +26,19 @@ struct Parameters {
   double bias = 0;  ///< the level at which a signed task seems balanced
   /// criterion of yes/no tasks, in SDs above the mean of noise; the false-alarm rate is Phi(-criterion)
   double criterion = 0.67448975019608171;
-  double bound = 0.85;       ///< half the boundary separation, in square roots of a second; EZ's boundary a
-                             ///< is 0.2 times this
-  double residual_s = 0.35;  ///< non-decision time, without `travel_s`
+  /// half the boundary separation, in square roots of a second; EZ's boundary a is 0.2 times this
+  double bound = 0.85;
+  double residual_s = 0.35;  ///< time outside the decision, not counting `travel_s`
   double travel_s = 0.15;    ///< time to move from the surface to the answer
-  // The next three parameters vary between trials (Ratcliff & McKoon 2008); by default they do not.
+  // The next three parameters are ranges over which the diffusion varies between trials (Ratcliff & McKoon
+  // 2008). By default it does not vary.
   double drift_sd = 0;  ///< SD of the drift (normal), per square root of a second; EZ's eta is 0.1 times this
   /// range of the starting point (uniform around the middle), as a fraction of the boundary separation, from
   /// 0 to below 1
   double start_range = 0;
-  double residual_range_s = 0;  ///< range of the non-decision time (uniform around residual_s); at most twice
-                                ///< residual_s
-  double anticipation = 0;      ///< share of trials answered before anything can be felt
+  /// range of the non-decision time (uniform around residual_s); at most twice residual_s
+  double residual_range_s = 0;
+  double anticipation = 0;  ///< share of trials answered before anything can be felt
 };
 
 /// Reads `sim` or `sim:threshold=6,slope=1.2,lapse=0.02,bias=0,...`. Throws terms::UsageError that names the
@@ -56,15 +57,15 @@ struct Question {
   double level = 0;
   bool decibel = false;  ///< true if the level is 20 log10 of a strength
   Decides decides = Decides::right_answer;
-  int positive = 1;            ///< for `side`, the answer that fits a level above zero; for `presence` with
-                               ///< two answers, "yes"
+  /// for `side`, the answer that fits a level above zero; for `presence` with two answers, "yes"
+  int positive = 1;
   bool absent = false;         ///< for `presence`: true if the trial has no signal, whatever its level
   std::optional<int> correct;  ///< for `right_answer`: the right answer; empty if no answer is right
   int answers = 2;
   double default_threshold = 1;  ///< used if the parameters have no threshold
-  double deadline_s = 0;         ///< 0: none; with little time an observer decides sooner and makes more
-                                 ///< errors
-  random::Key key;               ///< key of the trial; its stream is always that of the observer
+  /// 0: none; with little time an observer decides sooner and makes more errors
+  double deadline_s = 0;
+  random::Key key;  ///< key of the trial; its stream is always that of the observer
 };
 
 struct Reply {
@@ -79,7 +80,7 @@ struct Adjustment {
 };
 
 struct Move {
-  double time_s = 0;  ///< from response_zero
+  double time_s = 0;  ///< measured from response_zero
   double value = 0;
 };
 
@@ -99,7 +100,7 @@ class Observer {
   /// Returns the bound for this deadline (0: none), in square roots of a second. If time is short, the bound
   /// is lower: so low that, even if nothing can be felt, only 4 % of the decisions come too late.
   double bound(double deadline_s) const;
-  /// Mean non-decision time, s.
+  /// Returns the mean time outside the decision, in s.
   double nondecision_s() const { return parameters_.residual_s + parameters_.travel_s; }
   /// Moves the slider in ever smaller steps to where the stimuli seem equal. The settings scatter around the
   /// bias with a normal distribution whose 75 % point is the threshold (without a threshold: a tenth of the

@@ -248,7 +248,7 @@ struct Place {
   double left = 0, top = 0, width = 0, height = 0;
 };
 
-/// Divides a chart's area into title, legend and data.
+/// How a chart's area is divided among title, legend and data.
 struct Division {
   double left = 0, width = 0, legend_top = 0;  ///< left end and width of the chart; top of the legend
   std::vector<Tick> up;

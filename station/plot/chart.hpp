@@ -67,7 +67,7 @@ using Layer = std::variant<Band, Histogram, HeatMap, Rule, Line, Points>;
 struct Chart {
   std::string title;
   Axis x, y;
-  std::vector<Layer> layers;  ///< in drawing order
+  std::vector<Layer> layers;  ///< drawn in this order
 };
 
 /// A figure of one or more charts, arranged in rows of `columns` charts.

@@ -69,9 +69,9 @@ class Posterior {
   std::size_t slopes_ = 1, padded_slopes_ = 1, ends_ = 1;
   /// guess, and 1 - guess - lapse, for each combination of guess and lapse
   std::vector<double> guesses_, ranges_;
-  std::vector<double> weights_;      ///< posterior weights, indexed by [threshold][slope][guess][lapse]
-  std::vector<std::uint32_t> rows_;  ///< index of the distance between stimulus and threshold, for
-                                     ///< [stimulus][threshold]
+  std::vector<double> weights_;  ///< posterior weights, indexed by [threshold][slope][guess][lapse]
+  /// index of the distance between stimulus and threshold, for [stimulus][threshold]
+  std::vector<std::uint32_t> rows_;
   /// value of the function between its asymptotes, from 0 to 1, for [distance][slope, padded]
   std::vector<double> core_;
   /// entropy of the answer for [distance][slope][guess][lapse]; used only without nuisance parameters

@@ -55,8 +55,8 @@ class Procedure {
   /// Records the setting of an adjustment. Other kinds of procedures throw std::logic_error.
   virtual void record_setting(double setting);
   virtual int recorded() const = 0;  ///< number of trials that count
-  virtual int expected() const = 0;  ///< total number of trials; an estimate if a stopping rule ends the
-                                     ///< procedure
+  /// total number of trials; an estimate if a stopping rule ends the procedure
+  virtual int expected() const = 0;
   virtual std::map<std::string, Estimate> estimates() const { return {}; }
   virtual std::optional<double> entropy_nats() const { return std::nullopt; }
   virtual std::vector<double> reversals() const { return {}; }

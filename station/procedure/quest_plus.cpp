@@ -133,8 +133,10 @@ void validate_prior(const char* key, const Prior& prior, const Grid& grid, std::
 void validate_posterior(const Spec& spec, std::vector<Problem>& problems) {
   if (spec.stimuli.values.empty())
     problems.push_back({"stimuli", "missing", "give the levels from which to choose"});
-  if (spec.threshold.values.empty()) problems.push_back({"grid.threshold", "missing", "its values"});
-  if (spec.slope.values.empty()) problems.push_back({"grid.slope", "missing", "its values"});
+  if (spec.threshold.values.empty())
+    problems.push_back({"grid.threshold", "missing", "give the values of the threshold"});
+  if (spec.slope.values.empty())
+    problems.push_back({"grid.slope", "missing", "give the values of the slope"});
   if (!positive(spec.slope.values))
     problems.push_back({"grid.slope", "each slope must be above 0", "above 0"});
   validate_rate("grid.guess", spec.guess, problems);

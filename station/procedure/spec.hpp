@@ -25,8 +25,8 @@ enum class Shuffle { within_repeat, within_block, none };
 enum class StopRule {
   any,
   all
-};  ///< any ("or"): the first rule that is met ends the procedure; all
-    ///< ("and"): all rules must be met
+  /// any ("or"): the first rule that is met ends the procedure; all ("and"): all rules must be met
+};
 enum class Select { min_expected_entropy };
 
 /// The values of one axis of a grid, computed when the file is read: from-to-step, log_from-log_to-count, or
@@ -57,14 +57,15 @@ struct Spec {
   std::string tracks;  ///< the answer that counts as 1; "" if right answers count as 1
   Scale scale = Scale::linear;
 
-  // for constant stimuli: the levels
+  // The following members are for constant stimuli; `values` are the levels.
   std::vector<double> values;
   int repeats = 1;
   std::vector<std::string> balance;
   Shuffle shuffle = Shuffle::within_repeat;
   std::optional<int> max_run;
 
-  // for staircases: starting level and limits
+  // The following members are for procedures that move one level. The first three are starting level and
+  // limits.
   std::optional<double> start, min, max;
   /// sizes of the steps; after each reversal the next size is used, until the last one
   std::vector<double> step, step_down, step_up;
@@ -75,7 +76,7 @@ struct Spec {
   std::optional<int> initial_down;
   int discard_reversals = 0;  ///< number of reversals at the start that the estimate leaves out
 
-  // for procedures with a posterior
+  // The following members are for procedures with a posterior.
   Function function = Function::weibull;
   Grid stimuli, threshold, slope, guess, lapse;
   Prior prior_threshold, prior_slope, prior_guess, prior_lapse;
@@ -86,7 +87,7 @@ struct Spec {
   Stop stop;
 };
 
-const char* name(Kind kind);  ///< "constant-stimuli", "up-down", ...
+const char* name(Kind kind);  ///< the kind's name in a protocol: "constant-stimuli", "up-down", ...
 std::optional<Kind> parse_kind(const std::string& text);
 std::vector<std::string> kind_names();
 

@@ -66,7 +66,7 @@ extern const Description accelerated_stochastic_approximation{
       if (!spec.target || !(*spec.target > 0 && *spec.target < 1))
         problems.push_back({"target", "missing or outside (0, 1)", "a probability between 0 and 1"});
       if (!spec.stop.trials && !spec.stop.reversals)
-        problems.push_back({"stop", "nothing stops it", "trials or reversals"});
+        problems.push_back({"stop", "no rule ends the procedure", "add trials or reversals"});
     },
     [](const Spec& spec, const Context&, const random::Key&) -> std::unique_ptr<Procedure> {
       return std::make_unique<StochasticApproximation>(spec);

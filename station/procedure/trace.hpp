@@ -10,7 +10,7 @@ namespace turnpoint::procedure {
 
 /// What a procedure does if it gets given answers.
 struct Trace {
-  std::vector<double> levels;  ///< one per answer
+  std::vector<double> levels;  ///< the level that was presented for each answer
   std::optional<double> next;  ///< the next level; empty if the procedure has stopped
   std::map<std::string, Estimate> estimates;
   std::optional<double> entropy_nats;

@@ -16,7 +16,7 @@ double log(double x) {
   if (!(x > 0) || !(x <= 1.7976931348623157e308))
     throw std::domain_error("log: the argument must be above 0 and finite");
   int exponent = 0;
-  double m = std::frexp(x, &exponent);  // exact: only moves bits
+  double m = std::frexp(x, &exponent);  // exact, because it only changes the exponent
   if (m < 0.70710678118654752) m *= 2, --exponent;
   const double z = (m - 1) / (m + 1), z2 = z * z;  // |z| < 0.1716
   // 2 atanh(z) = 2 z (1 + z^2/3 + z^4/5 + ...); the remainder after 11 terms is 1e-18.

@@ -28,7 +28,7 @@ using FactorValue = std::variant<double, std::string>;
 
 /// Where the data of a session come from: everything needed to run the session again or to explain it later.
 struct SessionStart {
-  std::string participant;  ///< participant code
+  std::string participant;
   RunMode run_mode = RunMode::live;
   std::string protocol_id, protocol_version, protocol_path, protocol_text, protocol_sha256,
       protocol_canonical;
@@ -41,7 +41,7 @@ struct SessionStart {
   std::uint64_t seed = 0;
   std::string language, observer;  ///< observer: "" or the argument of `--observer`
   std::string software_version, columns_version, kernel, station_id, realtime_rights;
-  std::string started_local;  ///< ISO 8601 with zone
+  std::string started_local;  ///< ISO 8601 with time zone
   std::string consent_version;
 };
 

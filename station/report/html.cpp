@@ -124,7 +124,8 @@ std::string fit_table(const NamedFit& named, const SessionData& data) {
 
 std::string settings_section(const Summary& summary) {
   std::string html = "<h2>Settings</h2>\n" + picture(settings_figure(summary));
-  if (summary.settings.empty()) return html + "<p class=\"note\">Nothing was set in this session.</p>\n";
+  if (summary.settings.empty())
+    return html + "<p class=\"note\">There are no settings in this session.</p>\n";
   for (const auto& settings : summary.settings) {
     const auto name = settings.procedure + (settings.condition.empty() ? "" : ", " + settings.condition);
     html += "<table><tr><th>" + escaped(name) + "</th><td class=\"n\">" +
@@ -133,8 +134,8 @@ std::string settings_section(const Summary& summary) {
             cell(settings.mean) + "</tr>";
     html += "<tr><td>" + escaped(in_unit("Scatter, standard deviation", summary.data)) + "</td>" +
             cell(settings.sd) + "</tr>";
-    html += "<tr><td>Share of the start that remains (proportion)</td>" + cell(settings.start_slope) +
-            "</tr></table>\n" + notes(settings.statements);
+    html += "<tr><td>Influence of the starting position (0: none, 1: full)</td>" +
+            cell(settings.start_slope) + "</tr></table>\n" + notes(settings.statements);
   }
   return html + "<p class=\"soft\">95 % intervals: Student's t, chi squared.</p>\n";
 }
@@ -229,7 +230,7 @@ std::string difficulty_table(const Summary& summary) {
 std::string trade_section(const Summary& summary) {
   if (summary.trade.instructions.empty() || !summary.data.scored) return "";
   const bool several = summary.trade.instructions.size() > 1;
-  std::string html = several ? "<h2>Speed and accuracy: the trade</h2>\n" : "<h2>Speed and accuracy</h2>\n";
+  std::string html = several ? "<h2>Speed-accuracy trade-off</h2>\n" : "<h2>Speed and accuracy</h2>\n";
   html += instruction_table(summary) + difference_table(summary) + picture(trade_figure(summary)) +
           picture(response_time_figure(summary)) + difficulty_table(summary);
   for (const auto& entry : summary.trade.instructions) {
@@ -258,10 +259,11 @@ std::string detection_section(const Summary& summary) {
   }
   const auto yes = static_cast<std::size_t>(data.design == Design::yes_no ? data.positive : 1);
   const auto answer = yes < data.choices.size() ? data.choices[yes] : "second";
-  return html + "</table>\n<p class=\"soft\">A hit is \u201c" + escaped(answer) +
-         "\u201d where it is right, a false alarm where it is wrong. Log-linear correction; 95 % intervals "
-         "by "
-         "Gourevitch and Galanter. A positive criterion avoids the answer.</p>\n";
+  return html + "</table>\n<p class=\"soft\">A hit is the answer \u201c" + escaped(answer) +
+         "\u201d in a trial in which this answer is right. A false alarm is the same answer in a trial "
+         "in which it is wrong. A positive criterion means that the participant avoids this answer. Rates "
+         "have the "
+         "log-linear correction; 95 % intervals are those of Gourevitch and Galanter.</p>\n";
 }
 
 std::string staircase_table(const SessionData& data) {

@@ -13,13 +13,13 @@ namespace turnpoint::report {
 
 /// How the answers depend on the level. The report fits a different function for each design.
 enum class Design {
-  forced_choice,   ///< accuracy rises with the level; the guess rate is 1 / alternatives
-  two_sided,       ///< two answers on a signed level, such as left and right: the fit gives the PSE and the
-                   ///< spread
-  yes_no,          ///< "yes" becomes more frequent as |level| rises; trials at level 0 have no signal
-  same_different,  ///< like yes_no: "different" counts as "yes", and pairs of identical stimuli have no
-                   ///< signal
-  adjustment,      ///< no psychometric function
+  forced_choice,  ///< accuracy rises with the level; the guess rate is 1 / alternatives
+  /// two answers on a signed level, such as left and right: the fit gives the PSE and the spread
+  two_sided,
+  yes_no,  ///< "yes" becomes more frequent as |level| rises; trials at level 0 have no signal
+  /// like yes_no: "different" counts as "yes", and pairs of identical stimuli have no signal
+  same_different,
+  adjustment,  ///< the participant sets a slider; no psychometric function is fitted
 };
 
 /// True if some trials have no signal, so that "yes" is a false alarm in them.
@@ -36,7 +36,7 @@ struct StaircaseResult {
 /// A name and its text, for the head or the health table of a report.
 using Fact = std::pair<std::string, std::string>;
 
-/// All data for a report. The application layer fills it from a database.
+/// All data for a report. They come from a database (desk/report_data.cpp) or from a simulated session.
 struct SessionData {
   std::string title;  ///< title of the protocol
   std::string participant, session_id, run_mode, status;
@@ -61,7 +61,7 @@ struct SessionData {
   /// if levels were fixed before the session: intervals then come from bootstraps.
   std::optional<analysis::Prior> prior;
   analysis::TimeExclusion exclusion;
-  std::uint64_t seed = 1;  ///< seed of the bootstraps
+  std::uint64_t seed = 1;  ///< seed of the bootstraps' random numbers
   int replicates = 1000;
 };
 

@@ -5,17 +5,17 @@ namespace turnpoint::scene {
 /// Properties of a stimulus that could give the right answer away. A participant could use them instead of
 /// the property that the task asks about.
 struct Cues {
-  double pitch_Hz = 0;              ///< frequency of the lowest tone below 22.4 kHz; 0 if no tone is audible
-  double loudness_dB = 0;           ///< drive amplitude of the audible tones, re 1 um at the drive edge; 0 if
-                                    ///< there are none
-  double wide_end_amplitude_m = 0;  ///< displacement of all tones (root of summed squares), averaged over the
-                                    ///< 30 mm next to the drive edge
-  double stripe_pitch_m = 0;        ///< half the local wavelength of the strongest tone at the wide end of
-                                    ///< the surface
-  double edge_width_m = 0;          ///< distance over which the last maximum falls from 90 % to 10 %
-  double strip_width_m = 0;         ///< width of the surface at the boundary
-  double displacement_m = 0;        ///< displacement at its last maximum
-  double friction = 1;              ///< lowest friction anywhere, averaged over the fingertip
+  double pitch_Hz = 0;  ///< frequency of the lowest tone below 22.4 kHz; 0 if no tone is audible
+  /// drive amplitude of the audible tones, re 1 um at the drive edge; 0 if there are none
+  double loudness_dB = 0;
+  /// displacement of all tones (root of summed squares), averaged over the 30 mm next to the drive edge
+  double wide_end_amplitude_m = 0;
+  /// half the local wavelength of the strongest tone at the wide end of the surface
+  double stripe_pitch_m = 0;
+  double edge_width_m = 0;    ///< distance over which the last maximum falls from 90 % to 10 %
+  double strip_width_m = 0;   ///< width of the surface at the boundary
+  double displacement_m = 0;  ///< displacement at its last maximum
+  double friction = 1;        ///< lowest friction anywhere, averaged over the fingertip
 };
 
 }  // namespace turnpoint::scene

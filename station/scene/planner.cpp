@@ -67,8 +67,8 @@ Model at_least_mode(Model chosen) { return chosen == Model::modes ? Model::modes
 struct Planner::State : ToneDesigner {
   std::map<std::string, DrivePlan> plans;
   std::map<std::string, Solution> solutions;
-  std::map<physics::PlateTheory, Planner> by_theory;  ///< planners for the plate theories, if the rig does
-                                                      ///< not choose one
+  /// planners for the plate theories, if the rig does not choose one
+  std::map<physics::PlateTheory, Planner> by_theory;
 
   using ToneDesigner::ToneDesigner;
 

@@ -31,13 +31,13 @@ struct DrivenTone {
   double phase_rad = 0;    ///< phase at the drive edge
   std::string transducer;
   int channel = 0;
-  double full_scale = 0;             ///< peak at the converter, as a share of full scale
-  double output_phase_rad = 0;       ///< phase at the converter: `phase_rad` minus the phase shift of the
-                                     ///< transducer
+  double full_scale = 0;  ///< peak at the converter, as a share of full scale
+  /// phase at the converter: `phase_rad` minus the phase shift of the transducer
+  double output_phase_rad = 0;
   std::optional<double> boundary_m;  ///< where this tone alone would put the scene's edge
   std::optional<double> turning_point_m, last_peak_m, nearest_resonance_Hz;
-  double displacement_m = 0;  ///< peak at the tone's last maximum, or the largest value if there is no
-                              ///< maximum
+  /// peak at the tone's last maximum, or the largest value if there is no maximum
+  double displacement_m = 0;
   double gain = 0;
 };
 
@@ -57,14 +57,14 @@ struct DrivePlan {
   physics::PlateTheory theory = physics::PlateTheory::kirchhoff;  ///< plate theory, if the surface is a plate
   /// How far the next better plate theory would move the boundary; empty for membranes.
   std::optional<double> shear_shift_m;
-  std::optional<double> boundary_m;     ///< predicted boundary
+  std::optional<double> boundary_m;     ///< predicted position of the boundary
   std::optional<double> zone_friction;  ///< predicted mean over the zone
   std::optional<double> residual;       ///< rms deviation of friction from its mean within the zone
-  double lowest_friction = 1;           ///< lowest friction anywhere on the surface, averaged over the
-                                        ///< fingertip
-  double peak_displacement_m = 0;       ///< largest displacement anywhere on the surface, if all tones were
-                                        ///< in phase
-  double peak_full_scale = 0;           ///< largest value over all channels, if all tones were in phase
+  /// lowest friction anywhere on the surface, averaged over the fingertip
+  double lowest_friction = 1;
+  /// largest displacement anywhere on the surface, if all tones were in phase
+  double peak_displacement_m = 0;
+  double peak_full_scale = 0;  ///< largest value over all channels, if all tones were in phase
   double crest_factor = 0;
   std::vector<physics::Product> audible_products;
   Cues cues;

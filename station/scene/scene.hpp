@@ -20,8 +20,8 @@ struct ZoneTarget {
   double from_m = 0;
   double friction = 1;  ///< desired mean over the zone, relative to the friction of the surface at rest
   int tones = 1;        ///< the most tones that may be used
-  std::optional<double> design_friction;  ///< the tones are designed for this friction; then their amplitudes
-                                          ///< are scaled to give `friction`
+  /// the tones are designed for this friction; then their amplitudes are scaled to give `friction`
+  std::optional<double> design_friction;
 };
 
 /// The accuracy that a scene requires of its plan. An empty value means no requirement.

@@ -46,8 +46,8 @@ double ToneDesigner::frequency_for(double boundary_m, const physics::Edge& edge,
   } else if (const auto frequency = map_for(edge).frequency_Hz(boundary_m)) {
     return *frequency;
   }
-  // The rig's tones cannot put the edge there. A map over all frequencies tells whether the surface could,
-  // for the message.
+  // The rig's tones cannot put the edge there. Use a map over all frequencies, so that the message can say
+  // whether the surface could.
   const physics::BoundaryMap whole(surface, options);
   if (const auto frequency = whole.frequency_Hz(boundary_m)) return *frequency;
   throw Unreachable(fmt::format("no frequency puts the {} edge at {} mm: {}", physics::format(edge),

@@ -40,7 +40,7 @@ class ToneDesigner {
   /// Returns the map of boundaries for an edge defined by a percentage, a peak or a turning point. The map
   /// covers the tones that this rig can play.
   const physics::BoundaryMap& map_for(const physics::Edge& edge);
-  /// Returns how the edge is defined at a place that moves with this displacement.
+  /// Returns the options for finding this edge on a surface that moves by `displacement_m`.
   physics::MapOptions edge_options(const physics::Edge& edge, double displacement_m) const;
 
   rig::Rig rig;

@@ -11,7 +11,7 @@ using terms::FaultKind;
 
 /// The content of the participant's screen. The session decides what it contains; a display only draws it.
 enum class PageKind {
-  /// the text of the block, or of its speed or accuracy instruction, with Continue
+  /// the text of the block, or of its speed or accuracy instruction, and Continue
   instructions,
   cue,  ///< get ready: shows where to slide the finger, and the mark; no answers
   /// free exploration, or interval number `interval` of `intervals`; answers can be given if `answers_open`
@@ -22,11 +22,12 @@ enum class PageKind {
   interval,  ///< pause between trials; empty except for the progress
   rest,      ///< a break of `remaining_s`; Continue appears once it is over
   adjust,    ///< a slider moves the boundary in steps; Done ends the adjustment
-  fault,     ///< says what happened, what is safe and what to do; Continue appears after the operator has
-             ///< repaired the fault
-  paused,    ///< the participant or the operator has paused the session; Continue or end
-  end,       ///< thanks; followed by the summary for the operator
-  failed,    ///< the session cannot continue; `text` says why; completed trials are kept
+  /// says what happened, what is safe and what to do; Continue appears after the operator has repaired the
+  /// fault
+  fault,
+  paused,  ///< the participant or the operator has paused the session; Continue or end
+  end,     ///< thanks; followed by the summary for the operator
+  failed,  ///< the session cannot continue; `text` says why; completed trials are kept
 };
 
 struct AnswerButton {
@@ -47,13 +48,13 @@ struct Page {
   std::optional<bool> correct;  ///< whether the answer was right; for feedback only
   /// "", "speed", "accuracy", ...: determines the block's style, which never differs by colour alone
   std::string instruction;
-  std::optional<double> mark_mm;  ///< position of the mark, measured from the wide end; empty if none is
-                                  ///< shown
-  double length_mm = 0;           ///< length of the surface, for its drawing
+  /// position of the mark, measured from the wide end; empty if none is shown
+  std::optional<double> mark_mm;
+  double length_mm = 0;  ///< length of the surface, for its drawing
   double wide_half_width_mm = 0, narrow_half_width_mm = 0;
   bool wide_end_left = true;
-  int interval = 0, intervals = 0;  ///< number of the current interval, counted from 1, and total number of
-                                    ///< intervals
+  /// number of the current interval, counted from 1, and total number of intervals
+  int interval = 0, intervals = 0;
   /// number of trials done in the session, and in total; the total may be an estimate
   int trials_done = 0, trials_total = 0;
   double remaining_s = 0;  ///< remaining time of a break
@@ -63,8 +64,8 @@ struct Page {
   /// "disarmed" or "faulted" while the operator has to act (on a fault page); otherwise "armed", "enabled",
   /// or ""
   std::string amplifier;
-  std::string run_mode;              ///< live | pilot | simulated; shown on every page of pilot and simulated
-                                     ///< sessions
+  /// live | pilot | simulated; shown on every page of pilot and simulated sessions
+  std::string run_mode;
   std::vector<SummaryLine> summary;  ///< on the end page: summary of the session for the operator
   FaultKind fault = FaultKind::other;
   std::string safe, to_do;  ///< on a fault page: what is safe and what to do; `text` says what happened

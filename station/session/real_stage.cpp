@@ -268,8 +268,8 @@ class RealStage : public Stage {
   std::int64_t opened_ns_ = 0;  ///< time at which the amplifier was enabled
   bool closing_ = false, fault_told_ = false;
   std::int64_t saturated_ = 0;  ///< number of samples clipped so far
-  Refusal wrong_rate_;          ///< set if the converter runs at the wrong rate, until the device has been
-                                ///< reopened
+  /// set if the converter runs at the wrong rate, until the device has been reopened
+  Refusal wrong_rate_;
 };
 
 }  // namespace

@@ -59,8 +59,8 @@ struct Summary {
   /// time by which pauses between trials were extended to keep the limits on exposure
   double stretched_s = 0;
   std::string realtime_rights;  ///< rights that the operating system granted to the audio thread
-  std::string checksum;         ///< last link of the checksum chain over the session's rows (`turnpoint
-                                ///< verify`)
+  /// last link of the checksum chain over the session's rows (`turnpoint verify`)
+  std::string checksum;
   std::vector<trial::ProcedureEstimate> estimates;
 };
 

@@ -27,7 +27,7 @@ class SessionRun {
   Summary run();
 
  private:
-  /// A running trial.
+  /// The state of the running trial.
   struct Running {
     trial::TrialSpec spec;
     trial::Machine machine;
@@ -44,13 +44,13 @@ class SessionRun {
     std::int64_t on_ns = 0, off_ns = 0;
   };
 
-  // blocks and pages, in session_run.cpp
+  // These functions run blocks and show pages (session_run.cpp).
   Flow run_block();
   Flow rest_if_due(int trials_in_block);
   int trial_index() const { return log_.session().trials; }
   void finish(records::SessionStatus status, const std::string& reason);
 
-  // one trial, in session_run_trial.cpp
+  // These functions run one trial (session_run_trial.cpp).
   Flow run_trial(const trial::TrialSpec& spec);
   Flow prepare_trial(const trial::TrialSpec& spec);
   Flow keep_limits(const trial::TrialSpec& spec);
@@ -68,7 +68,7 @@ class SessionRun {
   void leave_surface();
   void count(const trial::TrialSpec& spec, const records::TrialRow& row);
 
-  // adjustments, in session_run_adjustment.cpp
+  // These functions are for adjustments (session_run_adjustment.cpp).
   void show_phase(trial::Phase phase, const Running& trial);
   std::optional<trial::Event> event_in_trial(const Input& input, Running& trial);
   void glide(Running& trial);

@@ -30,7 +30,7 @@ struct ClockFit {
   double residual_ns = 0;
 };
 
-/// The deadline of a wait without a deadline.
+/// Pass this as a deadline to wait for any length of time.
 constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
 /// Time, drive, amplifier and inputs of one run. There are two kinds: the real stage (CLOCK_MONOTONIC, a

@@ -137,8 +137,8 @@ class VirtualStage : public Stage {
     return input;
   }
 
-  static constexpr std::int64_t kContinue_ns = 1'000'000'000;  // time for which the simulated observer reads
-                                                               // a page
+  // time for which the simulated observer reads a page
+  static constexpr std::int64_t kContinue_ns = 1'000'000'000;
 
   void advance_to(std::int64_t time_ns) {
     now_ns_ = std::max(now_ns_, time_ns);

@@ -69,7 +69,7 @@ void check_live(const session::Setup& setup, const protocol::Survey& survey, std
     problems.push_back({{rig.path, 0, 0}, "--mode live: " + what, allowed});
   };
   if (!rig.friction.measured)
-    add("the rig's friction is the illustrative curve",
+    add("the rig uses the illustrative friction curve, which was not measured",
         "set table_csv in [friction] to a measured table, or run with --mode pilot");
   if (rig.reproduction)
     add("this rig is marked as the reproduction of a historical one",
@@ -82,7 +82,8 @@ void check_live(const session::Setup& setup, const protocol::Survey& survey, std
     auto problem = limits::sound_problem(sight.lowest_Hz, 1e-9, setup.sound);
     if (problem.empty()) problem = unmeasured_sound(setup, sight);
     if (problem.empty()) continue;
-    add("scene \"" + sight.scene + "\": " + problem, "measured levels around it in the calibration");
+    add("scene \"" + sight.scene + "\": " + problem,
+        "the calibration needs sound levels measured below and above these tones");
     break;
   }
 }

@@ -163,8 +163,9 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   if (!check.cues.not_compared.empty())
     check.warnings.push_back(
         {{protocol_path, 0, 0},
-         "the cues of " + check.cues.not_compared + " are not known: nothing is known of leaks",
-         "fewer combinations of factors in one scene"});
+         "the cues of " + check.cues.not_compared +
+             " cannot be computed: a cue may give the answers away without being noticed here",
+         "use fewer combinations of factors in one scene"});
   if (check.duration_s.median > 60 * rig->limits.session_minutes)
     check.warnings.push_back({{protocol_path, 0, 0},
                               "the session will last about " +

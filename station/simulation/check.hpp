@@ -29,7 +29,7 @@ struct Check {
   /// problems of both files and of their combination; if there are any, all other members are empty
   std::vector<text::Problem> problems;
   std::vector<text::Problem> warnings;
-  std::vector<text::Problem> notes;  ///< minor points
+  std::vector<text::Problem> notes;  ///< remarks of little importance, which do not count as warnings
   std::string id, title, rig_name;
   std::vector<CheckedBlock> blocks;
   Spread trials, duration_s;

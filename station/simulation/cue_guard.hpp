@@ -14,8 +14,9 @@ struct Reached {
   /// the proportion correct that an observer reaches in the same trials without the cue, by guessing or by
   /// always pressing the same key
   double chance = 0;
-  double error = 0;  ///< three standard errors of `accuracy` or `chance` (the larger), or half the range of
-                     ///< accuracies over the levels; 0: exact
+  /// three standard errors of `accuracy` or `chance` (the larger), or half the range of accuracies over the
+  /// levels; 0: exact
+  double error = 0;
 };
 
 /// The accuracy of an observer who uses only one cue. If a cue gives far more right answers than chance,

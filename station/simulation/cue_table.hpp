@@ -22,7 +22,7 @@ struct RovedCues {
   scene::Cues at(double drawn_dB) const;
 };
 
-/// Returns the cues that a scene offers an observer, for any factors that a trial can have. It takes them
+/// Finds the cues that a scene offers an observer, for any factors that a trial can have. It takes them
 /// from one of three sources: the survey's plans; plans made here (at most 200 more, and none for zones,
 /// which take long); or linear interpolation between plans. If only one sum of factors in the scene matters,
 /// interpolation runs along that sum, otherwise along each factor.

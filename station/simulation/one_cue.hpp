@@ -20,9 +20,9 @@ enum class Statistic {
   change,  ///< same or different: like `value`, applied to the difference between the two intervals
   most,    ///< which interval: the observer chooses the one with the largest cue
   least,   ///< which interval: the one with the smallest cue
-  odd,     ///< which interval: the one that differs most from the other intervals; with two intervals, from
-           ///< `usual`
-  even,    ///< which interval: the one that differs least
+  /// which interval: the one that differs most from the other intervals; with two intervals, from `usual`
+  odd,
+  even,  ///< which interval: the one that differs least
 };
 
 /// Cue values that differ by less than this count as equal. Two intervals are compared with `relative`, a

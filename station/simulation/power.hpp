@@ -51,7 +51,7 @@ struct Recovery {
 /// What sessions of a protocol would find if their participant were this observer.
 struct Power {
   int observers = 0, interval_sessions = 0;
-  double trials = 0, minutes = 0;  ///< mean over the sessions
+  double trials = 0, minutes = 0;  ///< averages over the simulated sessions
   std::optional<double> accuracy;  ///< proportion correct of scored experimental answers
   std::vector<Recovery> recoveries;
 };

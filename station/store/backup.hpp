@@ -23,8 +23,8 @@ struct BackupReport {
   std::string path;
   std::string sha256;  ///< checksum of the file, also stored beside it in FILE.sha256
   std::uint64_t bytes = 0;
-  std::int64_t number = 0;  ///< number of the backup in its folder; increases with each backup, even if the
-                            ///< clock is set back
+  /// number of the backup in its folder; increases with each backup, even if the clock is set back
+  std::int64_t number = 0;
   std::int64_t sessions = 0, trials = 0;
   std::vector<std::string> removed;  ///< older backups that were removed to keep only `keep`
   std::string unrecorded;            ///< why last_backup() will not find this backup; "" if it will find it
@@ -82,8 +82,8 @@ struct Drill {
   std::int64_t number = 0;
   double age_s = 0;  ///< age of the backup according to the time in its file name
   std::int64_t sessions = 0, trials = 0, live_sessions = 0, live_trials = 0;
-  std::vector<std::string> problems;  ///< empty if a restored backup would contain everything that was
-                                      ///< recorded
+  /// empty if a restored backup would contain everything that was recorded
+  std::vector<std::string> problems;
 };
 
 /// Restores the newest backup of a database into a temporary file beside the backup, as an exercise. Checks

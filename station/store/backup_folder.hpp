@@ -14,13 +14,13 @@ struct StoredBackup {
   std::string path;
   std::string database_id;  ///< id of the backed-up database; "" if the backup cannot be read
   std::string station;      ///< station of one of the sessions in the backup; "" if there are no sessions
-  std::string stem;         ///< file name of the database at the time of the backup, without folder and
-                            ///< ending
+  /// file name of the database at the time of the backup, without folder and ending
+  std::string stem;
   /// increases with each backup in the folder; 0 for backups of older releases
   std::int64_t number = 0;
   std::int64_t made_realtime_ns = 0;  ///< time of the backup, read from its file name
-  std::string trouble;  ///< why the backup could not be read; "" if it could be read or is known to be
-                        ///< damaged
+  /// why the backup could not be read; "" if it could be read or is known to be damaged
+  std::string trouble;
   bool readable() const { return !database_id.empty(); }
 };
 

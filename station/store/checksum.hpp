@@ -63,8 +63,8 @@ class Chain {
 struct VerifiedSession {
   std::string session_id, participant, protocol_id;
   std::int64_t trials = 0, links = 0;
-  std::string last_sha256;            ///< checksum of the last link; "" if an earlier release recorded the
-                                      ///< session without a chain
+  /// checksum of the last link; "" if an earlier release recorded the session without a chain
+  std::string last_sha256;
   std::vector<std::string> problems;  ///< differences from what was recorded; empty if there are none
 };
 

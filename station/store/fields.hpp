@@ -20,12 +20,12 @@ namespace turnpoint::store {
 /// test compares the two.
 template <class Record>
 struct Field {
-  const char* name;         ///< column in the database
+  const char* name;         ///< name of the column in the database
   const char* csv;          ///< column in the exports; "" if the column is not exported
-  const char* description;  ///< for the codebook
+  const char* description;  ///< text for the codebook
   const char* unit;         ///< "" if the column has no unit
   const char* values;       ///< the words that may occur; "" if there is no fixed list
-  const char* type;         ///< INTEGER, REAL or TEXT
+  const char* type;         ///< SQLite type: INTEGER, REAL or TEXT
   bool nullable;
   void (*bind)(Statement&, int index, const Record&);
   void (*read)(const Statement&, int column, Record&);

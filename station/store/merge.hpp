@@ -17,7 +17,7 @@ struct MergedSession {
   };
   std::string session_id, participant, protocol_id, station_id, sha256;
   What what = What::added;
-  std::int64_t trials = 0;  ///< number of rows added
+  std::int64_t trials = 0;  ///< number of trials that were added
 };
 
 const char* name(MergedSession::What what);

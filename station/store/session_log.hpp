@@ -24,9 +24,9 @@ struct SessionRecord {
   /// increases with every trial in this database, even if the clock is set back
   std::int64_t last_trial_id = 0;
   bool merged = false;                   ///< true if the session came from another database
-  std::vector<std::string> annotations;  ///< oldest first
-  std::string checksum;  ///< last link of the session's checksum chain (checksum.hpp); "" if an earlier
-                         ///< release recorded the session
+  std::vector<std::string> annotations;  ///< notes of researchers, oldest first
+  /// last link of the session's checksum chain (checksum.hpp); "" if an earlier release recorded the session
+  std::string checksum;
 };
 
 /// Writes one session. It has the station's only connection for writing (WAL, synchronous FULL, foreign keys)
@@ -49,9 +49,9 @@ class SessionLog {
   SessionLog& operator=(SessionLog&&) noexcept;
   ~SessionLog();
 
-  const SessionRecord& session() const;                   ///< includes the checksum of the last commit
-  const std::vector<BlockRecord>& stored_blocks() const;  ///< blocks already in the log of a resumed session;
-                                                          ///< empty for a new session
+  const SessionRecord& session() const;  ///< includes the checksum of the last commit
+  /// blocks already in the log of a resumed session; empty for a new session
+  const std::vector<BlockRecord>& stored_blocks() const;
 
   /// Begins a block. If the log already has a block with this index and attempt, continues that block; its
   /// other values must then be equal.

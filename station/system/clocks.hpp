@@ -15,8 +15,8 @@ std::int64_t realtime_ns() noexcept;
 
 /// Readings of three clocks in ns, taken together.
 struct Clocks {
-  std::int64_t monotonic_ns = 0;  ///< stops during suspend
-  std::int64_t boottime_ns = 0;   ///< continues during suspend
+  std::int64_t monotonic_ns = 0;  ///< this clock stops while the machine is suspended
+  std::int64_t boottime_ns = 0;   ///< this clock continues while the machine is suspended
   std::int64_t realtime_ns = 0;   ///< wall time, which may be set
 };
 Clocks read_clocks() noexcept;

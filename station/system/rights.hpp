@@ -9,7 +9,7 @@ namespace turnpoint::system {
 /// The rights that the operating system granted to the audio thread, for the record and the screen.
 struct Rights {
   bool asked = false;     ///< false for a synchronous stream, which needs no rights
-  int fifo_priority = 0;  ///< 0: not real time
+  int fifo_priority = 0;  ///< 0: the thread is not real-time
   bool memory_locked = false;
   std::string note;  ///< why a right was denied; "" if none was
 };

@@ -46,7 +46,7 @@ FileWriter::FileWriter(const std::string& path, mode_t mode) : path_(destination
     return;
   }
   draft_ = path_ + ".new";
-  ::unlink(draft_.c_str());  // remove what a killed process, or somebody with a link, left there
+  ::unlink(draft_.c_str());  // remove a file that a killed process left, or a link that somebody made
   file_ = FileDescriptor(::open(draft_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
   if (!file_.is_open()) fail(std::exchange(draft_, ""), errno);
 }

@@ -21,7 +21,7 @@ constexpr Entry entries[] = {
     {FaultKind::page_silent, "page_silent", "participant's page not responding"},
     {FaultKind::suspended, "suspended", "machine was suspended"},
     {FaultKind::amplifier, "amplifier", "amplifier reports a fault"},
-    {FaultKind::enable_line, "enable_line", "enable line does not follow"},
+    {FaultKind::enable_line, "enable_line", "enable line not at the level that was set"},
     {FaultKind::stop_pressed, "stop_pressed", "emergency stop pressed"},
     {FaultKind::lines_gone, "lines_gone", "GPIO lines disconnected"},
     {FaultKind::touch_gone, "touch_gone", "touch panel disconnected"},

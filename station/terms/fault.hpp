@@ -21,11 +21,11 @@ enum class FaultKind {
   stop_pressed,         ///< the emergency stop has cut the amplifier's supply
   /// the touch sensor, or the GPIO chip of buttons, contact or amplifier, is disconnected
   lines_gone,
-  touch_gone,       ///< the touch panel was unplugged
-  disk_full,        ///< there was no room on the disk to store a finished trial
-  disarmed,         ///< not a fault: the amplifier is not armed yet, or the operator switched it off
-  limits,           ///< a limit of the rig on exposure or sound level was reached, and the session cannot
-                    ///< continue
+  touch_gone,  ///< the touch panel was unplugged
+  disk_full,   ///< there was no room on the disk to store a finished trial
+  disarmed,    ///< not a fault: the amplifier is not armed yet, or the operator switched it off
+  /// a limit of the rig on exposure or sound level was reached, and the session cannot continue
+  limits,
   stimulus_missed,  ///< frames were lost during a stimulus, or a stimulus came too late
 };
 

@@ -60,7 +60,7 @@ class TableReader {
   int integer(const std::string& key, int low, int high);
   int integer(const std::string& key, int low, int high, int fallback);
 
-  bool boolean(const std::string& key, const char* fallback);  ///< fallback "true" or "false"
+  bool boolean(const std::string& key, const char* fallback);  ///< `fallback` is "true" or "false"
 
   std::optional<std::string> maybe_string(const std::string& key);
   std::string string(const std::string& key, const std::string& what);

@@ -18,8 +18,8 @@ struct Value {
   bool boolean = false;
   std::int64_t integer = 0;
   double number = 0;           ///< also set for an integer
-  std::string string;          ///< UTF-8
-  std::vector<Value> items;    ///< for an array
+  std::string string;          ///< in UTF-8
+  std::vector<Value> items;    ///< the values of an array
   std::vector<Entry> entries;  ///< for a table, in file order
 
   /// Returns the entry of a table with this key, or nullptr.

@@ -8,8 +8,9 @@ namespace turnpoint::touch {
 struct Contact {
   std::int64_t time_ns = 0;
   bool on = false;
-  std::optional<double> position;  ///< position along the surface, from 0 at one end of the sensor to 1 at
-                                   ///< the other; empty if the sensor cannot tell
+  /// position along the surface, from 0 at one end of the sensor to 1 at the other; empty if the sensor
+  /// cannot tell
+  std::optional<double> position;
 };
 
 }  // namespace turnpoint::touch

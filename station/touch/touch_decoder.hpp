@@ -10,7 +10,7 @@ namespace turnpoint::touch {
 
 /// A finger that came down on a touch panel, with the kernel's time stamp.
 struct PanelTouch {
-  std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC
+  std::int64_t time_ns = 0;  ///< time on CLOCK_MONOTONIC
   double x = 0, y = 0;       ///< from 0 to 1, measured from the panel's left and top
 };
 

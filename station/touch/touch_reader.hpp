@@ -25,7 +25,7 @@ class TouchReader {
   TouchReader(const TouchReader&) = delete;
   TouchReader& operator=(const TouchReader&) = delete;
 
-  /// See TouchTimes::claim().
+  /// Returns the kernel's time of a touch; see TouchTimes::claim().
   std::optional<std::int64_t> claim(double x, double y, std::int64_t seen_ns) {
     return times_.claim(x, y, seen_ns);
   }

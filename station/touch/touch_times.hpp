@@ -16,7 +16,7 @@ class TouchTimes {
  public:
   struct Rules {
     double nearness = 0.04;
-    std::int64_t latest_ns = 400'000'000;  ///< if the GUI thread is later than this, there are other problems
+    std::int64_t latest_ns = 400'000'000;  ///< a touch is not matched if the toolkit sees it later than this
   };
 
   TouchTimes() = default;

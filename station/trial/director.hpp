@@ -14,8 +14,8 @@ namespace turnpoint::trial {
 /// A trial to present. Everything about it is decided before its first stimulus.
 struct TrialSpec {
   int block_index = 0, attempt = 0;
-  int trial_in_block = 0;  ///< part of the key of the trial's random draws; when a void trial is repeated,
-                           ///< the key stays the same
+  /// part of the key of the trial's random draws; when a void trial is repeated, the key stays the same
+  int trial_in_block = 0;
   terms::TrialType type = terms::TrialType::experimental;
   std::string procedure;  ///< name of the procedure; "" if the trial belongs to none
   std::optional<double> level;
@@ -42,7 +42,7 @@ struct TrialEnd {
 struct ProcedureEstimate {
   std::string procedure, parameter;
   double mean = 0;
-  std::optional<double> sd;  ///< see procedure::Estimate
+  std::optional<double> sd;  ///< empty if the estimate is a single number
   std::string basis;
 };
 /// Formats an estimate with its SD and basis, if known: `-12.3 (SD 1.25, reversals 5 to 12 of 12)`.

@@ -16,8 +16,8 @@ struct Director::State {
   std::uint64_t seed;
   std::vector<protocol::Block> blocks;
   std::size_t block = 0;
-  int attempt = 0, first_attempt = 0;  ///< number of this attempt at the block, and of the first attempt
-                                       ///< since the session was started or restarted
+  /// number of this attempt at the block, and of the first attempt since the session was started or restarted
+  int attempt = 0, first_attempt = 0;
   /// number of counted trials of the block so far; part of the key of the next trial's draws
   int trial = 0;
   int shown = 0, right = 0;
@@ -42,14 +42,14 @@ struct Director::State {
     return random::Draws({seed, stream, static_cast<int>(block), attempt, key});
   }
 
-  // Blocks and procedures (director.cpp).
+  // These functions handle blocks and procedures (director.cpp).
   void enter_block();
   const procedure::Spec* find_spec(const std::string& name) const;
   procedure::Context context_for(const procedure::Spec& spec) const;
   void learn(const TrialEnd& end);
   int block_expected(const protocol::Block& b) const;
 
-  // One trial (director_trials.cpp).
+  // These functions make one trial (director_trials.cpp).
   bool timeouts_are_data() const;
   double deadline() const;
   protocol::Factors drawn_factors() const;

@@ -53,7 +53,7 @@ struct Timing {
 };
 
 enum class EventKind {
-  tick,  ///< time has passed
+  tick,  ///< time has passed, and nothing else happened
   /// value: index of the interval; time_ns: when its first frame reaches the surface, possibly in the future
   onset,
   heard,    ///< value: index of an interval that has been played completely and as scheduled
