@@ -29,8 +29,10 @@ std::vector<Surface> surfaces() {
 
 }  // namespace
 
-TEST_CASE("the seed's example is reproduced: turning points, Airy, equation 11 and exact last maxima",
-          "[physics]") {
+TEST_CASE(
+    "the map reproduces the 1998 paper's example: turning points and last maxima by Airy, equation 11 and "
+    "the exact mode",
+    "[physics]") {
   struct Row {
     double f, x0, airy, seed, exact;
   };
@@ -52,7 +54,7 @@ TEST_CASE("the seed's example is reproduced: turning points, Airy, equation 11 a
   }
 }
 
-TEST_CASE("edges of the exact wedge mode lie at the published arguments of its Bessel function",
+TEST_CASE("edges of the exact mode of a wedge lie at the published arguments of its Bessel function",
           "[physics]") {
   const Surface s = seed_brass();
   const double c = wave_speed_m_s(s);
@@ -65,7 +67,8 @@ TEST_CASE("edges of the exact wedge mode lie at the published arguments of its B
   }
 }
 
-TEST_CASE("boundary to frequency and back closes to 1e-9 mm for every edge and taper", "[physics]") {
+TEST_CASE("converting a boundary to a frequency and back reproduces it to 1e-9 mm for every edge and taper",
+          "[physics]") {
   for (const Surface& s : surfaces()) {
     for (const char* name : {"turning", "peak", "p70", "p50", "p25", "p10"}) {
       if (s.edges == Edges::clamped && std::string(name) != "p50")
@@ -84,7 +87,7 @@ TEST_CASE("boundary to frequency and back closes to 1e-9 mm for every edge and t
   }
 }
 
-TEST_CASE("the table behind a map agrees with the profile it stands for", "[physics]") {
+TEST_CASE("the table of a map agrees with the profiles from which it was made", "[physics]") {
   Surface s = seed_brass();
   s.taper = ExponentialTaper{0.03, 0.1};
   const BoundaryMap map(s, edge("p25"));
@@ -96,7 +99,7 @@ TEST_CASE("the table behind a map agrees with the profile it stands for", "[phys
   }
 }
 
-TEST_CASE("no smooth zone and no last maximum are answers with a reason", "[physics]") {
+TEST_CASE("if there is no smooth zone or no last maximum, the map gives the reason", "[physics]") {
   const MapAnswer below = BoundaryMap(seed_brass(), edge("turning")).at_frequency(6000);
   CHECK_FALSE(below.boundary_m);
   CHECK(below.reason.find("no smooth zone") != std::string::npos);
@@ -107,7 +110,8 @@ TEST_CASE("no smooth zone and no last maximum are answers with a reason", "[phys
   CHECK_FALSE(BoundaryMap(seed_brass(), edge("peak")).at_boundary(-0.01).frequency_Hz);
 }
 
-TEST_CASE("a map follows the lossy mode, and states model error and uncertainty apart", "[physics]") {
+TEST_CASE("a map follows the mode with loss, and states the model's error and the uncertainty separately",
+          "[physics]") {
   Surface s = seed_brass();
   s.quality_factor = 30;
   s.sd.tension_Pa = 0.02 * s.tension_Pa;
@@ -124,21 +128,20 @@ TEST_CASE("a map follows the lossy mode, and states model error and uncertainty 
   CHECK(BoundaryMap(s, edge("p50")).at_frequency(20e3).uncertainty_m == 0);
 }
 
-TEST_CASE("a lossless membrane's resonances are the zeros of the exact mode at the drive edge", "[physics]") {
+TEST_CASE("at the resonances of a lossless membrane, the exact mode is zero at the drive edge", "[physics]") {
   const auto all = resonances_Hz(seed_brass(), 7000, 45000);
   CHECK(all.size() == 26);
   CHECK(nearest_resonance_Hz(seed_brass(), 19600).value() == Approx(19560.4).margin(0.1));
   CHECK(nearest_resonance_Hz(seed_brass(), 40000).value() == Approx(40010.0).margin(0.1));
 }
 
-TEST_CASE("a clamped aluminium plate has its turning points where the clamped cut-off puts them",
-          "[physics]") {
+TEST_CASE("the turning points of a clamped aluminium plate follow from the clamped cut-off", "[physics]") {
   const BoundaryMap map(aluminium_plate(), edge("turning"));
   const double expected[][2] = {{22.4e3, 97.2}, {30e3, 147.4}, {40e3, 190.2}, {45e3, 206.0}};
   for (const auto& row : expected) CHECK(map.boundary_m(row[0]).value() * 1e3 == Approx(row[1]).margin(0.06));
 }
 
-TEST_CASE("the stated bound holds the two-dimensional field's edge on curved tapers and plates",
+TEST_CASE("on curved tapers and plates, the edge of the two-dimensional field lies inside the stated bound",
           "[physics]") {
   for (Surface s : surfaces()) {
     s.quality_factor = 60;
@@ -157,7 +160,7 @@ TEST_CASE("the stated bound holds the two-dimensional field's edge on curved tap
   }
 }
 
-TEST_CASE("one frequency solved for alone is the map's", "[physics]") {
+TEST_CASE("solving for a single frequency gives the same result as the map", "[physics]") {
   for (const Surface& surface : {seed_brass(), aluminium_plate()}) {
     for (const char* edge : {"turning", "peak", "p50", "friction=0.8"}) {
       MapOptions options;
@@ -178,7 +181,9 @@ TEST_CASE("one frequency solved for alone is the map's", "[physics]") {
   CHECK_FALSE(solve_frequency_Hz(seed_brass(), peak, 0.4));
 }
 
-TEST_CASE("a frequency solved for by modes puts the edge of that field at the position", "[physics]") {
+TEST_CASE(
+    "solving for a frequency with the model modes puts the edge of that field at the requested position",
+    "[physics]") {
   Surface exponential = seed_brass();
   exponential.taper = ExponentialTaper{0.03, 0.1};
   exponential.quality_factor = 60;
@@ -197,7 +202,7 @@ TEST_CASE("a frequency solved for by modes puts the edge of that field at the po
   }
 }
 
-TEST_CASE("maps of long and of finely tabulated tapers are those of the plain ones", "[physics]") {
+TEST_CASE("maps of long or finely tabulated tapers agree with those of the plain tapers", "[physics]") {
   // Only the moving part of the surface is solved. The far end, a hundred decay lengths away, and tabulated
   // points beyond the moving part must take no steps.
   Surface exponential = seed_brass();
@@ -229,7 +234,7 @@ TEST_CASE("maps of long and of finely tabulated tapers are those of the plain on
   CHECK(steps(0.6, 25e3) > 100);  // negative control: a solution from farther out takes many steps
 }
 
-TEST_CASE("a map of a band is the whole map there", "[physics]") {
+TEST_CASE("a map of a frequency band agrees with the whole map in this band", "[physics]") {
   MapOptions options;
   options.edge = Edge::percent(0.5);
   const BoundaryMap whole(aluminium_plate(), options);

@@ -21,7 +21,7 @@ Surface foil() {
 
 }  // namespace
 
-TEST_CASE("a finger of no impedance changes nothing, a heavy one stops the surface", "[physics]") {
+TEST_CASE("a finger without impedance changes nothing, and a heavy finger stops the surface", "[physics]") {
   const std::vector<double> x{0.02, 0.1, 0.18, 0.21};
   for (const FingerLoad& load : finger_load(foil(), 19600, x, {0})) CHECK(load.loaded == load.unloaded);
   for (const FingerLoad& load : finger_load(foil(), 19600, x, {1e9})) {
@@ -29,7 +29,7 @@ TEST_CASE("a finger of no impedance changes nothing, a heavy one stops the surfa
   }
 }
 
-TEST_CASE("under a finger the surfaces move as independent finite elements do", "[physics]") {
+TEST_CASE("the motion of surfaces under a finger agrees with independent finite elements", "[physics]") {
   // From the middle of the smooth zone to beyond its edge, on the centre line and beside it, with real and
   // complex impedances.
   int compared = 0;
@@ -59,7 +59,8 @@ TEST_CASE("under a finger the surfaces move as independent finite elements do", 
   CHECK(worst_unloaded < 0.01);
 }
 
-TEST_CASE("on a lossy uniform strip the response to a finger is the sum of its own waves", "[physics]") {
+TEST_CASE("on a uniform strip with loss, the response to a finger is a sum of the strip's waves",
+          "[physics]") {
   // Mode n leaves the finger in both directions as exp(-i kx |x|) / (2 i kx), with kx^2 = k^2 - (n pi /
   // 2W)^2, and is averaged over the disc twice. With simply supported sides, the waves with k^2 = -k2^2 are
   // subtracted.
@@ -109,7 +110,7 @@ TEST_CASE("on a lossy uniform strip the response to a finger is the sum of its o
   CHECK(std::abs(load.mobility_m_per_Ns / (i * omega * receptance) - 1.0) < 1e-2);
 }
 
-TEST_CASE("a finger on the seed's foil takes most of the amplitude and moves the felt edge by millimetres",
+TEST_CASE("a finger on the brass foil removes most of the amplitude and moves the felt edge by millimetres",
           "[physics]") {
   const double peak = tone_info(foil(), 19600).last_peak_m.value();
   const FingerLoad load = finger_load(foil(), 19600, {peak}, Finger{})[0];
@@ -136,7 +137,8 @@ TEST_CASE("a clamped 2 mm plate keeps more of its amplitude under a finger than 
   CHECK(std::abs(*finger_edge_shift_m(plate, 30e3, Edge::percent(0.5), {0.0})) < 1e-9);
 }
 
-TEST_CASE("every plate theory, taper and end of a strip has an answer under a finger", "[physics]") {
+TEST_CASE("the effect of a finger can be computed for every plate theory, taper and end of a strip",
+          "[physics]") {
   Surface s = aluminium_plate();
   const std::vector<double> x{0, 1e-3, 0.05, 0.15, 0.298, 0.3};
   const auto shares = [&] {
