@@ -1,16 +1,20 @@
 #!/usr/bin/env python3
-"""Surfaces under a finger by two-dimensional finite elements (needs python3-numpy, python3-scipy, scikit-fem).
+"""Computes how surfaces move under a finger, by two-dimensional finite elements.
 
     python3 make_finger.py > finger.csv
 
-The finger is a uniform pressure over a disc of 4 mm radius; its velocity is the surface's mean over the disc. Half of the
-strip is meshed; a disc beside the centre line is the sum of an even and an odd load. Surfaces: `brass`, the 1998 paper's
-membrane (quadrilaterals of degree 4); `kirchhoff`, the simulated rig's plate as a thin plate (Argyris triangles);
-`mindlin`, the same with shear and rotary inertia (degree 4, as in make_mindlin_taper.py). Q = 60, as an imaginary part of
-the stiffness. Rows: surface, frequency (Hz), x and y of the disc's centre (m), the unloaded mean over the disc for a motion
-of 1 at the centre of the drive edge (real, imaginary), mobility: mean velocity per force (m/(N s); real, imaginary). A
-finger of impedance Z leaves 1 / (1 + Z mobility) of the unloaded mean; one direct solution with the finger as part of
-the matrix confirms this for each frequency. With 1.5 times finer meshes, figures change by less than 1e-3 of themselves.
+Needs python3-numpy, python3-scipy and scikit-fem. The finger is a uniform pressure over a disc of 4 mm radius, and its
+velocity is the mean velocity of the surface over the disc. The mesh covers half of the strip; a disc beside the centre
+line is the sum of an even and an odd load. There are three surfaces, all with Q = 60 (an imaginary part of the stiffness):
+  brass      the 1998 paper's membrane (quadrilaterals of degree 4)
+  kirchhoff  the simulated rig's plate as a thin plate (Argyris triangles)
+  mindlin    the same plate with shear and rotary inertia (degree 4, as in make_mindlin_taper.py)
+
+Columns: surface; frequency (Hz); x and y of the disc's centre (m); unloaded motion (real, imaginary), which is the mean
+over the disc if the centre of the drive edge moves by 1; mobility (real, imaginary), which is the mean velocity per force
+in m/(N s). A finger of impedance Z leaves 1 / (1 + Z mobility) of the unloaded motion. For each frequency, one direct
+solution with the finger as part of the matrix confirms this. With a mesh 1.5 times finer, the relative change of all
+values is below 1e-3.
 """
 import sys
 import numpy as np
@@ -38,7 +42,7 @@ def graded(nx, ny, length, w0, slope, quads):
 
 
 def disc(x, y, half_width):
-    """Points and weights of a mean over the disc, clipped to the strip; the sign is that of an odd field there."""
+    """Returns points and weights for a mean over the part of the disc on the strip, and the sign of an odd field there."""
     r, wr = np.polynomial.legendre.leggauss(12)
     r, wr = (r + 1) / 2, wr / 2
     a = 2 * np.pi * (np.arange(48) + 0.5) / 48
@@ -50,7 +54,7 @@ def disc(x, y, half_width):
 
 
 class Strip:
-    """Stiffness and mass of half the strip, per parity the held unknowns, and the drive edge's motion."""
+    """Holds stiffness and mass of half the strip, the held unknowns for each parity, and the drive edge's motion."""
     def mean(self, x, y, odd):
         px, py, w, sign = disc(x, y, self.half_width)
         row = self.basis.probes(np.array([px, py + 1e-13])).T @ (w * (sign if odd else 1))
@@ -72,7 +76,7 @@ class Strip:
                 mobility += 1j * o * (l @ lu[odd].solve(l.astype(complex)))
             l = self.mean(x, y, False)
             answer.append((x, y, l @ u, mobility))
-            if n == 0:  # the finger as part of the matrix
+            if n == 0:  # check with the finger as part of the matrix
                 z, i = 40 + 20j, free[False]
                 s = sp.csc_matrix(l[i]).T
                 loaded = sla.spsolve((a[i][:, i] + 1j * o * z * (s @ s.T)).tocsc(), -a[i][:, rest] @ u[rest])
@@ -168,7 +172,7 @@ class Kirchhoff(Strip):
         return np.unique(np.concatenate(self.fixed + self.parity[odd]))
 
 
-# from the middle of the smooth zone to the 10 % edge, and beside the centre line
+# positions from the middle of the smooth zone to the 10 % edge, and beside the centre line
 PLACES = dict(brass={19.6e3: (.05, .12, .165, .185, .205), 30e3: (.1, .18, .225, .235)},
               plate={22.4e3: (.05, .08, .095, .115), 30e3: (.05, .1, .135, .15, .165), 40e3: (.05, .12, .165, .19, .205)})
 
