@@ -35,8 +35,7 @@ void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
 // their size is kept separately.
 void substitute(const ModalSetup& s, const ModalAssembler& assembler, const Eigen::VectorXd& drive,
                 std::vector<ModalElement>& elements) {
-  Eigen::VectorXcd u = Eigen::VectorXcd::Zero(s.along.per_vertex * elements.front().left);
-  u.head(elements.front().left) = drive.head(elements.front().left).cast<std::complex<double>>();
+  Eigen::VectorXcd u = drive.cast<std::complex<double>>();
   double ln_scale = 0;
   for (ModalElement& e : elements) {
     ln_scale += take_out_size(u);
@@ -109,9 +108,11 @@ ModalLine::ModalLine(const Surface& surface, double f, Losses losses, const Moda
 void ModalLine::solve(const Surface& surface, const ModalSetup& s, const ModalResolution& resolution) {
   const ModalAssembler assembler(s.taper, s.across, s.along, s.equation, s.taper.half_width_m(0));
   eliminate(assembler, s.along, elements_);
-  Eigen::VectorXd drive = Eigen::VectorXd::Ones(1);
+  Eigen::VectorXd drive = Eigen::VectorXd::Unit(s.along.per_vertex, 0);
   if (s.across.count() > 1) {
-    drive = s.across.project(resolution.drive ? resolution.drive : drive_shape(surface, s.equation));
+    const auto shape =
+        s.across.project(resolution.drive ? resolution.drive : drive_shape(surface, s.equation));
+    drive = drive_unknowns(s, s.across, shape, elements_.front().left);
   }
   substitute(s, assembler, drive, elements_);
 }

@@ -119,14 +119,6 @@ std::vector<Vector> Chain::driven(const Eigen::VectorXd& drive) const {
   return all;
 }
 
-// The motion of the drive edge as the unknowns of the first vertex, with 1 at the centre.
-Eigen::VectorXd at_first_vertex(const ModalElement& first, int per_vertex, const Eigen::VectorXd& shape,
-                                const Eigen::VectorXd& centre) {
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(per_vertex * first.left);
-  all.head(first.left) = shape.head(first.left) / shape.head(first.left).dot(centre.head(first.left));
-  return all;
-}
-
 // Half of the strip by Mindlin's theory, whose unknowns are two rotations and the deflection.
 Strip thick_strip(const Surface& surface, double f, Parity parity) {
   Surface plate = surface;
@@ -147,7 +139,7 @@ Strip thick_strip(const Surface& surface, double f, Parity parity) {
   const Eigen::Index kept = matrices.back().rows() - section.count();
   matrices.back() = Matrix(matrices.back().topLeftCorner(kept, kept));
   Eigen::VectorXd drive = section.drive;
-  if (parity == Parity::even) drive = at_first_vertex(elements.front(), 1, section.drive, section.centre);
+  if (parity == Parity::even) drive /= section.drive.dot(section.centre);
   return {std::move(setup), std::move(elements), std::move(matrices), drive, 2 * each, 1, parity, 0.5 * loss};
 }
 
@@ -162,9 +154,11 @@ Strip thin_strip(const Surface& surface, const ModalSetup& setup, Parity parity)
   std::vector<Matrix> matrices;
   for (const ModalElement& e : elements) matrices.push_back(assembler.matrix(e));
   Eigen::VectorXd drive = Eigen::VectorXd::Zero(power * elements.front().left);
-  if (parity == Parity::even)
-    drive = at_first_vertex(elements.front(), power, across.project(drive_shape(surface, setup.equation)),
-                            across.centre);
+  if (parity == Parity::even) {
+    const int functions = elements.front().left;
+    drive = drive_unknowns(setup, across, across.project(drive_shape(surface, setup.equation)), functions);
+    drive /= drive.head(functions).dot(across.centre.head(functions));
+  }
   return {setup, std::move(elements), std::move(matrices), drive, 0, power, parity, 0.5};
 }
 

@@ -79,6 +79,17 @@ std::function<double(double)> drive_shape(const Surface& surface, const ModalEqu
   return [=](double eta) { return (std::cos(b * eta) / std::cos(b) - cosh_ratio(eta)) / unit; };
 }
 
+Eigen::VectorXd drive_unknowns(const ModalSetup& setup, const TransverseBasis& across,
+                               const Eigen::VectorXd& shape, int functions) {
+  Eigen::VectorXd all(setup.along.per_vertex * functions);
+  all.head(functions) = shape.head(functions);
+  if (setup.along.per_vertex == 1) return all;
+  const auto mass = across.mass.topLeftCorner(functions, functions);
+  const auto stretch = across.stretch.topLeftCorner(functions, functions);
+  all.tail(functions) = setup.taper.slope(0) * mass.ldlt().solve(stretch * shape.head(functions));
+  return all;
+}
+
 std::vector<ModalElement> make_modal_elements(const ModalSetup& s, const ModalResolution& resolution,
                                               double& match_m) {
   std::vector<ModalElement> elements;

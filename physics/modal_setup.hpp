@@ -26,6 +26,12 @@ ModalSetup make_modal_setup(const Surface& surface, double frequency_Hz, Losses 
 // transverse mode at its cut-off.
 std::function<double(double)> drive_shape(const Surface& surface, const ModalEquation& equation);
 
+// Returns the unknowns of the first vertex, which has this number of `functions`, for a motion of the drive
+// edge; `shape` holds its coefficients. A clamped plate is held there without slope, dv/dx = 0 at constant y.
+// The unknowns are derivatives at constant eta = y/W(x), so they are W'/W eta dv/deta.
+Eigen::VectorXd drive_unknowns(const ModalSetup& setup, const TransverseBasis& across,
+                               const Eigen::VectorXd& shape, int functions);
+
 // Divides the surface from the drive edge to the far end into elements. They are finer near the corners of
 // the drive edge, and elements end at the knots of a tabulated taper. Sets match_m to the position beyond
 // which the one-mode decay is used.

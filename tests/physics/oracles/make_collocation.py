@@ -75,7 +75,7 @@ def solve(kind, w0, l, length, f, q, nx, ny):
                 a[row, i * (ny + 1):(i + 1) * (ny + 1)] = de[edge]
             elif clamped and i in (1, nx - 1):
                 a[row] = 0
-                a[row, [on(m, j) for m in range(nx + 1)]] = dx[0 if i == 1 else nx]
+                a[row] = first[on(0 if i == 1 else nx, j)]  # no slope at constant y
     scale = np.max(np.abs(a), axis=1)
     v = np.linalg.solve(a / scale[:, None], b / scale)
     middle = v.reshape(nx + 1, ny + 1)[:, ny // 2]
