@@ -14,16 +14,6 @@ namespace {
 constexpr double finger_width_m = 14e-3;
 constexpr double high_gain = 10;
 constexpr double noticeable_shift_m = 1e-3;
-constexpr double finger_impedance_Ns_per_m = 55;  // magnitude from a publication; see finger.hpp
-
-// Impedance of a strip against a point force: for a membrane that of two travelling waves of the first mode,
-// for a plate that of an infinite plate (Cremer & Heckl).
-double strip_impedance_Ns_per_m(const Surface& s, double half_width) {
-  const double mass = s.density_kg_m3 * s.thickness_m;
-  const double membrane = s.tension_Pa > 0 ? 2 * line_tension_N_per_m(s) * half_width / wave_speed_m_s(s) : 0;
-  const double plate = bending_modelled(s) ? 8 * std::sqrt(bending_stiffness_N_m(s).value() * mass) : 0;
-  return std::max(membrane, plate);
-}
 
 void add(std::vector<Warning>& list, const char* code, const std::ostringstream& text) {
   for (const Warning& one : list) {
@@ -56,13 +46,6 @@ std::vector<Warning> tone_warnings(const Surface& s, std::span<const Tone> tones
       add(list, "audible", text);
       text.str("");
       text << f / 1e3 << " kHz";
-    }
-    const double finger = strip_impedance_Ns_per_m(s, cut_off_half_width_m(s, f));
-    if (finger < finger_impedance_Ns_per_m) {
-      std::ostringstream load;
-      load << f / 1e3 << " kHz: a finger (about 55 N s/m) is heavier than the strip (" << finger
-           << " N s/m): it takes amplitude and moves the felt edge; the field is that of the free surface";
-      add(list, "finger-load", load);
     }
     const auto stiffness = bending_stiffness_N_m(s);
     if (stiffness && !bending_modelled(s)) {

@@ -9,7 +9,7 @@
 
 namespace turnpoint::physics {
 
-// A stable code for programs ("yield", "bending-off", "finger-load", "audible", "resonance-gain",
+// A stable code for programs ("yield", "bending-off", "audible", "resonance-gain",
 // "outside-surface", "no-smooth-zone", "narrow-strip", "thick-plate", "ill-conditioned", "beat") and a
 // sentence for people.
 struct Warning {
@@ -24,8 +24,8 @@ std::vector<Warning> surface_warnings(const Surface& surface);
 inline constexpr double audible_limit_Hz = 22400;
 
 // Warnings about single tones: below 22.4 kHz, turning point outside the surface, strip narrower than a
-// fingertip (14 mm) at the turning point, last-lobe gain above 10, a finger heavier than the strip, plate
-// theory kirchhoff where shear moves the boundary by more than 1 mm. Codes are not repeated per tone.
+// fingertip (14 mm) at the turning point, last-lobe gain above 10, plate theory
+// kirchhoff where shear moves the boundary by more than 1 mm. Codes are not repeated per tone.
 std::vector<Warning> tone_warnings(const Surface& surface, std::span<const Tone> tones);
 
 }  // namespace turnpoint::physics

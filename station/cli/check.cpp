@@ -109,6 +109,9 @@ Json to_json(const simulation::Check& check) {
        {{"lowest_Hz", planned ? json_number(extremes.lowest_Hz) : Json(nullptr)},
         {"highest_Hz", planned ? json_number(extremes.highest_Hz) : Json(nullptr)}}},
       {"displacement_um", planned ? json_number(extremes.displacement_um) : Json(nullptr)},
+      {"share_under_finger", check.finger
+                                 ? Json{json_number(check.finger->least), json_number(check.finger->most)}
+                                 : Json(nullptr)},
       {"sound", json_sound(check.sound)},
       {"models", check.survey.models},
       {"combinations", check.survey.combinations},
@@ -125,6 +128,11 @@ std::string range(const simulation::Spread& spread, double unit) {
 }
 
 long percent(double share) { return std::lround(100 * share); }
+
+std::string between(double least, double most) {
+  return percent(least) == percent(most) ? fmt::format("{}", percent(most))
+                                         : fmt::format("{} to {}", percent(least), percent(most));
+}
 
 void print_cues(std::ostream& out, const simulation::CueGuard& cues) {
   if (!cues.not_compared.empty())
@@ -149,12 +157,9 @@ void print_cues(std::ostream& out, const simulation::CueGuard& cues) {
         out,
         "Cues: an observer who uses only one of these cues, with the best rule, does better than chance:{}\n",
         named);
-  const auto chance = percent(least) == percent(most)
-                          ? fmt::format("{}", percent(most))
-                          : fmt::format("{} to {}", percent(least), percent(most));
   fmt::print(out,
              "Cues: an observer who uses only one cue stays near chance ({} %), for each of the {} cues\n",
-             chance, cues.reports.size());
+             between(least, most), cues.reports.size());
 }
 
 void print(std::ostream& out, const simulation::Check& check, const std::string& path) {
@@ -173,6 +178,11 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
       "Tones: {} to {} kHz; the surface moves at most {} um; models: {} ({} of {} combinations planned)\n",
       number(1e-3 * extremes.lowest_Hz, 4), number(1e-3 * extremes.highest_Hz, 4),
       number(extremes.displacement_um, 3), models, check.survey.sights.size(), check.survey.combinations);
+  if (check.finger)
+    fmt::print(
+        out,
+        "Finger: it leaves {} % of the displacement at the last maxima of the lowest and the highest tone\n",
+        between(check.finger->least, check.finger->most));
   fmt::print(out, "Sound: {}\n", in_words(check.sound));
   print_cues(out, check.cues);
   if (!check.protocol_defaults.empty()) fmt::print(out, "Defaults used:\n");
@@ -182,7 +192,7 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
 
 void check(const Options& options, Context& context) {
   const auto rig = setup::rig_or_default(options.rig, context.err);
-  const auto result = simulation::check(options.protocol, rig, {options.sessions, true});
+  const auto result = simulation::check(options.protocol, rig, {options.sessions, true, true});
   if (!result.problems.empty()) context.exit_code = 2;
   for (const auto& problem : result.problems) fmt::print(context.err, "{}\n", format(problem));
   for (const auto& warning : result.warnings) fmt::print(context.err, "warning: {}\n", format(warning));

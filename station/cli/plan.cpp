@@ -40,8 +40,49 @@ Json tones_json(const scene::DrivePlan& plan) {
   return tones;
 }
 
+/// A contrast of friction in dB, 20 log10 of the share by which friction is lower than in the base scene.
+std::optional<double> contrast_dB(const std::optional<double>& base, const std::optional<double>& friction) {
+  if (!base || !friction || *friction >= *base) return std::nullopt;
+  return 20 * std::log10(1 - *friction / *base);
+}
+
+/// The scene with and without a finger, and the same contrast to its base scene if it has one.
+struct Touched {
+  scene::UnderFinger under;
+  std::optional<double> free_contrast_dB, contrast_dB;
+};
+
+Touched touched(scene::Planner& planner, const scene::DrivePlan& plan,
+                const std::optional<scene::DrivePlan>& base) {
+  Touched all{planner.under_finger(plan), {}, {}};
+  if (!base) return all;
+  const auto below = planner.under_finger(*base);
+  const bool zone = plan.zone_friction.has_value();
+  all.free_contrast_dB = zone ? contrast_dB(base->zone_friction, plan.zone_friction)
+                              : contrast_dB(below.free_friction, all.under.free_friction);
+  all.contrast_dB = zone ? contrast_dB(below.zone_friction, all.under.zone_friction)
+                         : contrast_dB(below.friction, all.under.friction);
+  return all;
+}
+
+Json touched_json(const Touched& touched) {
+  const auto& under = touched.under;
+  return {{"finger_mm", json_number(under.finger_m * 1e3)},
+          {"free_um", json_number(under.free_m * 1e6)},
+          {"displacement_um", json_number(under.displacement_m * 1e6)},
+          {"displacement_range_um", {json_number(under.least_m * 1e6), json_number(under.most_m * 1e6)}},
+          {"free_friction", json_number(under.free_friction)},
+          {"friction", json_number(under.friction)},
+          {"lowest_friction", json_number(under.lowest_friction)},
+          {"zone_friction", json_number(under.zone_friction)},
+          {"residual", json_number(under.residual)},
+          {"boundary_shift_mm", json_number(under.boundary_shift_m, 1e3)},
+          {"free_contrast_dB", json_number(touched.free_contrast_dB)},
+          {"contrast_dB", json_number(touched.contrast_dB)}};
+}
+
 Json to_json(const scene::DrivePlan& plan, const protocol::Factors& factors,
-             const std::optional<scene::SoundBound>& sound) {
+             const std::optional<scene::SoundBound>& sound, const Touched& touched) {
   Json values;
   for (const auto& [name, value] : factors)
     std::visit([&values, &name = name](const auto& v) { values[name] = v; }, value);
@@ -67,6 +108,7 @@ Json to_json(const scene::DrivePlan& plan, const protocol::Factors& factors,
           {"residual", json_number(plan.residual)},
           {"lowest_friction", json_number(plan.lowest_friction)},
           {"peak_displacement_um", json_number(plan.peak_displacement_m * 1e6)},
+          {"under_finger", touched_json(touched)},
           {"sound", json_sound(sound)},
           {"peak_full_scale", json_number(plan.peak_full_scale)},
           {"crest_factor", json_number(plan.crest_factor)},
@@ -82,7 +124,27 @@ Json to_json(const scene::DrivePlan& plan, const protocol::Factors& factors,
           {"warnings", json_warnings(plan.warnings)}};
 }
 
-void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<scene::SoundBound>& sound) {
+void print(std::ostream& out, const Touched& touched) {
+  using text::number;
+  const auto& under = touched.under;
+  fmt::print(out, "  under a finger at {} mm: {} um (people differ: {} to {}), without it {} um\n",
+             number(under.finger_m * 1e3, 4), number(under.displacement_m * 1e6, 3),
+             number(under.least_m * 1e6, 3), number(under.most_m * 1e6, 3), number(under.free_m * 1e6, 3));
+  fmt::print(out, "  friction under a finger there {}, without it {}; lowest anywhere under a finger {}\n",
+             number(under.friction, 3), number(under.free_friction, 3), number(under.lowest_friction, 3));
+  if (under.zone_friction)
+    fmt::print(out, "  zone under a finger: mean friction {}, rms {} about it\n",
+               number(*under.zone_friction, 3), number(under.residual.value_or(0), 3));
+  if (touched.contrast_dB && touched.free_contrast_dB)
+    fmt::print(out, "  contrast to the base scene: {} dB under a finger, {} dB without it\n",
+               number(*touched.contrast_dB, 3), number(*touched.free_contrast_dB, 3));
+  if (under.boundary_shift_m)
+    fmt::print(out, "  a moving finger displaces the edge by {} mm\n",
+               number(*under.boundary_shift_m * 1e3, 3));
+}
+
+void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<scene::SoundBound>& sound,
+           const Touched& touched) {
   using text::number;
   fmt::print(out, "Scene {}: boundary at {} mm ({} edge)\n", plan.scene.name,
              plan.boundary_m ? number(*plan.boundary_m * 1e3) : "none", physics::format(plan.scene.edge));
@@ -108,6 +170,7 @@ void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<
   fmt::print(out, "  largest displacement of the surface {} um, crest factor {}, lowest friction {}\n",
              number(plan.peak_displacement_m * 1e6, 4), number(plan.crest_factor, 3),
              number(plan.lowest_friction, 3));
+  print(out, touched);
   fmt::print(out, "  sound: {}\n", in_words(sound));
   for (const auto& product : plan.audible_products)
     fmt::print(out, "  audible product: {} Hz, order {}\n", number(product.frequency_Hz), product.order);
@@ -134,10 +197,14 @@ void plan(const Options& options, Context& context) {
   for (const auto& tone : result.tones)
     tones.push_back({tone.frequency_Hz, tone.amplitude_m, tone.phase_rad});
   const auto sound = scene::sound_bound(rig, tones, result.model);
+  std::optional<scene::DrivePlan> base;
+  if (const auto& from = protocol.scenes.at(options.scene); from.friction_contrast_dB)
+    base = planner.plan(protocol::resolve(protocol, from.base, factors, 0));
+  const auto finger = touched(planner, result, base);
   if (context.json)
-    context.out << to_json(result, factors, sound).dump(2) << "\n";
+    context.out << to_json(result, factors, sound, finger).dump(2) << "\n";
   else
-    print(context.out, result, sound);
+    print(context.out, result, sound, finger);
 }
 
 }  // namespace plan_command

@@ -178,6 +178,21 @@ void read_friction(TableReader& file, Rig& rig) {
   reader.finish();
 }
 
+void read_finger(TableReader& file, Rig& rig) {
+  static const text::Value empty;
+  const auto* table = file.maybe_table("finger");
+  TableReader reader(table ? *table : empty, "finger", file.findings());
+  const Range impedance{0, 1000, Ends::closed, "N s/m"}, phase{-90, 90, Ends::closed, "degrees"};
+  constexpr double degree = pi / 180;
+  auto& finger = rig.finger;
+  finger.impedance_Ns_per_m = reader.number("impedance_Ns_per_m", impedance, 55);
+  finger.impedance_sd_Ns_per_m = reader.number("impedance_sd_Ns_per_m", impedance, 15);
+  finger.phase_rad = degree * reader.number("phase_deg", phase, 0);
+  finger.phase_sd_rad = degree * reader.number("phase_sd_deg", {0, 90, Ends::closed, "degrees"}, 20);
+  finger.contact_m = 1e-3 * reader.number("contact_mm", {1, 30, Ends::closed, "mm"}, 8);
+  reader.finish();
+}
+
 void read_limits(TableReader& file, Rig& rig) {
   const auto* table = file.table("limits", "add a table [limits] with displacement_um");
   if (!table) return;
@@ -209,6 +224,7 @@ Rig parse(const std::string& source, const std::string& path) {
   read_spare_channels(file, rig);
   check_device_channels(file, rig);
   read_friction(file, rig);
+  read_finger(file, rig);
   read_limits(file, rig);
   file.finish();
   findings.throw_if_any();

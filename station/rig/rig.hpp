@@ -101,6 +101,14 @@ struct Friction {
   std::vector<std::pair<double, double>> table;  ///< pairs of (displacement_m, relative_friction)
 };
 
+/// A fingertip on the surface as a mechanical impedance at ultrasonic frequencies, with its standard
+/// deviations between people.
+struct Finger {
+  double impedance_Ns_per_m = 55, impedance_sd_Ns_per_m = 15;
+  double phase_rad = 0, phase_sd_rad = 0;  ///< above zero: force before velocity, as of a mass
+  double contact_m = 0.008;                ///< diameter of the contact
+};
+
 /// Limits that must never be exceeded.
 struct Limits {
   double displacement_m = 0;
@@ -122,6 +130,7 @@ struct Rig {
   std::optional<Marker> marker;
   std::optional<MaskingNoise> noise;
   Friction friction;
+  Finger finger;
   Limits limits;
   std::vector<std::string> defaults_used;  ///< `key = value` for each default that was used
 };

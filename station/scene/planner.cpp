@@ -17,6 +17,7 @@
 #include "station/scene/measures.hpp"
 #include "station/scene/tone_designer.hpp"
 #include "station/scene/transducer.hpp"
+#include "station/scene/under_finger.hpp"
 #include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
 
@@ -294,6 +295,12 @@ Planner::Profile Planner::profile(const DrivePlan& plan, int points) {
   profile.friction =
       physics::fingertip_average(profile.x_m, profile.friction, state_->rig.friction.fingertip_m);
   return profile;
+}
+
+UnderFinger Planner::under_finger(const DrivePlan& plan) {
+  if (state_->rig.surface.plate_theory == rig::PlateTheory::automatic)
+    return by_theory(plan.theory).under_finger(plan);
+  return finger_figures(state_->surface, state_->friction, state_->rig, at_least_mode(plan.model), plan);
 }
 
 }  // namespace turnpoint::scene

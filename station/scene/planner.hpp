@@ -71,6 +71,20 @@ struct DrivePlan {
   std::vector<physics::Warning> warnings;
 };
 
+/// A planned scene under the rig's finger, with the drive unchanged. Displacements are means over the
+/// finger's contact, root of the summed squares over tones; friction is averaged over the fingertip.
+struct UnderFinger {
+  double finger_m = 0;             ///< place of the finger: the last maximum of the highest tone
+  double free_m = 0;               ///< displacement there without a finger
+  double displacement_m = 0;       ///< displacement under the finger
+  double least_m = 0, most_m = 0;  ///< displacement for fingers one standard deviation heavier or lighter
+  double free_friction = 1, friction = 1;         ///< without and under the finger
+  double lowest_friction = 1;                     ///< lowest under a finger anywhere on the surface
+  std::optional<double> zone_friction, residual;  ///< mean under a finger in the zone, and rms about it
+  std::optional<double>
+      boundary_shift_m;  ///< by which a moving finger displaces the edge, of the highest tone
+};
+
 /// Turns scenes into drive plans for one rig. The result of plan() depends only on the scene and the rig; the
 /// planner caches boundary maps and designs only to save time. Not thread-safe.
 class Planner {
@@ -91,6 +105,9 @@ class Planner {
     std::vector<double> x_m, displacement_m, friction;
   };
   Profile profile(const DrivePlan& plan, int points);
+
+  /// The plan's scene under a finger. Takes some 100 ms, on a thick plate 1 s per tone.
+  UnderFinger under_finger(const DrivePlan& plan);
 
   const physics::Surface& surface() const;
   const physics::FrictionMap& friction() const;

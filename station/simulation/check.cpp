@@ -125,6 +125,16 @@ std::optional<scene::SoundBound> loudest(const protocol::Survey& survey, const r
   return most;
 }
 
+std::optional<scene::FingerShares> shares(const protocol::Survey& survey, const rig::Rig& rig) {
+  std::vector<double> tones_Hz;
+  for (const auto& sight : survey.sights)
+    for (const double tone_Hz : {sight.lowest_Hz, sight.highest_Hz})
+      if (tone_Hz > 0) tones_Hz.push_back(tone_Hz);
+  if (tones_Hz.empty()) return std::nullopt;
+  const auto [least, most] = std::minmax_element(tones_Hz.begin(), tones_Hz.end());
+  return scene::finger_shares(rig, {*least, *most});
+}
+
 }  // namespace
 
 Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options,
@@ -153,6 +163,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     estimate(*protocol, options.sessions, stop, check);
     if (stop.stop_requested()) throw protocol::Abandoned();
     if (options.sound && check.problems.empty()) check.sound = loudest(check.survey, *rig, stop);
+    if (options.finger && check.problems.empty()) check.finger = shares(check.survey, *rig);
     if (check.problems.empty()) check.cues = cue_guard(*protocol, *rig, check.survey, stop);
   } catch (const protocol::Abandoned&) {
     throw;

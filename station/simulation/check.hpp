@@ -8,6 +8,7 @@
 #include "station/protocol/survey.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/sound.hpp"
+#include "station/scene/under_finger.hpp"
 #include "station/simulation/cue_guard.hpp"
 
 namespace turnpoint::simulation {
@@ -39,13 +40,17 @@ struct Check {
   /// bound of the airborne sound for the loudest combination of factors; empty if CheckOptions::sound is
   /// false or if this rig has no known bound
   std::optional<scene::SoundBound> sound;
+  /// what a finger leaves of the displacement at the last maxima of the lowest and the highest tone; empty if
+  /// CheckOptions::finger is false or there are no last maxima
+  std::optional<scene::FingerShares> finger;
   std::vector<std::string> protocol_defaults, rig_defaults;
 };
 
 /// What `turnpoint check` computes besides the survey.
 struct CheckOptions {
-  int sessions = 21;   ///< simulated to estimate the number of trials and the duration; 0: none
-  bool sound = false;  ///< also compute the bound of the airborne sound, about 10 ms per tone
+  int sessions = 21;    ///< simulated to estimate the number of trials and the duration; 0: none
+  bool sound = false;   ///< also compute the bound of the airborne sound, about 10 ms per tone
+  bool finger = false;  ///< also compute what a finger leaves of two tones
 };
 
 /// Reads and checks both files as `run` would. Throws std::system_error if one cannot be read, and

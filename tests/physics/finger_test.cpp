@@ -168,7 +168,6 @@ TEST_CASE("the effect of a finger can be computed for every plate theory, taper 
   s = foil();
   s.length_m = 0.3;  // to the apex
   shares();
-  CHECK_THROWS_WITH(finger_load(s, 30e3, {0.31}, Finger{}), Catch::Matchers::Contains("finger position"));
-  CHECK_THROWS_WITH(finger_load(s, 30e3, {0.1}, Finger{{55, 0}, 0}),
-                    Catch::Matchers::Contains("contact radius"));
+  CHECK_THROWS_AS(finger_load(s, 30e3, {0.31}, Finger{}), std::invalid_argument);
+  CHECK_THROWS_AS(finger_load(s, 30e3, {0.1}, Finger{{55, 0}, 0}), std::invalid_argument);
 }

@@ -59,6 +59,24 @@ TEST_CASE("the simulated rig loads in SI units", "[rig]") {
   CHECK(rig.sha256 == rig::parse(source(), "elsewhere").sha256);
 }
 
+TEST_CASE("a rig states the finger that loads its surface, in N s/m, degrees and mm", "[rig]") {
+  const auto text = replaced(replaced(source(), "impedance_Ns_per_m = 55", "impedance_Ns_per_m = 40"),
+                             "phase_deg = 0", "phase_deg = 30");
+  const auto rig = rig::parse(text, "rig.toml");
+  CHECK(rig.finger.impedance_Ns_per_m == 40);
+  CHECK(rig.finger.impedance_sd_Ns_per_m == 15);
+  CHECK(rig.finger.phase_rad == Approx(M_PI / 6));
+  CHECK(rig.finger.phase_sd_rad == Approx(M_PI / 9));
+  CHECK(rig.finger.contact_m == Approx(8e-3));
+  const auto at = source().find("[finger]");
+  const auto without =
+      rig::parse(source().substr(0, at) + source().substr(source().find("[limits]")), "rig.toml");
+  CHECK(without.finger.impedance_Ns_per_m == 55);
+  const auto& used = without.defaults_used;
+  CHECK(std::find(used.begin(), used.end(), "finger.impedance_Ns_per_m = 55") != used.end());
+  CHECK(contains(problems("contact_mm = 8", "contact_mm = 0"), "\"contact_mm\" is 0"));
+}
+
 TEST_CASE("every default that was used for a missing key is named with its value", "[rig]") {
   const auto used = rig::load(simulated).defaults_used;
   const auto has = [&](const char* line) { return std::find(used.begin(), used.end(), line) != used.end(); };

@@ -4,6 +4,7 @@
 
 #include "physics/centre_line.hpp"
 #include "physics/edge_feature.hpp"
+#include "station/scene/under_finger.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -55,6 +56,45 @@ TEST_CASE("a planned tone has its edge at the scene's boundary, within the state
       CHECK(plan.error_bound_m < 0.01e-3);
     }
   }
+}
+
+TEST_CASE("a plan says what a finger leaves of displacement, friction and boundary", "[scene]") {
+  auto rig = simulated();
+  Planner planner(rig);
+  const auto plan = planner.plan(edge_at(0.150, "p50"));
+  const auto under = planner.under_finger(plan);
+  CHECK(under.finger_m == plan.tones[0].last_peak_m.value());
+  const double share = under.displacement_m / under.free_m;
+  CHECK(share == Approx(physics::finger_load(planner.surface(), plan.tones[0].frequency_Hz, {under.finger_m},
+                                             physics::Finger{})[0]
+                            .share(physics::Finger{})));
+  CHECK(share < 0.5);
+  CHECK(under.least_m < under.displacement_m);
+  CHECK(under.displacement_m < under.most_m);
+  CHECK(under.friction > under.free_friction + 0.2);
+  CHECK(under.free_friction == Approx(plan.lowest_friction).epsilon(0.02));
+  CHECK(std::abs(under.boundary_shift_m.value()) > 1e-3);
+  const auto fingers = finger_shares(rig, {plan.tones[0].frequency_Hz});
+  CHECK(fingers->least == Approx(share).epsilon(0.02));
+
+  rig.finger.impedance_Ns_per_m = rig.finger.impedance_sd_Ns_per_m = 0;
+  Planner light(rig);
+  const auto same = light.under_finger(light.plan(edge_at(0.150, "p50")));
+  CHECK(same.displacement_m == same.free_m);
+  CHECK(same.lowest_friction == Approx(plan.lowest_friction).epsilon(0.02));
+  CHECK(same.boundary_shift_m == 0);
+}
+
+TEST_CASE("under a finger a zone has less contrast to its surroundings", "[scene]") {
+  Planner planner(simulated());
+  auto scene = edge_at(0.185, "p50");
+  scene.displacement_m.reset();
+  scene.zone = ZoneTarget{0.1, 0.6, 3, {}};
+  scene.tolerance = {};
+  const auto plan = planner.plan(scene);
+  const auto under = planner.under_finger(plan);
+  CHECK(under.zone_friction.value() > plan.zone_friction.value() + 0.1);
+  CHECK(under.zone_friction.value() < 1);
 }
 
 TEST_CASE("map, plan and field agree on a p50 edge within 0.01 mm", "[scene]") {
