@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <string_view>
 
 #include "station/protocol/resolve.hpp"
 #include "station/scene/planner.hpp"
@@ -31,10 +32,10 @@ simulation::CueGuard guard_of(const std::string& text) {
   return simulation::cue_guard(protocol, quick_rig(), protocol::survey(protocol, quick_rig()));
 }
 
-const simulation::CueReport& report(const simulation::CueGuard& guard, const std::string& cue) {
+const simulation::CueReport& report(const simulation::CueGuard& guard, std::string_view cue) {
   for (const auto& report : guard.reports)
     if (report.cue == cue) return report;
-  FAIL("no report of " + cue + " " + guard.not_compared + guard.nothing_to_tell);
+  FAIL("no report of " << cue << " " << guard.not_compared << guard.nothing_to_tell);
   throw std::logic_error("not reached");
 }
 
