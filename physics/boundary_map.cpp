@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "physics/boundary_budget.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/edge_feature.hpp"
 #include "physics/edge_table.hpp"
@@ -202,7 +203,7 @@ MapAnswer BoundaryMap::at_frequency(double f) const {
   answer.shear_shift_m = shear_shift_m(s.surface, f);
   const MapBounds bounds = map_bounds(s.surface, s.options, f, *answer.boundary_m);
   answer.error_bound_m = bounds.error_m() + s.table.error_m;
-  answer.uncertainty_m = bounds.uncertainty_m;
+  answer.uncertainty_m = boundary_budget(s.surface, f, *answer.boundary_m).total_m;
   answer.reason = s.table.closed ? "closed form" : "table of the one-mode equation";
   answer.reason += bounds.reason;
   if (s.options.tolerance_m && answer.error_bound_m > *s.options.tolerance_m) {

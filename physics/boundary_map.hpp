@@ -35,7 +35,7 @@ struct MapOptions {
 
 // One answer. If there is no such boundary, its values are empty and `reason` says why; otherwise `reason`
 // says why this model was used. `error_bound_m` bounds the effect of the drive edge's higher modes and of the
-// model's equation; `uncertainty_m` is one standard deviation, computed from the surface's `sd`.
+// model's equation; `uncertainty_m` is one standard deviation, from boundary_budget().
 struct MapAnswer {
   std::optional<double> boundary_m;
   std::optional<double> frequency_Hz;

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
-#include <vector>
 
 #include "physics/dispersion.hpp"
 #include "physics/edge_feature.hpp"
@@ -22,68 +21,10 @@ std::optional<double> first_mode_edge(const Surface& surface, const MapOptions& 
   }
 }
 
-// Returns a pair of surfaces for every parameter with a standard deviation. In one the parameter is a
-// standard deviation higher, in the other a standard deviation lower.
-std::vector<std::pair<Surface, Surface>> moved(const Surface& s) {
-  std::vector<std::pair<Surface, Surface>> pairs;
-  const auto add = [&](double sd, auto apply) {
-    if (!(sd > 0)) return;
-    Surface up = s, down = s;
-    apply(up, sd);
-    apply(down, -sd);
-    pairs.emplace_back(std::move(up), std::move(down));
-  };
-  add(s.sd.density_kg_m3, [](Surface& m, double by) { m.density_kg_m3 += by; });
-  add(s.sd.tension_Pa, [](Surface& m, double by) { m.tension_Pa += by; });
-  add(s.sd.thickness_m, [](Surface& m, double by) { m.thickness_m += by; });
-  add(s.sd.modulus_Pa, [](Surface& m, double by) {
-    if (m.modulus_Pa) *m.modulus_Pa += by;
-  });
-  add(s.sd.half_width_m, [](Surface& m, double by) {
-    if (auto* linear = std::get_if<LinearTaper>(&m.taper)) linear->half_width_m += by;
-    if (auto* exponential = std::get_if<ExponentialTaper>(&m.taper)) exponential->half_width_m += by;
-    if (auto* table = std::get_if<TabulatedTaper>(&m.taper)) {
-      for (TaperPoint& point : table->points) point.half_width_m += by;
-    }
-  });
-  add(s.sd.slope, [](Surface& m, double by) {
-    if (auto* linear = std::get_if<LinearTaper>(&m.taper)) linear->slope += by;
-  });
-  add(s.sd.decay_length_m, [](Surface& m, double by) {
-    if (auto* exponential = std::get_if<ExponentialTaper>(&m.taper)) exponential->decay_length_m += by;
-  });
-  return pairs;
-}
-
-// Ends a linear taper at its apex, because a changed slope or half-width can move the apex inside the nominal
-// length.
-Surface fitted(Surface s) {
-  if (const auto* linear = std::get_if<LinearTaper>(&s.taper); linear != nullptr && linear->slope > 0) {
-    s.length_m = std::min(s.length_m, linear->half_width_m / linear->slope);
-  }
-  return s;
-}
-
-double uncertainty(const Surface& surface, const MapOptions& options, double f) {
-  double variance = 0;
-  for (const auto& [up, down] : moved(surface)) {
-    const auto above = first_mode_edge(fitted(up), options, f);
-    const auto below = first_mode_edge(fitted(down), options, f);
-    const auto here = first_mode_edge(surface, options, f);
-    if (above && below) {
-      variance += std::pow(0.5 * (*above - *below), 2);
-    } else if (here && (above || below)) {
-      variance += std::pow((above ? *above : *below) - *here, 2);
-    }
-  }
-  return std::sqrt(variance);
-}
-
 }  // namespace
 
 MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f, double x) {
   MapBounds bounds;
-  bounds.uncertainty_m = uncertainty(surface, options, f);
   if (options.edge.kind == Edge::Kind::turning) {
     bounds.reason = ": local cut-off of the first transverse mode";
     return bounds;

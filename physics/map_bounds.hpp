@@ -1,6 +1,6 @@
 #pragma once
-// Estimates how far three effects can move a boundary: errors of the model's equation, higher modes from the
-// drive edge, and uncertain parameters.
+// Estimates how far two effects can move a boundary: errors of the model's equation, and higher modes from
+// the drive edge.
 #include <string>
 
 #include "physics/boundary_map.hpp"
@@ -10,7 +10,6 @@ namespace turnpoint::physics {
 struct MapBounds {
   double equation_m = 0;     // difference between the model and the best equation of the first mode
   double drive_modes_m = 0;  // shift by higher transverse modes from the drive edge
-  double uncertainty_m = 0;  // one standard deviation, caused by the surface's `sd`
   std::string reason;
   double error_m() const { return equation_m + drive_modes_m; }
 };

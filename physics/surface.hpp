@@ -64,6 +64,20 @@ struct TabulatedTaper {
 
 using TaperForm = std::variant<LinearTaper, ExponentialTaper, TabulatedTaper>;
 
+// What places a boundary and is not known exactly. The clamp line is where the sides are really held, a
+// fraction of the thickness behind the edge of the clamp.
+enum class Parameter {
+  density,
+  tension,
+  thickness,
+  modulus,
+  half_width,
+  slope,
+  decay_length,
+  clamp_line,
+  temperature
+};
+
 // Standard deviations of the surface's parameters; zero means that a parameter is exact. They determine the
 // uncertainty of a boundary, which is kept separate from the error of a model.
 struct ParameterSd {
@@ -74,6 +88,8 @@ struct ParameterSd {
   double half_width_m = 0;
   double slope = 0;           // for the slope of a linear taper
   double decay_length_m = 0;  // for the decay length of an exponential taper
+  double clamp_line_m = 0;
+  double temperature_K = 0;  // about the one for which the other values hold
 };
 
 // How the displacement of the drive edge (x = 0) varies with y. It is 1 at the centre line.
@@ -97,6 +113,9 @@ struct Surface {
   // mindlin and elastic: only for clamped plates without tension
   PlateTheory theory = PlateTheory::kirchhoff;
   std::optional<double> yield_strength_Pa;
+  // relative change of every length, and of Young's modulus, per kelvin; 0 leaves temperature out
+  double expansion_per_K = 0;
+  double modulus_per_K = 0;
   ParameterSd sd;
 };
 

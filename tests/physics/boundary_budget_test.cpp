@@ -1,0 +1,145 @@
+#include "physics/boundary_budget.hpp"
+
+#include <cmath>
+#include <random>
+
+#include "physics/edge_feature.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::physics;
+
+namespace {
+
+MapOptions edge(const char* text) {
+  MapOptions options;
+  options.edge = parse_edge(text);
+  options.friction = FrictionContext{};
+  return options;
+}
+
+double solved_m(const Surface& s, const char* text, double f) {
+  return solve_edge_m(s, edge(text), f, Model::edge, Wave::exact).value();
+}
+
+// The plate of the simulated rig with what its file states.
+Surface plate() {
+  Surface s = aluminium_plate();
+  s.expansion_per_K = 23.6e-6;
+  s.modulus_per_K = -5.3e-4;
+  s.sd.density_kg_m3 = 15;
+  s.sd.thickness_m = 0.045e-3;
+  s.sd.modulus_Pa = 1e9;
+  s.sd.half_width_m = 0.05e-3;
+  s.sd.slope = 2e-4;
+  s.sd.clamp_line_m = 0.2e-3;
+  s.sd.temperature_K = 3;
+  return s;
+}
+
+Surface membrane(TaperForm taper) {
+  Surface s = seed_brass();
+  s.quality_factor = 60;
+  s.taper = std::move(taper);
+  s.expansion_per_K = 20e-6;
+  s.sd.density_kg_m3 = 0.01 * s.density_kg_m3;
+  s.sd.tension_Pa = 0.02 * s.tension_Pa;
+  s.sd.half_width_m = 0.1e-3;
+  s.sd.slope = 1e-3;
+  s.sd.decay_length_m = 1e-3;
+  s.sd.clamp_line_m = 0.2e-3;
+  s.sd.temperature_K = 3;
+  return s;
+}
+
+// The same derivative by solving for the edge on changed surfaces.
+double solved_derivative(const Surface& s, Parameter p, const char* text, double f) {
+  const double step = 0.1 * standard_deviation(s, p);
+  return (solved_m(changed(s, p, step), text, f) - solved_m(changed(s, p, -step), text, f)) / (2 * step);
+}
+
+void check_derivatives(const Surface& s, const char* text, double f) {
+  const double x = solved_m(s, text, f);
+  double largest_m = 0;
+  for (const Parameter p : parameters(s))
+    largest_m = std::max(largest_m, std::abs(standard_deviation(s, p) * solved_derivative(s, p, text, f)));
+  for (const Parameter p : parameters(s)) {
+    const double sd = standard_deviation(s, p);
+    if (!(sd > 0)) continue;
+    CAPTURE(text, f, x, name(p));
+    CHECK(sd * boundary_derivative(s, p, f, x) ==
+          Approx(sd * solved_derivative(s, p, text, f)).margin(0.01 * largest_m));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a thin plate's boundary moves as its closed form says", "[physics]") {
+  // x = W0/d - C (E h^2 / rho)^(1/4) / (d sqrt f)
+  const Surface s = plate();
+  for (const double f : {22.4e3, 30e3, 45e3}) {
+    const double x = solved_m(s, "turning", f), w = 0.014 - 0.03 * x;
+    const auto derivative = [&](Parameter p) { return boundary_derivative(s, p, f, x); };
+    CHECK(derivative(Parameter::modulus) == Approx(-w / 0.03 / 4 / 69e9).epsilon(1e-5));
+    CHECK(derivative(Parameter::density) == Approx(w / 0.03 / 4 / 2700).epsilon(1e-5));
+    CHECK(derivative(Parameter::thickness) == Approx(-w / 0.03 / 2 / 2e-3).epsilon(1e-5));
+    CHECK(derivative(Parameter::slope) == Approx(-x / 0.03).epsilon(1e-9));
+    CHECK(0.2e-3 * derivative(Parameter::clamp_line) == Approx(6.667e-3).epsilon(1e-3));
+    CHECK(derivative(Parameter::half_width) == derivative(Parameter::clamp_line));
+    // ten kelvin, mostly by the modulus
+    CHECK(10 * derivative(Parameter::temperature) ==
+          Approx(10 * (5.3e-4 / 4 - 1.25 * 23.6e-6) * w / 0.03 + 10 * 23.6e-6 * 0.014 / 0.03).epsilon(1e-4));
+  }
+}
+
+TEST_CASE("a boundary's derivatives are those of solving again on changed surfaces", "[physics]") {
+  for (const double f : {24e3, 40e3})
+    for (const char* text : {"turning", "peak", "p50", "p10", "friction=0.7"})
+      check_derivatives(plate(), text, f);
+  TabulatedTaper table{{{0, .03}, {.1, .021}, {.2, .011}, {.3, .004}}};
+  for (const TaperForm& taper :
+       {TaperForm(LinearTaper{0.03, 0.1}), TaperForm(ExponentialTaper{0.03, 0.1}), TaperForm(table)})
+    for (const char* text : {"turning", "p50"}) check_derivatives(membrane(taper), text, 20e3);
+  Surface thick = plate();
+  thick.theory = PlateTheory::mindlin;
+  check_derivatives(thick, "p50", 30e3);
+}
+
+TEST_CASE("the first-order uncertainty is that of random surfaces", "[physics]") {
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> normal;
+  for (const Surface& nominal : {plate(), membrane(LinearTaper{0.03, 0.1})}) {
+    const double f = 25e3, x = solved_m(nominal, "p50", f);
+    constexpr int count = 800;  // the sample's deviation is accurate to 2.5 %
+    double sum = 0, square = 0;
+    for (int i = 0; i < count; ++i) {
+      Surface s = nominal;
+      for (const Parameter p : parameters(nominal))
+        if (const double sd = standard_deviation(nominal, p); sd > 0) s = changed(s, p, sd * normal(random));
+      const double moved = solved_m(s, "p50", f) - x;
+      sum += moved;
+      square += moved * moved;
+    }
+    const double sampled = std::sqrt((square - sum * sum / count) / (count - 1));
+    const double stated = boundary_budget(nominal, f, x).total_m;
+    CHECK(stated == Approx(sampled).epsilon(0.08));
+    CHECK(std::abs(sum / count) < 0.15 * stated);  // curvature moves the mean by little
+    CHECK(BoundaryMap(nominal, edge("p50")).at_frequency(f).uncertainty_m == Approx(stated).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("a budget names first what is best measured", "[physics]") {
+  Surface s = plate();
+  const BoundaryBudget budget = boundary_budget(s, 30e3, solved_m(s, "p50", 30e3));
+  REQUIRE(budget.contributions.size() == 7);
+  CHECK(budget.contributions.front().parameter == Parameter::clamp_line);
+  double variance = 0;
+  for (const Contribution& c : budget.contributions) variance += c.moved_m * c.moved_m;
+  CHECK(budget.total_m == Approx(std::sqrt(variance)));
+  // What is left if the clamp line is measured is the total of a surface whose clamp line is known.
+  s.sd.clamp_line_m = 0;
+  CHECK(boundary_budget(s, 30e3, solved_m(s, "p50", 30e3)).total_m ==
+        Approx(budget.contributions.front().left_m));
+  s.sd = {};
+  CHECK(boundary_budget(s, 30e3, 0.15).contributions.empty());
+  CHECK(boundary_budget(s, 30e3, 0.15).total_m == 0);
+}
