@@ -15,17 +15,19 @@ struct Entry {
   Parameter parameter;
   std::string_view name;
   double ParameterSd::*sd;
+  ParameterUnit unit;
 };
 
-constexpr std::array entries{Entry{Parameter::density, "density", &ParameterSd::density_kg_m3},
-                             Entry{Parameter::tension, "tension", &ParameterSd::tension_Pa},
-                             Entry{Parameter::thickness, "thickness", &ParameterSd::thickness_m},
-                             Entry{Parameter::modulus, "modulus", &ParameterSd::modulus_Pa},
-                             Entry{Parameter::half_width, "half-width", &ParameterSd::half_width_m},
-                             Entry{Parameter::slope, "slope", &ParameterSd::slope},
-                             Entry{Parameter::decay_length, "decay length", &ParameterSd::decay_length_m},
-                             Entry{Parameter::clamp_line, "clamp line", &ParameterSd::clamp_line_m},
-                             Entry{Parameter::temperature, "temperature", &ParameterSd::temperature_K}};
+constexpr std::array entries{
+    Entry{Parameter::density, "density", &ParameterSd::density_kg_m3, {"kg/m3", 1}},
+    Entry{Parameter::tension, "tension", &ParameterSd::tension_Pa, {"MPa", 1e6}},
+    Entry{Parameter::thickness, "thickness", &ParameterSd::thickness_m, {"mm", 1e-3}},
+    Entry{Parameter::modulus, "modulus", &ParameterSd::modulus_Pa, {"GPa", 1e9}},
+    Entry{Parameter::half_width, "half-width", &ParameterSd::half_width_m, {"mm", 1e-3}},
+    Entry{Parameter::slope, "slope", &ParameterSd::slope, {"", 1}},
+    Entry{Parameter::decay_length, "decay length", &ParameterSd::decay_length_m, {"mm", 1e-3}},
+    Entry{Parameter::clamp_line, "clamp line", &ParameterSd::clamp_line_m, {"mm", 1e-3}},
+    Entry{Parameter::temperature, "temperature", &ParameterSd::temperature_K, {"K", 1}}};
 
 const Entry& entry(Parameter parameter) {
   return *std::find_if(entries.begin(), entries.end(),
@@ -43,6 +45,8 @@ bool has(const Surface& s, Parameter parameter) {
       return std::holds_alternative<LinearTaper>(s.taper);
     case Parameter::decay_length:
       return std::holds_alternative<ExponentialTaper>(s.taper);
+    case Parameter::clamp_line:
+      return !std::holds_alternative<ExponentialTaper>(s.taper);
     case Parameter::temperature:
       return s.expansion_per_K != 0 || s.modulus_per_K != 0;
     default:
@@ -73,21 +77,12 @@ double cut_off_derivative_m(Surface s, Parameter parameter, double f) {
          (2 * step);
 }
 
-void widen(TaperForm& form, double length_m, double by) {
-  if (auto* linear = std::get_if<LinearTaper>(&form)) {
-    linear->half_width_m += by;
-    return;
+void widen(TaperForm& form, double by) {
+  if (auto* linear = std::get_if<LinearTaper>(&form)) linear->half_width_m += by;
+  if (auto* exponential = std::get_if<ExponentialTaper>(&form)) exponential->half_width_m += by;
+  if (auto* table = std::get_if<TabulatedTaper>(&form)) {
+    for (TaperPoint& point : table->points) point.half_width_m += by;
   }
-  if (const auto* exponential = std::get_if<ExponentialTaper>(&form)) {
-    TabulatedTaper table;
-    constexpr int steps = 200;
-    for (int i = 0; i <= steps; ++i) {
-      const double x = length_m * i / steps;
-      table.points.push_back({x, exponential->half_width_m * std::exp(-x / exponential->decay_length_m)});
-    }
-    form = table;
-  }
-  for (TaperPoint& point : std::get<TabulatedTaper>(form).points) point.half_width_m += by;
 }
 
 void scale(TaperForm& form, double by) {
@@ -113,9 +108,21 @@ void warm(Surface& s, double by_K) {
 }  // namespace
 
 std::string_view name(Parameter parameter) { return entry(parameter).name; }
+ParameterUnit unit(Parameter parameter) { return entry(parameter).unit; }
 
 double standard_deviation(const Surface& surface, Parameter parameter) {
   return surface.sd.*entry(parameter).sd;
+}
+
+void set_standard_deviation(Surface& surface, Parameter parameter, double sd) {
+  surface.sd.*entry(parameter).sd = sd;
+}
+
+std::optional<Parameter> find_parameter(std::string_view wanted) {
+  for (const Entry& e : entries) {
+    if (e.name == wanted) return e.parameter;
+  }
+  return std::nullopt;
 }
 
 std::vector<Parameter> parameters(const Surface& surface) {
@@ -150,13 +157,8 @@ Surface changed(Surface s, Parameter parameter, double by) {
       warm(s, by);
       break;
     case Parameter::half_width:
-      if (auto* exponential = std::get_if<ExponentialTaper>(&s.taper)) {
-        exponential->half_width_m += by;
-        break;
-      }
-      [[fallthrough]];
     case Parameter::clamp_line:
-      widen(s.taper, s.length_m, by);
+      widen(s.taper, by);
       break;
   }
   if (const auto* linear = std::get_if<LinearTaper>(&s.taper); linear != nullptr && linear->slope > 0) {
@@ -207,19 +209,29 @@ double boundary_derivative(const Surface& s, Parameter parameter, double f, doub
 BoundaryBudget boundary_budget(const Surface& surface, double f, double x) {
   BoundaryBudget budget;
   if (!(Taper(surface).slope(x) < 0)) return budget;
-  double variance = 0;
+  auto& parts = budget.contributions;
   for (const Parameter parameter : parameters(surface)) {
     const double sd = standard_deviation(surface, parameter);
-    if (!(sd > 0)) continue;
-    const double moved = sd * boundary_derivative(surface, parameter, f, x);
-    budget.contributions.push_back({parameter, sd, moved, 0});
-    variance += moved * moved;
+    if (sd > 0) parts.push_back({parameter, sd, sd * boundary_derivative(surface, parameter, f, x), 0});
   }
-  for (Contribution& c : budget.contributions) {
-    c.left_m = std::sqrt(std::max(0.0, variance - c.moved_m * c.moved_m));
-  }
-  budget.total_m = std::sqrt(variance);
-  std::stable_sort(budget.contributions.begin(), budget.contributions.end(),
+  // What a part moves together with all that is correlated with it.
+  const auto together_m = [&](const Contribution& part) {
+    double sum = part.moved_m;
+    for (const Correlation& c : surface.correlations) {
+      if (c.first != part.parameter && c.second != part.parameter) continue;
+      const Parameter other = c.first == part.parameter ? c.second : c.first;
+      for (const Contribution& o : parts) {
+        if (o.parameter == other) sum += c.coefficient * o.moved_m;
+      }
+    }
+    return sum;
+  };
+  double variance = 0;
+  for (const Contribution& part : parts) variance += part.moved_m * together_m(part);
+  for (Contribution& part : parts)
+    part.left_m = std::sqrt(std::max(0.0, variance - std::pow(together_m(part), 2)));
+  budget.total_m = std::sqrt(std::max(0.0, variance));
+  std::stable_sort(parts.begin(), parts.end(),
                    [](const Contribution& a, const Contribution& b) { return a.left_m < b.left_m; });
   return budget;
 }

@@ -1,5 +1,6 @@
 #pragma once
 // How far what is not known exactly about a surface moves a boundary, parameter by parameter.
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -7,11 +8,20 @@
 
 namespace turnpoint::physics {
 
-// "modulus", "clamp line", ...
+// "modulus", "clamp line", ...; empty if no parameter has this name.
 std::string_view name(Parameter parameter);
+std::optional<Parameter> find_parameter(std::string_view name);
+
+// The unit in which people state the parameter, and its size in SI units; a slope has none.
+struct ParameterUnit {
+  std::string_view name;
+  double size;
+};
+ParameterUnit unit(Parameter parameter);
 
 // The standard deviation that the surface states for a parameter, in SI units.
 double standard_deviation(const Surface& surface, Parameter parameter);
+void set_standard_deviation(Surface& surface, Parameter parameter, double sd);
 
 // The parameters that this surface has: a membrane has tension but no modulus, a linear taper has a slope.
 std::vector<Parameter> parameters(const Surface& surface);
@@ -41,7 +51,8 @@ struct BoundaryBudget {
   double total_m = 0;                       // one standard deviation of the boundary
 };
 
-// The contributions of all parameters that have a standard deviation.
+// The contributions of all parameters that have a standard deviation. If these are correlated, as after a fit
+// of measured boundaries, the total is less than the parts suggest.
 BoundaryBudget boundary_budget(const Surface& surface, double frequency_Hz, double boundary_m);
 
 }  // namespace turnpoint::physics

@@ -65,7 +65,8 @@ struct TabulatedTaper {
 using TaperForm = std::variant<LinearTaper, ExponentialTaper, TabulatedTaper>;
 
 // What places a boundary and is not known exactly. The clamp line is where the sides are really held, a
-// fraction of the thickness behind the edge of the clamp.
+// fraction of the thickness behind the edge of the clamp; both half-widths are larger by this much everywhere.
+// An exponential taper has no clamp line, because the form has no place for it.
 enum class Parameter {
   density,
   tension,
@@ -90,6 +91,12 @@ struct ParameterSd {
   double decay_length_m = 0;  // for the decay length of an exponential taper
   double clamp_line_m = 0;
   double temperature_K = 0;  // about the one for which the other values hold
+};
+
+// Errors of two parameters that a fit has determined together.
+struct Correlation {
+  Parameter first, second;
+  double coefficient = 0;
 };
 
 // How the displacement of the drive edge (x = 0) varies with y. It is 1 at the centre line.
@@ -117,6 +124,7 @@ struct Surface {
   double expansion_per_K = 0;
   double modulus_per_K = 0;
   ParameterSd sd;
+  std::vector<Correlation> correlations;  // of the errors; none for values that were measured apart
 };
 
 struct Material {
