@@ -8,6 +8,7 @@
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/sound.hpp"
+#include "station/cli/uncertainty.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/setup/places.hpp"
 #include "station/simulation/check.hpp"
@@ -57,13 +58,14 @@ Json scenes_json(const protocol::Survey& survey) {
                     {"lowest_friction", json_number(sight.lowest_friction)},
                     {"model", sight.model},
                     {"error_bound_mm", json_number(sight.error_bound_mm)},
+                    {"uncertainty_mm", json_number(sight.uncertainty_mm)},
                     {"inside_tolerance", sight.inside_tolerance}});
   }
   return list;
 }
 
 struct Extremes {
-  double lowest_Hz = 0, highest_Hz = 0, displacement_um = 0;
+  double lowest_Hz = 0, highest_Hz = 0, displacement_um = 0, error_bound_mm = 0, uncertainty_mm = 0;
 };
 
 Extremes extremes_of(const protocol::Survey& survey) {
@@ -72,6 +74,8 @@ Extremes extremes_of(const protocol::Survey& survey) {
     found.lowest_Hz = found.lowest_Hz == 0 ? sight.lowest_Hz : std::min(found.lowest_Hz, sight.lowest_Hz);
     found.highest_Hz = std::max(found.highest_Hz, sight.highest_Hz);
     found.displacement_um = std::max(found.displacement_um, sight.displacement_um);
+    found.error_bound_mm = std::max(found.error_bound_mm, sight.error_bound_mm);
+    found.uncertainty_mm = std::max(found.uncertainty_mm, sight.uncertainty_mm);
   }
   return found;
 }
@@ -183,6 +187,8 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
         out,
         "Finger: it leaves {} % of the displacement at the last maxima of the lowest and the highest tone\n",
         between(check.finger->least, check.finger->most));
+  fmt::print(out, "Boundaries: model error at most {} mm, {}\n", number(extremes.error_bound_mm, 2),
+             uncertainty_in_words(1e-3 * extremes.uncertainty_mm));
   fmt::print(out, "Sound: {}\n", in_words(check.sound));
   print_cues(out, check.cues);
   if (!check.protocol_defaults.empty()) fmt::print(out, "Defaults used:\n");

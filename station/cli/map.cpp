@@ -1,13 +1,21 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <algorithm>
+#include <cmath>
+#include <map>
 #include <memory>
 
+#include "physics/boundary_budget.hpp"
 #include "physics/boundary_map.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/plot/chart.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
+#include "station/scene/transducer.hpp"
+#include "station/system/write_file.hpp"
+#include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
@@ -15,10 +23,103 @@ namespace turnpoint::cli {
 namespace map_command {
 
 struct Options {
-  std::string rig, edge = "turning", model;
+  std::string rig, edge = "turning", model, plot;
   std::vector<double> boundaries_mm, frequencies_Hz;
   double tolerance_mm = 0;
+  bool budget = false;
 };
+
+using physics::name;
+using text::number;
+
+std::string with_unit(double value, physics::Parameter parameter) {
+  const auto unit = physics::unit(parameter);
+  return number(value / unit.size, 3) + (unit.name.empty() ? "" : " " + std::string(unit.name));
+}
+
+Json to_json(const physics::BoundaryBudget& budget) {
+  Json list = Json::array();
+  for (const auto& c : budget.contributions)
+    list.push_back({{"parameter", name(c.parameter)},
+                    {"sd", json_number(c.sd / physics::unit(c.parameter).size)},
+                    {"unit", physics::unit(c.parameter).name},
+                    {"moved_mm", json_number(c.moved_m * 1e3)},
+                    {"left_mm", json_number(c.left_m * 1e3)}});
+  return {{"total_mm", json_number(budget.total_m * 1e3)}, {"contributions", list}};
+}
+
+void print(std::ostream& out, const physics::MapAnswer& answer, const physics::BoundaryBudget& budget) {
+  if (budget.contributions.empty()) {
+    fmt::print(out,
+               "\nThe rig file states no standard deviations, so the boundary's uncertainty is not known.\n");
+    return;
+  }
+  fmt::print(out, "\nBoundary at {} mm: uncertain by {} mm (one standard deviation)\n",
+             number(*answer.boundary_m * 1e3, 5), number(budget.total_m * 1e3, 3));
+  fmt::print(out, "{:>14} {:>16} {:>14} {:>24}\n", "parameter", "deviation", "moves it, mm",
+             "left if it were exact, mm");
+  for (const auto& c : budget.contributions)
+    fmt::print(out, "{:>14} {:>16} {:>14} {:>24}\n", name(c.parameter), with_unit(c.sd, c.parameter),
+               number(c.moved_m * 1e3, 3), number(c.left_m * 1e3, 3));
+  const auto& best = budget.contributions.front();
+  fmt::print(out,
+             "Of these, measuring the {} would help most: {} mm would be left. Measured boundaries help "
+             "more, because "
+             "they include all of these (turnpoint calibrate --boundaries).\n",
+             name(best.parameter), number(best.left_m * 1e3, 3));
+}
+
+constexpr std::size_t most_lines = 6;  ///< that differ in colour and dash
+
+/// The largest contributions at all boundaries that the rig can present.
+plot::Figure figure_of(const rig::Rig& rig, const physics::Surface& surface, const physics::BoundaryMap& map,
+                       const std::vector<physics::MapAnswer>& answers) {
+  constexpr int points = 60;
+  const double low_Hz = scene::lowest_frequency(rig, 0),
+               high_Hz = scene::highest_frequency(rig, terms::kHighestShareOfRate * rig.output.rate_Hz);
+  plot::Line total;
+  total.name = "total", total.series = plot::kNeutral;
+  std::map<physics::Parameter, plot::Line> lines;
+  for (int i = 0; i <= points; ++i) {
+    const double f = low_Hz + (high_Hz - low_Hz) * i / points;
+    const auto x = map.boundary_m(f);
+    if (!x) continue;
+    const auto budget = physics::boundary_budget(surface, f, *x);
+    total.x.push_back(*x * 1e3), total.y.push_back(budget.total_m * 1e3);
+    for (const auto& c : budget.contributions) {
+      auto& line = lines[c.parameter];
+      line.name = name(c.parameter);
+      line.x.push_back(*x * 1e3), line.y.push_back(std::abs(c.moved_m) * 1e3);
+    }
+  }
+  if (total.x.size() < 2 || lines.empty())
+    throw UsageError(
+        "map: --plot needs standard deviations in the rig file, and boundaries that the rig can present");
+  auto heights = total.y;
+  heights.push_back(0);
+  plot::Chart chart{"Uncertainty of the boundary",
+                    plot::fitted("Boundary (mm)", total.x, 0),
+                    plot::fitted("One standard deviation (mm)", heights),
+                    {}};
+  for (const auto& answer : answers)
+    if (answer.boundary_m)
+      chart.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, *answer.boundary_m * 1e3, ""});
+  std::vector<plot::Line> largest;
+  for (auto& [parameter, line] : lines) largest.push_back(std::move(line));
+  std::stable_sort(largest.begin(), largest.end(),
+                   [](const auto& a, const auto& b) { return a.y.front() > b.y.front(); });
+  largest.resize(std::min(largest.size(), most_lines));
+  for (std::size_t k = 0; k < largest.size(); ++k) {
+    largest[k].series = static_cast<int>(k);
+    chart.layers.push_back(std::move(largest[k]));
+  }
+  chart.layers.push_back(total);
+  plot::Figure figure;
+  figure.title = "Uncertainty of the boundary, " + rig.name;
+  figure.charts = {std::move(chart)};
+  figure.chart_width_px = 620, figure.chart_height_px = 400;
+  return figure;
+}
 
 Json to_json(const physics::MapAnswer& answer) {
   return {{"boundary_mm", json_number(answer.boundary_m, 1e3)},
@@ -34,15 +135,14 @@ Json to_json(const physics::MapAnswer& answer) {
 }
 
 void print(std::ostream& out, const std::vector<physics::MapAnswer>& answers) {
-  using text::number;
-  fmt::print(out, "{:>12} {:>14} {:>8} {:>8} {:>10} {:>12}  {}\n", "boundary mm", "frequency Hz", "edge",
-             "model", "bound mm", "mm per kHz", "reason");
+  fmt::print(out, "{:>12} {:>14} {:>8} {:>8} {:>10} {:>8} {:>12}  {}\n", "boundary mm", "frequency Hz",
+             "edge", "model", "bound mm", "SD mm", "mm per kHz", "reason");
   for (const auto& a : answers) {
-    fmt::print(out, "{:>12} {:>14} {:>8} {:>8} {:>10} {:>12}  {}\n",
+    fmt::print(out, "{:>12} {:>14} {:>8} {:>8} {:>10} {:>8} {:>12}  {}\n",
                a.boundary_m ? number(*a.boundary_m * 1e3, 7) : "none",
                a.frequency_Hz ? number(*a.frequency_Hz, 8) : "none", physics::format(a.edge),
-               physics::name(a.model), number(a.error_bound_m * 1e3, 3), number(a.m_per_Hz * 1e6, 4),
-               a.reason);
+               physics::name(a.model), number(a.error_bound_m * 1e3, 3), number(a.uncertainty_m * 1e3, 3),
+               number(a.m_per_Hz * 1e6, 4), a.reason);
     for (const auto& warning : a.warnings) fmt::print(out, "{:>14}{}\n", "warning: ", warning.text);
   }
 }
@@ -50,6 +150,7 @@ void print(std::ostream& out, const std::vector<physics::MapAnswer>& answers) {
 void map(const Options& options, Context& context) {
   if (options.boundaries_mm.empty() == options.frequencies_Hz.empty())
     throw UsageError("map: give either --boundary or --frequency");
+  if (!options.plot.empty() && !options.budget) throw UsageError("map: --plot needs --budget");
   const auto rig = rig::load(options.rig);
   physics::MapOptions wanted;
   wanted.edge = physics::parse_edge(options.edge);
@@ -57,13 +158,30 @@ void map(const Options& options, Context& context) {
   if (options.tolerance_mm > 0) wanted.tolerance_m = options.tolerance_mm * 1e-3;
   if (wanted.edge.kind == physics::Edge::Kind::friction)
     wanted.friction = physics::FrictionContext{scene::friction_of(rig), 1e-6, rig.friction.fingertip_m};
-  const physics::BoundaryMap boundary_map(scene::surface_of(rig), wanted);
+  const auto surface = scene::surface_of(rig);
+  const physics::BoundaryMap boundary_map(surface, wanted);
   std::vector<physics::MapAnswer> answers;
   for (const double mm : options.boundaries_mm) answers.push_back(boundary_map.at_boundary(mm * 1e-3));
   for (const double f : options.frequencies_Hz) answers.push_back(boundary_map.at_frequency(f));
-  if (!context.json) return print(context.out, answers);
+  if (!options.plot.empty())
+    system::write_file(options.plot, plot::render(figure_of(rig, surface, boundary_map, answers)));
+  const auto budget_of = [&](const physics::MapAnswer& a) {
+    return physics::boundary_budget(surface, *a.frequency_Hz, *a.boundary_m);
+  };
+  const auto has_budget = [&](const physics::MapAnswer& a) {
+    return options.budget && a.frequency_Hz && a.boundary_m;
+  };
+  if (!context.json) {
+    print(context.out, answers);
+    for (const auto& answer : answers)
+      if (has_budget(answer)) print(context.out, answer, budget_of(answer));
+    return;
+  }
   Json list = Json::array();
-  for (const auto& answer : answers) list.push_back(to_json(answer));
+  for (const auto& answer : answers) {
+    list.push_back(to_json(answer));
+    if (has_budget(answer)) list.back()["budget"] = to_json(budget_of(answer));
+  }
   context.out << list.dump(2) << "\n";
 }
 
@@ -83,8 +201,14 @@ void add_map(CommandLine& app, Context& context) {
                       "Physical model to use; by default the cheapest one that meets the tolerance");
   command->add_option("--tolerance-mm", options->tolerance_mm, "Largest allowed error in mm")
       ->check(positive());
+  command->add_flag("--budget", options->budget,
+                    "Also show how far each uncertain parameter of the rig moves each boundary, and which "
+                    "measurement would help most");
+  command->add_option("--plot", options->plot,
+                      "With --budget: SVG file with the same for all boundaries that the rig can present");
   add_json(*command, context);
-  command->footer("Example: turnpoint map --rig deploy/rigs/simulated.toml --boundary 150 200 --edge p50");
+  command->footer(
+      "Example: turnpoint map --rig deploy/rigs/simulated.toml --boundary 150 200 --edge p50 --budget");
   command->callback([options, &context] { with_users_numbers([&] { map(*options, context); }); });
 }
 

@@ -6,6 +6,7 @@
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/sound.hpp"
+#include "station/cli/uncertainty.hpp"
 #include "station/desk/preview.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/resolve.hpp"
@@ -149,9 +150,9 @@ void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<
   fmt::print(out, "Scene {}: boundary at {} mm ({} edge)\n", plan.scene.name,
              plan.boundary_m ? number(*plan.boundary_m * 1e3) : "none", physics::format(plan.scene.edge));
   fmt::print(out, "  model {}: {}\n", physics::name(plan.model), plan.reason);
-  fmt::print(out, "  model error at most {} mm, parameter uncertainty {} mm{}\n",
-             number(plan.error_bound_m * 1e3, 3), number(plan.uncertainty_m * 1e3, 3),
+  fmt::print(out, "  model error at most {} mm{}\n", number(plan.error_bound_m * 1e3, 3),
              plan.inside_tolerance ? "" : "; EXCEEDS the scene's tolerance");
+  fmt::print(out, "  {}\n", uncertainty_in_words(plan.uncertainty_m));
   if (plan.theory == physics::PlateTheory::elastic)
     fmt::print(out, "  plate theory elastic\n");
   else if (plan.shear_shift_m)

@@ -58,7 +58,7 @@ void describe(SceneLook& look) {
                 {"Model", plan.reason.empty() ? std::string(physics::name(plan.model)) : plan.reason},
                 {"Model error", "at most " + number(1e3 * plan.error_bound_m, 3) + " mm" +
                                     (plan.inside_tolerance ? "" : ", EXCEEDS the scene's tolerance")},
-                {"Parameter uncertainty", number(1e3 * plan.uncertainty_m, 3) + " mm"}};
+                {"Uncertain parameters", number(1e3 * plan.uncertainty_m, 3) + " mm (SD)"}};
   for (const auto& tone : plan.tones)
     look.facts.emplace_back("Tone", number(1e-3 * tone.frequency_Hz, 6) + " kHz, drive " +
                                         um(tone.amplitude_m) + " on " + tone.transducer + " (" +

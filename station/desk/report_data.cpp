@@ -19,6 +19,19 @@ std::string late_frames(const std::vector<records::EventRow>& events) {
   return frames == 0 ? "none" : std::to_string(frames) + " in " + std::to_string(trials) + " trials";
 }
 
+/// The largest model error and uncertainty of any tone that was presented.
+std::string boundary_errors(const std::vector<store::BlockRecord>& blocks) {
+  double bound_mm = 0, uncertainty_mm = 0;
+  for (const auto& block : blocks)
+    for (const auto& row : block.trials)
+      for (const auto& tone : row.tones) {
+        bound_mm = std::max(bound_mm, tone.error_bound_mm);
+        uncertainty_mm = std::max(uncertainty_mm, tone.uncertainty_mm);
+      }
+  return "model at most " + text::number(bound_mm, 2) + " mm; uncertain parameters of the rig " +
+         (uncertainty_mm > 0 ? text::number(uncertainty_mm, 3) + " mm (SD)" : std::string("not known"));
+}
+
 void add_health(const store::StoredSession& stored, report::SessionData& data) {
   int xruns = 0, extra = 0, trials = 0;
   std::map<std::string, int> quality;
@@ -72,7 +85,8 @@ report::SessionData report_data(const std::string& database, const std::string& 
                 {"Started", start.started_local},
                 {"Rig", start.rig_name},
                 {"Station", start.station_id},
-                {"Seed", std::to_string(start.seed)}};
+                {"Seed", std::to_string(start.seed)},
+                {"Error of the boundaries", boundary_errors(stored.blocks)}};
   for (const auto& note : stored.session.annotations) data.facts.emplace_back("Note", note);
   report::add_trials(stored.blocks, protocol, data);
   data.seed = start.seed;

@@ -62,6 +62,7 @@ Sight sight_of(const Combination& combination, const scene::DrivePlan& plan) {
   sight.model = physics::name(plan.model);
   sight.field_model = plan.model;
   sight.error_bound_mm = 1e3 * plan.error_bound_m;
+  sight.uncertainty_mm = 1e3 * plan.uncertainty_m;
   sight.inside_tolerance = plan.inside_tolerance;
   sight.cues = plan.cues;
   return sight;

@@ -12,16 +12,22 @@ using Ends = text::Range::Ends;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Handbook values for common tempers. A rig used for research should give its own. The yield strength is only
-// used to warn about a tension that the material cannot carry.
+// used to warn about a tension that the material cannot carry. The last two are the relative changes of
+// length and of Young's modulus per kelvin at room temperature (of aluminium, from NIST's fits for 6061-T6);
+// a modulus is left constant where its change depends on the product.
 struct Material {
   const char* name;
-  double density_kg_m3, modulus_GPa, poisson, yield_MPa;
+  double density_kg_m3, modulus_GPa, poisson, yield_MPa, expansion_per_K, modulus_per_K;
 };
 constexpr std::array known_materials{
-    Material{"aluminium", 2700, 69, 0.33, 275}, Material{"brass", 8500, 105, 0.34, 450},
-    Material{"copper", 8960, 120, 0.34, 210},   Material{"glass", 2500, 70, 0.22, 45},
-    Material{"pmma", 1180, 3.1, 0.37, 70},      Material{"silicone rubber", 1100, 0.002, 0.49, 5},
-    Material{"steel", 7850, 205, 0.29, 350},    Material{"titanium", 4430, 114, 0.34, 880},
+    Material{"aluminium", 2700, 69, 0.33, 275, 23.6e-6, -5.3e-4},
+    Material{"brass", 8500, 105, 0.34, 450, 20e-6, -4e-4},
+    Material{"copper", 8960, 120, 0.34, 210, 17e-6, -3.5e-4},
+    Material{"glass", 2500, 70, 0.22, 45, 9e-6, 0},
+    Material{"pmma", 1180, 3.1, 0.37, 70, 70e-6, 0},
+    Material{"silicone rubber", 1100, 0.002, 0.49, 5, 300e-6, 0},
+    Material{"steel", 7850, 205, 0.29, 350, 12e-6, -3e-4},
+    Material{"titanium", 4430, 114, 0.34, 880, 8.6e-6, -5e-4},
 };
 
 const Material* find_material(const std::string& name) {
@@ -126,11 +132,37 @@ void read_taper(const text::Value& table, Surface& surface, text::Findings& find
   taper.slope = slope;
   if (decay_mm) taper.decay_length_m = 1e-3 * *decay_mm;
   if (profile) read_profile(*profile, reader, taper);
-  surface.half_width_sd_m =
-      1e-3 * reader.maybe_number("half_width_sd_mm", {0, 100, Ends::closed, "mm"}).value_or(0);
+  const Range sd_mm{0, 100, Ends::closed, "mm"};
+  surface.half_width_sd_m = 1e-3 * reader.maybe_number("half_width_sd_mm", sd_mm).value_or(0);
   surface.slope_sd = reader.maybe_number("slope_sd", {0, 1}).value_or(0);
+  surface.decay_length_sd_m =
+      1e-3 * reader.maybe_number("decay_length_sd_mm", {0, 1e6, Ends::closed, "mm"}).value_or(0);
+  surface.clamp_line_sd_m = 1e-3 * reader.maybe_number("clamp_line_sd_mm", sd_mm).value_or(0);
+  if (surface.clamp_line_sd_m > 0 && taper.decay_length_m)
+    reader.problem("clamp_line_sd_mm", "an exponential taper has no clamp line", "use \"half_width_sd_mm\"");
   check_length(surface, reader);
   reader.finish();
+}
+
+/// Standard deviations, and how the surface changes with temperature.
+void read_deviations(text::TableReader& reader, Surface& surface) {
+  const auto number = [&](const char* key, const Range& range) {
+    return reader.maybe_number(key, range).value_or(0);
+  };
+  surface.tension_sd_Pa = number("tension_sd_Pa", {0, 1e12, Ends::closed, "Pa"});
+  surface.thickness_sd_m = 1e-3 * number("thickness_sd_mm", {0, 100, Ends::closed, "mm"});
+  surface.density_sd_kg_m3 = number("density_sd_kg_m3", {0, 30000, Ends::closed, "kg/m3"});
+  surface.modulus_sd_Pa = 1e9 * number("modulus_sd_GPa", {0, 2000, Ends::closed, "GPa"});
+  surface.temperature_sd_K = number("temperature_sd_K", {0, 100, Ends::closed, "K"});
+  const auto* filled = find_material(surface.material);
+  const Range expansion{0, 1e-3, Ends::closed, "per K"}, softening{-0.02, 0.02, Ends::closed, "per K"};
+  surface.expansion_per_K =
+      reader.maybe_number("expansion_per_K", expansion).value_or(filled ? filled->expansion_per_K : 0);
+  surface.modulus_per_K =
+      reader.maybe_number("modulus_per_K", softening).value_or(filled ? filled->modulus_per_K : 0);
+  if (surface.temperature_sd_K > 0 && surface.expansion_per_K == 0 && surface.modulus_per_K == 0)
+    reader.problem("temperature_sd_K", "nothing says how this surface changes with temperature",
+                   "add \"expansion_per_K\" and \"modulus_per_K\"");
 }
 
 void read_plate_theory(text::TableReader& reader, Surface& surface) {
@@ -166,13 +198,7 @@ Surface read_surface(const text::Value& table, text::Findings& findings) {
   read_plate_theory(reader, surface);
   surface.wide_end =
       reader.word("wide_end", {"left", "right"}, "left") == "left" ? WideEnd::left : WideEnd::right;
-  surface.tension_sd_Pa = reader.maybe_number("tension_sd_Pa", {0, 1e12, Ends::closed, "Pa"}).value_or(0);
-  surface.thickness_sd_m =
-      1e-3 * reader.maybe_number("thickness_sd_mm", {0, 100, Ends::closed, "mm"}).value_or(0);
-  surface.density_sd_kg_m3 =
-      reader.maybe_number("density_sd_kg_m3", {0, 30000, Ends::closed, "kg/m3"}).value_or(0);
-  surface.modulus_sd_Pa =
-      1e9 * reader.maybe_number("modulus_sd_GPa", {0, 2000, Ends::closed, "GPa"}).value_or(0);
+  read_deviations(reader, surface);
   if (const auto* taper = reader.table("taper", "add a table [surface.taper]"))
     read_taper(*taper, surface, findings);
   reader.finish();

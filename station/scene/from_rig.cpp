@@ -66,6 +66,11 @@ physics::Surface surface_of(const rig::Rig& rig) {
   surface.sd.modulus_Pa = s.modulus_sd_Pa;
   surface.sd.half_width_m = s.half_width_sd_m;
   surface.sd.slope = s.slope_sd;
+  surface.sd.decay_length_m = s.decay_length_sd_m;
+  surface.sd.clamp_line_m = s.clamp_line_sd_m;
+  surface.sd.temperature_K = s.temperature_sd_K;
+  surface.expansion_per_K = s.expansion_per_K;
+  surface.modulus_per_K = s.modulus_per_K;
   physics::validate(surface);
   return surface;
 }

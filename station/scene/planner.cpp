@@ -9,6 +9,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "physics/boundary_budget.hpp"
 #include "physics/centre_line.hpp"
 #include "physics/field.hpp"
 #include "physics/planner.hpp"
@@ -113,6 +114,18 @@ bool Planner::State::place_by_field(const std::vector<WantedTone>& wanted,
   return true;
 }
 
+/// The boundary of a scene is that of its furthest tone.
+double boundary_uncertainty_m(const physics::Surface& surface, const Scene& scene,
+                              const std::vector<WantedTone>& wanted) {
+  if (wanted.empty()) return 0;
+  const auto& furthest = *std::max_element(wanted.begin(), wanted.end(), [](const auto& a, const auto& b) {
+    return a.frequency_Hz < b.frequency_Hz;
+  });
+  auto at = furthest.boundary_m ? furthest.boundary_m : scene.boundary_m;
+  if (!at) at = physics::turning_point_m(surface, furthest.frequency_Hz);
+  return at ? physics::boundary_budget(surface, furthest.frequency_Hz, *at).total_m : 0;
+}
+
 Solution Planner::State::solve(const Scene& scene, const std::vector<WantedTone>& wanted) {
   Solution solution;
   std::vector<Tone> tones;
@@ -134,8 +147,7 @@ Solution Planner::State::solve(const Scene& scene, const std::vector<WantedTone>
                                             at_least_mode(solution.choice.model), physics::Normalise::none);
   for (const auto& tone : tones)
     solution.resonances_Hz.push_back(physics::nearest_resonance_Hz(surface, tone.frequency_Hz));
-  if (!tones.empty() && scene.edge.kind != physics::Edge::Kind::friction)
-    solution.uncertainty_m = map_for(scene.edge).at_frequency(tones.front().frequency_Hz).uncertainty_m;
+  solution.uncertainty_m = boundary_uncertainty_m(surface, scene, wanted);
   solution.warnings = physics::tone_warnings(surface, tones);
   return solution;
 }

@@ -52,7 +52,7 @@ struct DrivePlan {
   double error_bound_m = 0;    ///< model error of the boundary
   double level_bound_dB = 0;   ///< model error of the level at the last maximum
   double amplitude_bound = 0;  ///< relative model error of the amplitude
-  double uncertainty_m = 0;    ///< uncertainty of the boundary from the rig's tolerances
+  double uncertainty_m = 0;    ///< one standard deviation of the boundary, from those in the rig file
   std::string reason;          ///< why this model was chosen
   physics::PlateTheory theory = physics::PlateTheory::kirchhoff;  ///< plate theory, if the surface is a plate
   /// How far the next better plate theory would move the boundary; empty for membranes.

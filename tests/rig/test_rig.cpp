@@ -77,6 +77,31 @@ TEST_CASE("a rig states the finger that loads its surface, in N s/m, degrees and
   CHECK(contains(problems("contact_mm = 8", "contact_mm = 0"), "\"contact_mm\" is 0"));
 }
 
+TEST_CASE("every shipped plate states what is not known about its surface", "[rig]") {
+  for (const char* name : {"simulated", "raspberry-pi-aluminium", "pc-usb"}) {
+    CAPTURE(name);
+    const auto& surface =
+        rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/" + name + ".toml").surface;
+    CHECK(surface.thickness_sd_m == Approx(0.045e-3));
+    CHECK(surface.modulus_sd_Pa == Approx(1e9));
+    CHECK(surface.density_sd_kg_m3 > 0);
+    CHECK(surface.half_width_sd_m > 0);
+    CHECK(surface.slope_sd > 0);
+    CHECK(surface.clamp_line_sd_m == Approx(0.2e-3));
+    CHECK(surface.temperature_sd_K == 3);
+    CHECK(surface.expansion_per_K == Approx(23.6e-6));
+    CHECK(surface.modulus_per_K == Approx(-5.3e-4));
+  }
+}
+
+TEST_CASE("a rig's deviations are in range, and temperature needs what it changes", "[rig]") {
+  CHECK(contains(problems("clamp_line_sd_mm = 0.2", "clamp_line_sd_mm = -0.2"),
+                 "\"clamp_line_sd_mm\" is -0.2"));
+  CHECK(contains(problems("temperature_sd_K = 3", "temperature_sd_K = 300"), "\"temperature_sd_K\" is 300"));
+  CHECK(problems("temperature_sd_K = 3", "temperature_sd_K = 3\nmodulus_per_K = -1e-3").empty());
+  CHECK(contains(problems("material = \"aluminium\"\n", ""), "how this surface changes with temperature"));
+}
+
 TEST_CASE("every default that was used for a missing key is named with its value", "[rig]") {
   const auto used = rig::load(simulated).defaults_used;
   const auto has = [&](const char* line) { return std::find(used.begin(), used.end(), line) != used.end(); };
@@ -112,8 +137,8 @@ TEST_CASE("all mistakes of a rig file come at once, each with its line", "[rig]"
     CHECK(contains(all,
                    "r.toml:12:1: unknown key \"thicknes_mm\" in [surface]; did you mean \"thickness_mm\"?"));
     CHECK(contains(all, "[surface] needs the key \"thickness_mm\""));
-    CHECK(contains(all, "r.toml:19:9: \"slope\" is -0.03; allowed: above 0 and at most 1"));
-    CHECK(contains(all, "r.toml:23:11: \"channel\" is the text \"0\"; a whole number from 0 to 7 is needed"));
+    CHECK(contains(all, "r.toml:26:9: \"slope\" is -0.03; allowed: above 0 and at most 1"));
+    CHECK(contains(all, "r.toml:35:11: \"channel\" is the text \"0\"; a whole number from 0 to 7 is needed"));
   }
 }
 
@@ -187,8 +212,9 @@ TEST_CASE("a material fills the constants that the file does not state", "[rig]"
 }
 
 TEST_CASE("a plate needs its modulus, a tensioned membrane may leave it out", "[rig]") {
-  const auto without = replaced(replaced(source(), "material = \"aluminium\"\n", ""),
-                                "modulus_GPa = 69\npoisson = 0.33\n", "");
+  auto without = replaced(replaced(source(), "material = \"aluminium\"\n", ""),
+                          "modulus_GPa = 69\npoisson = 0.33\n", "");
+  without = replaced(without, "temperature_sd_K = 3\n", "");
   CHECK_THROWS_AS(rig::parse(without, "r.toml"), text::BadInput);
   const auto membrane = rig::parse(replaced(without, "tension_Pa = 0 ", "tension_Pa = 1e8 "), "r.toml");
   CHECK_FALSE(membrane.surface.modulus_Pa.has_value());

@@ -112,6 +112,24 @@ TEST_CASE("map, plan and field agree on a p50 edge within 0.01 mm", "[scene]") {
   }
 }
 
+TEST_CASE("a plan states how uncertain its boundary is, whatever its edge", "[scene]") {
+  auto rig = simulated();
+  Planner planner(rig);
+  const physics::BoundaryMap map(planner.surface(), {physics::Edge::percent(0.5), {}, {}, {}});
+  const double stated_m = map.at_boundary(0.150).uncertainty_m;
+  CHECK(stated_m > 7e-3);
+  auto zone = edge_at(0.150, "p50");
+  zone.displacement_m.reset();
+  zone.zone = ZoneTarget{0.030, 0.7, 3, {}};
+  auto tones = edge_at(0.150, "p50");
+  tones.boundary_m.reset();
+  tones.tones = {{0.120, {}, tones.edge, 1e-6, 0}, {0.150, {}, tones.edge, 1e-6, 0}};
+  for (const auto& scene : {edge_at(0.150, "p50"), edge_at(0.150, "friction=0.8"), zone, tones})
+    CHECK(planner.plan(scene).uncertainty_m == Approx(stated_m).epsilon(0.02));
+  rig.surface.clamp_line_sd_m = 0;
+  CHECK(Planner(rig).plan(edge_at(0.150, "p50")).uncertainty_m < 0.6 * stated_m);
+}
+
 TEST_CASE("the error bound of a zone is that of the first mode, with which the zone is designed", "[scene]") {
   Planner planner(simulated());
   auto scene = edge_at(0.160, "p50");

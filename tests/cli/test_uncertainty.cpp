@@ -1,0 +1,48 @@
+// Tests that map, plan and check say how uncertain a boundary is.
+#include <nlohmann/json.hpp>
+
+#include "station/system/read_file.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/child.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace {
+
+const std::string source = TURNPOINT_SOURCE_DIR, rig = source + "/deploy/rigs/simulated.toml",
+                  demo = source + "/protocols/demo.toml";
+
+std::string output_of(std::vector<std::string> arguments, int status = 0) {
+  arguments.insert(arguments.begin(), TURNPOINT);
+  Child child(arguments);
+  REQUIRE(child.ends_within(60'000));
+  INFO(child.said());
+  CHECK(child.outcome() == status);
+  return child.said();
+}
+
+bool contains(const std::string& all, const std::string& part) { return all.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("map says what moves a boundary, and what to measure", "[cli]") {
+  const TemporaryFolder folder;
+  const auto plot = folder / "budget.svg";
+  const auto said =
+      output_of({"map", "--rig", rig, "--boundary", "150", "--edge", "p50", "--budget", "--plot", plot});
+  CHECK(contains(said, "clamp line           0.2 mm           6.67"));
+  CHECK(contains(said, "Of these, measuring the clamp line would help most"));
+  CHECK(contains(turnpoint::system::read_file(plot), "clamp line"));
+  const auto json = nlohmann::json::parse(
+      output_of({"map", "--rig", rig, "--boundary", "150", "--edge", "p50", "--budget", "--json"}));
+  CHECK(json[0]["budget"]["total_mm"] == json[0]["uncertainty_mm"]);
+  CHECK(json[0]["budget"]["contributions"].size() == 7);
+  CHECK(json[0]["budget"]["contributions"][0]["unit"] == "mm");
+  CHECK(json[0]["error_bound_mm"].get<double>() > 0);
+  CHECK(contains(output_of({"map", "--rig", rig, "--boundary", "150", "--plot", plot}, 2),
+                 "--plot needs --budget"));
+}
+
+TEST_CASE("plan and check say how uncertain boundaries are", "[cli]") {
+  CHECK(contains(output_of({"plan", demo, "--scene", "edge", "--rig", rig}), "uncertain by 7."));
+  CHECK(contains(output_of({"check", demo, "--rig", rig, "--sessions", "0"}), "uncertain by "));
+}
