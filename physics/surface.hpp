@@ -65,8 +65,8 @@ struct TabulatedTaper {
 using TaperForm = std::variant<LinearTaper, ExponentialTaper, TabulatedTaper>;
 
 // What places a boundary and is not known exactly. The clamp line is where the sides are really held, a
-// fraction of the thickness behind the edge of the clamp; both half-widths are larger by this much everywhere.
-// An exponential taper has no clamp line, because the form has no place for it.
+// fraction of the thickness behind the edge of the clamp; both half-widths are larger by this much
+// everywhere. An exponential taper has no clamp line, because the form has no place for it.
 enum class Parameter {
   density,
   tension,
