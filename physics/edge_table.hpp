@@ -18,7 +18,8 @@ struct EdgeTable {
     std::array<double, degree + 1> coefficient;
   };
   double low_Hz = 0;   // lowest frequency at which the edge lies on the surface
-  double high_Hz = 0;  // highest such frequency; infinity on a linear taper that runs to its apex
+  double high_Hz = 0;  // highest frequency at which the edge lies on the surface; infinity on a linear taper
+                       // that ends at its apex
   double constant = 1;
   std::vector<Piece> pieces;  // ascending; in a gap between two pieces the edge does not exist
   double error_m = 0;         // largest error at the check points, which lie between the nodes

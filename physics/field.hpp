@@ -65,7 +65,8 @@ struct Field {
 Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<const double> x_m, Model model,
                Normalise normalise);
 
-// How far a field can be trusted. Computing these notes takes several solutions more than the field itself.
+// How far a field can be trusted. To compute these notes, the surface is solved several more times than for
+// the field itself.
 struct FieldNotes {
   // error of any tone's |v|, relative to that tone's largest |v| on the surface
   double error_bound = 0;

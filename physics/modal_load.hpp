@@ -1,5 +1,6 @@
 #pragma once
-// The two-dimensional field under a pressure over a disc, by the elements that solve `modes`.
+// Computes the two-dimensional field under a pressure on a disc, with the finite elements of the model
+// `modes`.
 #include <complex>
 #include <vector>
 
@@ -13,16 +14,17 @@ struct Disc {
   double beside_m;
 };
 
-// Means over a disc. Where it is beyond the strip, the surface does not move.
+// Two averages over the area of a disc. Where the disc extends beyond the sides of the strip, the
+// displacement counts as 0.
 struct DiscResponse {
-  std::complex<double> unloaded;  // displacement of the free surface, with v(0) = 1
+  std::complex<double> unloaded;  // displacement without the force, with v(0) = 1
   // displacement per unit of a force spread evenly over the disc, with the drive edge held
   std::complex<double> receptance_m_per_N;
 };
 
-// For each position in [0, length_m]. The elements' unknowns are eliminated once; one position then takes
-// 0.1 ms. Loss is in the stiffness, which is divided by (1 - i/2Q)^4 (plate) or (1 - i/2Q)^2 (membrane).
-// Plate theory elastic: by Mindlin's.
+// Computes the averages for discs at these positions in [0, length_m]. The elements' unknowns are eliminated
+// once; one position then takes 0.1 ms. Loss is in the stiffness, which is divided by (1 - i/2Q)^4 (plate) or
+// (1 - i/2Q)^2 (membrane). For the plate theory elastic, Mindlin's theory is used.
 std::vector<DiscResponse> disc_responses(const Surface& surface, double frequency_Hz, const Disc& disc,
                                          const std::vector<double>& x_m);
 

@@ -13,7 +13,7 @@ namespace {
 using std::numbers::pi;
 // the elements end where the field has decayed by e^-70 beyond the turning point
 constexpr double ln_domain_end = 70;
-constexpr double ln_match = 45;  // from a decay by e^-45 on, the one-mode decay is used
+constexpr double ln_match = 45;  // the one-mode decay is used where the field has decayed by more than e^-45
 constexpr double widths_per_element = 1.2;
 
 // Number of transverse functions beyond those that can propagate. Tension makes a boundary layer of width
@@ -117,8 +117,8 @@ std::vector<ModalElement> make_modal_elements(const ModalSetup& s, const ModalRe
     decay += h * std::sqrt(std::max(0.0, middle * middle - s.k * s.k));
     if (decay > ln_match && match_m == s.taper.length_m()) match_m = x;
   }
-  // If the elements end before the apex, the held end distorts the field in the last few elements: match
-  // earlier.
+  // If the elements end before the apex, their held end distorts the field in the last few elements. The
+  // one-mode decay must then be used from an earlier position on.
   if (x < s.taper.length_m())
     match_m = std::min(match_m, elements[elements.size() - std::min<std::size_t>(8, elements.size())].x0);
   for (std::size_t i = 0; i + 1 < elements.size(); ++i) elements[i].right = elements[i + 1].left;

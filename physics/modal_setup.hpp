@@ -28,7 +28,7 @@ std::function<double(double)> drive_shape(const Surface& surface, const ModalEqu
 
 // Returns the unknowns of the first vertex, which has this number of `functions`, for a motion of the drive
 // edge; `shape` holds its coefficients. A clamped plate is held there without slope, dv/dx = 0 at constant y.
-// The unknowns are derivatives at constant eta = y/W(x), so they are W'/W eta dv/deta.
+// The unknowns are derivatives at constant eta = y/W(x). There they are not 0 but W'/W eta dv/deta.
 Eigen::VectorXd drive_unknowns(const ModalSetup& setup, const TransverseBasis& across,
                                const Eigen::VectorXd& shape, int functions);
 

@@ -14,27 +14,28 @@ namespace {
 
 using std::numbers::pi;
 
-// Constants of the bounds, measured on random surfaces as the header describes.
-constexpr double coupling = 0.15;         // amplitude of higher modes per (slope times width ratio)
+// Constants of the bounds, measured on random surfaces as the header describes. W, W' and W'' are the
+// half-width and its derivatives. The shift of an edge is in cut-off half-widths.
+constexpr double coupling = 0.15;         // amplitude of higher modes, divided by |W'| times `ratio` below
 constexpr double piston_coupling = 0.55;  // amplitude of higher modes for a piston drive, at any slope
 // unknown phase of a higher mode's standing wave at the drive edge
 constexpr double phase_uncertainty = 0.12;
-constexpr double curvature_shift = 0.2;  // shift of an edge divided by W'' W, in cut-off half-widths
-constexpr double slope_shift = 0.1;      // shift of an edge divided by W'^3
+constexpr double curvature_shift = 0.2;  // shift of an edge, divided by |W''| W
+constexpr double slope_shift = 0.1;      // shift of an edge, divided by |W'|^3
 // On a clamped plate, the transverse shape of `mode` is exact only at the cut-off, so its phase drifts
 // between drive edge and cut-off.
-constexpr double plate_drift = 1.5e-3;  // phase error in radians per radian of k x0
+constexpr double plate_drift = 1.5e-3;  // phase error in radians, divided by k times the turning point's x
 constexpr double plate_piston = 0.9;
 constexpr double plate_second_mode =
     // cut-off half-width of the second symmetric mode divided by the first's
     2.3246;
-constexpr double plate_shift = 1.2e-3;      // shift of any edge, in cut-off half-widths
-constexpr double thick_shift = 2.5e-3;      // the same for the theories mindlin and elastic
+constexpr double plate_shift = 1.2e-3;      // shift of an edge at any taper
+constexpr double thick_shift = 2.5e-3;      // the same for the plate theories mindlin and elastic
 constexpr double plate_slope_shift = 0.15;  // shift of an edge divided by W'^2
-constexpr double end_shift = 0.15;          // the same, from a clamped end just beyond the turning point
-// shift of an edge in cut-off half-widths, divided by the share of higher modes
+constexpr double end_shift = 0.15;          // the same, caused by a clamped end just beyond the turning point
+// shift of an edge, divided by the amplitude of higher modes near this edge
 constexpr double shallow = 6;
-constexpr double largest = 2;  // a bound above this would tell nothing
+constexpr double largest = 2;  // bounds are limited to this value, because a larger one would say nothing
 
 // The equation of the n-th symmetric transverse mode, n = 1, 2, ... On a wedge, the order of its Bessel
 // function is exact to the second power of the slope.

@@ -13,7 +13,7 @@ namespace turnpoint::physics {
 struct ModeBound {
   double shape = 0;     // error of |v| if the last maximum is set to one, relative to the largest value
   double drive = 0;     // error of |v| if v(0) is set to one, relative to the largest value
-  double level_dB = 0;  // error of |v| at the last maximum divided by |v(0)|
+  double level_dB = 0;  // error of the ratio of |v| at the last maximum to |v(0)|
   // error of an edge's position from the one-mode equation, on a curved or steep taper
   double equation_m = 0;
   // error of an edge's position, caused by higher modes from the drive edge and by a straight clamped end

@@ -126,7 +126,7 @@ class Solver {
     if (i < j) std::swap(i, j);
     double& product = gram_[i * x_.size() + j];
     if (product < 0) product = dot(column(i), column(j));
-    if (product < 0) return dot(column(i), column(j));  // a negative product is not kept in the table
+    if (product < 0) return dot(column(i), column(j));  // below 0 means "not computed" in the table
     return product;
   }
 

@@ -19,7 +19,7 @@ namespace {
 constexpr double probe_margin = 1.9;
 constexpr int probes = 160;
 constexpr double unknown = 2, unknown_dB = 120;
-constexpr double modes_accuracy = 5e-4;  // relative error of `modes` at its default resolution
+constexpr double modes_accuracy = 5e-4;  // relative error of the model `modes` at its default resolution
 
 // The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
 struct Probe {

@@ -35,7 +35,8 @@ TheoryChoice choose_theory(const Surface& surface, std::span<const double> frequ
     choice.reason = "kirchhoff: shear is modelled for clamped plates without tension only";
     return choice;
   }
-  double thin = 0, mindlin = 0;  // largest distances of these theories' boundaries from the elastic section's
+  // largest distance of each theory's boundary from that of the elastic section
+  double thin = 0, mindlin = 0;
   Surface s = surface;
   for (const double f : frequencies_Hz) {
     s.theory = PlateTheory::kirchhoff;

@@ -83,7 +83,8 @@ SectionBasis mindlin_section(const MindlinPlate& plate, int each, Parity parity 
   const auto nodes = static_cast<Eigen::Index>(rule.x.size());
   const Eigen::Map<const Eigen::VectorXd> eta(rule.x.data(), nodes), weight(rule.w.data(), nodes);
   const int first = parity == Parity::odd;
-  SectionMatrix same, same1, other, other1;  // functions of the same parity as w, and of the other
+  // functions with the same parity as w, and with the opposite parity
+  SectionMatrix same, same1, other, other1;
   Eigen::VectorXd same_start, other_start;
   bubbles(each, first, rule, same, same1, same_start);
   bubbles(each, 1 - first, rule, other, other1, other_start);

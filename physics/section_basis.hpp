@@ -21,8 +21,8 @@ struct SectionBasis {
   std::array<std::array<Matrix, 4>, 4> stiff;
   Matrix mass;
   Eigen::VectorXd centre;  // deflection of the centre line in each function
-  Eigen::VectorXd drive;   // the drive edge's motion, without motion along x: the shape of
-                           // its own cut-off
+  // motion of the drive edge: that of its own cut-off, but without the motion along x
+  Eigen::VectorXd drive;
   Eigen::Index count() const { return mass.rows(); }
 };
 

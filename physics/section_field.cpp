@@ -54,12 +54,14 @@ Eigen::MatrixXcd section_element_matrix(const SectionBasis& section, const Modal
 void solve_section_elements(const Surface& surface, double f, Losses losses,
                             const ModalResolution& resolution, const ModalSetup& setup,
                             std::vector<ModalElement>& elements) {
-  if (resolution.drive) throw std::invalid_argument("a given drive shape is for plate theory kirchhoff only");
+  if (resolution.drive)
+    throw std::invalid_argument("drive shapes can be given for plate theory kirchhoff only");
   const SectionBasis section = make_section(surface, f, resolution, setup);
   const std::complex<double> lossy(1, losses == Losses::kept ? -0.5 / surface.quality_factor : 0);
   const std::complex<double> omega2 = std::pow(2 * std::numbers::pi * f, 2) * lossy * lossy * lossy * lossy;
   const Eigen::Index n = section.count(), inner = setup.along.degree * n;
-  Eigen::MatrixXcd tail;  // stiffness of all elements beyond this one, far end held
+  // stiffness of all elements farther out, seen at the right vertex, with the far end held
+  Eigen::MatrixXcd tail;
   for (auto e = elements.rbegin(); e != elements.rend(); ++e) {
     Eigen::MatrixXcd k = section_element_matrix(section, setup, omega2, *e);
     Eigen::Index rest = inner;

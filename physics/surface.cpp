@@ -125,7 +125,7 @@ void validate(const Surface& s) {
   }
   if ((s.tension_Pa == 0 || s.bending == Bending::on) && !s.modulus_Pa) {
     throw std::invalid_argument(
-        "modulus_Pa is missing; it is required for a plate (tension 0) or bending on");
+        "modulus_Pa is missing; it is required for a plate (tension_Pa = 0) and whenever bending is on");
   }
   validate_theory(s);
 }

@@ -221,8 +221,8 @@ std::optional<double> TaylorMarch::level_m(double level) const {
     inner = outer;
     outer = state_->taper.length_m();
   }
-  // Seen from the tip, |v| rises. The level therefore lies in the first step at whose inner end |v| is above
-  // it.
+  // Seen from the tip, |v| rises. The level therefore lies in the first step at whose inner end |v| exceeds
+  // the level.
   for (const TaylorStep& step : state_->steps) {
     const double end = step.x_start - step.length;
     if (end <= inner) break;

@@ -139,7 +139,7 @@ int SeriesMaker::potential_series(double x, double knot, double scale,
     }
     r[n] = -sum / (static_cast<double>(n) * w[0]);
     if (std::max(std::abs(r[n]), std::abs(r[n - 1])) < 1e-22 * r[0])
-      break;  // this happens early on the short pieces of a tabulated taper
+      break;  // all further coefficients are negligible; short pieces of a tabulated taper need few
   }
   int count = 1;
   double size = 0;

@@ -42,7 +42,7 @@ std::vector<Warning> tone_warnings(const Surface& s, std::span<const Tone> tones
     std::ostringstream text;
     text << f / 1e3 << " kHz";
     if (f < audible_limit_Hz) {
-      text << ": below 22.4 kHz, audible or inside the stricter exposure band";
+      text << ": below 22.4 kHz, so it may be audible, and the stricter limit of airborne sound applies";
       add(list, "audible", text);
       text.str("");
       text << f / 1e3 << " kHz";

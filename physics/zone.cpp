@@ -40,8 +40,8 @@ void check(const Surface& surface, const FrictionMap& friction, const ZoneReques
     throw std::invalid_argument("zone band: low_Hz below high_Hz and spacing_Hz above 0 are needed");
   }
   if (r.edge.kind == Edge::Kind::friction && !(r.edge.level > r.friction && r.edge.level < 1)) {
-    text << "zone edge at friction " << r.edge.level << "; allowed: above the zone's own " << r.friction
-         << ", below 1";
+    text << "zone edge at friction " << r.edge.level << "; allowed: above the friction in the zone, "
+         << r.friction << ", and below 1";
     unreachable(text);
   }
 }

@@ -7,8 +7,8 @@
 
 namespace turnpoint::physics {
 
-// Squared amplitude of one tone on a grid, relative to its last maximum, and the drive that one unit of it
-// requires.
+// Squared amplitude of one tone on a grid, relative to its last maximum, and the drive amplitude that the
+// tone needs.
 struct ToneShape {
   double frequency_Hz = 0;
   double drive_gain = 1;  // |v(0)| divided by |v| at the last maximum

@@ -63,8 +63,8 @@ double Exposure::earliest_start_s(double wanted_s, double length_s) const {
   check(0, length_s);
   double start_s = recent_.empty() ? wanted_s : std::max(wanted_s, recent_.back().end_s);
   if (!fits(start_s, length_s)) {
-    // If one start is late enough, every later start is too, so bisection finds the earliest. A whole window
-    // later, no earlier stimulus counts any more.
+    // A stimulus that may begin at some time may also begin at any later time, so bisection finds the
+    // earliest. `late_s` is always allowed: by then, all earlier stimuli are too old to count.
     double too_soon_s = start_s, late_s = start_s + window_s + rest_s;
     for (int k = 0; k < 60; ++k) {
       const double middle_s = 0.5 * (too_soon_s + late_s);

@@ -65,7 +65,7 @@ struct Question {
   double default_threshold = 1;  ///< used if the parameters have no threshold
   /// 0: none; with little time an observer decides sooner and makes more errors
   double deadline_s = 0;
-  random::Key key;  ///< key of the trial; its stream is always that of the observer
+  random::Key key;  ///< key of the trial's random draws; the observer sets its stream
 };
 
 struct Reply {

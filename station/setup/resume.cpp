@@ -43,7 +43,8 @@ std::optional<session::Setup> prepare_resume(const ResumeRequest& request, std::
   setup.consent_version = start.consent_version;
   const double age_h = found->age_s / 3600, allowed_h = setup.protocol.resume.max_age_h;
   if (age_h < 0)
-    messages << "resume: the clock was set back since the session was interrupted; its age is not known\n";
+    messages << "resume: the clock was set back after the session was interrupted, so the age of the session "
+                "is unknown\n";
   if (age_h > allowed_h && !request.any_age)
     throw text::BadInput(
         {{{start.protocol_path, 0, 0},

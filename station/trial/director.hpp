@@ -27,7 +27,7 @@ struct TrialSpec {
   std::optional<SliderSpan> slider;  ///< the slider; only for an adjustment
   double iti_s = 0, foreperiod_s = 0;
   double deadline_s = 0;
-  /// true if the deadline is part of the design (instructions); a timeout then counts as a result
+  /// true if the block's instruction sets the deadline; a timeout then counts as a result
   bool timeouts_are_data = false;
 };
 

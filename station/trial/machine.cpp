@@ -94,7 +94,8 @@ std::vector<Action> Machine::handle(const Event& event) {
 
 std::optional<std::int64_t> Machine::wake_ns() const {
   if (phase_ == Phase::idle || phase_ == Phase::done) return std::nullopt;
-  // while the outcome is open, the pause between trials ends with the last heard event, not at a set time
+  // while the outcome is not final, the pause between trials ends with the last `heard` event, not at a set
+  // time
   if (phase_ == Phase::interval && !decided()) return std::nullopt;
   const bool answering = phase_ == Phase::stimulus || phase_ == Phase::response;
   const auto deadline = answering ? deadline_at() : kNever;

@@ -36,8 +36,8 @@ struct Timing {
   std::int64_t cue_ns = 0;
   std::vector<IntervalTiming> intervals;
   std::int64_t gap_ns = 0;
-  /// true: the participant may explore the surface until the answer; false: answers are accepted after the
-  /// last interval
+  /// true: the participant may explore the surface until the answer; false: answers are accepted only after
+  /// the last interval
   bool answer_ends_stimulus = false;
   ResponseZero response_zero = ResponseZero::go_cue;
   std::int64_t deadline_ns = 0;      ///< longest response time, counted from response_zero
@@ -73,8 +73,8 @@ struct Event {
 
 enum class ActionKind {
   enter,  ///< value: the new phase; show its page
-  /// schedule all intervals at the plan's distances, the first no earlier than time_ns; reply with an onset
-  /// event for each interval, and with a heard event once the interval has been played
+  /// schedule all intervals with the gaps of the plan, the first no earlier than time_ns. Reply with an
+  /// `onset` event for each interval, and with a `heard` event when the interval has been played completely
   present,
   silence,  ///< ramp down what is playing now, and cancel what has not begun
 };
@@ -102,10 +102,10 @@ struct Result {
 /// thread; the same events give the same actions. Events must come in the order of their time stamps, with
 /// one exception: an answer stamped before a deadline is accepted until watermark_ns after the deadline.
 ///
-/// Only some time after a stimulus was felt is it known whether the stimulus was played without loss. An
-/// outcome therefore becomes final only when every interval has been heard. If a loss is reported before
-/// that, the trial is void. The phases continue meanwhile, but the trial does not end before its outcome is
-/// final.
+/// The audio stream reports only some time after a stimulus whether it was played without loss. An outcome
+/// therefore becomes final only when every interval has been reported as played without loss (event `heard`).
+/// If a loss is reported first, the trial is void. The phases continue meanwhile, but the trial does not end
+/// before its outcome is final.
 class Machine {
  public:
   /// Throws std::invalid_argument for a plan without intervals, with a negative time, without answers, or
@@ -115,7 +115,8 @@ class Machine {
   std::vector<Action> start(std::int64_t now_ns);
   std::vector<Action> handle(const Event& event);
 
-  /// The time of the next tick. Empty if the machine waits for an event, or is done.
+  /// The next wake-up time, at which the caller must send a tick. Empty if the machine waits for an event, or
+  /// is done.
   std::optional<std::int64_t> wake_ns() const;
 
   Phase phase() const { return phase_; }
