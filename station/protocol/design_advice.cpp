@@ -70,11 +70,12 @@ void check_scenes(AdviceList& advice) {
   for (const auto& name : scenes_used(advice.protocol)) {
     const auto& scene = advice.protocol.scenes.at(name);
     const auto key = "scene." + name + ".";
-    if (scene.displacement_um &&
-        bounds(*scene.displacement_um, advice.protocol.factors).second < least_displacement_um)
-      advice.add(key + "displacement_um",
-                 "nobody feels a displacement of " + scene.displacement_um->source + " um",
-                 "use about 0.2 to 3 um");
+    for (const auto& [displacement, of] :
+         {std::pair{&scene.displacement_um, "displacement_um"},
+          std::pair{&scene.displacement_under_finger_um, "displacement_under_finger_um"}})
+      if (*displacement && bounds(**displacement, advice.protocol.factors).second < least_displacement_um)
+        advice.add(key + of, "nobody feels a displacement of " + (*displacement)->source + " um",
+                   "use about 0.2 to 3 um");
     for (std::size_t i = 0; i < scene.tones.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         const auto &a = scene.tones[i], &b = scene.tones[j];

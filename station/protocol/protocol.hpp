@@ -83,8 +83,10 @@ struct Scene {
   std::string name, base;
   std::optional<Linear> boundary_mm;
   Edge edge;
-  /// strength at the last maximum of the vibration; at most one of the two is set
+  /// strength at the last maximum of the vibration; at most one of these two and the next is set
   std::optional<Linear> displacement_um, friction;
+  /// strength under a finger, and where the finger is
+  std::optional<Linear> displacement_under_finger_um, finger_mm;
   std::vector<SceneTone> tones;
   std::optional<Zone> zone;
   /// makes the zone's friction lower than that of the base scene by 20 log10(dmu / mu)

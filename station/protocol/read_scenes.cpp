@@ -89,6 +89,21 @@ Tolerance read_tolerance(const Value& table, const std::string& name, Findings& 
   return tolerance;
 }
 
+// A displacement under a finger needs the finger's place.
+void check_finger(TableReader& reader, const Scene& scene) {
+  const bool wanted = reader.has("displacement_under_finger_um");
+  if (wanted && !reader.has("finger_mm"))
+    reader.problem("displacement_under_finger_um", "\"displacement_under_finger_um\" needs \"finger_mm\"",
+                   "say where the finger is, in mm from the wide end");
+  if (!wanted && reader.has("finger_mm"))
+    reader.problem("finger_mm", "\"finger_mm\" needs \"displacement_under_finger_um\"",
+                   "leave it out: \"displacement_um\" and \"friction\" are those of the free surface");
+  if (wanted && scene.edge.friction)
+    reader.problem("edge",
+                   "an edge that friction defines is not allowed with \"displacement_under_finger_um\"",
+                   "use an edge by name, or \"displacement_um\"");
+}
+
 // A scene can be given in three forms. Checks that exactly one is used.
 void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
   const auto form =
@@ -98,25 +113,30 @@ void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
   const bool tones = reader.has("tones"), zone = reader.has("zone"), boundary = reader.has("boundary_mm");
   if (!tones && !boundary) return findings.add(reader.place(), reader.title() + " presents nothing", form);
   if (tones) {
-    for (const auto* key :
-         {"boundary_mm", "edge", "zone", "displacement_um", "friction", "friction_contrast_dB"})
+    for (const auto* key : {"boundary_mm", "edge", "zone", "displacement_um", "friction",
+                            "displacement_under_finger_um", "finger_mm", "friction_contrast_dB"})
       if (reader.has(key))
         reader.problem(
             key, std::string("\"") + key + "\" is not allowed together with \"tones\" in " + reader.title(),
             form);
     return;
   }
-  const int levels = reader.has("displacement_um") + reader.has("friction");
+  std::vector<std::string> stated;
+  for (const auto* key : {"displacement_um", "friction", "displacement_under_finger_um"})
+    if (reader.has(key)) stated.emplace_back(key);
   if (zone) {
-    for (const auto* key : {"displacement_um", "friction"})
+    for (const auto* key : {"displacement_um", "friction", "displacement_under_finger_um", "finger_mm"})
       if (reader.has(key))
         reader.problem(key, std::string("\"") + key + "\" is not allowed together with \"zone\"",
                        "set \"friction\" inside \"zone\" instead");
-  } else if (levels != 1) {
-    findings.add(levels == 2 ? reader.place("friction") : reader.place(),
-                 reader.title() + (levels == 2 ? " has both \"displacement_um\" and \"friction\""
-                                               : " does not say how strong it is"),
-                 "give exactly one of \"displacement_um\" (at the last maximum) and \"friction\"");
+  } else if (stated.size() != 1) {
+    const auto problem = stated.size() > 1 ? " has both \"" + stated[0] + "\" and \"" + stated[1] + "\""
+                                           : " does not say how strong it is";
+    findings.add(stated.size() > 1 ? reader.place(stated[1]) : reader.place(), reader.title() + problem,
+                 "give exactly one of \"displacement_um\" (at the last maximum), \"friction\" and "
+                 "\"displacement_under_finger_um\"");
+  } else {
+    check_finger(reader, scene);
   }
   if (scene.friction_contrast_dB && !zone && !reader.has("friction"))
     reader.problem("friction_contrast_dB", "\"friction_contrast_dB\" needs a base that states friction",
@@ -145,6 +165,9 @@ Scene read_scene(const Value& table, const std::string& name, const Value& own, 
     reader.problem("edge", "\"edge\" needs \"boundary_mm\"", "give the boundary to which the edge belongs");
   scene.displacement_um = read_linear(reader, "displacement_um", displacement_um, reading);
   scene.friction = read_linear(reader, "friction", relative_friction, reading);
+  scene.displacement_under_finger_um =
+      read_linear(reader, "displacement_under_finger_um", displacement_um, reading);
+  scene.finger_mm = read_linear(reader, "finger_mm", position_mm, reading);
   for (const auto* tone : reader.tables("tones"))
     scene.tones.push_back(read_tone(*tone, path + ".tones", findings, reading));
   if (reader.has("tones") && scene.tones.empty())
@@ -172,10 +195,15 @@ void erase(Value& table, const std::string& key) {
 // Puts the scene's own keys over those of its base; `zone` and `tolerance` are merged key by key.
 Value laid_over(Value base, const Value& own) {
   const auto states = [&](const char* key) { return own.find(key) != nullptr; };
-  if (states("displacement_um")) erase(base, "friction");
-  if (states("friction")) erase(base, "displacement_um");
+  const auto strengths = {"displacement_um", "friction", "displacement_under_finger_um"};
+  if (std::any_of(strengths.begin(), strengths.end(), states)) {
+    for (const auto* key : strengths) erase(base, key);
+    if (!states("displacement_under_finger_um")) erase(base, "finger_mm");
+  }
   if (states("tones"))
-    for (const auto* key : {"boundary_mm", "edge", "zone", "displacement_um", "friction"}) erase(base, key);
+    for (const auto* key : {"boundary_mm", "edge", "zone", "displacement_um", "friction",
+                            "displacement_under_finger_um", "finger_mm"})
+      erase(base, key);
   if (states("boundary_mm") || states("zone")) erase(base, "tones");
   for (const auto& entry : own.entries) {
     const auto* below = base.find(entry.key);

@@ -48,6 +48,9 @@ scene::Scene resolve(const Protocol& protocol, const std::string& name, const Fa
   scene.edge = edge_of(from.edge);
   if (from.displacement_um) scene.displacement_m = 1e-6 * evaluate(*from.displacement_um, factors);
   if (from.friction) scene.friction = evaluate(*from.friction, factors);
+  if (from.displacement_under_finger_um && from.finger_mm)
+    scene.under_finger = scene::FingerTarget{1e-6 * evaluate(*from.displacement_under_finger_um, factors),
+                                             1e-3 * evaluate(*from.finger_mm, factors)};
   for (const auto& tone : from.tones) scene.tones.push_back(tone_of(tone, factors));
   if (from.zone) {
     scene::ZoneTarget zone;

@@ -59,7 +59,8 @@ std::vector<const Linear*> expressions_of(const Scene& scene) {
     if (expression) all.push_back(&*expression);
   };
   for (const auto* expression :
-       {&scene.boundary_mm, &scene.displacement_um, &scene.friction, &scene.friction_contrast_dB})
+       {&scene.boundary_mm, &scene.displacement_um, &scene.friction, &scene.displacement_under_finger_um,
+        &scene.finger_mm, &scene.friction_contrast_dB})
     add(*expression);
   if (scene.zone) add(scene.zone->friction);
   for (const auto& tone : scene.tones) {

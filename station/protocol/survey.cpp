@@ -138,6 +138,7 @@ Place place_of(const Protocol& protocol, const KeyPlaces& places, const Scene& s
 // The key that gives the scene's strength.
 Place strength_place(const Scene& scene) {
   if (scene.displacement_um) return scene.displacement_um->place;
+  if (scene.displacement_under_finger_um) return scene.displacement_under_finger_um->place;
   if (scene.friction_contrast_dB) return scene.friction_contrast_dB->place;
   if (scene.friction) return scene.friction->place;
   if (scene.zone && scene.zone->friction) return scene.zone->friction->place;
@@ -152,6 +153,12 @@ Place strength_place(const Scene& scene) {
 Place blamed_place(const Protocol& protocol, const KeyPlaces& places, const Scene& from,
                    const scene::Scene& scene, scene::Planner& planner) {
   if (is_too_strong(scene, planner)) return strength_place(from);
+  if (scene.under_finger && from.finger_mm) {
+    auto free = scene;
+    free.displacement_m = 1e-9;
+    free.under_finger.reset();
+    if (can_plan(free, planner)) return from.finger_mm->place;
+  }
   for (std::size_t i = 0; i < scene.tones.size(); ++i) {
     auto alone = scene;
     alone.tones = {scene.tones[i]};

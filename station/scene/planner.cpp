@@ -30,6 +30,9 @@ using text::number;
 
 namespace {
 
+/// No surface is driven as far as this.
+constexpr double kMostDrive_m = 1e-3;
+
 constexpr std::size_t kRemembered = 512, kSolutions = 128;
 
 /// Returns a text with everything in a scene that affects its plan. It is the key of the cache.
@@ -41,6 +44,8 @@ std::string key_of(const Scene& scene) {
                          physics::format(scene.edge), maybe(scene.displacement_m), maybe(scene.friction),
                          scene.rove_dB, scene.ramp_s, maybe(scene.tolerance.boundary_m),
                          maybe(scene.tolerance.level_dB), maybe(scene.tolerance.friction));
+  if (scene.under_finger)
+    key += fmt::format(" finger {} {}", scene.under_finger->displacement_m, scene.under_finger->finger_m);
   for (const auto& tone : scene.tones)
     key += fmt::format(" / {} {} {} {} {}", maybe(tone.boundary_m), maybe(tone.frequency_Hz),
                        physics::format(tone.edge), tone.displacement_m, tone.phase_rad);
@@ -81,6 +86,10 @@ struct Planner::State : ToneDesigner {
   const Solution& solution_for(const Scene& scene, const std::vector<WantedTone>& wanted);
   void drive(DrivePlan& plan, const std::vector<Tone>& tones, const Solution& solution) const;
   void refuse_beyond_limits(const DrivePlan& plan) const;
+  double drive_under_finger_m(const Scene& scene, double frequency_Hz);
+
+ private:
+  std::map<std::pair<double, double>, double> moved_under_finger_;  ///< by frequency and place, per drive
 };
 
 physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector<Tone>& tones,
@@ -202,6 +211,27 @@ void Planner::State::refuse_beyond_limits(const DrivePlan& plan) const {
                                   number(plan.peak_full_scale, 4)));
 }
 
+/// Amplitude of the drive edge that gives the wanted displacement under the rig's finger.
+double Planner::State::drive_under_finger_m(const Scene& scene, double frequency_Hz) {
+  const double finger_m = scene.under_finger->finger_m;
+  if (finger_m > surface.length_m)
+    throw Unreachable(fmt::format("the finger at {} mm is beyond the surface, which ends at {} mm",
+                                  number(1e3 * finger_m), number(1e3 * surface.length_m)));
+  auto found = moved_under_finger_.find({frequency_Hz, finger_m});
+  if (found == moved_under_finger_.end()) {
+    if (moved_under_finger_.size() >= kRemembered) moved_under_finger_.clear();
+    const auto load = physics::finger_load(surface, frequency_Hz, {finger_m}, finger_of(rig)).front();
+    found = moved_under_finger_.emplace(std::pair{frequency_Hz, finger_m}, std::abs(load.loaded)).first;
+  }
+  const double wanted_m = scene.under_finger->displacement_m * std::pow(10.0, scene.rove_dB / 20);
+  if (!(found->second * kMostDrive_m > wanted_m))
+    throw Unreachable(
+        fmt::format("the surface hardly moves under a finger at {} mm; place the finger before "
+                    "the boundary",
+                    number(1e3 * finger_m)));
+  return wanted_m / found->second;
+}
+
 Planner::Planner(const rig::Rig& rig) : state_(std::make_unique<State>(rig)) {}
 Planner::~Planner() = default;
 Planner::Planner(Planner&&) noexcept = default;
@@ -269,8 +299,9 @@ DrivePlan Planner::make(const Scene& scene) {
     const double frequency_Hz = solution.frequencies_Hz[i];
     // If the two-dimensional field has no last maximum, set the level with the first mode's last maximum.
     const double drive_m =
-        info.last_peak_m ? wanted[i].displacement_m / info.gain
-                         : physics::drive_amplitude_m(surface(), frequency_Hz, wanted[i].displacement_m);
+        scene.under_finger ? state_->drive_under_finger_m(scene, frequency_Hz)
+        : info.last_peak_m ? wanted[i].displacement_m / info.gain
+                           : physics::drive_amplitude_m(surface(), frequency_Hz, wanted[i].displacement_m);
     tones.push_back({frequency_Hz, drive_m, wanted[i].phase_rad});
   }
   physics::assign_phases(tones);

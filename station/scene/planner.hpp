@@ -74,9 +74,9 @@ struct DrivePlan {
 /// A planned scene under the rig's finger, with the drive unchanged. Displacements are means over the
 /// finger's contact, root of the summed squares over tones; friction is averaged over the fingertip.
 struct UnderFinger {
-  double finger_m = 0;             ///< place of the finger: the last maximum of the highest tone
-  double free_m = 0;               ///< displacement there without a finger
-  double displacement_m = 0;       ///< displacement under the finger
+  double finger_m = 0;        ///< place of the finger: the scene's, or the last maximum of the highest tone
+  double free_m = 0;          ///< displacement there without a finger
+  double displacement_m = 0;  ///< displacement under the finger
   double least_m = 0, most_m = 0;  ///< displacement for fingers one standard deviation heavier or lighter
   double free_friction = 1, friction = 1;         ///< without and under the finger
   double lowest_friction = 1;                     ///< lowest under a finger anywhere on the surface

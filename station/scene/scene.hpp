@@ -24,6 +24,13 @@ struct ZoneTarget {
   std::optional<double> design_friction;
 };
 
+/// A displacement wanted under the rig's finger, as a mean over its contact. The drive is the same wherever
+/// the finger then goes.
+struct FingerTarget {
+  double displacement_m = 0;
+  double finger_m = 0;  ///< place of the finger
+};
+
 /// The accuracy that a scene requires of its plan. An empty value means no requirement.
 struct Tolerance {
   std::optional<double> boundary_m, level_dB, friction;
@@ -35,8 +42,10 @@ struct Scene {
   std::string name;
   std::optional<double> boundary_m;
   physics::Edge edge;
-  /// values at the last maximum; for a boundary alone, one of the two is set
+  /// values at the last maximum of the free surface; for a boundary alone, one of these two or `under_finger`
+  /// is set
   std::optional<double> displacement_m, friction;
+  std::optional<FingerTarget> under_finger;
   std::vector<ToneTarget> tones;
   std::optional<ZoneTarget> zone;
   double rove_dB = 0;  ///< random change of strength in this trial, added to every displacement

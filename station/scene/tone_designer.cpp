@@ -56,6 +56,7 @@ double ToneDesigner::frequency_for(double boundary_m, const physics::Edge& edge,
 
 double ToneDesigner::target_displacement(const Scene& scene) const {
   if (scene.displacement_m) return *scene.displacement_m;
+  if (scene.under_finger) return scene.under_finger->displacement_m;  // the planner sets the drive
   const double wanted = scene.friction.value_or(1.0);
   if (const auto displacement = friction.displacement_m(wanted)) return *displacement;
   throw Unreachable(fmt::format("relative friction {} is below the lowest that this surface gives, {}",

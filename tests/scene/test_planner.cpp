@@ -85,6 +85,35 @@ TEST_CASE("a plan says what a finger leaves of displacement, friction and bounda
   CHECK(same.boundary_shift_m == 0);
 }
 
+TEST_CASE("a displacement wanted under a finger is there under the finger, and limits hold without it",
+          "[scene]") {
+  auto rig = simulated();
+  Planner planner(rig);
+  auto scene = edge_at(0.150, "p50");
+  scene.displacement_m.reset();
+  scene.under_finger = FingerTarget{0.3e-6, 0.130};
+  const auto plan = planner.plan(scene);
+  const auto under = planner.under_finger(plan);
+  CHECK(under.finger_m == 0.130);
+  CHECK(under.displacement_m == Approx(0.3e-6).epsilon(1e-6));
+  CHECK(plan.tones[0].displacement_m > 0.8e-6);
+  CHECK(plan.peak_displacement_m == Approx(plan.tones[0].displacement_m).epsilon(1e-3));
+  // The frequency is that of the boundary alone, and roving changes the strength in proportion.
+  CHECK(plan.tones[0].frequency_Hz == planner.plan(edge_at(0.150, "p50")).tones[0].frequency_Hz);
+  scene.rove_dB = 6;
+  CHECK(planner.plan(scene).tones[0].amplitude_m ==
+        Approx(plan.tones[0].amplitude_m * std::pow(10, 0.3)).epsilon(1e-6));
+  scene.rove_dB = 0;
+
+  rig.limits.displacement_m = 0.5 * plan.peak_displacement_m;  // more than is wanted under the finger
+  CHECK(rig.limits.displacement_m > 0.3e-6);
+  CHECK_THROWS_AS(Planner(rig).plan(scene), Unreachable);
+  scene.under_finger->finger_m = 0.29;
+  CHECK_THROWS_AS(planner.plan(scene), Unreachable);
+  scene.under_finger->finger_m = 0.31;
+  CHECK_THROWS_AS(planner.plan(scene), Unreachable);
+}
+
 TEST_CASE("under a finger a zone has less contrast to its surroundings", "[scene]") {
   Planner planner(simulated());
   auto scene = edge_at(0.185, "p50");
