@@ -74,7 +74,7 @@ TEST_CASE("For data that form a step, the fit states a limit of the slope instea
   const auto fit = fit_psychometric({{-20, 20, 0}, {-10, 20, 0}, {10, 20, 20}, {20, 20, 20}}, options);
   REQUIRE(fit.parameters);
   CHECK(says(fit.statements, "step"));
-  CHECK(fit.at_bound.slope_low);  // the slope is at its lower bound
+  CHECK(fit.at_bound.slope_low);
   CHECK(fit.parameters->threshold > -10);
   CHECK(fit.parameters->threshold < 10);
   const auto drawn = bootstrap(fit, {});

@@ -81,8 +81,8 @@ TEST_CASE("The normal quantile is the inverse of the distribution function", "[a
 
 namespace {
 
-/// A session of yes/no answers of an observer with a criterion, or of ratings if there are more than two
-/// answers. Half of the trials are noise.
+/// Makes a session of a simulated observer who answers yes or no or, if there are more than two answers,
+/// gives ratings. Half of the trials have no signal.
 std::vector<TrialRecord> yes_no_session(const turnpoint::observer::Observer& observer, int answers,
                                         int trials, int run) {
   using namespace turnpoint;

@@ -113,8 +113,8 @@ TEST_CASE("The intervals of the boundary and of the non-decision time contain th
     REQUIRE(result.instructions.size() == 2);
     const auto& speed = result.instructions[0];
     const auto& accuracy = result.instructions[1];
-    // In one of some hundred sessions too many bootstrap replicates cannot be fitted, so there is no
-    // interval.
+    // In about one of several hundred sessions, too many bootstrap replicates cannot be fitted. Such a
+    // session has no interval.
     if (!speed.boundary || !accuracy.boundary || !result.differences[2].estimate) {
       ++without;
       continue;

@@ -3,9 +3,9 @@
 
 namespace turnpoint::benchmark {
 
-/// Times the intervals of a psychometric function after sessions of a QUEST+ procedure: from the posterior,
-/// and by the bootstrap for constant stimuli, on one core, each with its band as in a report. Takes some
-/// seconds.
+/// Measures how long a report needs, on one core, to compute the intervals of a psychometric function and its
+/// band. The data are from a QUEST+ procedure. Two methods are timed: the posterior, and the bootstrap, which
+/// reports use for constant stimuli. Takes some seconds.
 Report bench_intervals();
 
 }  // namespace turnpoint::benchmark

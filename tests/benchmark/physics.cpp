@@ -62,7 +62,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return worst / most;
 }
 
-/// Resolutions of `modes` from coarse to fine; an empty setting means the default.
+/// Resolutions of the model `modes` from coarse to fine; an empty setting means the default.
 struct Resolution {
   const char* setting;
   physics::ModalResolution resolution;
@@ -94,7 +94,7 @@ void bench_field(const Scene& scene, double budget_s, std::vector<PhysicsRow>& r
       const double took = best_time(budget_s, [&] { make()->evaluate(x, 1.0, 0.0, v, ln); });
       rows.push_back({Task::field, scene.name, std::string(physics::name(model)), "", kPoints, took, error});
       if (model != Model::mode) continue;
-      // What a caller of the library pays for the same.
+      // Also time evaluate(), the function that users of the library call for this field.
       const physics::Tone tone{scene.frequency_Hz, 1, 0};
       const double called = best_time(budget_s, [&] {
         physics::evaluate(scene.surface, {&tone, 1}, x, model, physics::Normalise::peak);

@@ -8,11 +8,13 @@ namespace turnpoint::benchmark {
 
 /// Selects the reference solution for the error. Only errors against the same reference can be compared.
 enum class Task {
-  field,     ///< reference: the two-dimensional field, by `modes` at a much finer resolution
-  equation,  ///< reference: the one-mode equation solved in extended precision by an unrelated method
+  field,     ///< reference: the two-dimensional field, computed with the model `modes` at a much finer
+             ///< resolution
+  equation,  ///< reference: the one-mode equation solved in extended precision by a method that shares no
+             ///< code with the library
   airy,      ///< reference: the closed Airy profile of the 1998 paper
-  look_up    ///< converts a boundary to a frequency and back by a map; the error is that of the round trip,
-             ///< in metres
+  look_up    ///< converts a boundary to a frequency and back with a BoundaryMap; the error is that of the
+             ///< result (m)
 };
 
 /// One row of results. `error` is the largest difference of |v| with the last maximum at one (for look_up:

@@ -136,7 +136,7 @@ Solution integrate(const OneModeProblem& p, Stepper stepper) {
   const System<Real, size> system{p, Real(start.x_m)};
   ode::integrate_times(
       stepper, system, y, times.begin(), times.end(), Real(1e-5), [&](const auto& state, Real) {
-        if (next++ == 0) return;  // the first value is the start itself, which is not asked for
+        if (next++ == 0) return;  // skip the value at the start, which is not one of the wanted points
         const std::size_t i = points[next - 2];
         const Complex g(static_cast<double>(state[0]), size == 4 ? static_cast<double>(state[1]) : 0.0);
         v[i] = g / std::sqrt(p.half_width_m(p.x_m[i]));

@@ -7,7 +7,7 @@
 namespace turnpoint::benchmark {
 
 /// The one-mode equation g'' + [k^2 - (b + c W'^2)/W^2] g = 0, v = g / sqrt(W), g = 0 at x = length, on W =
-/// w0 - slope x or, with `decay_m` above 0, W = w0 exp(-x / decay_m), in the form for a general solver.
+/// w0 - slope x or, with `decay_m` above 0, W = w0 exp(-x / decay_m).
 struct OneModeProblem {
   std::complex<double> k_squared;
   double b = 0, c = 0;

@@ -34,7 +34,8 @@ std::string cues_of(const std::string& protocol) {
 }  // namespace
 
 TEST_CASE("check says how precise it knows what a cue reaches in simulated sessions", "[cli]") {
-  // The roved amplitude still says something about the answer. Easier levels of the staircase reveal more.
+  // Even with roving, the amplitude reveals something about the answer. It reveals more at the easier levels
+  // of the staircase.
   const auto text = with(turnpoint::system::read_file(source + "/protocols/friction-staircase.toml"),
                          {{"tolerance = { level_dB = 0.1 }", "rove_dB = 2.5"},
                           {"-3.0", "-9.0"},

@@ -45,7 +45,7 @@ class Laboratory {
     REQUIRE(status == 0);
   }
 
-  /// What a live session of this protocol is refused for; "" if it may begin.
+  /// Returns the reason why a live session of this protocol is refused; "" if it may begin.
   std::string refusal(const std::string& protocol) const {
     std::ofstream(folder_ / "p.toml") << protocol;
     setup::RunRequest request;

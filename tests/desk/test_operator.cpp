@@ -187,7 +187,8 @@ TEST_CASE("the live view shows what is played: each scene of each interval, with
       CHECK(state.surfaces.size() == static_cast<std::size_t>(scenes));
     }
   CHECK(trial == trials);
-  // negative control: some trials need more than the first request of a plan
+  // negative control: there is roving or a trial with several scenes, so showing only the first scene without
+  // roving would be wrong
   CHECK((roved > 0 || scenes > 1));
 }
 
@@ -219,7 +220,7 @@ TEST_CASE("a slider that moves fast is shown a few times a second, and in the en
     return !states.empty() && states.back().heading.find(", now 24.5:") != std::string::npos;
   }));
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - from;
-  // one state at the start and at the slider setting, the others 200 ms apart
+  // one state at the start, one with the final setting, and the others at least 200 ms apart
   CHECK(states.size() <= 2 + took / std::chrono::milliseconds(200));
   const auto plan = plans.take(spec).plans.front().back();
   CHECK(drives_shown(states.back()) ==

@@ -121,7 +121,7 @@ class Bench {
         run.scheduled.back().start_frame + kLengths[1] - stream.counters().frames + 4 * buffer();
     plan(mishaps, kinds, frames);
     const auto last = fake_pcm().now + frames + 3 * buffer() + lasting_;
-    const auto one_in = pick({1, 3, 40});  // the session polls only in one of this many steps
+    const auto one_in = pick({1, 3, 40});  // the session polls once in this many steps
     bool answered = false;
     while (fake_pcm().now < last || !machine.done()) {
       stream.step();

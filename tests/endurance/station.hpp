@@ -18,8 +18,8 @@ class Station {
   explicit Station(World& world);
 
   /// Runs a session of this protocol from beginning to end, in as many processes as it takes, and compares it
-  /// with one without faults. Stops early if the run's time is over. Returns false if the database can no
-  /// longer be used.
+  /// with a session without faults. Stops early if the run's time is over. Returns false if the database can
+  /// no longer be used.
   bool run_session(const std::string& protocol, std::uint64_t seed);
 
   int lives = 0, sessions = 0;

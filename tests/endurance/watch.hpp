@@ -51,7 +51,8 @@ class AmplifierWatch {
   bool armed_ = false, high_ = false, told_ = false;
   bool trial_page_ = false;
   std::int64_t page_ns_ = 0, on_since_ns_ = 0, low_since_ns_ = 0, now_ns_ = 0, high_ns_ = 0;
-  std::vector<std::pair<std::int64_t, std::int64_t>> stimuli_, highs_;  ///< of the trial in progress
+  /// start and end, in the current trial
+  std::vector<std::pair<std::int64_t, std::int64_t>> stimuli_, highs_;
   int changes_ = 0;
 };
 

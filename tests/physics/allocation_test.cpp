@@ -67,8 +67,8 @@ TEST_CASE("the field of one tone solves its model only once", "[physics]") {
       describe(surface, {&tone, 1}, evaluate(surface, {&tone, 1}, {&x, 1}, model, Normalise::peak));
     });
     CAPTURE(name(model), solution, field, notes);
-    CHECK(field <= solution + 8);  // 8 for the field's own vectors
-    // negative control: the notes of a field take several solutions more
+    CHECK(field <= solution + 8);  // a field has 8 vectors of its own
+    // negative control: describe() solves the surface several more times, which allocates more memory
     CHECK(notes > field + 3 * solution / (model == Model::mode ? 1 : 100));
   }
 }

@@ -226,7 +226,7 @@ TEST_CASE("modes of curved tapers, of a membrane and a clamped plate, match a so
     s.taper = ExponentialTaper{number(1), number(2)};
     s.length_m = number(3);
     s.quality_factor = number(5);
-    REQUIRE(number(48) < 1e-5);  // the error of the table itself, from its coarser grid
+    REQUIRE(number(48) < 1e-5);  // the table's own error, estimated with a coarser grid
     for (const Model model : {Model::mode, Model::modes}) {
       const auto line = make_centre_line(s, number(4), model);
       const Scaled unit = line->value(0);

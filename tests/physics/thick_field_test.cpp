@@ -62,8 +62,8 @@ TEST_CASE("the models mode and modes of a Mindlin taper match two-dimensional fi
 
 TEST_CASE("for a thin plate, the fields of the thick-plate theories become Kirchhoff's", "[physics]") {
   for (const auto theory : {PlateTheory::mindlin, PlateTheory::elastic}) {
-    // At a thickness of 0.1 mm the cut-off moves by only 0.03 mm. If the section were too stiff in bending,
-    // the edges would move by several mm.
+    // In a plate of 0.1 mm, shear moves the cut-off by only 0.03 mm. If the section were too stiff in
+    // bending, the edges would move by several mm.
     Surface s = plate_of(PlateTheory::kirchhoff, 60);
     s.thickness_m = 1e-4;
     const double f = 2e3;

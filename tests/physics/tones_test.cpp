@@ -109,10 +109,10 @@ TEST_CASE("impossible zones are refused, and the message says what is allowed", 
   request.friction = 0.05;
   CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), std::domain_error);
   request.friction = 0.6;
-  request.boundary_m = 0.28;  // such a boundary needs more than 45 kHz
+  request.boundary_m = 0.28;  // a boundary at 280 mm needs more than 45 kHz
   CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), std::domain_error);
   request.boundary_m = 0.16;
-  request.edge = Edge::friction(0.5);  // this edge would be at a lower friction than the zone
+  request.edge = Edge::friction(0.5);  // lower than the zone's friction of 0.6
   CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), std::domain_error);
   request.edge = Edge::turning();
   request.from_m = 0.2;

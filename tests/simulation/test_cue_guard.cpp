@@ -245,10 +245,10 @@ TEST_CASE("all trials, including catch trials, are weighted by how often they oc
   // In all catch trials "left" is the right answer.
   const std::string block = "procedures = [\"levels\"]";
   const auto caught = replaced(text, block, block + "\ncatch = { rate = 0.5, offset_mm = -28.0 }");
-  // Half of all trials are catch trials, so "right" is correct in 0.5 x 0.75 of all trials, "left" in the
-  // others.
+  // Half of all trials are catch trials, so "right" is correct in 0.5 x 0.75 = 37.5 % of all trials, and
+  // "left" in 62.5 %.
   CHECK(accuracy(caught, "always the same key") == Approx(0.625));
-  // The session ends after 12 of its 40 trials, which are drawn at random.
+  // The session ends after 12 trials, which are drawn at random from the 40 planned ones.
   const auto cut = replaced(text, block, block + "\ntrials = 12");
   CHECK(accuracy(cut, "always the same key") == Approx(0.75));
 }

@@ -14,7 +14,7 @@ namespace {
 
 enum class Acknowledge { after_commit, before_commit };
 
-// number of trials that the careless writer collects before it commits them
+// a writer that acknowledges trials before it commits them (the negative control) commits this many at once
 constexpr std::size_t kHeldBack = 8;
 
 /// Continues the interrupted session of a database, or begins a new one, and appends trials for ever.

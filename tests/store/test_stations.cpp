@@ -213,7 +213,7 @@ TEST_CASE(
   std::filesystem::permissions(db, std::filesystem::perms(0640));
   const auto copy = backup(db, {dir, 9});
   CHECK((status_of(copy.path).st_mode & 0777) == 0640);
-  CHECK(status_of(copy.path).st_uid == 0);  // it belongs to root, who owns the folder of backups
+  CHECK(status_of(copy.path).st_uid == 0);  // the backup belongs to root, as does its folder
   std::filesystem::remove(db + ".lock");
   std::filesystem::resize_file(db, 6000);
   restore_backup(db, {dir, ""});

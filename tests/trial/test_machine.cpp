@@ -69,7 +69,7 @@ TEST_CASE("an exploration runs cue, stimulus, answer, interval, and counts from 
   const auto asked = machine.start(0);
   CHECK(enters(asked, Phase::cue));
   CHECK(has(asked, ActionKind::present, 0));
-  CHECK_FALSE(machine.wake_ns());  // the next time is unknown before the onset
+  CHECK_FALSE(machine.wake_ns());  // the next wake-up time is unknown before the onset
   machine.handle({10 * ms, EventKind::tick, 0});
   CHECK_FALSE(enters(machine.handle({500 * ms, EventKind::onset, 0}), Phase::stimulus));
   CHECK(machine.wake_ns() == 500 * ms);
@@ -155,7 +155,7 @@ TEST_CASE("two intervals are presented in turn and answers open at the end of th
   Machine machine(two_intervals());
   CHECK(has(machine.start(0), ActionKind::present, 0));
   machine.handle({10 * ms, EventKind::onset, 0});
-  machine.handle({2520 * ms, EventKind::onset, 1});  // both onsets are reported at the beginning
+  machine.handle({2520 * ms, EventKind::onset, 1});  // this onset is reported in advance
   machine.handle({500 * ms, EventKind::answer, 0});
   CHECK(enters(machine.handle({1510 * ms, EventKind::tick, 0}), Phase::gap));
   CHECK(machine.wake_ns() == 2520 * ms);
@@ -268,7 +268,7 @@ TEST_CASE("a trial ends no sooner than its last frame has been heard", "[trial]"
   auto machine = answered_after_two();
   machine.handle({9000 * ms, EventKind::tick, 0});
   CHECK_FALSE(machine.done());
-  CHECK_FALSE(machine.wake_ns());  // it waits for an event of the drive, not for a time
+  CHECK_FALSE(machine.wake_ns());  // it waits for the `heard` event, not for a time
   machine.handle({9010 * ms, EventKind::heard, 1});
   CHECK(machine.done());
   CHECK(machine.result().outcome == Outcome::answered);
@@ -315,7 +315,7 @@ TEST_CASE("a plan that cannot run is refused with what is wrong", "[trial]") {
 
 namespace {
 
-/// Simulates a drive that replies to `present` with onsets, and sometimes reports what was heard.
+/// Simulates a drive that replies to `present` with onsets, and sometimes with `heard` events.
 struct Drive {
   Machine& machine;
   const Timing& plan;

@@ -37,7 +37,7 @@ Item {
                 desk.pressed(50)
                 tap()
                 if (k === 0) tryVerify(() => centre() === "#ffffff")
-                wait(410)  // an edge is matched with a tap only within a shorter time
+                wait(410)  // a tap is matched only with an edge of the last 400 ms
             }
             tryCompare(desk.latency, "pairs", 10)
             compare(inspector.cutTexts(page), [])

@@ -82,7 +82,7 @@ Item {
             const first = findChild(view, "answer0").children[0], second = findChild(view, "answer1").children[0]
             compare(first.font.pixelSize, second.font.pixelSize)
             verify(first.font.pixelSize >= 3.4 * row.panel.mm)
-            // Only if all answers are short do they have their normal size.
+            // Answers have their normal size only if all of them are short.
             compare(first.font.pixelSize === Math.round(4 * Math.min(row.panel.width / 80, row.panel.height / 48)), row.tag === "short")
         }
 

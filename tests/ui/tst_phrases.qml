@@ -65,13 +65,13 @@ Item {
             shown.width = widthOf("なめらかな部分が印で終わるように、つまみを動かしてく") + 2
             shown.text = text
             compare(shown.lineCount, 2)
-            // without phrases, the line breaks inside one
+            // text that was not divided into phrases breaks inside a phrase
             verify(shown.lines[0] > widthOf("なめらかな部分が印で終わるように、つまみを動か"))
             shown.text = japanese.phrased(text)
             compare(shown.lineCount, 2)
             fuzzyCompare(shown.lines[0], widthOf("なめらかな部分が印で終わるように、つまみを"), 2)
             shown.width = widthOf("なめらか")
-            verify(shown.contentWidth <= shown.width + 1)  // so a phrase that is longer than a line is broken
+            verify(shown.contentWidth <= shown.width + 1)  // a phrase longer than a line is broken
         }
 
         function test_words_in_other_languages_and_scripts_are_not_changed() {

@@ -108,7 +108,7 @@ Item {
                 room.pressed(50)
                 mousePress(field)
                 mouseRelease(field)
-                wait(410)  // an edge is matched with a tap only within a shorter time
+                wait(410)  // a tap is matched only with an edge of the last 400 ms
             }
             tryCompare(room.latency, "pairs", 10)
             const offset = room.keepLatency()
