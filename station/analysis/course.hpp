@@ -7,7 +7,7 @@
 
 namespace turnpoint::analysis {
 
-/// One level that a procedure presented, and the answer to it, for plotting an adaptive trace.
+/// One trial in a plot of levels over trials: the level that the procedure presented, and the answer.
 struct TracePoint {
   int trial_index = 0;
   double level = 0;
@@ -26,12 +26,14 @@ std::vector<Trace> traces(const std::vector<TrialRecord>& trials);
 struct Bias {
   int answered = 0, second_choice = 0;
   double share_second = 0;
-  Interval interval;                ///< Wilson interval of the share
-  std::optional<double> criterion;  ///< c, log-linear; positive if the second choice is avoided
+  Interval interval;  ///< Wilson interval of the share
+  /// criterion c with the log-linear correction (signal_detection.hpp); positive if the second choice is
+  /// avoided
+  std::optional<double> criterion;
   std::vector<Statement> statements;
 };
 /// Computes the bias from answered experimental trials with response 0 or 1; empty if there are none. Adds a
-/// statement if the interval of the share excludes the share of trials in which the second choice was right.
+/// statement if `interval` does not contain the share of trials in which the second choice was right.
 std::optional<Bias> choice_bias(const std::vector<TrialRecord>& trials);
 
 struct Proportion {
@@ -43,7 +45,7 @@ struct Proportion {
 /// answers. Empty if no catch trial was answered.
 std::optional<Proportion> catch_accuracy(const std::vector<TrialRecord>& trials);
 
-/// A linear trend over the session with its 95 % interval (normal theory).
+/// A linear trend over the session. Its 95 % interval assumes a normally distributed estimate.
 struct Trend {
   double per_100_trials = 0;
   Interval interval;

@@ -9,10 +9,12 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// if Pc is nearer than this to 1/2, use the limits, because L^3 loses precision
+/// If the proportion correct Pc differs from 1/2 by less than this, use the formulas' limits at 1/2. In the
+/// formulas themselves, terms cancel down to the order of logit(Pc)^3, which loses precision.
 constexpr double kNearChance = 1e-3;
 
-/// The factor h(L) of the variance of the decision time, which is (a / s)^4 h(L).
+/// The variance of the decision time is (a / s)^4 h(L), with the boundary separation a, the scaling parameter
+/// s and L = logit(proportion correct).
 double h(double L) {
   L = std::abs(L);
   // near 0, use the Taylor series, because the closed form loses digits by cancellation
@@ -21,7 +23,7 @@ double h(double L) {
   return (1 - 2 * L * e - e * e) / (2 * L * L * L * (1 + e) * (1 + e));
 }
 
-/// The factor m(L) of the mean decision time, which is (a / s)^2 m(L).
+/// The mean decision time is (a / s)^2 m(L), with the same symbols.
 double m(double L) { return std::abs(L) < 1e-4 ? 0.25 : std::tanh(L / 2) / (2 * L); }
 
 double corrected(const EzMoments& moments) {
@@ -81,8 +83,9 @@ SharedEzResult shared_ez_diffusion(const std::vector<EzMoments>& conditions) {
     weight.push_back(0);
     if (!usable) continue;
     // Relative variance of this condition's estimate of (a / s)^4. The first term is the sampling error of
-    // the variance of the times, whose kurtosis exceeds that of a normal distribution by about 9 cv^2. The
-    // second is the sampling error of ln h, from that of L.
+    // the variance of the times, whose kurtosis exceeds that of a normal distribution by about 9 cv^2; cv is
+    // the coefficient of variation of the decision time. The second term is the sampling error of ln h, which
+    // follows from the sampling error of L.
     const double l = L.back(), cv2 = h(l) / (m(l) * m(l)), step = 1e-3;
     const double dlnh = (std::log(h(l + step)) - std::log(h(l - step))) / (2 * step);
     const double spread = (2 + 9 * cv2) / correct + dlnh * dlnh / (moments.trials * p * (1 - p));

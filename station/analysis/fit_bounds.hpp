@@ -3,9 +3,8 @@
 
 namespace turnpoint::analysis {
 
-/// This header holds code that a fit and its bootstrap share. checked() sorts the counts by level, merges
-/// equal levels and removes levels without trials. It throws std::invalid_argument for impossible counts or
-/// options.
+/// Helpers for fits and their intervals. checked() sorts the counts by level, merges equal levels and removes
+/// levels without trials. It throws std::invalid_argument for impossible counts or options.
 std::vector<LevelCount> checked(const std::vector<LevelCount>& data, const FitOptions& options);
 /// Returns the reason why checked counts cannot be fitted: no trials, too few, or an answer that becomes
 /// rarer as the level rises. The reason does not depend on how the levels were chosen.
@@ -13,7 +12,7 @@ std::optional<Statement> unusable(const std::vector<LevelCount>& data, const Fit
 AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, Scale scale);
 ThetaBounds theta_bounds(const AxisCounts& counts, const FitOptions& options);
 Psychometric from_theta(const Theta& theta, const FitOptions& options);
-/// Adds a statement for each interval that touches a bound.
+/// Adds a statement for each interval of which an end lies on a bound of the parameter.
 void say_what_touches(PsychometricIntervals& intervals);
 
 }  // namespace turnpoint::analysis

@@ -8,8 +8,8 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// Solves the damped system for the free parameters by Cholesky decomposition. Only its lower half is read.
-/// Fixed parameters get rows of the unit matrix and a step of 0. Returns false if the system is not positive
+/// Computes one Fisher-scoring step: solves a x = b for the free parameters by Cholesky decomposition. Only
+/// the lower half of `a` is read. Fixed parameters get a step of 0. Returns false if `a` is not positive
 /// definite.
 bool solve(const std::array<std::array<double, 4>, 4>& a, const std::array<double, 4>& b,
            const std::array<bool, 4>& free, std::array<double, 4>& x) {
@@ -23,7 +23,7 @@ bool solve(const std::array<std::array<double, 4>, 4>& a, const std::array<doubl
   }
   const Eigen::LLT<Eigen::Matrix4d> factor(system);
   if (factor.info() != Eigen::Success || !factor.matrixLLT().allFinite())
-    return false;  // written so that NaN also counts as not positive
+    return false;  // if there are NaNs, this condition is true too
   Eigen::Map<Eigen::Vector4d>(x.data()) = factor.solve(right);
   return true;
 }
@@ -64,7 +64,7 @@ std::array<double, 4> Likelihood::gradient_of_probability(const Theta& theta, co
                                                           double u) const {
   const double rate = std::exp(theta[1]), height = 1 - theta[3] - theta[2], from = rate * (u - theta[0]);
   const double f = core(function_, from + at.z), df = core_derivative(function_, from + at.z);
-  // Without a signal, `from` is minus infinity; the slope's derivative is then 0.
+  // In trials without a signal, `from` is minus infinity and the derivative with respect to the slope is 0.
   std::array<double, 4> dp{-height * df * rate, df > 0 ? height * df * from : 0,
                            -f + height * df * at.dz_dlapse, 1 - f + height * df * at.dz_dguess};
   if (guess_ == Guess::tied_to_lapse) dp[2] += dp[3], dp[3] = 0;
@@ -132,9 +132,9 @@ Likelihood::Maximum Likelihood::climb(Theta start) const {
 }
 
 Likelihood::Maximum Likelihood::steepest(const Maximum& found) const {
-  // If the answers jump between two levels, ever steeper functions fit equally well, and the climb ends at an
-  // arbitrary steep slope. Returns the steepest slope allowed in that case; callers recognise a step by this
-  // bound.
+  // If the answers jump between two levels, functions of any greater steepness fit equally well, and the
+  // climb ends at an arbitrary slope. In that case return the upper bound of the slope, by which callers
+  // recognise a step.
   std::vector<double> thresholds{found.theta[0]};
   for (std::size_t i = 1; i < counts_.u.size(); ++i)
     if (counts_.u[i - 1] != kNoise && counts_.u[i - 1] <= found.theta[0] && found.theta[0] <= counts_.u[i])

@@ -10,17 +10,17 @@ namespace turnpoint::analysis {
 /// Keeps logarithms finite if rounding makes a probability 0 or 1.
 constexpr double kProbabilityFloor = 1e-12;
 
-/// The parameters that the optimiser varies: threshold on the axis, ln rate, lapse, guess. A parameter whose
-/// two bounds are equal is fixed. With Guess::tied_to_lapse, the guess equals the lapse.
+/// The parameters that the optimiser varies: threshold (as an axis_position()), ln rate, lapse, guess. A
+/// parameter whose two bounds are equal is fixed. With Guess::tied_to_lapse, the guess equals the lapse.
 using Theta = std::array<double, 4>;
 struct ThetaBounds {
   Theta low{}, high{};
 };
 
-/// Numbers of trials and of positive answers by level on the axis. The replicates of a bootstrap differ only
-/// in `positive`.
+/// Numbers of trials and of positive answers at each level. `u` is the level's axis_position(). Only
+/// `positive` differs between the replicates of a bootstrap.
 struct AxisCounts {
-  std::vector<double> u, trials, positive;  ///< u is ascending; the first may be kNoise
+  std::vector<double> u, trials, positive;  ///< u is ascending; its first may be kNoise
   /// Returns the lowest level with a signal.
   double lowest() const { return u.front() == kNoise && u.size() > 1 ? u[1] : u.front(); }
 };

@@ -37,14 +37,14 @@ class PosteriorGrid {
   /// end is not excluded if, under a flat prior, the likelihood ratio between the maximum and that end stays
   /// below its 95 % limit.
   bool undetermined(Parameter parameter) const { return open_low(parameter) && open_high(parameter); }
-  /// True if the data do not exclude the low or the high end. There the parameter is limited by the prior,
-  /// not by the data.
+  /// open_low() is true if the data do not exclude the low end of the prior, open_high() if they do not
+  /// exclude its high end. There the prior limits the parameter, not the data.
   bool open_low(Parameter parameter) const;
   bool open_high(Parameter parameter) const;
 
  private:
   struct Asymptotes {
-    double low = 0, range = 1;  ///< guess and 1 - guess - lapse
+    double low = 0, range = 1;  ///< `low` is the guess, `range` is 1 - guess - lapse
   };
   void evaluate(const Box& box);
   void add_log_likelihoods(const std::vector<double>& between);

@@ -13,8 +13,8 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// A quantity that gets an interval: its index in theta and, for a crossing level, the probability at
-/// theta[0].
+/// A quantity for which an interval is computed: the element of theta with the index `parameter`. With an
+/// `anchor`, theta[0] is the level at which the probability is `anchor`, instead of the threshold.
 struct Quantity {
   int parameter;
   std::optional<double> anchor;
@@ -47,8 +47,8 @@ struct Replicator {
   Likelihood::Maximum fit(const AxisCounts& drawn) const {
     const auto of = likelihood(drawn, bounds);
     const auto first = of.climb(best);
-    // Climb also from the middle of the box, because the first climb can end in a local maximum on the lapse
-    // bound.
+    // Climb also from the middle of the allowed thresholds and lapses, because the first climb can end in a
+    // local maximum with the lapse on its bound.
     Theta other = best;
     other[0] = (bounds.low[0] + bounds.high[0]) / 2;
     other[2] = (bounds.low[2] + bounds.high[2]) / 2;
@@ -98,8 +98,8 @@ double profile_end(const Replicator& base, const Quantity& quantity, Theta start
   auto at_bound = base.held(base.counts, quantity, bound, start);
   if (2 * (at_bound.negative_log - best_cost) <= critical) return bound;
   for (int i = 0; i < 40 && std::abs(outside - inside) > 1e-5 * (1 + std::abs(inside)); ++i) {
-    // The bound is usually far away. The first steps cut off three quarters of the distance, because the end
-    // of the interval is nearer to the estimate.
+    // The bound is usually far away and the end of the interval near the estimate. Therefore each of the
+    // first three steps cuts off three quarters of the distance.
     const double middle = i < 3 ? inside + (outside - inside) / 4 : (inside + outside) / 2;
     const auto found = base.held(base.counts, quantity, middle, start);
     if (2 * (found.negative_log - best_cost) <= critical) {

@@ -49,10 +49,10 @@ struct Detection {
   std::optional<Estimate> d_prime, criterion;
 };
 
-/// Analyses answered experimental trials that have a right answer. Conditions come in this order. For each
-/// condition, the levels come first, ascending, and then all levels together. With more than `most_levels`
-/// levels, as after an adaptive procedure, only all levels together are returned. `positive` is the choice
-/// that means "yes".
+/// Analyses answered experimental trials that have a right answer. The results come in the order of
+/// conditions_of(). For each condition, the levels come first, ascending, and then all levels together. With
+/// more than `most_levels` levels, as after an adaptive procedure, only all levels together are returned.
+/// `positive` is the choice that means "yes".
 std::vector<Detection> detect(const std::vector<TrialRecord>& trials, const std::vector<std::string>& order,
                               Detecting detecting, int positive, std::size_t most_levels = 8);
 

@@ -49,8 +49,8 @@ struct TimeExclusion {
   std::optional<double> mad;  ///< excludes times further from the median than this multiple of 1.4826 MAD
 };
 
-/// Returns true for each time that is kept. The median is that of all times of at least `below_s`. If the MAD
-/// is 0, it excludes no trial.
+/// Returns true for each time that is kept. Median and MAD (median absolute deviation) are computed from the
+/// times of at least `below_s`. If the MAD is 0, no time is excluded by it.
 std::vector<bool> keep_times(const std::vector<double>& times_s, const TimeExclusion& rule);
 
 }  // namespace turnpoint::analysis

@@ -61,8 +61,8 @@ Cell pooled(const Group& group) {
   return all;
 }
 
-/// Computes the BIS of each condition: standardises the scores over all cells, then averages over the
-/// condition's cells.
+/// Computes the balanced integration score (BIS) of each condition: standardises the scores over the cells of
+/// all conditions, then averages over the condition's cells.
 void add_balanced(const std::vector<Group>& groups, std::vector<Measures>& result) {
   if (groups.size() < 2) return;
   std::vector<double> proportion, time;

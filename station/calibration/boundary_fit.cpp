@@ -16,7 +16,7 @@ struct Line {
   double rms = 0;
 };
 
-// Weighted fit of x = a - c f^-p.
+// Fits position = a - c frequency^-exponent to the points by weighted least squares; a and c are unknown.
 Line fit_line(const std::vector<BoundaryPoint>& points, const std::vector<double>& weights, double exponent) {
   std::vector<std::vector<double>> rows;
   std::vector<double> values;
@@ -35,7 +35,8 @@ Line fit_line(const std::vector<BoundaryPoint>& points, const std::vector<double
   return line;
 }
 
-// Adds a quadratic term in 1/f to the line. Returns its estimate divided by its standard error.
+// Fits a parabola in 1/frequency to the positions. Returns the absolute value of the quadratic coefficient
+// divided by its standard error.
 std::optional<double> curvature(const std::vector<BoundaryPoint>& points,
                                 const std::vector<double>& weights) {
   if (points.size() < 4) return std::nullopt;

@@ -15,10 +15,11 @@ struct SoundPoint {
   double level_dB = 0;
 };
 
-/// The fitted measurements of a rig on one day. Sessions refer to this file by its SHA-256.
+/// What was fitted to the measurements of a rig on one day. Sessions refer to the calibration file by its
+/// SHA-256.
 struct Calibration {
   std::string rig_name;
-  std::string rig_sha256;  ///< hash of the rig file to which it belongs
+  std::string rig_sha256;  ///< hash of the rig file for which the calibration was made
   std::string made_on;     ///< YYYY-MM-DD
   int valid_days = 90;
   std::string note;
@@ -57,15 +58,15 @@ Calibration fit_measurements(const Measurements& measurements);
 /// text::BadInput or std::system_error.
 std::string to_toml(const Calibration& calibration);
 Calibration load(const std::string& path);
-/// The same for text that is already in memory (a resumed session); `path` is only used in messages.
+/// Like load(), for text that is already in memory (a resumed session). `path` is only used in messages.
 Calibration parse(const std::string& text, const std::string& path);
 
-/// The number of days that it is still valid on a date (YYYY-MM-DD). Negative once it has expired: minus the
-/// number of days since.
+/// Returns for how many more days the calibration is valid, counted from `today` (YYYY-MM-DD). If it has
+/// expired, returns minus the number of days since then.
 int days_left(const Calibration& calibration, const std::string& today);
 
-/// The reasons why sessions on that rig must not use it on that day: another rig, expired, or nothing
-/// measured. Empty if there are none.
+/// Returns why sessions must not use the calibration: it was made for another rig file, it is not valid on
+/// the day `today`, or nothing was measured. Empty if they may use it.
 std::vector<std::string> problems(const Calibration& calibration, const std::string& rig_sha256,
                                   const std::string& today);
 

@@ -21,7 +21,7 @@ std::string quoted(const std::string& plain) {
   return out + "\"";
 }
 
-// Writes one array of numbers per key, from a member of each point.
+// Writes one line `key = [...]` per key, with one number for each point.
 template <typename Points, typename Get>
 std::string numbers(const char* key, const Points& points, Get&& get) {
   std::string out = fmt::format("{} = [", key);

@@ -17,25 +17,27 @@ struct BoundaryPoint {
   double sd_m = 0;
 };
 
-/// x = apex - constant f^-exponent. Every lossless feature of a linear taper follows this law, with exponent
-/// 1 on a membrane and 1/2 on a plate. In between, both tension and bending matter.
+/// A boundary's position x as a function of frequency f: x = apex - constant f^-exponent. Without loss, the
+/// boundaries on a linear taper follow this law, with exponent 1 on a membrane and 1/2 on a plate. If both
+/// tension and bending matter, the exponent lies in between.
 struct BoundaryFit {
   double apex_m = 0, apex_sd_m = 0;
   double constant = 0, constant_sd = 0;  ///< m Hz^exponent
   double exponent = 1;
-  double residual_m = 0;            ///< rms; 0 with two points
-  std::vector<double> residuals_m;  ///< for each point
-  /// Residuals with the exponents 1 and 1/2. With three or more points, the smaller one tells membrane from
-  /// plate.
+  double residual_m = 0;            ///< rms of the residuals; 0 with two points
+  std::vector<double> residuals_m;  ///< measured minus fitted position of each point
+  /// Rms of the residuals with the exponents 1 and 1/2. With three or more points, the smaller one tells
+  /// membrane from plate.
   double membrane_residual_m = 0, plate_residual_m = 0;
   enum class Law { membrane, plate } law = Law::membrane;
-  /// Curvature against 1/f in standard errors (needs four points or more). A value above 2 indicates bending.
+  /// Quadratic coefficient of a parabola in 1/f divided by its standard error; empty with fewer than four
+  /// points. A value above 2 indicates bending.
   std::optional<double> curvature_z;
 };
 
-/// Least squares, weighted if all uncertainties are known. `law` gives the type of the surface; without it,
-/// at least three points are needed to determine it. Throws terms::UsageError for fewer than two points
-/// (three without a law) and for equal frequencies.
+/// Fits the law by least squares, weighted if all uncertainties are known. `law` says whether the surface is
+/// a membrane or a plate; without it, at least three points are needed to find out. Throws terms::UsageError
+/// for fewer than two points (three without a law) and for equal frequencies.
 BoundaryFit fit_boundaries(const std::vector<BoundaryPoint>& points, std::optional<BoundaryFit::Law> law);
 
 /// The boundary according to the fitted law.
@@ -48,21 +50,21 @@ struct ResponsePoint {
   double phase_rad = 0;
 };
 
-/// A transducer's smoothed response: local quadratic in frequency over `window` points, in log amplitude and
-/// unwrapped phase.
+/// A transducer's smoothed response: for each point, a parabola in frequency is fitted to the log amplitudes
+/// and unwrapped phases of the nearest `window` points.
 struct ResponseFit {
   std::vector<ResponsePoint> points;
   double residual_dB = 0;  ///< rms deviation of the measured points
   double residual_rad = 0;
-  double low_Hz = 0, high_Hz = 0;  ///< band in which equalisation stays within the cap
+  double low_Hz = 0, high_Hz = 0;  ///< band in which equalisation stays within equalisation_cap_dB
 };
 
 /// The largest equalisation. A frequency that needs more than this, relative to the best frequency, is
 /// outside the band.
 inline constexpr double equalisation_cap_dB = 20;
 
-/// Throws terms::UsageError for fewer than 5 points, frequencies that do not ascend, or an amplitude that is
-/// not above 0.
+/// Smooths a sweep. Throws terms::UsageError for fewer than 5 points, frequencies that do not ascend, or an
+/// amplitude that is not above 0.
 ResponseFit fit_response(const std::vector<ResponsePoint>& sweep, int window = 5);
 
 /// A resonance of the surface found in a sweep.
@@ -87,10 +89,11 @@ struct FrictionPoint {
 };
 struct FrictionFit {
   std::vector<FrictionPoint> points;
-  double residual = 0;  ///< rms
+  double residual = 0;  ///< rms of measured minus fitted relative friction
 };
 
-/// Throws terms::UsageError for fewer than two displacements, or values outside 0 to 1.5.
+/// Fits friction that never rises with displacement. Throws terms::UsageError for fewer than two
+/// displacements, or values outside 0 to 1.5.
 FrictionFit fit_friction(std::vector<FrictionPoint> measured);
 
 }  // namespace turnpoint::calibration

@@ -16,15 +16,15 @@ struct Delay {
 
 /// The reference for the touches. A button under the finger (or a stylus that closes a contact) gives the
 /// time at which the panel was touched, so it measures input latency. A photodiode on the square that flashes
-/// at each touch measures display latency, up to the light.
+/// on the screen at each touch gives the time of the light, so it measures display latency.
 enum class LatencyReference { button, photodiode };
 
-/// The latency of a touch panel, relative to the time stamps that its answers have.
+/// The latency of a touch panel, before and after the time stamp that a touch gets.
 struct PanelLatency {
   std::string made_on;         ///< YYYY-MM-DD
   std::string quality;         ///< source of the touches' time stamps: kernel | toolkit
-  std::optional<Delay> touch;  ///< from the finger to the time stamp
-  std::optional<Delay> flash;  ///< from the time stamp to light
+  std::optional<Delay> touch;  ///< from the finger's contact to the touch's time stamp
+  std::optional<Delay> flash;  ///< from the touch's time stamp to the light on the screen
 };
 
 /// The smallest number of pairs for a latency. Fewer would say little about jitter.

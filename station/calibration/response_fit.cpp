@@ -79,7 +79,7 @@ ResponseFit fit_response(const std::vector<ResponsePoint>& sweep, int window) {
   fit.residual_dB = std::sqrt(fit.residual_dB);
   fit.residual_rad = std::sqrt(fit.residual_rad);
   const double least = best * std::pow(10, -equalisation_cap_dB / 20);
-  // The band around the best frequency in which no point falls below the cap.
+  // Find the band around the best frequency in which no point needs more than the largest equalisation.
   std::size_t peak = 0;
   for (std::size_t k = 0; k < fit.points.size(); ++k)
     if (fit.points[k].m_per_full_scale == best) peak = k;

@@ -13,7 +13,7 @@ namespace {
 
 using Levels = std::vector<std::vector<std::size_t>>;
 
-/// The number of combinations is not counted beyond this: no design repeats a value more often.
+/// Larger numbers of combinations count as this one, to avoid overflow. No design repeats a value more often.
 constexpr std::size_t kMost = 1'000'000;
 
 /// Returns the number of combinations of these factors' levels, at most kMost.

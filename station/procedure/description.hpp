@@ -26,11 +26,12 @@ struct Description {
   /// Reads the keys of this kind from a [[procedure]] table. The keys name, kind, level and copy have already
   /// been read.
   void (*read)(text::TableReader& reader, Spec& spec);
-  /// Adds the problems of a specification. It does not matter from which file the specification comes.
+  /// Adds what is wrong in a specification to `problems`.
   void (*validate)(const Spec& spec, std::vector<Problem>& problems);
   std::unique_ptr<Procedure> (*make)(const Spec& spec, const Context& context, const random::Key& key);
-  /// Returns the share of answers of 1 on which the levels converge. `least` and `most` are the smallest and
-  /// largest possible share. Empty if the levels do not converge, or if the share is unknown.
+  /// Returns the proportion of answers of 1 at the level on which the procedure converges. `least` and `most`
+  /// are the participant's lowest and highest probability of an answer of 1. Empty if the procedure does not
+  /// converge, or if the proportion is unknown.
   std::optional<double> (*settles_at)(const Spec& spec, double least, double most);
 };
 

@@ -7,7 +7,7 @@
 namespace turnpoint::procedure {
 
 /// Whether an axis holds levels to present, or values of a parameter. Only a parameter may be tied to another
-/// one.
+/// parameter.
 enum class Axis { stimuli, parameter };
 
 /// Reads a grid in one of the forms { from, to, step }, { from, to, count }, { log_from, log_to, count }, {

@@ -40,7 +40,8 @@ double normal_cdf(double z) {
   const double density = random::exp(-0.5 * a * a) * 0.39894228040143267794;
   double tail = 0;
   if (a < 4) {
-    // Phi - 1/2 = density (a + a^3/3 + a^5/15 + ...). All terms are positive, so no digits cancel.
+    // With density = phi(a): Phi(a) - 1/2 = density (a + a^3/3 + a^5/15 + ...). All terms are positive, so no
+    // digits cancel.
     double term = a, sum = a;
     for (int n = 3; term > 1e-18 * sum; n += 2) term *= a * a / n, sum += term;
     tail = 0.5 - density * sum;

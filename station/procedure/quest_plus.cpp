@@ -145,8 +145,8 @@ void validate_posterior(const Spec& spec, std::vector<Problem>& problems) {
   validate_prior("prior.slope", spec.prior_slope, spec.slope, problems);
   validate_prior("prior.guess", spec.prior_guess, spec.guess, problems);
   validate_prior("prior.lapse", spec.prior_lapse, spec.lapse, problems);
-  // Largest number of combinations that may have to be evaluated per trial. It takes some seconds on a small
-  // computer.
+  // Largest number of combinations that may have to be evaluated per trial. Evaluating that many takes some
+  // seconds on a small computer.
   constexpr double most = 5e7;
   double size = static_cast<double>(spec.stimuli.values.size());
   for (const auto* grid : {&spec.threshold, &spec.slope, &spec.guess, &spec.lapse})
@@ -163,7 +163,8 @@ std::unique_ptr<Procedure> make_quest_plus(const Spec& spec, const Context&, con
   return std::make_unique<QuestPlus>(spec);
 }
 
-/// Returns the value of the assumed function at its threshold.
+/// Returns the probability of an answer of 1 at the threshold of the assumed function, whose asymptotes are
+/// `least` and `most`.
 std::optional<double> share_at_threshold(const Spec& spec, double least, double most) {
   const double way = spec.function == Function::weibull ? 1 - std::exp(-1.0) : 0.5;
   return least + way * (most - least);

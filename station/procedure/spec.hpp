@@ -48,8 +48,8 @@ struct Stop {
   StopRule rule = StopRule::any;
 };
 
-/// The content of a [[procedure]] table, after `copy` was applied. Members that the kind does not use are
-/// empty.
+/// The content of a [[procedure]] table, including the keys that it copies from another procedure. Members
+/// that the kind does not use are empty.
 struct Spec {
   std::string name;
   Kind kind = Kind::constant_stimuli;
@@ -91,12 +91,12 @@ const char* name(Kind kind);  ///< the kind's name in a protocol: "constant-stim
 std::optional<Kind> parse_kind(const std::string& text);
 std::vector<std::string> kind_names();
 
-/// One problem of a spec: its key, what is wrong, what is allowed.
+/// One problem of a specification: the key, what is wrong, and what is allowed.
 struct Problem {
   std::string key, what, allowed;
 };
 
-/// Returns all problems of a specification, from whichever file it comes. Empty if it can run.
+/// Returns all problems of a specification; empty if a procedure can run with it.
 std::vector<Problem> validate(const Spec& spec);
 /// Returns warnings about settings that work but are probably mistakes: a grid with only one stimulus, steps
 /// that miss the target, a grid whose only lapse is 0.

@@ -13,7 +13,8 @@ Staircase::Staircase(const Spec& spec) : Track(spec) {
   steps_down_ = spec.step_down.empty() ? spec.step : spec.step_down;
   steps_up_ = spec.step_up.empty() ? spec.step : spec.step_up;
   if (spec.kind == Kind::weighted_up_down) {
-    // At the target, p is the probability of a step down, and steps balance if p S_down = (1 - p) S_up.
+    // At the target level, an answer of 1 has the probability `target` and causes a step down. Steps balance
+    // there if target * step_down = (1 - target) * step_up.
     const double ratio = *spec.target / (1 - *spec.target);
     if (spec.step_up.empty())
       for (steps_up_ = steps_down_; auto& step : steps_up_) step *= ratio;
@@ -125,7 +126,8 @@ std::unique_ptr<Procedure> make_staircase(const Spec& spec, const Context&, cons
   return std::make_unique<Staircase>(spec);
 }
 
-/// Returns the proportion at which steps down and up balance (Garcia-Perez 1998). Equal steps give .5^(1/n).
+/// Returns the proportion of answers of 1 at which steps down and steps up balance (Garcia-Perez 1998). If
+/// both steps are equal, it is 0.5^(1 / n_down).
 std::optional<double> staircase_target(const Spec& spec, double, double) {
   if (spec.target) return spec.target;
   const auto& down = spec.step_down.empty() ? spec.step : spec.step_down;

@@ -8,9 +8,9 @@
 
 namespace turnpoint::procedure {
 
-/// What a procedure does if it gets given answers.
+/// The levels that a procedure presents if the participant gives certain answers.
 struct Trace {
-  std::vector<double> levels;  ///< the level that was presented for each answer
+  std::vector<double> levels;  ///< the level to which each answer was given
   std::optional<double> next;  ///< the next level; empty if the procedure has stopped
   std::map<std::string, Estimate> estimates;
   std::optional<double> entropy_nats;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kRepeats = 3, kSpentAtMost = 20;
 constexpr double kLargest = 1e300, kSmallest = 1e-300;
-/// Upper limit for the exponent of a step's factor. After the step, the level's limits apply.
+/// A step multiplies the level by exp(exponent). This limit of the exponent keeps the factor finite.
 constexpr double kLargestExponent = 690;
 
 double factor(double exponent) {
@@ -38,8 +38,8 @@ std::optional<Proposal> Track::next() const {
 
 void Track::record(Answer answer) {
   if (answer == Answer::none) {
-    // Repeat the same level. After three repeats one trial of the budget is used up, so that this cannot go
-    // on for ever.
+    // Repeat the same level. After three repeats, one trial counts as used up, so that the procedure ends
+    // even if nobody answers.
     if (++unanswered_ > kRepeats) unanswered_ = 0, ++spent_;
     return;
   }
