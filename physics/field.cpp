@@ -123,7 +123,8 @@ std::string validity_of(const Surface& surface, Model model) {
     case Model::edge:
       return "positions only";
     case Model::airy:
-      return "leaves out " + loss + "the flux correction and the width's change away from x0";
+      return "leaves out " + loss +
+             "the flux correction and the change of the width away from the turning point";
     case Model::seed:
       return "leaves out the flux correction sqrt(W0/W) and higher transverse modes";
     case Model::uniform:

@@ -9,8 +9,8 @@ namespace turnpoint::observer {
 
 namespace {
 
-/// If drift times bound exceeds this value, an observer makes no errors, and the argument of exp() can be
-/// limited to it.
+/// If drift times bound exceeds this value, an observer makes no errors. The argument of exp() can then be
+/// limited to this value.
 constexpr double kSurest = 300;
 
 /// Returns the probability with which a time drawn from the inverse Gaussian distribution is accepted. It is

@@ -61,7 +61,7 @@ struct BlockStart {
 /// One tone of one interval, as it was driven.
 struct ToneRow {
   int interval_index = 0;  ///< from 0, in the order of presentation
-  int scene_index = 0;     ///< position within the interval's sequence
+  int scene_index = 0;     ///< from 0, position of the tone's scene in the interval
   int tone_index = 0;
   std::string scene;
   std::optional<double> boundary_mm;

@@ -8,7 +8,7 @@ namespace turnpoint::system {
 
 /// The rights that the operating system granted to the audio thread, for the record and the screen.
 struct Rights {
-  bool asked = false;     ///< false for a synchronous stream, which needs no rights
+  bool asked = false;     ///< whether rights were requested; a synchronous stream needs none
   int fifo_priority = 0;  ///< 0: the thread is not real-time
   bool memory_locked = false;
   std::string note;  ///< why a right was denied; "" if none was

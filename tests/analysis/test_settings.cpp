@@ -34,7 +34,7 @@ TEST_CASE("Settings get their mean and scatter with intervals by Student's t and
   CHECK(all[0].sd->value == Approx(sd));
   CHECK(all[0].sd->interval.low == Approx(std::sqrt(32 / 16.012764)).epsilon(1e-6));
   CHECK(all[0].sd->interval.high == Approx(std::sqrt(32 / 1.689869)).epsilon(1e-6));
-  CHECK_FALSE(all[0].start_slope);  // all settings started from the same slider position
+  CHECK_FALSE(all[0].start_slope);  // no slope, because the slider always started at the same position
 }
 
 TEST_CASE("Settings that depend on the slider's start position are reported as such", "[analysis]") {

@@ -59,7 +59,7 @@ TEST_CASE("the middle of a protocol's levels is known for every procedure", "[pr
   CHECK(middle(shipped("friction-2ifc")) == Approx(-16.5));
   CHECK(middle(shipped("boundary-adaptive")) == Approx(12).margin(0.5));
   CHECK(middle(shipped("boundary-constant")) == Approx(12));
-  CHECK(middle(shipped("demo")) == Approx(18));  // a level of zero is not a magnitude
+  CHECK(middle(shipped("demo")) == Approx(18));  // the level 0 is left out
   CHECK(middle(shipped("two-spots-oddity")) == Approx(std::sqrt(80.0)));
   CHECK(middle(yes_no()) == Approx(0.1));
 }

@@ -44,7 +44,7 @@ def matrices(t, p, **kw):
 def free(m, b, which):
     fixed = [b.get_dofs(lambda x: np.isclose(x[0], 1)).all()]
     if which in ("x", "y"): fixed.append(b.get_dofs(lambda x: np.isclose(x[1], 0)).all())  # this component is odd in z
-    if which == "y": fixed.append(b.get_dofs(lambda x: np.isclose(x[0], 0)).all())         # and odd in y, too
+    if which == "y": fixed.append(b.get_dofs(lambda x: np.isclose(x[0], 0)).all())         # this component is odd in y, too
     return np.setdiff1d(np.arange(b.N), np.concatenate(fixed))
 
 def plane(t, nu, p=5, **kw):
