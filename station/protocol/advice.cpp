@@ -11,11 +11,11 @@ namespace {
 
 using text::number;
 
-// Reported just noticeable Weber fractions of friction range from 0.11 (Gueorguiev et al. 2017) to 0.2
-// (Fehlberg et al. 2022). Everybody feels a difference above the larger one.
+// Published just noticeable differences of friction range from a Weber fraction of 0.11 (Gueorguiev et al.
+// 2017) to 0.2 (Fehlberg et al. 2022). The advice assumes that everybody feels more than 0.2.
 constexpr double felt_by_all = 0.2;
 
-// The change of the scene's boundary (mm) and zone friction per unit of the factor.
+// How much one unit of the factor changes the value of this expression, such as a boundary in mm.
 double coefficient(const std::optional<Linear>& expression, const std::string& factor) {
   if (!expression || expression->absolute) return 0;
   for (const auto& [name, value] : expression->terms)
@@ -36,8 +36,8 @@ double largest(const std::vector<double>& levels) {
   return most;
 }
 
-// Levels must be well above the planner's possible error, at least four times the tolerance. If even the
-// largest level is smaller, the advice is about the tolerance instead of the level.
+// Each level must move the scene by at least four times the error that its tolerance allows the planner. If
+// even the largest level moves it by less, the advice is to change the tolerance instead of the levels.
 void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
   if (spec.kind != procedure::Kind::constant_stimuli || smallest(spec.values) == 0) return;
   for (const auto& name : scenes_used(advice.protocol)) {
@@ -81,8 +81,8 @@ void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
   }
 }
 
-// With separate steps up and down, a run converges where p(down) times the step down equals p(up) times the
-// step up (Kaernbach 1991, generalised by Garcia-Perez 1998).
+// If the steps up and down differ, a staircase converges where P(step down) * size of a step down = P(step
+// up) * size of a step up (Kaernbach 1991, generalised by Garcia-Perez 1998).
 void check_unequal_steps(AdviceList& advice, const procedure::Spec& spec) {
   if (spec.kind != procedure::Kind::up_down || spec.step_down.empty() || spec.step_up.empty()) return;
   const double down = spec.step_down.back(), up = spec.step_up.back();

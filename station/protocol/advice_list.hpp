@@ -6,7 +6,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/sources.hpp"
 
-// Internal to advice(): one function per subject.
+// Used only to implement advice(). Each function gives the advice on one subject.
 namespace turnpoint::protocol {
 
 /// Collects advice on a protocol, each piece at the line of its key.
@@ -25,16 +25,17 @@ struct AdviceList {
 /// The fastest responses to touch take about 0.15 s, so nobody can meet a shorter deadline than this.
 constexpr double shortest_deadline_s = 0.2;
 
-/// `procedure.levels.start`: the name of a procedure's key in KeyPlaces.
+/// The path of a procedure's key in KeyPlaces, such as `procedure.levels.start` for the procedure named
+/// `levels`.
 inline std::string key_of(const procedure::Spec& spec, const std::string& key) {
   return "procedure." + spec.name + "." + key;
 }
 
-/// The name of a key of a block or sequence in KeyPlaces: `block.main.trials` or
+/// The path of a key of a block or sequence in KeyPlaces: `block.main.trials` or
 /// `sequence.main.block.trials`.
 std::string key_of(const std::variant<Block, Sequence>& part, const std::string& key);
 
-/// The key that sets the levels of a procedure.
+/// The path of the key that sets the levels of a procedure.
 std::string levels_key(const procedure::Spec& spec);
 
 /// The proportion correct of somebody who guesses.
@@ -44,7 +45,8 @@ double chance(const Protocol& protocol);
 void advise_on_levels(AdviceList& advice);
 /// Checks which answers are right and how often, also in practice and catch trials.
 void advise_on_answers(AdviceList& advice);
-/// Finds mistaken units, deadlines that are too short, and events that come too late.
+/// Finds times that seem to be in the wrong unit, deadlines that are too short, and events that come too
+/// late.
 void advise_on_times(AdviceList& advice);
 /// Checks the grids, rates, thresholds and stopping rules of procedures.
 void advise_on_grids(AdviceList& advice);

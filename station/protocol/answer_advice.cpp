@@ -14,15 +14,15 @@ namespace {
 using procedure::Spec;
 using text::number;
 
-/// Counts over all cases: how often each answer is right, how often any answer is right, and the number of
-/// cases.
+/// Number of cases in which each answer is right (`times`), in which any answer is right (`scored`), and of
+/// all cases (`all`).
 struct Right {
   std::map<std::string, int> times;
   int scored = 0, all = 0;
 };
 
-// A case is one combination of a level with levels of the other factors in the comparisons. Designs with more
-// cases than this are not checked.
+// A case is one level, combined with one value of each other factor that the comparisons in `correct` use.
+// Designs with more cases than this are not checked.
 constexpr std::size_t most_cases = 20000;
 
 std::vector<Factors> cases_of(const Protocol& protocol, const std::string& level,
@@ -63,7 +63,7 @@ Right& operator+=(Right& sum, const Right& other) {
   return sum;
 }
 
-// If an answer is never right, or always right, scoring is pointless.
+// Reports an answer that is never right, or always right: scoring it would be pointless.
 void check_each_answer(AdviceList& advice) {
   const auto& protocol = advice.protocol;
   Right right;
@@ -123,8 +123,8 @@ void check_followed(AdviceList& advice, const Source& source) {
         "only");
 }
 
-// Checks that `max_run` can be kept: only a trial with another right answer ends a run of trials with the
-// same right answer.
+// Checks that an order exists that keeps `max_run`. A run of trials with the same right answer can be ended
+// only by a trial with another right answer.
 void check_runs(AdviceList& advice, const Spec& spec) {
   if (!spec.max_run || spec.values.empty()) return;
   const auto right = right_at(advice.protocol, spec.level, spec.values);
@@ -180,7 +180,8 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
     // a catch trial without a signal is easy too
     if (answer_rule(protocol, trials->factor).kind == AnswerKind::presence) return;
   }
-  // Larger levels are easier. Levels in dB are compared as they are, all others by their magnitude.
+  // The larger a level, the easier the trial. Levels in dB are compared with their sign, all others by their
+  // magnitude.
   const bool decibel = trials->factor.ends_with("_dB");
   const auto sources = sources_of(protocol);
   const auto sets = [&](const Source& source) { return source.spec && source.level == trials->factor; };

@@ -16,8 +16,8 @@ enum class AnswerKind {
 
 struct AnswerRule {
   AnswerKind kind = AnswerKind::right_answer;
-  /// for `side` the answer that is right above zero; for `presence` the answer that is right unless the level
-  /// is zero
+  /// index of a choice: for `side`, the answer that is right for levels above zero; for `presence`, the
+  /// answer that is right for every level but zero
   int positive = 1;
 };
 
@@ -25,9 +25,9 @@ struct AnswerRule {
 /// the ends of the factor's range.
 AnswerRule answer_rule(const Protocol& protocol, const std::string& level);
 
-/// A typical level of this factor among the protocol's procedures (or, without procedures, its blocks): the
-/// median for a factor in dB, otherwise the median magnitude of all nonzero levels. A staircase counts with
-/// all levels between its limits. Returns 1 if there are no levels.
+/// A typical level of the factor `level` in the protocol's procedures (or in its blocks, if there are no
+/// procedures): for a factor in dB the median, otherwise the median magnitude of all nonzero levels. For a
+/// staircase, evenly spaced levels between its limits are used. Returns 1 if there are no levels.
 double middle_level(const Protocol& protocol, const std::string& level);
 
 }  // namespace turnpoint::protocol

@@ -14,8 +14,8 @@ namespace {
 
 using text::Findings;
 
-// Reports a trial source in which a factor has no value. If no source sets the factor, this is reported only
-// once, where the factor is declared.
+// Reports each source of trials in which this factor has no value. If no source sets the factor at all, it is
+// reported only once, at its declaration.
 void check_values(const std::vector<Source>& sources, const std::string& name, const Reading& reading) {
   const auto* factor = find_factor(reading.protocol.factors, name);
   if (factor && !factor->levels.empty()) return;
@@ -138,8 +138,8 @@ void check_timing(text::TableReader& file, const Reading& reading) {
     if (const auto block = block_without_deadline(protocol))
       findings.add(table->place, "block \"" + *block + "\" has no deadline: [timing] has no \"deadline_s\"",
                    "set \"deadline_s\" here, or in the block's [instructions.NAME]");
-  // If an anticipation time and a deadline conflict, report the unusual one: anticipation_s is usually 0.15,
-  // and no deadline is as short as that.
+  // If anticipation_s is not shorter than a deadline, blame the less usual value. Normally anticipation_s is
+  // about 0.15, so a deadline that is shorter than any person's response is to blame.
   const auto check_anticipation = [&](const std::string& key, double deadline_s) {
     if (timing.anticipation_s >= deadline_s)
       findings.add(

@@ -10,8 +10,8 @@ namespace turnpoint::protocol {
 
 namespace {
 
-// The values that a factor takes in the trials of a source: the level of the source, the value that the block
-// fixes, or otherwise all levels of the factor.
+// The values of a factor in the trials of a source: the levels that the source sets, or the value that the
+// block fixes, or otherwise all levels of the factor.
 std::vector<FactorValue> values_of(const Factor& factor, const Source& source) {
   if (factor.name == source.level) return {source.levels.begin(), source.levels.end()};
   const auto fixed = source.block->fixed.find(factor.name);
@@ -32,8 +32,7 @@ void cross(const Protocol& protocol, const Source& source, const std::string& sc
         next.push_back(std::move(combination));
       }
     product = std::move(next);
-    // A design as large as this is thinned out later anyway. The combinations dropped here lie between others
-    // that are kept.
+    // thinned() keeps only some of the combinations later, so this part of a large design is enough.
     if (product.size() > 20000) product.resize(20000);
   }
   all.insert(all.end(), product.begin(), product.end());
@@ -48,8 +47,8 @@ std::vector<T> evenly(const std::vector<T>& sorted, std::size_t most) {
   return chosen;
 }
 
-// Chooses values of each factor so that their product has at most `most` combinations: first both extremes of
-// each factor, then repeatedly one more value of the factor that is thinned most.
+// Chooses values of each factor so that at most `most` combinations result. Begins with both extremes of each
+// factor. Then repeatedly adds one value to the factor of which the smallest share has been chosen.
 std::map<std::string, std::set<FactorValue>> grid_of(
     const std::map<std::string, std::set<FactorValue>>& values, std::size_t most) {
   std::map<std::string, std::size_t> counts;

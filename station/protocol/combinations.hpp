@@ -12,20 +12,20 @@ struct Combination {
   Factors factors;
 };
 
-/// All distinct combinations in which the task's scenes can occur: the levels of each source of trials,
+/// All different combinations in which scenes of the task can occur: the levels of each source of trials,
 /// crossed with the levels of the factors that are drawn at random.
 std::vector<Combination> combinations_of(const Protocol& protocol);
 
-/// The single expression on which everything variable in a scene depends; null if there are none or several.
+/// The expression of the scene that contains factors, if there is exactly one; otherwise null.
 const Linear* only_expression(const Scene& scene);
 
-/// True if roving changes more than the strength. An edge defined by friction depends on the roved strength,
-/// but the tones of a zone are designed without roving.
+/// True if roving the scene's strength also moves its edge. That is so for an edge defined by friction,
+/// except in a zone, whose tones are designed without roving.
 bool edge_moves_with_strength(const Scene& scene);
 
-/// At most `most` combinations of one scene, including its extreme values. They are evenly spaced in the
-/// scene's only expression, or else in each factor, so that everything between can be interpolated. If the
-/// extremes alone are more than `most`, returns the first `most` combinations.
+/// At most `most` combinations of one scene, with the extreme values among them, so that the others can be
+/// interpolated. They are evenly spaced in the value of only_expression(), or in each factor if that is null.
+/// If there are more extremes than `most`, returns the first `most` combinations.
 std::vector<Combination> thinned(const Scene& scene, const std::vector<Combination>& of_the_scene,
                                  std::size_t most);
 

@@ -6,13 +6,13 @@
 
 namespace turnpoint::protocol {
 
-/// The condition by which `[analysis] by` groups a trial: "dry", "mark 150 mm", "speed, mark 150 mm". Without
-/// `by` it is the block's instruction; "" if there is none either.
+/// The condition of a trial, from the factors that `[analysis] by` names: "dry", "mark 150 mm", "speed, mark
+/// 150 mm". Without `by` it is the block's instruction; "" if there is none either.
 std::string condition_of(const protocol::Protocol& protocol, const protocol::Factors& factors,
                          const std::string& instruction);
 
-/// All conditions of the protocol, in the order of the levels in its file, which is the same for every
-/// participant. Instructions are in the order in which the file's blocks use them.
+/// All conditions of the protocol, in the same order for every participant: that of the factor's levels in
+/// the file. Instructions come in the order in which the file's blocks use them.
 std::vector<std::string> conditions(const protocol::Protocol& protocol);
 
 /// A factor's name in words and its unit: `mark_mm` gives "mark" and "mm", `_um` gives the unit \u00b5m. The

@@ -233,10 +233,12 @@ void advise_on_plan(AdviceList& advice) {
 namespace {
 
 constexpr std::size_t most_repeats = 10000;  // largest number of repeats that a protocol may ask for
-// limit of the counting of combinations: the product for a hundred long factors would overflow
+// larger numbers of combinations count as this one; otherwise the product for a hundred factors with many
+// levels would overflow
 constexpr std::size_t most_cells = 1'000'000'000'000;
 
-/// Reports how often each level is combined with each of these cells, unless that is equally often.
+/// Reports a procedure whose `repeats` cannot be spread evenly over `cells` combinations of factors; `what`
+/// describes these combinations.
 void note_uneven(AdviceList& notes, const procedure::Spec& spec, std::size_t cells, const std::string& what) {
   const auto repeats = static_cast<std::size_t>(spec.repeats), least = repeats / cells;
   if (repeats % cells == 0) return;

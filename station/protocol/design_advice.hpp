@@ -5,9 +5,8 @@
 
 namespace turnpoint::protocol {
 
-/// Notes that are not errors but that a researcher should know, each at the line of its key: levels or
-/// combinations of factors that `balance` cannot spread evenly, with the resulting counts; a level that is
-/// listed twice; times of 0.
+/// Facts that are not errors but that a researcher should know, each at the line of its key: counts of levels
+/// or combinations that `balance` cannot make equal; a level that is listed twice; pauses of 0 s.
 std::vector<text::Problem> notes(const Protocol& protocol);
 
 }  // namespace turnpoint::protocol

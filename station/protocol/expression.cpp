@@ -15,7 +15,8 @@ struct SyntaxError {
   std::string what, allowed;
 };
 
-// A recursive-descent parser for one side. Every node is linear, so one factor of a product must be constant.
+// A recursive-descent parser for an expression, or for one side of a comparison. Every intermediate result is
+// linear in the factors, so at least one operand of a product must be a constant.
 class Parser {
  public:
   Parser(const std::string& source, std::size_t begin, std::size_t end, const std::vector<Factor>& factors)

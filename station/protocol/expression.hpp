@@ -23,14 +23,15 @@ std::optional<Comparison> parse_comparison(const std::string& source, const text
 std::optional<Linear> linear_from(const text::Value& value, const std::string& key, const text::Range& range,
                                   const std::vector<Factor>& factors, text::Findings& findings);
 
-/// The smallest and largest value if each factor varies over its range or levels independently.
+/// The smallest and largest value of the expression if each factor varies over its range or levels
+/// independently of the others.
 std::pair<double, double> bounds(const Linear& expression, const std::vector<Factor>& factors);
 
 /// The smallest and largest value of a numeric factor; empty for a text factor.
 std::optional<std::pair<double, double>> span(const Factor& factor);
 
-/// True if the factor's values could not be read. That was already reported, so do not report problems that
-/// follow from it.
+/// True if the factor's values could not be read. The reader has already reported this, so do not report
+/// further problems that follow from it.
 bool is_broken(const Factor& factor);
 
 const Factor* find_factor(const std::vector<Factor>& factors, const std::string& name);

@@ -7,8 +7,9 @@
 
 namespace turnpoint::protocol {
 
-/// The place of each key in a protocol file: `task.correct.left`, `procedure.levels.values` (named tables are
-/// listed by name), `task.choices.1` (others by number).
+/// The line and column of each key in a protocol file. A key has a path such as `task.correct.left`. Tables
+/// with a `name` are listed by this name (`procedure.levels.values`), other list items by number
+/// (`task.choices.1`).
 class KeyPlaces {
  public:
   KeyPlaces(const std::string& source, const std::string& path);

@@ -22,7 +22,8 @@ using Localised = std::map<std::string, std::string>;
 using FactorValue = std::variant<double, std::string>;
 using Factors = std::map<std::string, FactorValue>;
 
-/// A linear combination of numeric factors: `150 - 0.5 * spread_mm`, `-30`, `abs(change)` (absolute set).
+/// A linear combination of numeric factors, such as `150 - 0.5 * spread_mm` or `-30`; its magnitude if
+/// `absolute` is set, as in `abs(change)`.
 struct Linear {
   double constant = 0;
   std::vector<std::pair<std::string, double>> terms;  ///< each factor's name with its coefficient
@@ -58,7 +59,7 @@ struct Edge {
   std::optional<double> friction;  ///< relative friction in (0, 1)
 };
 
-/// One explicit tone of a scene, placed by boundary or by frequency.
+/// One tone that a scene lists in `tones`, placed by boundary or by frequency.
 struct SceneTone {
   std::optional<Linear> boundary_mm, frequency_Hz;
   Edge edge;
@@ -83,15 +84,17 @@ struct Scene {
   std::string name, base;
   std::optional<Linear> boundary_mm;
   Edge edge;
-  /// strength at the last maximum of the vibration; at most one of these two and the next is set
+  /// strength at the last maximum of the vibration; at most one of displacement_um, friction and
+  /// displacement_under_finger_um is set
   std::optional<Linear> displacement_um, friction;
-  /// strength under a finger, and where the finger is
+  /// displacement under a finger at position `finger_mm`
   std::optional<Linear> displacement_under_finger_um, finger_mm;
   std::vector<SceneTone> tones;
   std::optional<Zone> zone;
-  /// makes the zone's friction lower than that of the base scene by 20 log10(dmu / mu)
+  /// lowers the friction below that of the base scene; in dB, 20 log10(difference / friction of the base
+  /// scene)
   std::optional<Linear> friction_contrast_dB;
-  /// the displacement is changed at random, uniformly within +- this value
+  /// each trial changes the displacement by a random value, uniform within +- this value
   double rove_dB = 0;
   double ramp_ms = 50;
   Tolerance tolerance;
@@ -165,7 +168,8 @@ struct Break {
   double min_s = 0;
 };
 
-/// A block as it will run. block_order() makes such blocks from `sequence` tables for a given participant.
+/// A block as it runs for one participant. block_order() makes such blocks from the `sequence` tables of the
+/// file.
 struct Block {
   std::string name;
   std::vector<std::string> procedures;

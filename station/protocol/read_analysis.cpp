@@ -43,7 +43,8 @@ void read_by(TableReader& reader, Reading& reading) {
 /// Why a value of `show` would add nothing to the report of this protocol; "" if it would add something.
 std::string without_effect(const std::string& word, const Protocol& protocol) {
   const auto& task = protocol.task;
-  if (word == "trace" || task.choices.empty()) return "";  // a task without choices is reported elsewhere
+  // the reader of [task] reports a task without choices
+  if (word == "trace" || task.choices.empty()) return "";
   if (task.kind == TaskKind::adjustment) return "an adjustment task has settings instead of answers";
   if (word == "psychometric") return "";
   if (task.kind == TaskKind::single_interval && task.correct_answer.empty())

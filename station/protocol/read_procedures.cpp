@@ -17,8 +17,8 @@ using text::Value;
 
 namespace {
 
-// Puts a procedure's own keys over those of the procedure that it copies; grids and priors are merged axis by
-// axis.
+// Returns the table `below` of the copied procedure with the keys of `own` added or replaced. The inner
+// tables of "grid" and "prior" are merged key by key.
 Value overlay(Value below, const Value& own) {
   for (const auto& entry : own.entries) {
     const auto found = std::find_if(below.entries.begin(), below.entries.end(),
@@ -86,7 +86,8 @@ void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
   if (spec.max) check("max", *spec.max);
 }
 
-// Checks the rules of this kind of procedure. A problem names the key; inner tables are separated by dots.
+// Checks the procedure with procedure::validate(). Each fault names its key; dots separate the names of inner
+// tables.
 void check_spec(const Value& table, const Spec& spec, text::Findings& findings) {
   for (const auto& fault : procedure::validate(spec)) {
     const Value* at = &table;
@@ -152,7 +153,8 @@ void read_procedures(TableReader& file, Reading& reading) {
     const bool broken_copy = !found.problems.empty();
     Spec spec;
     if (!broken_copy) spec = read_procedure(whole, reading, found);
-    // A problem of a copied procedure also occurs in the copy, so report each place once.
+    // A mistake in a procedure is found again in each procedure that copies it, so report only one problem at
+    // each place in the file.
     for (auto& problem : found.problems)
       if (places.insert({problem.place.line, problem.place.column}).second)
         reading.findings.problems.push_back(std::move(problem));

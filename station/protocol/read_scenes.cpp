@@ -18,7 +18,7 @@ using Ends = Range::Ends;
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-// A value below one millimetre is probably in metres.
+// A position below one millimetre was probably written in metres, so it is refused.
 const Range position_mm{1, 1e5, Ends::closed, "mm"};
 const Range displacement_um{0, 1000, Ends::open_low, "um"};
 const Range relative_friction{0, 1, Ends::open};
@@ -192,7 +192,8 @@ void erase(Value& table, const std::string& key) {
   std::erase_if(table.entries, [&](const auto& entry) { return entry.key == key; });
 }
 
-// Puts the scene's own keys over those of its base; `zone` and `tolerance` are merged key by key.
+// Returns the base scene's table with the scene's own keys added or replaced; `zone` and `tolerance` are
+// merged key by key.
 Value laid_over(Value base, const Value& own) {
   const auto states = [&](const char* key) { return own.find(key) != nullptr; };
   const auto strengths = {"displacement_um", "friction", "displacement_under_finger_um"};
@@ -223,7 +224,8 @@ class Resolver {
  public:
   Resolver(const Value& scenes, Reading& reading) : scenes_(scenes), reading_(reading) {}
 
-  /// Merges the scene's table with its bases, which it also reads. Returns nullptr if a base has a problem.
+  /// Returns the scene's table merged with its base scene's, and reads it. Reads the base scenes first.
+  /// Returns nullptr if a base scene does not exist or depends on itself.
   const Value* resolve(const std::string& name) {
     if (const auto done = resolved_.find(name); done != resolved_.end()) return &done->second;
     const auto& own = scenes_.find(name)->value;
@@ -264,7 +266,8 @@ class Resolver {
     return nullptr;
   }
 
-  // A problem of a base also occurs in the merged table, so report each place once.
+  // A mistake in a base scene is found again in every scene that builds on it, so report only one problem at
+  // each place in the file.
   void read(const std::string& name, const Value& table, const Value& own) {
     Findings found;
     auto scene = read_scene(table, name, own, found, reading_);

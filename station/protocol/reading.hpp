@@ -7,9 +7,9 @@
 #include "station/protocol/protocol.hpp"
 #include "station/text/reader.hpp"
 
-// Internal to the reader of protocol files: one function per part of the file. Each reads its tables into the
-// protocol and reports problems. Call the functions in the order of their declaration, because later ones
-// rely on earlier ones.
+// Used only to implement load() and parse(): one function per part of a protocol file. Each reads its tables
+// into the protocol and reports problems. Call the functions in the order of their declaration, because later
+// ones rely on earlier ones.
 namespace turnpoint::protocol {
 
 struct Reading {

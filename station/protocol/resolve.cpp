@@ -23,7 +23,8 @@ scene::ToneTarget tone_of(const SceneTone& tone, const Factors& factors) {
   return target;
 }
 
-/// The friction for which the scene's tones are designed: that of its base, or its own if it has no base.
+/// The friction for which the zone's tones are designed: the friction of the base scene's zone if it has one,
+/// otherwise of the scene's own zone.
 double design_friction(const Protocol& protocol, const Scene& scene, const Factors& factors) {
   const Scene* design = &scene;
   if (!scene.base.empty()) design = &protocol.scenes.at(scene.base);

@@ -6,13 +6,13 @@
 
 namespace turnpoint::protocol {
 
-/// A scene of the protocol as numbers for these factors: evaluates the arithmetic, converts the contrast to
-/// friction and applies `rove_dB` (already drawn, within the scene's limits). Throws std::out_of_range for an
-/// unknown scene and std::invalid_argument for a factor without a number.
+/// Returns a scene of the protocol as numbers for these values of the factors: evaluates its expressions,
+/// converts the contrast to friction, and changes the strength by `rove_dB`, which the caller has drawn.
+/// Throws std::out_of_range for an unknown scene and std::invalid_argument for a factor without a number.
 scene::Scene resolve(const Protocol& protocol, const std::string& scene, const Factors& factors,
                      double rove_dB);
 
-/// The friction that is lower than `reference` by a contrast of 20 log10(difference / reference).
+/// The friction that differs from `reference` by 20 log10((reference - friction) / reference) = contrast_dB.
 double friction_at_contrast(double reference, double contrast_dB);
 
 }  // namespace turnpoint::protocol

@@ -13,9 +13,9 @@ struct Source {
   const Block* block = nullptr;
   /// name of the source for messages: `procedure "levels"`, `fixed levels`, `catch trials`
   std::string what;
-  std::string level;           ///< the factor that the source sets
-  std::vector<double> levels;  ///< every value of the factor that the source can set, as far as the file says
-  /// factors that the source sets in its trials, so that they are not drawn at random
+  std::string level;           ///< name of the factor whose levels the source presents
+  std::vector<double> levels;  ///< values that this factor can take; samples for a staircase or slider
+  /// names of all factors that the source or its block sets; the values of other factors are drawn at random
   std::set<std::string> sets;
   const procedure::Spec* spec = nullptr;
 };

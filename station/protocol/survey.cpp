@@ -20,11 +20,12 @@ namespace turnpoint::protocol {
 
 namespace {
 
-// Designing a zone takes about 15 ms, a boundary less than 2, and a check should feel immediate. A zone that
-// depends on a single sum of factors is interpolated between a few plans; others need a grid of plans.
+// A check should feel immediate, but planning a zone takes about 15 ms, a boundary less than 2. A zone that
+// depends on a single expression needs only a few plans, because results between them can be interpolated.
+// Other zones need a grid of plans.
 constexpr std::size_t most_plans_of_a_scene = 120, most_plans_of_a_zone = 6, most_plans_of_a_zone_grid = 36;
 
-// For messages: the range in which this rig can place a boundary with each edge.
+// For messages: describes where this rig can place a boundary with the edge of the scene.
 std::string reach(const scene::Scene& scene, const rig::Rig& rig, const scene::Planner& planner) {
   if (!scene.boundary_m) return "";
   physics::MapOptions options;
@@ -68,8 +69,8 @@ Sight sight_of(const Combination& combination, const scene::DrivePlan& plan) {
   return sight;
 }
 
-// The same problem in many combinations is reported once, with its first case and the number of further
-// cases.
+// A problem that occurs in several combinations. It is reported once, with the first combination and the
+// number of others.
 struct Trouble {
   std::string first, allowed;
   Place place = {};
@@ -126,7 +127,7 @@ bool is_too_strong(scene::Scene scene, scene::Planner& planner) {
   return can_plan(scene, planner);
 }
 
-// The place of a scene's key, or of the same key in the base that gives it.
+// The place of a scene's key. If the scene takes the key from a base scene, the place in that base scene.
 Place place_of(const Protocol& protocol, const KeyPlaces& places, const Scene& scene,
                const std::string& key) {
   const auto* at = &scene;
@@ -193,7 +194,7 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
       if (explained.insert(combination.scene).second) try {
           answers[i].place = blamed_place(protocol, places, from, scene, planner);
           answers[i].allowed = reach(scene, rig, planner);
-        } catch (const std::domain_error&) {  // this edge does not exist at any boundary
+        } catch (const std::domain_error&) {  // this edge exists at no boundary: suggest nothing
         }
     }
   }
@@ -223,7 +224,8 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   const auto combinations = planned(protocol, all);
   const auto answers = plan_all(protocol, rig, combinations, stop);
   std::map<std::string, Trouble> unreachable, inexact;
-  std::map<std::string, std::string> told;  // the planner's warnings by code, so that each is reported once
+  // text of the first warning of each code, so that each code is reported once
+  std::map<std::string, std::string> told;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto& combination = combinations[i];
     if (!answers[i].plan) {
@@ -246,7 +248,8 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   for (const auto& [name, trouble] : inexact)
     survey.warnings.push_back({protocol.scenes.at(name).place, counted(trouble),
                                "no physical model is known to meet the scene's tolerance"});
-  if (rig.reproduction) return;  // a rig that reproduces a historical one is known to be too weak for this
+  // a rig that reproduces a historical one is known to have weaknesses, so leave out the planner's warnings
+  if (rig.reproduction) return;
   for (const auto& [code, warning] : told) survey.warnings.push_back({{protocol.path, 0, 0}, warning, ""});
 }
 

@@ -40,12 +40,13 @@ struct Sight {
 struct Survey {
   std::vector<text::Problem> problems, warnings;
   std::vector<Sight> sights;  ///< in the order of blocks in the file; each combination appears once
-  /// total number of combinations; if fewer were planned, they are the extremes and steps between
+  /// number of combinations that can occur; if `sights` has fewer, only the extremes and even steps between
+  /// them were planned
   std::size_t combinations = 0;
   std::set<std::string> models;
 };
 
-/// Thrown if the caller stops the work before there is a result.
+/// Thrown if the caller stops survey() before there is a result.
 class Abandoned : public std::runtime_error {
  public:
   Abandoned() : std::runtime_error("the check of the protocol was stopped before it had a result") {}
@@ -57,10 +58,9 @@ class Abandoned : public std::runtime_error {
 /// with combinations. Throws Abandoned soon after `stop` is requested (after the current plan).
 Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop = {});
 
-/// Advice about things that are probably mistakes with any rig, each at the line of its key: levels that are
-/// smaller than the tolerance or that everybody feels, answers that are never right, practice that a single
-/// key passes, steps and rates that do not suit the task, times in wrong units, breaks that never come, parts
-/// that nothing uses.
+/// Advice about mistakes that are likely on any rig, each at the line of its key. Examples: levels smaller
+/// than the tolerance, answers that are never right, practice that is passed by always pressing the same key,
+/// times in wrong units, breaks that never come, and scenes that nothing uses.
 std::vector<text::Problem> advice(const Protocol& protocol);
 
 }  // namespace turnpoint::protocol

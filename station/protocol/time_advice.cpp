@@ -31,7 +31,7 @@ void check_deadline(AdviceList& advice, const std::string& key, double seconds) 
                "set it well below every deadline");
 }
 
-// Checks that the change of scene can end before the tones do. The second scene begins after the foreperiod.
+// Checks that the change to the second scene, which follows the foreperiod, is complete before the tones end.
 void check_change(AdviceList& advice) {
   const auto& task = advice.protocol.task;
   if (!task.foreperiod_s) return;
