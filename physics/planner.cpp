@@ -68,7 +68,8 @@ Difference compare(const Surface& surface, const PlanRequest& request, const Pro
   }
   d.amplitude = probe_margin * worst / most;
   d.level_dB = 8.686 * std::abs((a.ln_peak - a.ln_drive) - (b.ln_peak - b.ln_drive));
-  // only one of the profiles has a last maximum, so the two are normalised differently and cannot be compared
+  // one profile has a last maximum and the other has none, so they are normalised differently and cannot be
+  // compared
   if (a.peak.has_value() != b.peak.has_value()) {
     d.amplitude += unknown;
     d.level_dB += unknown_dB;

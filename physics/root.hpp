@@ -71,7 +71,7 @@ struct Chord {
   double meets_0() const { return left + (right - left) * f_left / (f_left - f_right); }
 };
 
-// False position converges slowly if one end never moves. These settings say what it does about it.
+// False position converges slowly if one end never moves. These settings select what the search does then.
 struct Creeping {
   int halve_every;            // n: every n-th step goes to the middle of the interval
   bool halve_values = false;  // Illinois method: halves the value of an end that stays twice

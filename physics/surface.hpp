@@ -19,9 +19,9 @@ namespace turnpoint::physics {
 // membrane without bending stiffness there is no difference.
 enum class Edges { supported, clamped };
 
-// Whether bending stiffness is included. `automatic` always includes it if there is no tension. With tension,
-// it includes it if it moves a cut-off by more than about half a percent somewhere in the first 90 % of the
-// length (see bending_modelled).
+// Whether bending stiffness is included. `automatic` includes it on every surface without tension. With
+// tension, it includes it only if bending moves a cut-off by more than about half a percent somewhere in the
+// first 90 % of the length (see bending_modelled).
 enum class Bending { automatic, on, off };
 
 // The theory that describes bending of a clamped plate. For a 2 mm aluminium plate at 22 to 45 kHz,

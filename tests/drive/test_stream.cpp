@@ -189,7 +189,7 @@ TEST_CASE(
   louder.at_frame = 80'000;
   louder.to.tones[0].amplitude = 0.65;
   CHECK_THROWS_AS(stream->change(id, louder),
-                  BurstRefused);  // it would be too loud together with the second burst
+                  BurstRefused);  // the change would be too loud with the second burst
   // The change is allowed once the second burst is over.
   stream->advance(200'000);
   louder.at_frame = 250'000;

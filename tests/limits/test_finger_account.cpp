@@ -46,7 +46,7 @@ TEST_CASE("a trial that a crash cut off counts as the longest stimulus", "[sessi
   add(session, 10, "presented", "");
   const auto history = finger_history({session}, kNow_s, 30);
   REQUIRE(history.stimuli.size() == 1);
-  CHECK(history.stimuli[0].end_s - kNow_s == Approx(0).margin(1e-5));  // it is counted only up to now
+  CHECK(history.stimuli[0].end_s - kNow_s == Approx(0).margin(1e-5));  // the stimulus counts only up to now
   records::BlockRecord block;
   block.trials.emplace_back();
   session.blocks.push_back(block);  // negative control: a stored trial was not cut off

@@ -52,7 +52,7 @@ std::vector<MeasuredBoundary> measured(const Surface& nominal, const Surface& tr
 }
 
 struct Errors {
-  double rms_m = 0, largest_m = 0;  // the latter for 95 % of plates
+  double rms_m = 0, largest_m = 0;  // largest_m: exceeded on only 5 % of the plates
   double coverage = 0;              // of the stated 95 % interval
 };
 

@@ -135,7 +135,7 @@ TEST_CASE("waves along a clamped strip match other finite elements and collocati
         const double at = plate.characteristic(f, 1, theirs);
         const double slope = (plate.characteristic(f, 1, theirs + step) - at) / step;
         CAPTURE(row[1], row[3], row[4], theirs);
-        // a Newton step to our root must be tiny
+        // a Newton step from the table's value to the library's root must be tiny
         CHECK(std::abs(at / slope) < 1e-6 * (1 + std::abs(theirs)));
         CHECK(std::abs(plate.characteristic(f, 1, theirs + 0.1) / slope) > 0.05);
       }

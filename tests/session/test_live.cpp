@@ -344,6 +344,6 @@ TEST_CASE(
   const auto summary = session::run(setup, nullptr, inputs);
   CHECK(summary.status == records::SessionStatus::completed);
   CHECK(summary.answered == 2);
-  setup.rig.output.uri = "alsa:rated";  // negative control: the same permission does not allow a resampler
+  setup.rig.output.uri = "alsa:rated";  // negative control: a resampler is still refused
   CHECK_THROWS(session::run(setup, nullptr, inputs));
 }

@@ -268,7 +268,7 @@ TEST_CASE("a trial ends no sooner than its last frame has been heard", "[trial]"
   auto machine = answered_after_two();
   machine.handle({9000 * ms, EventKind::tick, 0});
   CHECK_FALSE(machine.done());
-  CHECK_FALSE(machine.wake_ns());  // it waits for the `heard` event, not for a time
+  CHECK_FALSE(machine.wake_ns());  // the machine waits for `heard`, not for a time
   machine.handle({9010 * ms, EventKind::heard, 1});
   CHECK(machine.done());
   CHECK(machine.result().outcome == Outcome::answered);
@@ -297,7 +297,7 @@ TEST_CASE("stopping after the answer keeps the answer", "[trial]") {
   auto machine = exploring();
   machine.handle({1500 * ms, EventKind::answer, 1});
   machine.handle({1600 * ms, EventKind::abort, 0});
-  CHECK_FALSE(machine.done());  // it waits for the report that the stimulus was played without loss
+  CHECK_FALSE(machine.done());  // the machine waits for the `heard` event
   machine.handle({1610 * ms, EventKind::heard, 0});
   CHECK(machine.done());
   CHECK(machine.result().outcome == Outcome::answered);
