@@ -64,9 +64,10 @@ struct TabulatedTaper {
 
 using TaperForm = std::variant<LinearTaper, ExponentialTaper, TabulatedTaper>;
 
-// What places a boundary and is not known exactly. The clamp line is where the sides are really held, a
-// fraction of the thickness behind the edge of the clamp; both half-widths are larger by this much
-// everywhere. An exponential taper has no clamp line, because the form has no place for it.
+// Parameters that determine the position of a boundary and are not known exactly. The clamp line is where the
+// sides are really held, a fraction of the thickness behind the edge of the clamp. Its distance from that
+// edge is added to W(x) everywhere. An exponential taper has no clamp line, because its formula has no term
+// for it.
 enum class Parameter {
   density,
   tension,
@@ -87,13 +88,13 @@ struct ParameterSd {
   double thickness_m = 0;
   double modulus_Pa = 0;
   double half_width_m = 0;
-  double slope = 0;           // for the slope of a linear taper
-  double decay_length_m = 0;  // for the decay length of an exponential taper
+  double slope = 0;           // of a linear taper
+  double decay_length_m = 0;  // of an exponential taper
   double clamp_line_m = 0;
-  double temperature_K = 0;  // about the one for which the other values hold
+  double temperature_K = 0;  // of the deviation from the temperature for which the other values hold
 };
 
-// Errors of two parameters that a fit has determined together.
+// Correlation between the errors of two parameters that one fit has determined.
 struct Correlation {
   Parameter first, second;
   double coefficient = 0;
@@ -124,7 +125,7 @@ struct Surface {
   double expansion_per_K = 0;
   double modulus_per_K = 0;
   ParameterSd sd;
-  std::vector<Correlation> correlations;  // of the errors; none for values that were measured apart
+  std::vector<Correlation> correlations;  // none between values that were measured separately
 };
 
 struct Material {

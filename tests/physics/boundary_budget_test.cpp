@@ -21,7 +21,7 @@ double solved_m(const Surface& s, const char* text, double f) {
   return solve_edge_m(s, edge(text), f, Model::edge, Wave::exact).value();
 }
 
-// The plate of the simulated rig with what its file states.
+// The plate of the simulated rig, with standard deviations for its parameters.
 Surface plate() {
   Surface s = aluminium_plate();
   s.expansion_per_K = 23.6e-6;
@@ -51,7 +51,7 @@ Surface membrane(TaperForm taper) {
   return s;
 }
 
-// The same derivative by solving for the edge on changed surfaces.
+// The derivative of the edge's position by a parameter, from solutions on two changed surfaces.
 double solved_derivative(const Surface& s, Parameter p, const char* text, double f) {
   const double step = 0.1 * standard_deviation(s, p);
   return (solved_m(changed(s, p, step), text, f) - solved_m(changed(s, p, -step), text, f)) / (2 * step);
@@ -85,7 +85,7 @@ TEST_CASE("a thin plate's boundary moves as its closed form says", "[physics]") 
     CHECK(derivative(Parameter::slope) == Approx(-x / 0.03).epsilon(1e-9));
     CHECK(0.2e-3 * derivative(Parameter::clamp_line) == Approx(6.667e-3).epsilon(1e-3));
     CHECK(derivative(Parameter::half_width) == derivative(Parameter::clamp_line));
-    // ten kelvin, mostly by the modulus
+    // a change of 10 K moves the boundary mostly by the change of the modulus
     CHECK(10 * derivative(Parameter::temperature) ==
           Approx(10 * (5.3e-4 / 4 - 1.25 * 23.6e-6) * w / 0.03 + 10 * 23.6e-6 * 0.014 / 0.03).epsilon(1e-4));
   }
@@ -122,7 +122,7 @@ TEST_CASE("the first-order uncertainty is that of random surfaces", "[physics]")
     const double sampled = std::sqrt((square - sum * sum / count) / (count - 1));
     const double stated = boundary_budget(nominal, f, x).total_m;
     CHECK(stated == Approx(sampled).epsilon(0.08));
-    CHECK(std::abs(sum / count) < 0.15 * stated);  // curvature moves the mean by little
+    CHECK(std::abs(sum / count) < 0.15 * stated);  // nonlinearity shifts the mean only a little
     CHECK(BoundaryMap(nominal, edge("p50")).at_frequency(f).uncertainty_m == Approx(stated).epsilon(1e-3));
   }
 }
@@ -135,7 +135,8 @@ TEST_CASE("a budget names first what is best measured", "[physics]") {
   double variance = 0;
   for (const Contribution& c : budget.contributions) variance += c.moved_m * c.moved_m;
   CHECK(budget.total_m == Approx(std::sqrt(variance)));
-  // What is left if the clamp line is measured is the total of a surface whose clamp line is known.
+  // The uncertainty that is left after the clamp line was measured is the total of a surface whose clamp line
+  // is known.
   s.sd.clamp_line_m = 0;
   CHECK(boundary_budget(s, 30e3, solved_m(s, "p50", 30e3)).total_m ==
         Approx(budget.contributions.front().left_m));

@@ -39,7 +39,8 @@ Surface random_surface(Surface s, std::mt19937_64& random) {
   return s;
 }
 
-// What is measured where the map of the nominal surface has boundaries evenly over 100 to 205 mm.
+// Boundaries measured on the surface `truth`, at frequencies for which the map of `nominal` places them
+// evenly from 100 to 205 mm.
 std::vector<MeasuredBoundary> measured(const Surface& nominal, const Surface& truth, int count, double sd_m,
                                        std::mt19937_64& random) {
   std::normal_distribution<double> error(0, sd_m);
@@ -56,8 +57,8 @@ struct Errors {
   double coverage = 0;              // of the stated 95 % interval
 };
 
-// Plates whose parameters scatter as the rig states, with boundaries from 100 to 205 mm by the map that the
-// fit gives (or by the rig's own).
+// Errors of a map for random plates, whose parameters scatter as `nominal` states, at boundaries from 100 to
+// 205 mm. The map is that of a fit to `count` measured boundaries or, if `count` is 0, that of `nominal`.
 Errors simulated(const Surface& nominal, int count, double sd_m, int plates) {
   std::mt19937_64 random(3);
   double square = 0;
@@ -91,7 +92,7 @@ Errors simulated(const Surface& nominal, int count, double sd_m, int plates) {
 TEST_CASE("measured boundaries make the map of an unknown plate precise", "[physics]") {
   const char* wanted = std::getenv("TURNPOINT_PLATES");
   const int plates = wanted != nullptr ? std::atoi(wanted) : 100;
-  const double slack = plates < 500 ? 1.15 : 1;  // a few plates scatter more than many
+  const double slack = plates < 500 ? 1.15 : 1;  // with few plates, the results scatter more
   const double margin = plates < 500 ? 0.05 : 0.02;
   const auto say = [&](const char* what, const Errors& e) {
     if (wanted != nullptr)
@@ -114,8 +115,8 @@ TEST_CASE("measured boundaries make the map of an unknown plate precise", "[phys
 }
 
 TEST_CASE("exact boundaries give back the surface that they came from, as far as they can", "[physics]") {
-  // A membrane's boundaries determine an apex and a constant: half-width and tension, if slope and density
-  // are known.
+  // The boundaries of a membrane determine its apex and one constant. If slope and density are known,
+  // half-width and tension follow.
   Surface nominal = seed_brass();
   nominal.quality_factor = 60;
   nominal.sd.tension_Pa = 0.05 * nominal.tension_Pa;
@@ -141,7 +142,7 @@ TEST_CASE("a fit of one linear parameter is the closed form of its posterior", "
   const double x = solved_m(nominal, 30e3);
   const MeasuredBoundary point{30e3, x + 5e-3, 2e-3};
   const BoundaryFit fit = fit_boundaries(nominal, edge(), {&point, 1});
-  // prior of 10 mm, measured with 2 mm
+  // standard deviations of the boundary: 10 mm from the clamp line (0.3 mm / 0.03), 2 mm from the measurement
   const double weight = 100.0 / 104;
   CHECK(fit.parameters.at(0).change == Approx(weight * 5e-3 * 0.03).epsilon(1e-3));
   CHECK(fit.parameters[0].sd == Approx(0.3e-3 * std::sqrt(1 - weight)).epsilon(1e-3));
@@ -178,8 +179,8 @@ TEST_CASE("a fit refuses what it cannot use", "[physics]") {
 }
 
 TEST_CASE("the boundaries of a thick plate calibrate a map of either theory", "[physics]") {
-  // Kirchhoff's theory is 10 to 15 mm off. The fit takes that up in the clamp line, where it is no worse than
-  // the parameters' own scatter.
+  // Boundaries by Kirchhoff's theory are off by 10 to 15 mm. The fit corrects this by moving the clamp line,
+  // so that no measured boundary is an outlier.
   Surface thick = plate();
   thick.theory = PlateTheory::mindlin;
   std::vector<MeasuredBoundary> points;
