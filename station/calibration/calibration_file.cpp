@@ -99,7 +99,7 @@ bool same_length(text::TableReader& reader, const char* key, std::size_t length,
 Calibration::Transducer read_transducer(const text::Value& table, text::Findings& findings) {
   text::TableReader reader(table, text::titled("transducer", table), findings);
   Calibration::Transducer transducer;
-  transducer.name = reader.string("name", "write the transducer's name in the rig file");
+  transducer.name = reader.string("name", "write the name that the rig file gives to the transducer");
   if (const auto band = reader.maybe_interval("band_kHz", {0, 1000, Ends::open_low, "kHz"})) {
     transducer.response.low_Hz = band->first * 1e3;
     transducer.response.high_Hz = band->second * 1e3;

@@ -46,7 +46,7 @@ std::string crypted(const std::string& text, const std::string& setting) {
   return hash;
 }
 
-/// True for a complete hash. False for a text that only has the settings for making a hash.
+/// True for a complete hash. False for a text that contains only the method and the salt.
 bool is_hash(const std::string& text) {
   const auto data = std::make_unique<crypt_data>();
   const char* again = ::crypt_r("", text.c_str(), data.get());

@@ -15,12 +15,13 @@ struct PreviewRequest {
   std::vector<std::string> set;      ///< values of factors, each written as "factor=value"
 };
 
-/// A factor on which a scene depends, as a value that can be adjusted.
+/// A factor on which a scene depends, for a control that lets somebody change it.
 struct Knob {
   std::string name;
   double low = 0, high = 0;    ///< limits of the factor's range, or lowest and highest of its levels
   std::vector<double> levels;  ///< possible values; empty if any value in the range is allowed
-  double value = 0;            ///< first level, otherwise the middle of the range
+  /// value to begin with: the first level, or the middle of the range if there are no levels
+  double value = 0;
 };
 
 /// A scene as it is displayed: its plan, its displacement profile, and a description in words.
@@ -48,7 +49,8 @@ class Preview {
   const rig::Rig& rig() const { return rig_; }
   /// Returns the scenes that the task presents, in the order of their names, and then the other scenes.
   std::vector<std::string> scenes() const;
-  /// Returns the numeric factors on which the scene or its base depends, in file order.
+  /// Returns the numeric factors on which the scene depends, or the scene on which it is based. They come in
+  /// the order of the protocol file.
   std::vector<Knob> knobs(const std::string& scene) const;
 
   /// Plans the scene. If the rig cannot present the scene, the result's `problem` says why; no exception is
@@ -63,8 +65,8 @@ class Preview {
 };
 
 /// Returns values for every factor. `set` contains "factor=value" texts. Other factors get their first level
-/// or the middle of their range, and are listed in `assumed`. Throws terms::UsageError for a text that is not
-/// understood.
+/// or the middle of their range, and are listed in `assumed`. Throws terms::UsageError for a text that does
+/// not have this form, or names no factor or no possible value.
 protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vector<std::string>& set,
                               std::vector<std::string>& assumed);
 

@@ -11,7 +11,7 @@ namespace turnpoint::desk {
 
 namespace {
 
-/// Summarises the logged reports of how many frames the participant's screen was late.
+/// Says how many frames the participant's screen was late in total, from the events in the log.
 std::string late_frames(const std::vector<records::EventRow>& events) {
   int frames = 0, trials = 0;
   for (const auto& event : events)

@@ -22,7 +22,7 @@ plot::Paint stroke(const std::string& colour, double width, const std::string& d
 plot::Paint fill(const std::string& colour, double opacity = 1) { return {"", colour, 1, "", opacity}; }
 
 const std::string kMark = "mark";
-// text size of the boundary's position, and its distance from the strip
+// text size of the label with the boundary's position, and the label's distance from the strip
 constexpr double kName_px = 14, kNameAbove_px = 20;
 
 /// The drawing of a surface has a caption only if it is at least this high.
@@ -173,7 +173,7 @@ Drawing drawing_of(plot::Figure figure) {
     try {
       plot::draw(canvas, plot::laid_out(figure, width_px, height_px));
     } catch (const std::invalid_argument&) {
-      // If the legend is too long for that size, use the original layout and scale it down.
+      // If the legend does not fit into this width and height, use the original layout and scale it down.
       plot::draw(canvas, figure);
     }
   };

@@ -15,7 +15,7 @@ namespace turnpoint::desk {
 /// Draws a figure at about the given size, with text of 12 px. The layout of the figure depends on that size.
 using Drawing = std::function<void(plot::Canvas& canvas, double width_px, double height_px)>;
 Drawing drawing_of(plot::Figure figure);
-/// Returns the drawing of surface_svg() as a Drawing.
+/// Returns the picture of surface_svg() as a Drawing, for the screen.
 Drawing drawing_of_surface(const SceneLook& look, const rig::Rig& rig);
 
 /// Returns an SVG document that shows the surface from above, to scale along its length. It contains a heat

@@ -99,7 +99,7 @@ void converter(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
 lines::Finding touch(const rig::Rig& rig) {
   auto check = lines::check_touch("touch", *rig.touch_uri);
   if (check.status == Status::ok && *rig.touch_uri == "sim:" && rig.output.uri.starts_with("alsa:"))
-    return {"touch", Status::warning, "the touch panel is simulated, so answers by touch have no kernel time",
+    return {"touch", Status::warning, "the touch panel is simulated, so touches have no kernel time stamps",
             "write uri = \"evdev:NAME\" in [touch], with the panel's name in /proc/bus/input/devices"};
   return check;
 }

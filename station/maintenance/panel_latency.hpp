@@ -35,9 +35,9 @@ class LatencyDevices {
 
   ~LatencyDevices();
 
-  /// True if touches have the kernel's time.
+  /// True if touches have the kernel's time stamps.
   bool has_kernel_times() const { return touch_ != nullptr; }
-  /// See touch::TouchReader::claim(). Empty if touches do not have the kernel's time.
+  /// See touch::TouchReader::claim(). Empty if touches do not have the kernel's time stamps.
   std::optional<std::int64_t> claim(double x, double y, std::int64_t seen_ns);
 
  private:
@@ -46,8 +46,8 @@ class LatencyDevices {
 };
 
 /// Returns the calibration to which the latency of the panel is added: the newest one beside the rig file if
-/// it is still valid, otherwise a new one with nothing else in it. A latency that was measured with the other
-/// reference is kept. The calibration gets today's date.
+/// it is still valid, otherwise a new one with nothing else in it. A latency that this calibration already
+/// has from the other reference (button or photodiode) is kept. The calibration gets today's date.
 calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured);
 
 /// Returns the panel's latency from the newest valid calibration beside the rig file.

@@ -45,8 +45,8 @@ std::string trouble_of(const drive::Event& event, const drive::OutputConfig& out
   return "";
 }
 
-/// Polls the stream and reports to the guard until `done` returns true. Throws if something went wrong, or
-/// after a termination signal.
+/// Until `done` returns true, reads the stream's events and keeps reporting to the amplifier that this
+/// program is running. Throws if a tone was not played correctly, or after a termination signal.
 void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::function<bool()>& done) {
   for (;;) {
     const bool last = done();  // call done() before polling, so that all events up to then are processed
@@ -74,7 +74,8 @@ std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier,
   const auto margin = std::llround(kMargin_s * rate_Hz);
   auto first = bursts.at(0);
   first.start_frame = stream.earliest_frame() + std::llround(kLead_s * rate_Hz);
-  // Checking the first burst may take any time. The other bursts keep their distance to its actual start.
+  // Checking the first burst can take long, so it may start later than planned. The other bursts keep their
+  // distance to its actual start.
   const auto onset = stream.schedule_soon(first).start_frame;
   auto end = onset + first.length_frames;
   for (std::size_t k = 1; k < bursts.size(); ++k) {

@@ -77,7 +77,7 @@ void validate_span(const Spec& spec, std::vector<Problem>& problems) {
     problems.push_back({"min", "\"min\" is not less than \"max\"", "min < max"});
   if (spec.start && ((spec.min && *spec.start < *spec.min) || (spec.max && *spec.start > *spec.max)))
     problems.push_back(
-        {"start", "the first level is outside min to max", "write a level between min and max"});
+        {"start", "the first level is not between min and max", "write a level between min and max"});
   if (spec.scale != Scale::linear && spec.start && !(*spec.start > 0))
     problems.push_back(
         {"start", "on a logarithmic scale the first level must be above 0", "write a level above 0"});

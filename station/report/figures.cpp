@@ -11,8 +11,8 @@ namespace turnpoint::report {
 
 namespace {
 
-/// The figure leaves out cells with fewer trials than kFewestOfCell. If there are more cells than
-/// kMostJoined, no line joins them.
+/// A cell is the trials of one condition with equal difficulty. Cells with fewer trials than kFewestOfCell
+/// are left out of the figure. If there are more cells than kMostJoined, no line joins them.
 constexpr int kFewestOfCell = 5;
 constexpr std::size_t kMostJoined = 8;
 

@@ -25,7 +25,8 @@ enum class Design {
 /// True if some trials have no signal, so that "yes" is a false alarm in them.
 inline bool has_noise(Design design) { return design == Design::yes_no || design == Design::same_different; }
 
-/// The estimate of one procedure in one block. `basis` says in words what it was computed from.
+/// The estimate of one procedure in one block. `basis` names the data from which it was computed, such as
+/// "reversals 5 to 12 of 12".
 struct StaircaseResult {
   std::string block, procedure;
   double mean = 0;           ///< in the unit of the level
@@ -40,8 +41,9 @@ using Fact = std::pair<std::string, std::string>;
 struct SessionData {
   std::string title;  ///< title of the protocol
   std::string participant, session_id, run_mode, status;
-  std::vector<Fact> facts;   ///< for the head: protocol, date, rig, ...
-  std::vector<Fact> health;  ///< for the health table: xruns, calibration age, restarts, ...
+  std::vector<Fact> facts;  ///< rows for the head of the report: protocol, date, rig, ...
+  /// rows for the table of technical checks: xruns, calibration age, restarts, ...
+  std::vector<Fact> health;
   Design design = Design::forced_choice;
   int alternatives = 2;
   terms::Function function = terms::Function::weibull;
@@ -50,7 +52,9 @@ struct SessionData {
   std::string level_unit;            ///< "" for a level without a unit
   std::vector<std::string> choices;  ///< ids in the order of their indices
   int positive = 1;                  ///< if has_noise(): the choice that means "yes"
-  bool scored = true;                ///< true if answers are right or wrong
+  /// false for a single-interval task without right answers, such as ratings; the report then leaves out
+  /// accuracy
+  bool scored = true;
   /// conditions in the order of the report; each TrialRecord::instruction is one of them
   std::vector<std::string> conditions;
   /// parts of the report that the protocol chooses; empty: all parts that suit the design

@@ -12,7 +12,8 @@ struct Cues {
   double wide_end_amplitude_m = 0;
   /// half the local wavelength of the strongest tone at the wide end of the surface
   double stripe_pitch_m = 0;
-  double edge_width_m = 0;    ///< distance over which the last maximum falls from 90 % to 10 %
+  /// distance over which the displacement falls from 90 % to 10 % of its last maximum
+  double edge_width_m = 0;
   double strip_width_m = 0;   ///< width of the surface at the boundary
   double displacement_m = 0;  ///< displacement at its last maximum
   double friction = 1;        ///< lowest friction anywhere, averaged over the fingertip

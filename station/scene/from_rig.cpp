@@ -25,7 +25,7 @@ physics::Bending bending_of(rig::Bending bending) {
 }
 
 /// Returns the plate theory to use. If the rig file does not choose a theory, this is the most exact theory
-/// that has all models.
+/// in which every model can be computed for this surface.
 physics::PlateTheory theory_of(rig::PlateTheory theory, const rig::Surface& surface) {
   switch (theory) {
     case rig::PlateTheory::kirchhoff:

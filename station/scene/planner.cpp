@@ -55,12 +55,12 @@ std::string key_of(const Scene& scene) {
   return key;
 }
 
-/// How the surface moves for a set of tones, whatever their strength, so roving does not change it. `fields`
-/// are displacements per metre at the drive edge. If the chosen model is coarser than `mode`, the fields use
-/// `mode`, because the rig's limits must not be checked with a coarser model.
+/// How the surface moves for a set of tones per metre of displacement at the drive edge, so that roving does
+/// not change it. If the chosen model is coarser than `mode`, `fields` are computed with `mode`, because the
+/// rig's limits must not be checked with a coarser model.
 struct Solution {
   physics::PlanChoice choice;
-  std::vector<double> frequencies_Hz;  ///< computed with the chosen model, rounded to the grid
+  std::vector<double> frequencies_Hz;  ///< computed with the chosen model, rounded to 1 / kGridPerHz
   std::vector<physics::ToneField> fields;
   std::vector<std::optional<double>> resonances_Hz;
   double uncertainty_m = 0;
@@ -89,7 +89,8 @@ struct Planner::State : ToneDesigner {
   double drive_under_finger_m(const Scene& scene, double frequency_Hz);
 
  private:
-  std::map<std::pair<double, double>, double> moved_under_finger_;  ///< by frequency and place, per drive
+  /// displacement under a finger per displacement of the drive edge, by frequency (Hz) and place (m)
+  std::map<std::pair<double, double>, double> moved_under_finger_;
 };
 
 physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector<Tone>& tones,
@@ -107,8 +108,8 @@ physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector
   return physics::choose_model(surface, request);
 }
 
-/// Moves each tone that has a boundary to the frequency at which the model `modes` puts its edge there.
-/// Returns false if `modes` finds no such edge.
+/// Sets the frequency of each tone that has a boundary so that, according to the model `modes`, the tone's
+/// edge lies at this boundary. Returns false if no frequency does that.
 bool Planner::State::place_by_field(const std::vector<WantedTone>& wanted,
                                     std::vector<double>& frequencies_Hz) const {
   for (std::size_t i = 0; i < wanted.size(); ++i) {

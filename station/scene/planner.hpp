@@ -27,7 +27,7 @@ class Unreachable : public terms::UsageError {
 /// One tone as the drive will play it.
 struct DrivenTone {
   double frequency_Hz = 0;
-  double amplitude_m = 0;  ///< peak at the drive edge
+  double amplitude_m = 0;  ///< peak displacement at the drive edge
   double phase_rad = 0;    ///< phase at the drive edge
   std::string transducer;
   int channel = 0;
@@ -36,7 +36,7 @@ struct DrivenTone {
   double output_phase_rad = 0;
   std::optional<double> boundary_m;  ///< where this tone alone would put the scene's edge
   std::optional<double> turning_point_m, last_peak_m, nearest_resonance_Hz;
-  /// peak at the tone's last maximum, or the largest value if there is no maximum
+  /// peak displacement at the tone's last maximum, or the largest peak if there is no maximum
   double displacement_m = 0;
   double gain = 0;
 };
@@ -58,13 +58,13 @@ struct DrivePlan {
   /// How far the next better plate theory would move the boundary; empty for membranes.
   std::optional<double> shear_shift_m;
   std::optional<double> boundary_m;     ///< predicted position of the boundary
-  std::optional<double> zone_friction;  ///< predicted mean over the zone
+  std::optional<double> zone_friction;  ///< predicted mean friction of the zone
   std::optional<double> residual;       ///< rms deviation of friction from its mean within the zone
   /// lowest friction anywhere on the surface, averaged over the fingertip
   double lowest_friction = 1;
   /// largest displacement anywhere on the surface, if all tones were in phase
   double peak_displacement_m = 0;
-  double peak_full_scale = 0;  ///< largest value over all channels, if all tones were in phase
+  double peak_full_scale = 0;  ///< largest value of all converter channels, if all tones were in phase
   double crest_factor = 0;
   std::vector<physics::Product> audible_products;
   Cues cues;
@@ -78,11 +78,12 @@ struct UnderFinger {
   double free_m = 0;          ///< displacement there without a finger
   double displacement_m = 0;  ///< displacement under the finger
   double least_m = 0, most_m = 0;  ///< displacement for fingers one standard deviation heavier or lighter
-  double free_friction = 1, friction = 1;         ///< without and under the finger
-  double lowest_friction = 1;                     ///< lowest under a finger anywhere on the surface
-  std::optional<double> zone_friction, residual;  ///< mean under a finger in the zone, and rms about it
-  std::optional<double>
-      boundary_shift_m;  ///< by which a moving finger displaces the edge, of the highest tone
+  double free_friction = 1, friction = 1;  ///< at `finger_m`: without a finger, and under the finger
+  double lowest_friction = 1;              ///< lowest friction for any place of the finger
+  /// under a finger in the zone: mean friction, and rms deviation from it
+  std::optional<double> zone_friction, residual;
+  /// distance by which a moving finger displaces the edge of the highest tone
+  std::optional<double> boundary_shift_m;
 };
 
 /// Turns scenes into drive plans for one rig. The result of plan() depends only on the scene and the rig; the

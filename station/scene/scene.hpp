@@ -48,7 +48,7 @@ struct Scene {
   std::optional<FingerTarget> under_finger;
   std::vector<ToneTarget> tones;
   std::optional<ZoneTarget> zone;
-  double rove_dB = 0;  ///< random change of strength in this trial, added to every displacement
+  double rove_dB = 0;  ///< random change of all displacements in this trial
   double ramp_s = 0.050;
   Tolerance tolerance;
 };

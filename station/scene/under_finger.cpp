@@ -13,10 +13,11 @@ namespace {
 
 constexpr int points = 301;
 
-/// Displacement and load of all tones of a plan at evenly spaced points, and the load at the finger's place.
+/// Displacement of each tone of a plan at evenly spaced points, and the load of a finger at these points and,
+/// last, at the finger's place.
 struct Loaded {
   std::vector<double> x_m;
-  std::vector<physics::ToneField> fields;  ///< in m
+  std::vector<physics::ToneField> fields;  ///< displacements in m
   std::vector<std::vector<physics::FingerLoad>> loads;
 };
 
@@ -37,8 +38,8 @@ Loaded solve(const physics::Surface& surface, const physics::Finger& finger, phy
   return all;
 }
 
-/// Friction at each place of a finger, averaged over the fingertip. While the finger is there, it leaves the
-/// same share of a tone everywhere under it.
+/// Returns the friction under a finger at each place along the surface, averaged over the fingertip. A finger
+/// reduces a tone by the same factor everywhere under it.
 std::vector<double> felt(const Loaded& loaded, const physics::FrictionMap& friction, double fingertip_m,
                          const physics::Finger& finger) {
   std::vector<double> all;

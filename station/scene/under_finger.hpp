@@ -12,11 +12,12 @@ namespace turnpoint::scene {
 /// Converts the rig's finger to the type of the physics library.
 physics::Finger finger_of(const rig::Rig& rig);
 
-/// Computes what Planner::under_finger returns, for a surface of one plate theory.
+/// Computes the result of Planner::under_finger() for a surface whose plate theory is already chosen.
 UnderFinger finger_figures(const physics::Surface& surface, const physics::FrictionMap& friction,
                            const rig::Rig& rig, physics::Model field_model, const DrivePlan& plan);
 
-/// Shares of the displacement that the rig's finger leaves at the last maxima of these tones.
+/// The smallest and the largest share of its displacement that a tone keeps under the rig's finger, each tone
+/// at its last maximum.
 struct FingerShares {
   double least = 1, most = 0;
 };

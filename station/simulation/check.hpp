@@ -46,11 +46,13 @@ struct Check {
   std::vector<std::string> protocol_defaults, rig_defaults;
 };
 
-/// What `turnpoint check` computes besides the survey.
+/// What `turnpoint check` computes besides planning every scene of the protocol.
 struct CheckOptions {
-  int sessions = 21;    ///< simulated to estimate the number of trials and the duration; 0: none
-  bool sound = false;   ///< also compute the bound of the airborne sound, about 10 ms per tone
-  bool finger = false;  ///< also compute what a finger leaves of two tones
+  /// number of sessions to simulate, to estimate the number of trials and the duration; 0: none
+  int sessions = 21;
+  bool sound = false;  ///< also compute the bound of the airborne sound, about 10 ms per tone
+  /// also compute which share of the displacement a finger leaves, for the lowest and the highest tone
+  bool finger = false;
 };
 
 /// Reads and checks both files as `run` would. Throws std::system_error if one cannot be read, and

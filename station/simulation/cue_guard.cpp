@@ -59,7 +59,7 @@ struct NotPlanned : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The cues of one interval, for any drawn strength: in its first and its last scene.
+/// The cues of one interval's first and last scene, for any strength that roving draws.
 struct Interval {
   RovedCues first, last;
   double duration_s = 0;
@@ -68,11 +68,12 @@ struct Interval {
 struct Presentation {
   std::vector<Interval> intervals;
   int correct = 0;
-  double share = 0;   ///< share of this order and combination of factors among the trials of its cell
+  /// probability of this order of intervals and combination of factors in a trial of the cell
+  double share = 0;
   double turn = 0.5;  ///< offset into the sequence of quasi-random strengths (see looks())
 };
 
-/// All cells of the census. Each has its presentations and its number of trials.
+/// All cells (kinds of trial) of the census, each with its possible presentations and its number of trials.
 using Cells = std::vector<std::pair<const std::vector<Presentation>*, double>>;
 
 /// Which value of the cue the observer uses in an interval that changes from one scene to another.
@@ -92,10 +93,10 @@ struct Strategy {
 /// first.
 struct OwnSessions {
   std::vector<Score> done;
-  /// score of one trial, for each cell that occurred
+  /// expected score of one trial in each cell that occurred
   std::map<const std::vector<Presentation>*, Score> scores;
   Cells visited;
-  std::vector<std::array<double, 3>> answers;  ///< answers in the visited cells
+  std::vector<std::array<double, 3>> answers;  ///< the observer's answers in each cell of `visited`
   Reached reached;
 };
 

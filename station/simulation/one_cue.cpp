@@ -88,7 +88,7 @@ Rule best_band(std::vector<Weighed> values, Statistic statistic, const Grain& gr
   return best;
 }
 
-// The mean cue of the intervals that should not be chosen.
+// The mean cue in the intervals that are wrong answers.
 double usual_of(const std::vector<Look>& looks) {
   double sum = 0, weight = 0;
   for (const auto& look : looks) {

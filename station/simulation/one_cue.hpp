@@ -6,8 +6,8 @@
 
 namespace turnpoint::simulation {
 
-/// The values of one cue in the intervals of a trial, the right answer, and the weight of this case. `x` has
-/// one value per interval, at most three.
+/// The values of one cue in the intervals of a trial, the right answer, and the weight of such trials in an
+/// average. `x` has one value per interval, at most three.
 struct Look {
   std::array<double, 3> x{};
   int correct = 0;
@@ -18,11 +18,12 @@ struct Look {
 enum class Statistic {
   value,   ///< one interval: one answer if the cue lies inside a band, the other answer outside
   change,  ///< same or different: like `value`, applied to the difference between the two intervals
-  most,    ///< which interval: the observer chooses the one with the largest cue
-  least,   ///< which interval: the one with the smallest cue
-  /// which interval: the one that differs most from the other intervals; with two intervals, from `usual`
+  most,    ///< which interval: the observer chooses the interval with the largest cue
+  least,   ///< which interval: the observer chooses the interval with the smallest cue
+  /// which interval: the observer chooses the interval that differs most from the other intervals; with two
+  /// intervals, the one that differs most from `usual`
   odd,
-  even,  ///< which interval: the one that differs least
+  even,  ///< like `odd`, but the interval that differs least
 };
 
 /// Cue values that differ by less than this count as equal. Two intervals are compared with `relative`, a
@@ -36,7 +37,7 @@ struct Rule {
   Statistic statistic = Statistic::value;
   double low = 0, high = 0;  ///< the band: from low (inclusive) to high; may extend to infinity
   int inside = 0;
-  double usual = 0;  ///< mean cue of the intervals that should not be chosen
+  double usual = 0;  ///< mean cue of the intervals that are wrong answers
   Grain grain = {};
 };
 

@@ -38,8 +38,8 @@ struct Recovery {
   std::string parameter;  ///< "threshold", "PSE", "spread", "75 % point", "proportion correct", ...
   std::string unit;       ///< "" if the protocol's level has no unit
   std::optional<double> truth;
-  std::vector<double> estimates;  ///< from those sessions that had an estimate, in order
-  int sessions = 0;               ///< number of sessions that could have had an estimate
+  std::vector<double> estimates;  ///< estimates of the sessions that have one, in the order of the sessions
+  int sessions = 0;               ///< number of sessions analysed, with or without an estimate
   bool heavy_tailed = false;      ///< true for slopes and spreads: use median and quartiles, not mean and SD
   double mean = 0, sd = 0;
   double median = 0, lower_quartile = 0, upper_quartile = 0;

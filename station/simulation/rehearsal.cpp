@@ -17,7 +17,7 @@ namespace {
 
 using trial::TrialSpec;
 
-// The time for which a page is read; the same as in a session on the virtual clock.
+// The simulated participant reads each page for this time, as in a session on the virtual clock.
 constexpr std::int64_t page_ns = 1'000'000'000;
 // The protocol reader refuses procedures without an end. This limit is a safeguard against one that the
 // reader missed.

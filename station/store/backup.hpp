@@ -51,8 +51,7 @@ std::vector<std::string> backups_in(const std::string& directory, const std::str
 
 struct RestoreOptions {
   std::string directory;
-  /// id of the database whose backups to use; if "", the id is looked for in what is left of the lost
-  /// database
+  /// id of the database whose backups to use; if "", the damaged file or its lock file gives the id
   std::string database_id;
 };
 

@@ -195,9 +195,10 @@ Link check_links(Database& database, const std::string& schema, VerifiedSession&
 }
 
 /// Returns the sessions (all, or the one with `session_id`) whose place in the counterbalancing agrees with
-/// the participant's enrolment. The enrolment must be from the station of one of the participant's sessions.
-/// If the database has tombstones, it may be from any station, because that session may have been withdrawn.
-/// One query checks all sessions, because a query for each session would read all sessions each time.
+/// the participant's enrolment. The enrolment must come from a station at which the participant has a
+/// session. If the database has tombstones, it may come from any station, because the session at that station
+/// may have been withdrawn. One query checks all sessions, because a query for each session would read all
+/// sessions each time.
 std::set<std::string> enrolled(Database& database, const std::string& schema,
                                const std::string& session_id = "") {
   std::set<std::string> ids;

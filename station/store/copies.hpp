@@ -10,8 +10,8 @@ namespace turnpoint::store {
 /// cannot be read.
 struct Copies {
   std::vector<std::string> own;  ///< backups of this database, and its copies from before a migration
-  /// Files that must not be removed without asking somebody: backups of other databases, damaged files that
-  /// were set aside, and files that cannot be read.
+  /// Files that must not be removed without asking: backups of other databases, damaged files that were set
+  /// aside, and files that cannot be read.
   std::vector<std::string> foreign;
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Makes a column from the field of `table` that has the name `csv` in exports.
+/// Makes the exported column `csv` from the field of `table` with this export name.
 template <class Record>
 ExportColumn exported(const Table<Record>& table, const std::string& csv, const Record* ExportRow::*record) {
   for (const auto& field : table.fields)

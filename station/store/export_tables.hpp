@@ -26,7 +26,7 @@ struct StimulusSpan {
 std::map<int, StimulusSpan> stimulus_spans(const StoredSession& stored);
 std::optional<StimulusSpan> span_of(const std::map<int, StimulusSpan>& spans, const TrialRow& trial);
 
-/// Returns the length of a stimulus, which its event has as value. Returns 0 for all other events.
+/// Returns the length of the stimulus for an event that reports a stimulus; 0 for all other events.
 double event_length_s(const EventRow& event);
 
 /// Sorts the events of each segment by the time at which they happened. The database has them in the order in

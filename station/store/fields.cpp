@@ -93,7 +93,7 @@ struct MemberOf<Value Class::*> {
   using Record = Class;
 };
 
-/// Returns the member of a record to which a path of member pointers leads.
+/// Follows a path of pointers to members: member<&A::b, &B::c>(a) is a.b.c.
 template <auto First, auto... Rest, class Record>
 auto& member(Record& record) {
   if constexpr (sizeof...(Rest) == 0)
@@ -102,7 +102,8 @@ auto& member(Record& record) {
     return member<Rest...>(record.*First);
 }
 
-/// What a field needs besides its member in the record.
+/// The names and texts of a column. field() finds out the type and the functions from the pointer to the data
+/// member.
 struct About {
   const char* name;
   const char* csv = "";
@@ -127,13 +128,13 @@ Field<typename MemberOf<decltype(First)>::Record> field(const About& about) {
           [](const Record& r) { return cell_of(member<First, Rest...>(r)); }};
 }
 
-/// Makes the field of a member of SessionRecord::start.
+/// Describes the database column that stores one data member of SessionRecord::start.
 template <auto Member>
 Field<SessionRecord> start(const About& about) {
   return field<&SessionRecord::start, Member>(about);
 }
 
-/// This column is NULL if there is no response time, because a missing time has no quality.
+/// This column is NULL if there is no response time, because then there is no clock to name.
 Field<TrialRow> response_time_quality() {
   auto quality = field<&TrialRow::response_time_quality>({"response_time_quality", "response_time_quality",
                                                           "Clock that gave the time stamp of the answer", "",

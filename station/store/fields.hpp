@@ -14,10 +14,10 @@
 
 namespace turnpoint::store {
 
-/// One column of a record: its place in the database, in the C++ struct and in the exports, and its meaning.
-/// All code that handles records uses these descriptions: writing, reading, exports, codebook and checksum.
-/// Only the SQL that creates the tables is separate (schema.cpp), because a released schema never changes. A
-/// test compares the two.
+/// One column of a database table: where its value is in the C++ struct, its name in the exports, and its
+/// meaning. All code that handles records uses these descriptions: writing, reading, exports, codebook and
+/// checksum. Only the SQL that creates the tables is separate (schema.cpp), because a released schema never
+/// changes. A test compares that SQL with these descriptions.
 template <class Record>
 struct Field {
   const char* name;         ///< name of the column in the database
@@ -33,8 +33,8 @@ struct Field {
   int since = 1;  ///< the first encoding of the checksum that covers this column (see checksum.hpp)
 };
 
-/// A table of the database. Each row begins with its place: keys and other values that only the log knows.
-/// The fields of the record follow.
+/// A table of the database. Its first columns (`place`) contain the keys, and other values that only the
+/// session log knows. The columns for the members of Record (`fields`) follow.
 template <class Record>
 struct Table {
   const char* name;
@@ -80,7 +80,8 @@ std::string insert_sql(const Table<Record>& table) {
   return std::string("INSERT INTO ") + table.name + " (" + column_list(table) + ") VALUES (" + marks + ")";
 }
 
-/// Binds all values of a row: its place, then the fields of its record. Returns the statement, ready to run.
+/// Binds all values of a row: those of the `place` columns, then those of the record. Returns the statement,
+/// ready to run.
 template <class Record, class... Place>
 Statement& bind_row(Statement& statement, const Table<Record>& table, const Record& record,
                     const Place&... place) {

@@ -59,7 +59,7 @@ void require_writable(Database& database) {
 }
 
 /// Opens a file for reading. Some file systems and folders do not allow the shared memory that WAL mode
-/// needs. The file is then read without it, but only if the log has no data.
+/// needs. The file is then read without shared memory, but only if there is no log.
 Database open_plain_reader(const std::string& path) {
   try {
     Database database(path, Database::Access::read_only);
@@ -74,8 +74,8 @@ Database open_plain_reader(const std::string& path) {
   return Database(path, Database::Access::immutable);
 }
 
-/// Refuses a file that has two names. The lock belongs to the name, so under the other name a second station
-/// could write the same file at the same time.
+/// Refuses a file that has two names. A lock file belongs to one name, so a second station could lock the
+/// other name and write to the file at the same time.
 void refuse_second_name(const std::string& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink < 2) return;

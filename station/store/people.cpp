@@ -31,7 +31,8 @@ std::vector<Pair> pairs_in(Database& database) {
   return pairs;
 }
 
-/// Sorts the bearers of a joined person. The first is a bearer that was never the second argument of join().
+/// Sorts the codes of one person. The code that names the person comes first: one that was never the second
+/// argument of join().
 void put_name_first(std::vector<Bearer>& person, const std::vector<Pair>& pairs) {
   std::sort(person.begin(), person.end());
   const auto second = [&](const Bearer& bearer) {

@@ -18,13 +18,14 @@ struct Bearer {
 /// Returns "CODE@STATION". Commands accept this form, and print it if a code is ambiguous.
 std::string full_name(const Bearer& bearer);
 
-/// The people in a database. Each person is a group of bearers; most groups have only one.
+/// The people in a database. Each person has one or more bearers (codes at stations); most have one.
 class People {
  public:
   explicit People(Database& database);
 
   /// Returns the name of this person in exports and lists: the code, or CODE@STATION if other people in this
-  /// database have the same code. If codes were joined, the one that was named first counts.
+  /// database have the same code. If codes were joined, the code that was the first argument of join()
+  /// counts.
   std::string label(const Bearer& bearer) const;
 
   /// Returns all bearers that are the same person, the given one included.

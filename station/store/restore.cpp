@@ -110,7 +110,7 @@ Candidates candidates_for(const std::string& path, const RestoreOptions& options
 }
 
 /// Returns false for a damaged backup. If the checksum of a backup is right but the backup cannot be read,
-/// the disk is at fault; this throws then, because an older backup would be the wrong choice.
+/// the disk is at fault. The function then throws, so that no older backup is restored instead.
 bool is_good(const StoredBackup& candidate) {
   if (!agrees_with_checksum(candidate.path)) return false;
   try {

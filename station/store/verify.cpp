@@ -19,7 +19,7 @@ struct Exported {
   std::string session_id, checksum;
 };
 
-/// Reads the sessions and their checksums from a sessions.csv that was exported.
+/// Reads session_id and checksum of each session from an exported sessions.csv.
 std::vector<Exported> read_export(const std::string& path) {
   const auto refuse = [&](const std::string& why) -> std::size_t {
     throw StoreError(ErrorKind::missing,
@@ -49,12 +49,12 @@ std::vector<Exported> read_export(const std::string& path) {
   return sessions;
 }
 
-/// Adds a problem if the exported checksum of a session is not in the database.
+/// Adds a problem unless the session's chain in the database has a link with the exported checksum.
 void compare(Database& database, const Exported& exported, Verification& result) {
-  if (exported.checksum == "n/a") return;  // a release without checksums recorded the session
+  if (exported.checksum == "n/a") return;  // the session was recorded by a release without checksums
   if (holds_link(database, exported.session_id, exported.checksum)) return;
   const auto problem =
-      fmt::format("the session does not contain the exported checksum {}", exported.checksum);
+      fmt::format("the checksum in the export, {}, does not occur in this session", exported.checksum);
   for (auto& session : result.sessions)
     if (session.session_id == exported.session_id) {
       session.problems.push_back(problem);

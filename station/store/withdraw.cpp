@@ -34,7 +34,7 @@ bool has_tombstone(Database& database, const std::string& station, const std::st
   return false;
 }
 
-/// Nobody with this name has sessions. Throws unless their sessions were withdrawn before.
+/// For a name without sessions: throws unless sessions of this participant were withdrawn before.
 void require_withdrawn_before(Database& database, const WithdrawOptions& options) {
   const auto at = options.participant.rfind('@');
   const auto code = options.participant.substr(0, at);
@@ -46,7 +46,8 @@ void require_withdrawn_before(Database& database, const WithdrawOptions& options
                   options.participant, options.station.empty() ? "" : " at station " + options.station));
 }
 
-/// Returns the person's bearers; only those of one station if a station is given.
+/// Returns the codes of the person who is to be withdrawn; only those of one station if the options name a
+/// station.
 std::vector<Bearer> chosen_bearers(const People& people, const WithdrawOptions& options) {
   auto persons = people.named(options.participant);
   for (auto& person : persons)

@@ -41,7 +41,7 @@ TEST_CASE("the doctor warns of a simulated panel beside a real converter", "[cli
   const auto rig = folder / "rig.toml";
   std::ifstream simulated(kRig);
   std::string text{std::istreambuf_iterator<char>(simulated), {}};
-  const std::string warning = "the touch panel is simulated, so answers by touch have no kernel time";
+  const std::string warning = "the touch panel is simulated, so touches have no kernel time stamps";
   for (const char* output : {"null:", "alsa:hw:31"}) {  // the card hw:31 does not exist
     const auto uri = text.find("uri = \"null:\"");
     if (uri != std::string::npos) text.replace(uri, 13, std::string("uri = \"") + output + "\"");

@@ -241,7 +241,7 @@ TEST_CASE("verify compares a database with a sessions.csv that was exported earl
     for (const auto& session : list_sessions(database)) Chain(database, session.session_id).add();
     const auto result = verify(db, {"", csv});
     REQUIRE_FALSE(result.good());
-    CHECK(sample::contains(result.sessions[0].problems.at(0), "does not contain the exported checksum"));
+    CHECK(sample::contains(result.sessions[0].problems.at(0), "the checksum in the export"));
   }
   SECTION("another database") {
     sample::session(folder / "b.sqlite", 2);
@@ -274,7 +274,7 @@ TEST_CASE("verify compares a database with a sessions.csv that was exported earl
   }
 }
 
-TEST_CASE("a session that continued after an export still contains the exported checksum", "[store]") {
+TEST_CASE("a session that continued after an export still contains the checksum in the export", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 3, sample::start(), SessionStatus::interrupted);
