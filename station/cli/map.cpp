@@ -14,6 +14,7 @@
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
 #include "station/scene/transducer.hpp"
+#include "station/scene/under_finger.hpp"
 #include "station/system/write_file.hpp"
 #include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
@@ -67,6 +68,21 @@ void print(std::ostream& out, const physics::MapAnswer& answer, const physics::B
              "more, because "
              "they include all of these (turnpoint calibrate --boundaries).\n",
              name(best.parameter), number(best.left_m * 1e3, 3));
+}
+
+Json to_json(const std::optional<scene::FingerShift>& shift) {
+  if (!shift) return nullptr;
+  return {{"shift_mm", json_number(shift->shift_m * 1e3)},
+          {"range_mm", {json_number(shift->least_m * 1e3), json_number(shift->most_m * 1e3)}}};
+}
+
+void print(std::ostream& out, const std::optional<scene::FingerShift>& shift) {
+  if (shift)
+    fmt::print(out,
+               "A moving finger displaces this edge by {} mm (people differ: {} to {} mm); this is not part "
+               "of the uncertainty.\n",
+               number(shift->shift_m * 1e3, 3), number(shift->least_m * 1e3, 3),
+               number(shift->most_m * 1e3, 3));
 }
 
 constexpr std::size_t most_lines = 6;  ///< that differ in colour and dash
@@ -174,13 +190,18 @@ void map(const Options& options, Context& context) {
   if (!context.json) {
     print(context.out, answers);
     for (const auto& answer : answers)
-      if (has_budget(answer)) print(context.out, answer, budget_of(answer));
+      if (has_budget(answer)) {
+        print(context.out, answer, budget_of(answer));
+        print(context.out, scene::finger_shift(rig, *answer.frequency_Hz, wanted.edge));
+      }
     return;
   }
   Json list = Json::array();
   for (const auto& answer : answers) {
     list.push_back(to_json(answer));
-    if (has_budget(answer)) list.back()["budget"] = to_json(budget_of(answer));
+    if (!has_budget(answer)) continue;
+    list.back()["budget"] = to_json(budget_of(answer));
+    list.back()["finger"] = to_json(scene::finger_shift(rig, *answer.frequency_Hz, wanted.edge));
   }
   context.out << list.dump(2) << "\n";
 }

@@ -100,6 +100,32 @@ physics::Finger finger_of(const rig::Rig& rig) {
   return {std::polar(rig.finger.impedance_Ns_per_m, rig.finger.phase_rad), 0.5 * rig.finger.contact_m};
 }
 
+std::vector<physics::Finger> fingers_of(const rig::Rig& rig) {
+  std::vector<physics::Finger> all{finger_of(rig)};
+  const auto& f = rig.finger;
+  constexpr double most_phase = 0.5 * std::numbers::pi;
+  for (const double impedance : {-f.impedance_sd_Ns_per_m, f.impedance_sd_Ns_per_m})
+    for (const double phase : {-f.phase_sd_rad, f.phase_sd_rad})
+      all.push_back({std::polar(std::max(0.0, f.impedance_Ns_per_m + impedance),
+                                std::clamp(f.phase_rad + phase, -most_phase, most_phase)),
+                     0.5 * f.contact_m});
+  return all;
+}
+
+std::optional<FingerShift> finger_shift(const rig::Rig& rig, double frequency_Hz, const physics::Edge& edge) {
+  if (edge.kind != physics::Edge::Kind::peak && edge.kind != physics::Edge::Kind::percent)
+    return std::nullopt;
+  const auto surface = surface_of(rig);
+  std::optional<FingerShift> shift;
+  for (const auto& finger : fingers_of(rig)) {
+    const auto one_m = physics::finger_edge_shift_m(surface, frequency_Hz, edge, finger);
+    if (!one_m) return std::nullopt;
+    if (!shift) shift = FingerShift{*one_m, *one_m, *one_m};
+    shift->least_m = std::min(shift->least_m, *one_m), shift->most_m = std::max(shift->most_m, *one_m);
+  }
+  return shift;
+}
+
 UnderFinger finger_figures(const physics::Surface& surface, const physics::FrictionMap& friction,
                            const rig::Rig& rig, physics::Model field_model, const DrivePlan& plan) {
   UnderFinger under;
@@ -114,16 +140,10 @@ UnderFinger finger_figures(const physics::Surface& surface, const physics::Frict
   under.free_m = displacement_under(loaded, plan, none);
   under.displacement_m = displacement_under(loaded, plan, finger);
   under.least_m = under.most_m = under.displacement_m;
-  for (const double impedance : {-1.0, 1.0})
-    for (const double phase : {-1.0, 1.0}) {
-      auto other = finger;
-      other.impedance_Ns_per_m = std::polar(
-          std::max(0.0, rig.finger.impedance_Ns_per_m + impedance * rig.finger.impedance_sd_Ns_per_m),
-          std::clamp(rig.finger.phase_rad + phase * rig.finger.phase_sd_rad, -0.5 * std::numbers::pi,
-                     0.5 * std::numbers::pi));
-      const double one_m = displacement_under(loaded, plan, other);
-      under.least_m = std::min(under.least_m, one_m), under.most_m = std::max(under.most_m, one_m);
-    }
+  for (const auto& other : fingers_of(rig)) {
+    const double one_m = displacement_under(loaded, plan, other);
+    under.least_m = std::min(under.least_m, one_m), under.most_m = std::max(under.most_m, one_m);
+  }
   const auto free = felt(loaded, friction, rig.friction.fingertip_m, none);
   const auto pressed = felt(loaded, friction, rig.friction.fingertip_m, finger);
   under.free_friction = nearest(loaded.x_m, free, under.finger_m);

@@ -38,6 +38,9 @@ TEST_CASE("map says what moves a boundary, and what to measure", "[cli]") {
   CHECK(json[0]["budget"]["contributions"].size() == 7);
   CHECK(json[0]["budget"]["contributions"][0]["unit"] == "mm");
   CHECK(json[0]["error_bound_mm"].get<double>() > 0);
+  CHECK(contains(said, "A moving finger displaces this edge by "));
+  CHECK(json[0]["finger"]["shift_mm"].get<double>() > 1);
+  CHECK(json[0]["finger"]["range_mm"][0] < json[0]["finger"]["shift_mm"]);
   CHECK(contains(output_of({"map", "--rig", rig, "--boundary", "150", "--plot", plot}, 2),
                  "--plot needs --budget"));
 }
