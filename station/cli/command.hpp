@@ -17,15 +17,15 @@ struct Context {
   bool json = false;
   /// the exit status; a command sets it if it ends without an exception but must not return 0
   int exit_code = 0;
-  /// the command line as given, ending in null, to pass on to another program
+  /// the command line as given; its last element is null, as execv() requires
   std::vector<char*> arguments;
-  const Screens* screens = nullptr;  ///< null in a program without a screen
+  const Screens* screens = nullptr;  ///< how to show windows; null in a program without a screen
 };
 
 using terms::UsageError;
 
-/// Does work in which numbers from the user reach the physics library unchecked. If the library refuses them,
-/// that is a usage error.
+/// Calls `work`, which passes numbers from the command line to the physics library unchecked. If the library
+/// refuses a number, throws a UsageError.
 template <class Work>
 auto with_users_numbers(Work work) {
   try {
@@ -37,8 +37,8 @@ auto with_users_numbers(Work work) {
   }
 }
 
-/// Each function adds one sub-command: its options, an example in the footer, and the callback that runs it.
-/// Each is in its own file; the table in commands.cpp lists them all.
+/// Each of these functions adds one sub-command: its options, an example in the footer, and the callback that
+/// runs it. Each is in a file of its own. The table in commands.cpp lists them all.
 void add_map(CommandLine& app, Context& context);
 void add_field(CommandLine& app, Context& context);
 void add_plan(CommandLine& app, Context& context);

@@ -26,7 +26,7 @@ char single(const std::string& option, const std::string& text) {
   return text.front();
 }
 
-/// Number of rows in the trial tables only, because people count trials.
+/// The number of exported trials: the rows of the trial tables, without those of the other tables.
 std::size_t trial_rows(const std::vector<store::ExportedFile>& files) {
   std::size_t rows = 0;
   for (const auto& file : files)

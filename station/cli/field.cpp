@@ -38,7 +38,8 @@ Choice choose(const physics::Surface& surface, const std::vector<physics::Tone>&
   request.points = points;
   request.normalise = physics::parse_normalise(options.normalise);
   if (options.tolerance > 0) request.tolerance.amplitude = options.tolerance;
-  // Without a tolerance use the best one-mode profile. The cheapest model would be too inaccurate.
+  // Without a tolerance use the most accurate profile for one mode, because the cheapest model would be too
+  // inaccurate.
   if (options.tolerance <= 0)
     return {physics::Model::mode, "the one-mode equation, because no tolerance was given"};
   auto choice = physics::choose_model(surface, request);
@@ -113,7 +114,8 @@ void field(const Options& options, Context& context) {
   const auto choice = choose(surface, tones, static_cast<int>(x_m.size()), options);
   const auto result =
       physics::evaluate(surface, tones, x_m, choice.model, physics::parse_normalise(options.normalise));
-  // The friction model needs displacements in metres, whatever the profile is normalised to.
+  // The friction model needs amplitudes in metres, so compute them again without the normalisation that the
+  // user chose.
   const auto metres = physics::amplitude_profile(surface, tones, x_m, choice.model);
   const auto map = scene::friction_of(rig);
   std::vector<double> friction;

@@ -19,7 +19,8 @@ namespace new_command {
 
 namespace fs = std::filesystem;
 
-// What a researcher may want to measure, in words, and the shipped protocol that measures it.
+// A goal that a researcher can choose: the word to type, its description, and the shipped protocol that
+// measures it.
 struct Goal {
   const char* word;
   const char* what;

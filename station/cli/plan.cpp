@@ -41,13 +41,15 @@ Json tones_json(const scene::DrivePlan& plan) {
   return tones;
 }
 
-/// A contrast of friction in dB, 20 log10 of the share by which friction is lower than in the base scene.
+/// The contrast in dB between the friction of a scene and that of its base scene: 20 log10(1 - friction /
+/// base).
 std::optional<double> contrast_dB(const std::optional<double>& base, const std::optional<double>& friction) {
   if (!base || !friction || *friction >= *base) return std::nullopt;
   return 20 * std::log10(1 - *friction / *base);
 }
 
-/// The scene with and without a finger, and the same contrast to its base scene if it has one.
+/// What a finger changes in a scene, and the contrast to the base scene, if there is one, without and with
+/// the finger.
 struct Touched {
   scene::UnderFinger under;
   std::optional<double> free_contrast_dB, contrast_dB;

@@ -29,8 +29,8 @@ void write(const std::filesystem::path& path, const std::string& text, std::ostr
   fmt::print(messages, "{}\n", path.string());
 }
 
-/// Writes files for every requested scene. A scene that cannot be presented is reported, and the command
-/// fails at the end.
+/// Writes the pictures of every requested scene. If a scene cannot be presented, prints the reason, continues
+/// with the next scene, and sets a failing exit status at the end.
 void preview_to_files(const Options& options, Context& context) {
   desk::Preview preview(options.protocol, options.rig);
   std::vector<std::string> assumed;

@@ -9,17 +9,18 @@
 
 namespace turnpoint::cli {
 
-/// Functions that only a program with a screen provides; turnpoint starts turnpoint-ui for them. Each returns
-/// when its window is closed.
+/// Functions that need a screen, which only turnpoint-ui provides; turnpoint starts turnpoint-ui to call
+/// them. Each returns when its window is closed.
 struct Screens {
-  /// Runs a session and asks on the screen for what the request leaves open (language, participant's code).
-  /// If an already prepared session is given (a resumed one), the request is ignored.
+  /// Runs a session. Asks on the screen for the language and the code of the participant if the request
+  /// leaves them open. To resume a session, pass its prepared setup; the request is then ignored.
   std::function<session::Summary(setup::RunRequest, std::optional<session::Setup>)> session;
   /// Shows the operator's start page and runs the sessions started there, one after another.
   std::function<void(const setup::StationRequest&)> station;
   /// Shows the scenes of a protocol with sliders for their factors.
   std::function<void(const desk::PreviewRequest&)> preview;
-  /// Measures taps against a reference until the operator accepts the result; empty if none was accepted.
+  /// Measures the latency of the touch panel against a reference line until the operator accepts the result;
+  /// empty if the operator accepts none.
   std::function<std::optional<calibration::PanelLatency>(const maintenance::LatencyRequest&)> latency;
 };
 

@@ -10,7 +10,7 @@
 
 namespace turnpoint::cli {
 
-/// The bound of the airborne sound, for a line of text.
+/// The upper limit of the airborne sound level, as text for one line.
 inline std::string in_words(const std::optional<scene::SoundBound>& sound) {
   if (!sound) return "no bound is known for this surface; a live session needs measured levels";
   return fmt::format("at most {} dB at an ear {} m away ({} kHz); recommended: at most {} dB{}",

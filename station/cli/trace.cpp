@@ -29,7 +29,7 @@ const procedure::Spec& find(const protocol::Protocol& protocol, const std::strin
       fmt::format("--procedure {}: the protocol has no such procedure; its procedures are {}", name, known));
 }
 
-/// What the procedure needs to know about the protocol, with the other factors at their first levels.
+/// The values of the protocol that the procedure uses; every factor has its first level.
 procedure::Context context_of(const protocol::Protocol& protocol, const procedure::Spec& spec) {
   procedure::Context context;
   protocol::Factors factors;

@@ -32,7 +32,7 @@ std::string lower(std::string text) {
 void check_type(snd_pcm_t* pcm, const OutputConfig& config, const std::string& name) {
   const snd_pcm_type_t type = snd_pcm_type(pcm);
   if (type == SND_PCM_TYPE_HW) return;
-  const char* known = snd_pcm_type_name(type);  // null for dshare in alsa-lib 1.2.8
+  const char* known = snd_pcm_type_name(type);  // the name is null for the plug-in dshare in alsa-lib 1.2.8
   const std::string found = known ? lower(known) : fmt::format("type {}", static_cast<int>(type));
   const auto& allowed = config.allow_plugin;
   if (std::find(allowed.begin(), allowed.end(), found) == allowed.end())

@@ -16,7 +16,7 @@ struct PcmCloser {
 };
 using Pcm = std::unique_ptr<snd_pcm_t, PcmCloser>;
 
-/// An open device that has been checked to take the samples unaltered.
+/// An open device that is known to take the samples without altering them.
 struct AlsaDevice {
   Pcm pcm;
   FrameLayout layout;  ///< how frames must be packed

@@ -46,7 +46,7 @@ class AlsaOutput final : public Output {
     return result;
   }
 
-  // Number of frames that have left the converter's buffer, at the time that the driver stamped.
+  // The number of frames that have left the converter's buffer, with the driver's time stamp for this number.
   std::optional<Position> position() noexcept override {
     if (recovery_.lost()) return std::nullopt;
     snd_pcm_uframes_t free = 0;
@@ -140,10 +140,11 @@ class AlsaOutput final : public Output {
     played_ = std::max(played_, frames_ - static_cast<std::int64_t>(device_.buffer_frames - room));
   }
 
-  // Handles a device that neither plays nor fails: after five waits it counts as lost.
+  // Called when a wait for room in the buffer ended without room and without an error. After five such waits
+  // the device counts as lost.
   int stalled() noexcept { return ++stalls_ > 5 ? -ENODEV : -EAGAIN; }
 
-  // Carries out a recovery until the device continues, has been restarted, or is lost.
+  // Carries out the recovery actions, one after another, until the device plays again or is lost.
   void follow(RecoveryAction action, int error, std::int64_t frames, WriteResult& result) noexcept {
     while (action != RecoveryAction::go_on) {
       int outcome = 0;
@@ -166,8 +167,8 @@ class AlsaOutput final : public Output {
     }
   }
 
-  // Counts the silence with which the device was restarted as frames that passed. Samples that it had not
-  // played before are lost.
+  // Counts the silence that start() wrote as frames that passed. Frames that were in the buffer but not yet
+  // played are counted as dropped.
   void note_gap(int error, WriteResult& result) noexcept {
     const auto gap = static_cast<std::int64_t>(device_.buffer_frames - device_.period_frames);
     result.status = WriteStatus::restarted;

@@ -32,7 +32,8 @@ std::optional<Event> DeviceStream::poll() {
   return core_.poll();
 }
 
-// After a restart nothing is known about the time of a frame until the device reports its first position.
+// Moves measured positions from the audio thread to the clock. A restart of the device resets the clock,
+// which then knows nothing until the device reports its first position.
 void DeviceStream::gather_positions() {
   const std::uint32_t relation = relation_.load();
   if (relation != clock_relation_) clock_.reset();
@@ -76,7 +77,7 @@ void DeviceStream::step() noexcept {
   output_->paced() ? follow_device() : follow_clock();
 }
 
-// Reports the loss of a device once, however long it lasts.
+// Reports the loss of a device only once, although every write reports it until the device is back.
 void DeviceStream::note_loss(const WriteResult& result) noexcept {
   const std::int64_t first = frame_ + result.taken - result.dropped;
   const std::int64_t next = frame_ + result.taken + result.passed;
@@ -110,7 +111,8 @@ void DeviceStream::follow_device() noexcept {
   const auto position = output_->position();
   if (!position) return;
   core_.heard(position->frame);
-  // If nobody reads the clock, this ring is full of older measurements, which are good enough.
+  // If nobody reads the clock, the ring fills up and push() drops this position. The older positions in the
+  // ring are good enough.
   static_cast<void>(positions_->push({relation_.load(), *position}));
   if (!rate_told_) check_rate(*position);
 }
@@ -125,8 +127,8 @@ void DeviceStream::check_rate(const Position& position) noexcept {
     core_.report({EventKind::rate_wrong, 0, position.frame, std::llround(rate->rate_Hz * 1000)});
 }
 
-// Outputs to a file or to null accept frames at once, so the clock paces them like a converter that is one
-// period behind.
+// Outputs to a file or to null accept frames at once. So wait until the time at which a converter that is one
+// period behind would have played them.
 void DeviceStream::follow_clock() noexcept {
   const std::int64_t rate = config_.output.rate_Hz, heard = frame_ - config_.output.period_frames;
   const std::int64_t due_ns = origin_ns_ + heard / rate * 1'000'000'000 + heard % rate * 1'000'000'000 / rate;

@@ -54,8 +54,8 @@ class DeviceStream : public Stream {
   const StreamConfig& config() const override { return config_; }
 
  private:
-  /// Positions and rates cross the threads together with a number that identifies the restart or the device
-  /// that they belong to. A measurement from before a restart is therefore never mistaken for a current one.
+  /// A position or rate that the audio thread sends to the control thread, with the number of restarts or
+  /// losses at that time. So the control thread can ignore measurements from before the latest restart.
   struct StampedPosition {
     std::uint32_t relation = 0;
     Position position;
@@ -77,8 +77,8 @@ class DeviceStream : public Stream {
   std::unique_ptr<Output> output_;
   std::unique_ptr<Ring<StampedPosition, 2048>> positions_ = std::make_unique<Ring<StampedPosition, 2048>>();
   std::unique_ptr<Ring<StampedRate, 4>> rates_ = std::make_unique<Ring<StampedRate, 4>>();
-  std::atomic<std::uint32_t> relation_{0};  ///< incremented whenever the device was restarted
-  std::atomic<std::uint32_t> device_{0};    ///< incremented whenever a device was lost
+  std::atomic<std::uint32_t> relation_{0};  ///< number of restarts of the device so far
+  std::atomic<std::uint32_t> device_{0};    ///< number of losses of a device so far
   // the members from here on belong to the control side
   FrameClock clock_;
   std::uint32_t clock_relation_ = 0;

@@ -60,9 +60,9 @@ struct Counters {
   std::int64_t events_dropped = 0;  ///< events lost because nobody called poll()
 };
 
-/// What a synchronous stream to `null:` does with its samples. `rendered` computes them, to measure them or
-/// their cost. `passed` skips them but reports the same events at the same frames, for sessions that nobody
-/// listens to.
+/// What a synchronous stream to `null:` does. With `rendered` it computes the samples, so that they or their
+/// cost can be measured. With `passed` it computes none but reports the same events at the same frames, for
+/// sessions that nobody listens to.
 enum class Samples : std::int32_t { rendered, passed };
 
 struct StreamConfig {

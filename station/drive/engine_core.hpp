@@ -17,7 +17,8 @@ class EngineCore {
  public:
   explicit EngineCore(const StreamConfig& config);
 
-  /// Returns the earliest frame that can still be reached. It is called after the burst has been checked.
+  /// Returns the earliest frame at which a burst can still start. Called only after the burst has been
+  /// checked, because checking takes time.
   using Earliest = std::function<std::int64_t()>;
   std::uint32_t schedule(const Burst& burst, const Earliest& earliest_frame);
   std::vector<Scheduled> schedule_together(std::span<const PreparedBurst> bursts,
@@ -33,12 +34,13 @@ class EngineCore {
   void process(std::int64_t frame, std::span<std::int32_t> samples) noexcept;
   /// Like process(), but without computing samples: only handles commands and events.
   void pass(std::int64_t frame, std::int64_t frames) noexcept;
-  /// Tells that everything before `frame` has been played, except what was reported as lost before this call.
+  /// Records that every frame before `frame` has been played, except those that lose() reported before this
+  /// call.
   void heard(std::int64_t frame) noexcept { atomics_.heard.store(frame); }
   /// Skips lost frames and sends the event that reports them. Rendering continues at `next_frame`, which must
   /// not lie before the end of what has been rendered.
   void lose(const Event& event, std::int64_t next_frame) noexcept;
-  /// Reports and counts an event of the output.
+  /// Sends an event of the output to the control thread and updates the counters.
   void report(const Event& event) noexcept;
 
  private:

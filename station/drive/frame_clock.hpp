@@ -4,7 +4,7 @@
 
 namespace turnpoint::drive {
 
-/// A straight line through (frame, CLOCK_MONOTONIC) pairs; stored with each trial.
+/// A straight line fitted to pairs of a frame and its time (CLOCK_MONOTONIC). Each trial stores one.
 struct ClockFit {
   std::int64_t frame = 0;  ///< a frame on the fitted line
   /// time at which this frame leaves the converter, without the converter's group delay
@@ -18,7 +18,7 @@ struct ClockFit {
   double rate_Hz() const noexcept { return 1e9 / ns_per_frame; }
 };
 
-/// A least-squares fit to the newest pairs. Pure: no clock inside.
+/// Fits a line to the newest pairs of frame and time by least squares. It reads no clock itself.
 class FrameClock {
  public:
   /// Throws std::invalid_argument unless the nominal rate is positive and `window` at least 2.
@@ -29,8 +29,8 @@ class FrameClock {
   void add(std::int64_t frame, std::int64_t time_ns);
   void reset();
 
-  /// The fitted line. With fewer than 8 pairs it goes through the newest pair with the nominal rate. `pairs`
-  /// 0 means that nothing is known.
+  /// The fitted line. With fewer than 8 pairs, a line through the newest pair with the nominal rate. If
+  /// `pairs` is 0, the line has no meaning.
   ClockFit fit() const;
 
  private:

@@ -15,10 +15,11 @@ struct Partial {
   double amplitude_change = 0;
 };
 
-/// The same sinusoid, with n = 0 moved to a point `frames` frames later.
+/// The same sinusoid, counted so that its frame 0 is frame number `frames` of `partial`.
 inline Partial advanced(Partial partial, std::uint64_t frames) noexcept {
   partial.phase += partial.increment * frames;
-  // n (n - 1) / 2 modulo 2^64. Dividing the wrapped product would lose its highest bit.
+  // n (n - 1) / 2 modulo 2^64. Halve the even factor before multiplying, because the product may overflow and
+  // lose its highest bit.
   const std::uint64_t pairs = frames % 2 == 0 ? frames / 2 * (frames - 1) : (frames - 1) / 2 * frames;
   partial.phase += partial.curvature * pairs;
   partial.increment += partial.curvature * frames;

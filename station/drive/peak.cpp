@@ -10,8 +10,8 @@
 namespace turnpoint::drive {
 namespace {
 
-// The impulse response of the noise filters, followed until it has decayed: sum of squares and sum of
-// magnitudes.
+// Sum of squares and sum of magnitudes of the impulse response of the noise filters, followed until it has
+// decayed.
 struct Response {
   double energy = 0, magnitude = 0;
 };

@@ -25,7 +25,8 @@ struct SynthLimits {
   double highest_relative_Hz = terms::kHighestShareOfRate;
   std::int64_t longest_frames = 192000LL * 3600;
   std::int64_t longest_rendered_frames =
-      /// a burst longer than this is not rendered for the check, but judged by the sum of its amplitudes
+      /// for a burst longer than this, the check uses the sum of its amplitudes, because rendering it would
+      /// take too long
       192000LL * 60;
 };
 
@@ -43,20 +44,20 @@ struct PreparedTone {
   std::int32_t channel = 0;
 };
 
-/// The tones after the change: tone i of `to` continues tone i of the burst. `count` is at least the burst's
-/// own count.
+/// A checked change to other tones: tone i of the burst becomes tone i of `to`. `count` is at least the
+/// number of tones of the burst.
 struct PreparedChange {
   std::int64_t at_frame = 0;  ///< frame at which the change begins, counted from the burst's first frame
   std::int64_t frames = 1;
   std::int32_t count = 0;
-  /// true for a change sent while the burst plays: if it comes late, it begins at once and no part of it is
-  /// skipped
+  /// true for a change that was sent while the burst plays. If it arrives late, it begins at once and is
+  /// played in full
   bool live = false;
   std::array<PreparedTone, max_tones> to{};
 };
 
-/// Two second-order band-pass sections for masking noise, each y = b0 (x - x2) - a1 y1 - a2 y2, and a scale
-/// factor.
+/// Masking noise in the form that the synthesiser uses: a high-pass and a low-pass filter of second order,
+/// and a scale factor.
 struct PreparedNoise {
   std::int32_t channel = 0;
   double gain = 0;

@@ -4,7 +4,8 @@
 
 namespace turnpoint::drive {
 
-/// The rise of a ramp: 0 at u = 0, 1 at u = 1, symmetric about (1/2, 1/2); constant outside.
+/// Gain of a rising ramp at the fraction u of its length: from 0 at u = 0 to 1 at u = 1, symmetric about
+/// (1/2, 1/2); constant outside.
 inline double ramp_gain(double u) noexcept {
   if (!(u > 0)) return 0;
   if (u >= 1) return 1;
@@ -12,7 +13,8 @@ inline double ramp_gain(double u) noexcept {
   return s * s;
 }
 
-/// Gain of frame `n` in a rise of `frames`. It is sampled at half frames, so that a fall is its mirror image.
+/// Gain of frame `n` of a rising ramp with `frames` frames. It is computed for the middle of the frame, so
+/// that a falling ramp is the exact mirror image.
 inline double ramp_at(std::int64_t n, std::int64_t frames) noexcept {
   if (n >= frames) return 1;
   return ramp_gain((static_cast<double>(n) + 0.5) / static_cast<double>(frames));

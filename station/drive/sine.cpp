@@ -10,7 +10,7 @@ constexpr double two_pi = 6.283185307179586476925;
 
 std::uint64_t phase_increment(double frequency_Hz, int rate_Hz) noexcept {
   int exponent = 0;
-  // now frequency = mantissa * 2^(exponent - 53), with an integer mantissa
+  // split the frequency into mantissa * 2^(exponent - 53) with an integer mantissa
   const double fraction = std::frexp(frequency_Hz, &exponent);
   auto mantissa = static_cast<Wide>(std::ldexp(fraction, 53));
   const int shift = exponent - 53 + 64;

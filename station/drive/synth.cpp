@@ -58,8 +58,8 @@ struct Synth::State {
     step(frame, frames, [&](Voice& voice, std::int64_t at) { voice.add(at, mix, scratch, *kernels); });
   }
 
-  /// Advances every voice over these frames by calling `go(voice, frame of the burst)`, and records which
-  /// bursts began and ended.
+  /// Calls `go(voice, at)` for every voice in use, where `at` is `frame` counted from the start of its burst.
+  /// Records which bursts began and ended within these frames.
   template <class Go>
   void step(std::int64_t frame, int frames, const Go& go) noexcept {
     if (frame != next_frame) skip_to(frame);

@@ -70,7 +70,9 @@ void Voice::begin_glide(std::int64_t at, const PreparedChange& change) noexcept 
   for (int i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     target_[k] = change.to[k];
-    if (i >= burst_.tone_count) {  // a tone that only the change contains starts as if it had run silently
+    // a tone that only the change contains starts with the phase that it would have had if it had run
+    // silently from the onset
+    if (i >= burst_.tone_count) {
       burst_.tones[k] = change.to[k];
       const std::uint64_t gone = target_[k].increment * static_cast<std::uint64_t>(origin_);
       partials_[k] = {target_[k].phase + gone, target_[k].increment, 0, 0, 0};
@@ -98,7 +100,7 @@ void Voice::end_glide(std::int64_t at) noexcept {
   glide_end_ = never;
 }
 
-// Begins and ends every change that is due up to and including frame `at`, in order.
+// Begins and ends, in order, every change that is due at frame `at` or before.
 void Voice::enter(std::int64_t at) noexcept {
   for (;;) {
     std::int64_t change_at = never;

@@ -33,7 +33,8 @@ class Voice {
   void begin(const PreparedBurst& burst) noexcept;
   /// Replaces any live change that is still waiting.
   void change(const PreparedChange& change) noexcept;
-  /// Adds a stop. Ignored if the burst already ends at least as soon, and after eight stops.
+  /// Adds a stop at which the burst ramps down. Ignored if the burst already ends no later than this, and
+  /// after eight stops.
   void stop(std::int64_t at, const Ramp& ramp) noexcept;
   /// Call this if frames were lost: from `at` on the sound continues with a ramp.
   void resume(std::int64_t at) noexcept;
@@ -61,7 +62,7 @@ class Voice {
 
   PreparedBurst burst_;
   std::array<Partial, max_tones> partials_;
-  std::int64_t origin_ = 0;         ///< frame that is n = 0 for `partials_`
+  std::int64_t origin_ = 0;         ///< frame of the burst at which the partials in `partials_` have n = 0
   std::int64_t glide_end_ = never;  ///< frame at which the current glide ends
   std::int64_t glide_frames_ = 1;
   std::array<PreparedTone, max_tones> target_;
