@@ -66,14 +66,15 @@ class EdgeFilter {
 
   Rules rules_;
   bool level_;                     ///< level after the last edge
-  bool stable_;                    ///< the last level that lasted long enough
+  bool stable_;                    ///< the latest level that lasted at least `hold_ns`
   std::int64_t stable_since_ = 0;  ///< first edge of the burst that led to the stable level
   bool told_;                      ///< the level that was reported last
   std::int64_t quiet_until_ = std::numeric_limits<std::int64_t>::min();
   bool in_burst_ = false;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
   int edges_ = 0;
-  std::optional<std::int64_t> elsewhere_since_;  ///< since when the level read differs from the known level
+  /// time since which the level that was read has differed from `level_`
+  std::optional<std::int64_t> elsewhere_since_;
 };
 
 /// Detects lost edges from the kernel's per-line sequence numbers.

@@ -81,9 +81,9 @@ class GpioLines final : public Lines {
     const int line = inputs_[*ready];
     Last& last = last_[static_cast<std::size_t>(line)];
     const bool rising = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
-    // This interface does not number its events. If the buffer was full, later events were lost (except by
-    // coincidence). Two edges in the same direction prove nothing: the direction is the level at the time
-    // when the interrupt was handled, so a short spike looks like that.
+    // Version 1 of the interface does not number its edges. If the buffer was full, assume that later edges
+    // were lost. Two edges in the same direction do not prove a loss: the direction is the level when the
+    // interrupt was handled, so a short spike can also look like that.
     const bool lost = last.was_full;
     last.was_full = ++last.waiting >= kernel_buffer_edges;
     if (last.was_full) last.waiting = 0;

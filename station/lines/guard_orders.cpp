@@ -13,7 +13,8 @@ std::optional<Guard::Refusal> GuardOrders::ask(Ask what) {
 }
 
 void GuardOrders::post(std::atomic<std::uint32_t>& order, std::uint32_t bits) noexcept {
-  // once this is stored, the guard carries out the order, at the latest in its next beat
+  // from here on the guard will carry out the command, at the latest in its next beat, even if this thread
+  // stops
   order.fetch_or(bits);
   scheduler_point();
   const auto ticket = posted_.fetch_add(1) + 1;

@@ -54,11 +54,11 @@ class GuardOrders {
   void scheduler_point() const noexcept;
 
   std::function<void()> scheduler_point_;
-  std::mutex asking_;  ///< held by the ordinary thread that is asking; the guard never takes it
+  std::mutex asking_;  ///< held by the thread that waits in ask(); the guard never locks it
   std::atomic<Ask> ask_{Ask::nothing};
   std::atomic<std::uint32_t> off_{0}, trips_{0};
   std::atomic<std::uint32_t> posted_{0}, handled_{0};
-  /// answer to the last ask; written before handled_ reaches its ticket
+  /// answer to the latest ask(); written before handled_ reaches the ticket of that call
   std::optional<Guard::Refusal> refusal_;
   system::WakeUp wake_;
 };

@@ -110,7 +110,7 @@ class GuardThread {
     const bool active = fault ? fault_at(edge.rising) : stop_at(edge.rising);
     if (active) {
       lines_->drive(roles_.enable, 0);
-      // A level may have been read before its edge arrived.
+      // If look() has read this level before the edge arrived, the line is already low, since `lowered_ns_`.
       reaction_ns_ = (driven_high_ ? system::monotonic_ns() : lowered_ns_) - edge.time_ns;
     }
     fault ? guard_.fault_line(edge.time_ns, active) : guard_.stop_line(edge.time_ns, active);
@@ -118,8 +118,8 @@ class GuardThread {
     publish();
   }
 
-  /// The kernel delivers edges by its own thread, which a busy real-time thread can delay. So read the levels
-  /// as well.
+  /// Reads the levels of the lines as well as their edges, because a busy real-time thread can delay the
+  /// kernel thread that delivers edges.
   void look() {
     read_levels();
     drive_enable();
@@ -131,7 +131,7 @@ class GuardThread {
     take_signs();
     guard_.tick(system::monotonic_ns());
     look();
-    // Compare with the level set just now, not with the one that was wanted before.
+    // look() has just set the enable line, so it can now be compared with its actual level.
     if (const auto level = roles_.read_back ? lines_->read_back(roles_.enable) : std::nullopt)
       guard_.enable_line(system::monotonic_ns(), *level);
     drive_enable();

@@ -20,8 +20,8 @@ class Published {
     std::memcpy(raw.data(), &value, sizeof value);
     const auto version = version_.load(std::memory_order_relaxed);
     version_.store(version + 1, std::memory_order_relaxed);
-    // A reader that sees one of these words also sees the odd version number, which means that a write is in
-    // progress.
+    // A reader that sees one of these words also sees the odd version number. It then knows that a write is
+    // in progress and reads again.
     for (std::size_t k = 0; k < words; ++k) words_[k].store(raw[k], std::memory_order_release);
     version_.store(version + 2, std::memory_order_release);
   }

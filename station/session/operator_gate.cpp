@@ -124,7 +124,7 @@ Flow OperatorGate::until_armed(const Fault& why) {
     if (input.kind == InputKind::fault) page = pages_.fault(input.fault, input.text, director_);
     if (input.kind == InputKind::arm && !armed()) page.detail = input.text;
   }
-  fault_.reset();  // forget faults that occurred while the page was shown, because it has shown them
+  fault_.reset();  // the page has shown all faults that occurred meanwhile, so forget them
   return Flow::go_on;
 }
 
@@ -190,8 +190,8 @@ Flow OperatorGate::show_and_wait(Page page, double at_least_s) {
     if (input.kind == InputKind::next) return Flow::go_on;
     if (buttons_turn && input.kind == InputKind::answer && input.time_ns >= read_ns) return Flow::go_on;
     if (input.kind != InputKind::fault && input.kind != InputKind::disarm) continue;
-    // Leaving a fault or pause page means that the operator has repaired the fault, so the earlier page is
-    // done too.
+    // The operator has now repaired the fault. That also ends an earlier fault or pause page, so do not show
+    // it again.
     if (page.kind == PageKind::fault || page.kind == PageKind::paused) return Flow::go_on;
     show(page);
   }

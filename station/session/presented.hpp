@@ -9,9 +9,9 @@
 
 namespace turnpoint::session {
 
-// Functions on streams that the real and the virtual stage share.
+// Functions that the real and the virtual stage share. They work on a stream of the drive.
 
-/// The burst of one interval of the current trial, kept to find the interval when the drive reports on the
+/// The burst of one interval of the current trial. It is kept because the reports of the drive name only the
 /// burst.
 struct Presented {
   std::uint32_t burst = 0;
@@ -64,7 +64,8 @@ inline std::optional<ClockFit> fit_of(drive::Stream& stream) {
   return fit.pairs > 0 ? std::optional(ClockFit{fit.ns_per_frame, fit.residual_ns}) : std::nullopt;
 }
 
-/// Ramps all bursts down. Returns the latest time at which the last ramp ends.
+/// Ramps all bursts down. Returns the time at which the last ramp ends, or a later time if that is not known
+/// exactly.
 inline std::int64_t ramp_down(drive::Stream& stream, const std::vector<Presented>& presented,
                               std::int64_t now_ns) {
   const auto ramp = presented.empty() ? drive::Ramp{} : presented.back().ramp;

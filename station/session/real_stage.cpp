@@ -16,13 +16,14 @@ namespace {
 
 constexpr std::int64_t kPoll_ns = 5'000'000;        // interval between two polls of drive and guard
 constexpr std::int64_t kClocks_ns = 1'000'000'000;  // interval between two comparisons of the clocks
-// how long an amplifier must be on before it is driven
+// time from switching the amplifier on to the first stimulus
 constexpr std::int64_t kSettle_ns = 50'000'000;
 constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
 // longest wait for the first position of a restarted device
 constexpr std::int64_t kFirstPosition_ns = 500'000'000;
 constexpr std::int64_t kHeard_ns = 1'000'000'000;  // longest wait for the report that an interval was played
-constexpr std::int64_t kTail_ns = 20'000'000;      // how long the amplifier stays on in silence
+// time from the end of the last stimulus to switching the amplifier off
+constexpr std::int64_t kTail_ns = 20'000'000;
 
 class RealStage : public Stage {
  public:
@@ -83,7 +84,8 @@ class RealStage : public Stage {
   }
 
   std::int64_t silence() override {
-    // If the last burst is cancelled before it begins, stop waiting for its report.
+    // If the last burst has not begun, it is cancelled and never reported as heard, so do not wait for that
+    // report.
     const auto from = stream_->earliest_frame();
     if (!presented_.empty() && presented_.back().start_frame >= from) unheard_ = 0;
     const auto silent_ns = ramp_down(*stream_, presented_, now_ns());
@@ -203,7 +205,7 @@ class RealStage : public Stage {
                           event.error == 0 ? "" : std::strerror(std::abs(event.error)));
         return;  // attend() will report the fault that the amplifier has latched
       case drive::EventKind::device_back:
-        wrong_rate_.reset();  // another device may have been plugged in
+        wrong_rate_.reset();  // this may be another device, with the right rate
         return push(InputKind::notice, now, "the sound device is back");
       case drive::EventKind::rate_wrong:
         wrong_rate_ = Fault{FaultKind::converter_rate, fmt::format("{:.1f} Hz instead of {} Hz",

@@ -14,8 +14,8 @@ namespace turnpoint::session {
 
 namespace {
 
-/// Advances the director to a block of the log. To do so, it finishes the director's current block, or
-/// repeats the restart that began this attempt.
+/// Advances the director to a block that the log contains. Finishes its current block first, or repeats the
+/// recorded restart of the block or session.
 void enter_stored(trial::Director& director, const records::BlockStart& block) {
   const auto here = [&] {
     return director.block_index() == block.block_index && director.attempt() == block.attempt;
@@ -66,9 +66,9 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
   if (director.state_hash() != trial.state_hash) mismatch("the state of the procedures differs afterwards");
 }
 
-/// Checks that this program's observer gives the stored answers, because a session with answers from two
-/// different observers would be useless. Sliders are not checked: their row contains no answer of the
-/// observer.
+/// Checks that the simulated observer of this program gives the stored answer, because a session must not mix
+/// the answers of two different observers. Adjustments are not checked, because their rows contain no answer
+/// of the observer.
 void check_observer(const Setup& setup, const store::StoredSession& stored, const trial::TrialSpec& spec,
                     const records::TrialRow& trial) {
   constexpr double tolerance_s = 1e-3;

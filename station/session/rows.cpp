@@ -64,7 +64,7 @@ std::string value_of(const Input& input) {
   return std::to_string(input.value);
 }
 
-/// Which scene of which interval a tone belongs to, and when that scene begins.
+/// The interval and the scene to which tones belong, and when that scene begins.
 struct Placed {
   int interval = 0, scene = 0;
   std::int64_t onset_frame = 0, length_frames = 0;

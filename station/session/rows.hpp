@@ -19,9 +19,9 @@ namespace turnpoint::session {
 void add_tones(records::TrialRow& row, const std::vector<scene::DrivePlan>& scenes, int interval,
                std::int64_t onset_frame, const drive::PreparedBurst& burst);
 
-/// Records that the surface of an adjustment has begun to follow the slider at this frame. In the row, scene
-/// 0 stays the scene with which the trial began; scene 1 becomes `scene`. The trial's boundary, frequency and
-/// amplitude become those of scene 1.
+/// Records that the surface begins to follow the slider of an adjustment at `frame`. In the row, scene 0
+/// remains the scene at the start of the trial, and `scene` becomes scene 1. The boundary, frequency and
+/// amplitude of the trial become those of scene 1.
 void set_scene(records::TrialRow& row, const scene::DrivePlan& scene, std::int64_t frame);
 
 records::EventRow event_row(const Input& input, int trial_index);

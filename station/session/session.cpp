@@ -98,7 +98,8 @@ records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std
   return start;
 }
 
-/// `now_ns` is the time on the stage's clock, which is virtual in a simulated session.
+/// The start of a run of the session. `now_ns` is read from the clock of the stage, which is virtual in a
+/// simulated session.
 records::SegmentStart segment(const std::string& reason, std::int64_t now_ns) {
   const auto clocks = system::read_clocks();
   return {boot_id(), reason, now_ns, clocks.boottime_ns, clocks.realtime_ns};
@@ -145,7 +146,7 @@ limits::FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
   return limits::FingerAccount(limits, history, origin_ns, now_s);
 }
 
-/// A session's log, and a director in the state that corresponds to the log.
+/// A session's log, and a director that has processed all trials in the log.
 struct Begun {
   store::SessionLog log;
   trial::Director director;

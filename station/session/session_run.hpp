@@ -39,7 +39,7 @@ class SessionRun {
     /// true if the answer came from a button, so that the touch panel's latency does not apply
     bool by_button = false;
   };
-  /// Start and end of one interval on the surface.
+  /// Times at which one interval begins and ends on the surface.
   struct OnSurface {
     std::int64_t on_ns = 0, off_ns = 0;
   };

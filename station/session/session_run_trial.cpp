@@ -40,8 +40,8 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
                 {}};
   if (spec.slider) trial.slider.emplace(*spec.slider, spec.level.value_or(spec.slider->low));
   if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block(), plans_.take(spec).plans);
-  // Commit this event before the amplifier is switched on. A disk may take seconds, and the session can do
-  // nothing else during that time.
+  // Write this event to the disk before the amplifier is switched on. Writing may take seconds, in which the
+  // session cannot do anything else.
   gate_.keep([&] { log_.presented(trial_index(), stage_->now_ns()); });
   drive_trial(trial, open_amplifier());
   stage_->close_amplifier();

@@ -24,13 +24,14 @@ struct Onset {
   std::int64_t time_ns = 0;
 };
 
-/// The line that was fitted to pairs of frame and time. It predicts onsets.
+/// Slope and residual of the line that the drive has fitted to pairs of frame and time, and with which it
+/// predicts onsets.
 struct ClockFit {
   double slope_ns_per_frame = 0;
   double residual_ns = 0;
 };
 
-/// Pass this as a deadline to wait for any length of time.
+/// A deadline that never comes, for waits without a limit.
 constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
 /// Time, drive, amplifier and inputs of one run. There are two kinds: the real stage (CLOCK_MONOTONIC, a

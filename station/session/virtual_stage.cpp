@@ -40,9 +40,9 @@ class VirtualStage : public Stage {
     return input;
   }
 
-  /// Looks for a request to stop the session. It takes effect only before the next trial; a trial takes only
-  /// milliseconds of real time. A simulated session that was stopped and resumed therefore equals one that
-  /// was not interrupted.
+  /// Returns only requests to stop the session, which take effect before the next trial. So a simulated
+  /// session that was stopped and resumed equals one that was not interrupted. A trial takes only
+  /// milliseconds of real time, so nobody waits long.
   std::vector<Input> drain() override {
     script_.clear();
     unheard_.clear();

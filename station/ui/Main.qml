@@ -20,9 +20,8 @@ Window {
     readonly property bool asking: start.stage === StartController.Language || start.stage === StartController.Consent
                                    || start.stage === StartController.Code
 
-    /// What the operator wants to do on the participant's screen, once the code has been typed: "view" the
-    /// running session, "arm" the amplifier, read the "report", "leave" for the operator's page, or "unlock"
-    /// that page.
+    /// What to open once the code has been typed: "view" the running session, "arm" the amplifier, show the
+    /// "report", "leave" the participant's pages for the operator's page, or "unlock" the operator's page.
     property string wish
     function ask(what: string) {
         wish = what

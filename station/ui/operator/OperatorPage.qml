@@ -254,8 +254,8 @@ Rectangle {
         id: footer
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom; margins: look.margin }
         height: 2 * look.controlHeight + root.gap
-        // The software renderer does not clip symbols that scroll out of the sheet above, so this strip
-        // covers them.
+        // The software renderer does not clip symbols that scroll out of the form above, so this strip covers
+        // them.
         Rectangle {
             anchors { fill: parent; topMargin: 1 - root.gap }
             color: look.paper

@@ -16,7 +16,8 @@ struct Picture {
 /// Converts a drawing to the value of a QML property.
 QVariant to_variant(const desk::Drawing& drawing);
 
-/// Shows one figure, laid out for this item's size with text of `textPixels`. It draws each figure only once.
+/// Shows one figure, laid out for the size of this item with text of `textPixels`. It draws each new picture
+/// only once.
 class FigureView : public QQuickPaintedItem {
   Q_OBJECT
   QML_ELEMENT

@@ -5,7 +5,8 @@
 namespace turnpoint::ui {
 
 namespace {
-/// How long to wait for the kernel's time of a tap, because the touch reader may be slower than Qt.
+/// How long to wait for the kernel's time stamp of a tap. The touch reader, which provides it, may see the
+/// tap later than Qt.
 constexpr int kClaim_ms = 100;
 }  // namespace
 

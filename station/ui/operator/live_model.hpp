@@ -40,7 +40,7 @@ class LiveModel : public QObject {
   QVariant profile() const { return to_variant(state_.profile); }
   QVariant trace() const { return to_variant(state_.trace); }
   QVariant times() const { return to_variant(state_.times); }
-  /// True while a stimulus runs or answers are open; no new figure is shown then.
+  /// True while a stimulus runs or answers are open; the figures do not change during that time.
   bool held() const { return held_; }
 
   Q_INVOKABLE void pause() { bridge_.pause(); }

@@ -14,11 +14,11 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Used instead of the code that the participant will type later, so that everything else can be checked
-/// before.
+/// Placeholder for the participant's code, which is typed only later, so that all other settings can be
+/// checked before.
 constexpr const char* kCodeToCome = "keypad";
-/// Number of simulated sessions for trials and duration on the start page: fast, and accurate to some
-/// minutes.
+/// Number of sessions to simulate for the trials and the duration that the start page shows. Five are fast,
+/// and the duration is right within some minutes.
 constexpr int kSessions = 5;
 
 std::vector<std::string> lines_of(const std::exception& error) {
@@ -70,8 +70,8 @@ void OperatorController::look_at_backup() {
   emit changed();
 }
 
-/// Starts a job on the worker thread. The function that the job returns runs on this thread, unless a newer
-/// job was started meanwhile.
+/// Starts a job on the worker thread. The job returns a function, which then runs on the GUI thread, unless a
+/// newer job was started meanwhile. If the job throws, `failed` gets the messages.
 void OperatorController::work(std::function<Then(const std::stop_token&)> job,
                               void (OperatorController::*failed)(std::vector<std::string>)) {
   worker_.start([this, failed, job = std::move(job)](const std::stop_token& stop) -> Then {
@@ -91,13 +91,14 @@ void OperatorController::fail(std::vector<std::string> problems) {
   emit changed();
 }
 
-/// Shows why the current choice cannot begin. Another choice for the same protocol may still be possible.
+/// Shows why no session can begin with the current settings. Other settings for the same protocol may still
+/// be possible.
 void OperatorController::refuse(std::vector<std::string> reasons) {
   refused_ = std::move(reasons);
   stay();
 }
 
-/// Returns to the page without a session.
+/// Ends the preparation of a session, because no session begins.
 void OperatorController::stay() {
   preparing_ = false;
   if (checking_) check_selected();  // the check was stopped when the session began

@@ -27,7 +27,7 @@ void FrameWatch::follow(QQuickWindow* window, double refresh_Hz) {
   window_ = window;
   refresh_Hz_ = refresh_Hz > 0 ? refresh_Hz : 60;
   timer_.setInterval(std::max(1, static_cast<int>(1e3 / refresh_Hz_)));
-  // This slot is called on the rendering thread, whichever thread that is: it only takes the time.
+  // Qt calls this on its rendering thread, which may or may not be this thread, so it only reads the clock.
   connect(
       window, &QQuickWindow::frameSwapped, this, [this] { swapped(); }, Qt::DirectConnection);
 }
@@ -40,7 +40,7 @@ void FrameWatch::asked() {
 
 int FrameWatch::end() {
   if (!timer_.isActive()) return 0;
-  beat();  // an event loop that stood still arrives here before its timer fires
+  beat();  // if the event loop stood still, this call comes before that of the timer
   timer_.stop();
   const std::scoped_lock lock(mutex_);
   return late_.count();

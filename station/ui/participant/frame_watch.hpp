@@ -9,8 +9,8 @@
 
 namespace turnpoint::ui {
 
-/// Counts how many frames late the screen was. Pure; times are CLOCK_MONOTONIC. Time spans may overlap: no
-/// frame is counted twice.
+/// Counts late frames from the time spans that are reported to it. If these spans overlap, no frame is
+/// counted twice. Times are CLOCK_MONOTONIC, but it reads no clock itself.
 class LateFrames {
  public:
   /// `refresh_Hz` at or below 0 counts as 60.
@@ -20,18 +20,18 @@ class LateFrames {
   void waited(std::int64_t from_ns, std::int64_t to_ns);
   int count() const { return count_; }
 
-  /// The number of frames lost by a wait: whole refreshes beyond the first.
+  /// The number of frames lost during a wait: the number of whole refresh periods minus one.
   static int lost(std::int64_t waited_ns, double refresh_Hz);
 
  private:
   double refresh_Hz_;
-  std::int64_t counted_ns_ = 0;  ///< end of the time that has been counted
+  std::int64_t counted_ns_ = 0;  ///< end of the last time span that was counted
   int count_ = 0;
 };
 
-/// Counts the frames by which a window was late during a trial. After a page was requested or an answer was
-/// pressed, a participant should see it within one refresh. An event loop that stands still can neither show
-/// a page nor take a touch, so it has to run once per refresh. Frames beyond that are counted. GUI thread
+/// Counts the frames by which a window was late during a trial. A new page or a pressed answer should be
+/// visible within one refresh. The event loop should also run once per refresh, because otherwise it can
+/// neither show a page nor take a touch. Each refresh beyond the first counts as a late frame. GUI thread
 /// only.
 class FrameWatch : public QObject {
   Q_OBJECT
@@ -43,8 +43,8 @@ class FrameWatch : public QObject {
   /// Follows this window; `refresh_Hz` at or below 0 counts as 60.
   void follow(QQuickWindow* window, double refresh_Hz);
 
-  /// Call this when something new is to be shown. The next frame shows it; a frame is drawn even if it looks
-  /// the same, so that a later frame is never mistaken for this one. The first call begins the count.
+  /// Call this when something new has to be shown. A frame is then drawn even if it looks the same, so that
+  /// the next frame is always the one that shows it. The first call begins the count.
   void asked();
 
   /// Ends the count and returns the number of late frames; 0 if no count had begun.

@@ -92,7 +92,8 @@ void SessionBridge::annotate(const QString& text) {
 
 void SessionBridge::frames_lost(int frames) {
   if (frames <= 0) return;
-  session::Input input;  // push() is not used here, because this is not an input of a person
+  // do not use push(): it forgets waiting touches, but nobody has pressed anything here
+  session::Input input;
   input.time_ns = clock_();
   input.kind = session::InputKind::frames_lost;
   input.value = frames;

@@ -11,8 +11,8 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Interval of the page's life signs: several fit into the two seconds after which the amplifier's guard
-/// switches off.
+/// Interval between the reports that the page is alive. The amplifier guard switches off after two seconds
+/// without a report.
 constexpr int kLife_ms = 250;
 
 /// True for pages on which a late frame would matter, so that late frames are counted.

@@ -10,7 +10,8 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// A much slimmer strip would be just a line on a small panel, so it is drawn wider than to scale.
+/// Smallest ratio of width to length of the drawn strip. A slimmer strip would look like a line on a small
+/// panel.
 constexpr double kSlimmest = 1.0 / 11;
 constexpr double kTick_mm = 10, kLabel_mm = 50;
 constexpr double kFinger = 5;  // width of the drawn finger, in units of Layout::unit
@@ -29,7 +30,8 @@ QFont font_of(double pixels) {
 
 }  // namespace
 
-/// The layout in pixels. x grows from the wide end, in either orientation.
+/// The layout in pixels. x(mm) is the position at `mm` from the wide end, whether that end is at the left or
+/// at the right.
 struct SurfaceDrawing::Layout {
   double left = 0, right = 0;  ///< x of the two ends of the strip
   double axis_y = 0;           ///< y of the strip's centre line
@@ -58,7 +60,7 @@ SurfaceDrawing::Layout SurfaceDrawing::layout() const {
   at.scale_text = std::max(text_pixels_, 1.8 * at.unit);
   at.flag_text = std::max(text_pixels_, 2.3 * at.unit);
   at.flag_height = std::max(3.6 * at.unit, 1.4 * at.flag_text);
-  // The last number of the scale extends beyond the strip's end by half its width.
+  // Half of the last number of the scale is beyond the end of the strip, so the margin must have room for it.
   const double last =
       QFontMetricsF(font_of(at.scale_text)).horizontalAdvance(QString::number(length_mm_, 'f', 0));
   const double driver = 3.2 * at.unit, margin = std::max(1.8 * at.unit, 0.5 * last + 2);

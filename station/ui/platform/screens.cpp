@@ -15,15 +15,16 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Used instead of the code that the participant will type later, so that everything else can be checked
-/// before a window opens.
+/// Placeholder for the participant's code, which is typed only later, so that all other settings can be
+/// checked before a window opens.
 constexpr const char* kCodeToCome = "keypad";
 
 StationWindow::Place place_on(const Application& application) {
   return {pixels_per_mm(application.screen()), application.window_size(), application.is_bare_panel()};
 }
 
-/// Until the first page is shown, a stop signal kills the process; from then on it ends the event loop.
+/// Lets a stop signal end the event loop as soon as the first page is shown. Before that, the signal kills
+/// the process.
 void stop_in_order(const Application& application, const QQuickWindow& window) {
   auto& stop = application.stop_signals();
   QObject::connect(
@@ -31,8 +32,8 @@ void stop_in_order(const Application& application, const QQuickWindow& window) {
       static_cast<Qt::ConnectionType>(Qt::AutoConnection | Qt::SingleShotConnection));
 }
 
-/// Like the other stop_in_order(), for a station window: a session may begin before any page was on the
-/// screen.
+/// Like the other stop_in_order(), but also from the beginning of a session, which may come before the first
+/// page.
 void stop_in_order(const Application& application, StationWindow& window) {
   stop_in_order(application, window.window());
   QObject::connect(&window, &StationWindow::beginning, &application.stop_signals(), &StopSignals::take_over);
@@ -85,7 +86,8 @@ void run_station(const setup::StationRequest& request) {
   try {
     window.run();
   } catch (const std::exception&) {
-    // The screen already showed what ended a session; leaving the station afterwards is not a failure.
+    // The screen has already shown why a session failed. The station itself has not failed, so do not report
+    // it again.
   }
 }
 

@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// A bar beside a scrolling area, which shows that there is more than is visible, and the current position. It
+// A bar beside a scrolling area. It shows that there is more content than fits, and which part is visible. It
 // takes no touches.
 Rectangle {
     id: root
