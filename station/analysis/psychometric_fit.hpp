@@ -62,7 +62,7 @@ PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitO
 
 struct ParameterInterval {
   Interval interval;
-  /// true if that end lies on a bound, so that the data do not limit it
+  /// true if this end of the interval lies on a bound, so that the data do not limit it
   bool touches_low = false, touches_high = false;
 };
 

@@ -12,7 +12,7 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// Rates at the ends of the prior's flat part, from flattest to steepest, in units of 1 / range of the
+/// Steepness (rate) of the function at the two ends of the prior's flat part, multiplied by the range of the
 /// levels.
 constexpr double kShallow = 1.5, kSteep = 24;
 /// An estimate in the outer quarter of the prior's range, at either end, gets a statement in the report.

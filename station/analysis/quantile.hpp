@@ -12,7 +12,8 @@ double sorted_quantile(const std::vector<double>& sorted, double p);
 /// Like sorted_quantile(), for values in any order.
 double quantile(std::vector<double> values, double p);
 
-/// Returns the central percentile interval of bootstrap replicates.
+/// Returns the interval between two quantiles of bootstrap replicates, with equal shares outside at both
+/// ends.
 Interval percentile_interval(std::vector<double> replicates, double confidence = 0.95);
 
 double mean(const std::vector<double>& values);      ///< needs at least one value

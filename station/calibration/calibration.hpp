@@ -43,7 +43,7 @@ struct Calibration {
 struct Measurements {
   struct Sweep {
     std::string transducer, csv;
-    double full_scale = 1;  ///< drive amplitude during the sweep, as a fraction of full scale
+    double full_scale = 1;  ///< drive amplitude during the sweep, 0 to 1 (full scale)
   };
   std::vector<Sweep> sweeps;
   std::string boundaries_csv, friction_csv, sound_csv;

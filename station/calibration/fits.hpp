@@ -40,7 +40,7 @@ struct BoundaryFit {
 /// for fewer than two points (three without a law) and for equal frequencies.
 BoundaryFit fit_boundaries(const std::vector<BoundaryPoint>& points, std::optional<BoundaryFit::Law> law);
 
-/// The boundary according to the fitted law.
+/// Returns the position of the boundary according to the fitted law.
 double boundary_at(const BoundaryFit& fit, double frequency_Hz);
 
 /// One frequency of a sweep: displacement of the drive edge at full scale and its phase.

@@ -44,7 +44,7 @@ std::optional<InterruptedNote> interrupted_note(const std::string& database);
 struct CheckWords {
   std::vector<std::string> problems, warnings;
   std::vector<std::pair<std::string, std::string>> facts;  ///< pairs of a label and a value
-  /// A cue, how often an observer who uses only this cue would be right, and whether this is clearly above
+  /// A cue, the proportion correct of an observer who uses only this cue, and whether this is clearly above
   /// chance.
   struct Cue {
     std::string name, says;

@@ -66,7 +66,7 @@ class Preview {
 
 /// Returns values for every factor. `set` contains "factor=value" texts. Other factors get their first level
 /// or the middle of their range, and are listed in `assumed`. Throws terms::UsageError for a text that does
-/// not have this form, or names no factor or no possible value.
+/// not have this form, an unknown factor, or a word where the factor needs a number.
 protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vector<std::string>& set,
                               std::vector<std::string>& assumed);
 

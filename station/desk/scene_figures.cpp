@@ -41,8 +41,8 @@ std::optional<double> mark_of(const SceneLook& look) {
   return value ? std::optional(1e-3 * *value) : std::nullopt;
 }
 
-/// Where the strip is drawn on the page. x counts from the wide end, whether that is left or right. A slim
-/// strip is drawn wider than to scale, to be visible.
+/// Where the strip is drawn on the page. x is the distance from the wide end, whether that is drawn left or
+/// right. A slim strip is drawn wider than to scale, to be visible.
 struct Place {
   double left, right, middle_y, across, length_m;
   bool wide_left;

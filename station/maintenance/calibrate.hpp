@@ -25,7 +25,7 @@ struct SweepStep {
   int channel = 0;
   double frequency_Hz = 0;
   double full_scale = 0;
-  double start_s = 0, length_s = 0;  ///< the length includes both ramps
+  double start_s = 0, length_s = 0;  ///< the length of a tone includes both ramps
 };
 
 struct SweepOptions {

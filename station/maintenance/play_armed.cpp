@@ -112,7 +112,7 @@ drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
                              const std::vector<drive::Burst>& bursts) {
   auto config = session::stream_of(rig);
   config.output.uri = uri;
-  // may throw, so call it before anything is opened
+  // this may throw, so do it before anything is opened
   const auto peak = largest_peak(bursts, config);
   const auto amplifier = lines::open_amplifier(rig.amplifier_uri);  // the amplifier must outlive the stream
   config.amplifier = amplifier.get();

@@ -64,8 +64,7 @@ class Posterior {
   std::vector<double> stimuli_;
   Axes values_;
   std::array<std::size_t, 4> stride_{};
-  /// number of slopes, the same number rounded up for fast sums, and number of combinations of guess and
-  /// lapse
+  /// number of slopes; this number rounded up for fast sums; number of combinations of guess and lapse
   std::size_t slopes_ = 1, padded_slopes_ = 1, ends_ = 1;
   /// guess, and 1 - guess - lapse, for each combination of guess and lapse
   std::vector<double> guesses_, ranges_;
@@ -76,8 +75,8 @@ class Posterior {
   std::vector<double> core_;
   /// entropy of the answer for [distance][slope][guess][lapse]; used only without nuisance parameters
   std::vector<double> entropy_;
-  /// number of the group with the same kept parameters, for each grid point; empty without nuisance
-  /// parameters
+  /// for each grid point, the number of its group of points with the same kept parameters; empty without
+  /// nuisance parameters
   std::vector<std::uint32_t> kept_;
   std::size_t groups_ = 0;
 };

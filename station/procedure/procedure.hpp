@@ -54,13 +54,14 @@ class Procedure {
   virtual void record(Answer answer) = 0;
   /// Records the setting of an adjustment. Other kinds of procedures throw std::logic_error.
   virtual void record_setting(double setting);
-  virtual int recorded() const = 0;  ///< number of trials that count
+  virtual int recorded() const = 0;  ///< number of recorded trials that count
   /// total number of trials; an estimate if a stopping rule ends the procedure
   virtual int expected() const = 0;
   virtual std::map<std::string, Estimate> estimates() const { return {}; }
   virtual std::optional<double> entropy_nats() const { return std::nullopt; }
   virtual std::vector<double> reversals() const { return {}; }
-  virtual std::uint64_t state_hash() const = 0;  ///< hash of the discrete state (counters and indices)
+  /// hash of the discrete state (counters and indices), to compare two procedures
+  virtual std::uint64_t state_hash() const = 0;
 };
 
 /// Makes the procedure. Throws std::invalid_argument with the first problem of validate(). `key` needs seed,

@@ -6,7 +6,7 @@
 
 namespace turnpoint::report {
 
-/// The figures of a report. Each function returns nothing if there is nothing to show.
+/// The figures of a report. Each function returns nullopt if the session has no data for its figure.
 
 /// Plots the proportion of answers at each level with its Wilson interval, and the fitted curve with its
 /// band. The area of a marker is proportional to the number of trials.

@@ -87,7 +87,7 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
   return result;
 }
 
-/// Removes the measures of parts that the protocol does not show.
+/// Removes the measures that belong to parts which the protocol does not show.
 void hide(const SessionData& data, analysis::Trade& trade) {
   for (auto& entry : trade.instructions) {
     if (!shows(data, "ez")) {

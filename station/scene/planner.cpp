@@ -298,7 +298,8 @@ DrivePlan Planner::make(const Scene& scene) {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     const auto& info = solution.fields[i].info;
     const double frequency_Hz = solution.frequencies_Hz[i];
-    // If the two-dimensional field has no last maximum, set the level with the first mode's last maximum.
+    // If the two-dimensional field has no last maximum, scale the drive by the last maximum of the first
+    // mode.
     const double drive_m =
         scene.under_finger ? state_->drive_under_finger_m(scene, frequency_Hz)
         : info.last_peak_m ? wanted[i].displacement_m / info.gain

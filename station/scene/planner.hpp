@@ -55,7 +55,7 @@ struct DrivePlan {
   double uncertainty_m = 0;    ///< one standard deviation of the boundary, from those in the rig file
   std::string reason;          ///< why this model was chosen
   physics::PlateTheory theory = physics::PlateTheory::kirchhoff;  ///< plate theory, if the surface is a plate
-  /// How far the next better plate theory would move the boundary; empty for membranes.
+  /// How far the boundary would move with the next more exact plate theory; empty for membranes.
   std::optional<double> shear_shift_m;
   std::optional<double> boundary_m;     ///< predicted position of the boundary
   std::optional<double> zone_friction;  ///< predicted mean friction of the zone

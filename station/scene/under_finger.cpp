@@ -62,7 +62,7 @@ std::vector<double> felt(const Loaded& loaded, const physics::FrictionMap& frict
   return all;
 }
 
-/// Root of the summed squares over tones of the mean displacement under the finger.
+/// Displacement under the finger: the root of the summed squares of the tones' mean displacements.
 double displacement_under(const Loaded& loaded, const DrivePlan& plan, const physics::Finger& finger) {
   double squares = 0;
   for (std::size_t t = 0; t < plan.tones.size(); ++t) {

@@ -37,8 +37,9 @@ struct CueReport {
 
 struct CueGuard {
   std::vector<CueReport> reports;  ///< one report per cue; if empty, one of the next two members says why
-  std::string nothing_to_tell;     ///< the task has no right answers that a cue could reveal
-  /// the trials that could not be compared; if not empty, nothing is known about any cue
+  /// why the task has no right answers that a cue could give away; otherwise ""
+  std::string nothing_to_tell;
+  /// which trials could not be compared; if not empty, nothing is known about any cue
   std::string not_compared;
 };
 

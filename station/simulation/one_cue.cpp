@@ -49,8 +49,8 @@ struct Weighed {
   double weight = 0;
 };
 
-// A group of cue values that count as equal. `excess` is the weight of trials for one answer minus that for
-// the other.
+// A group of cue values that count as equal. `excess` is the weight of the trials in which one answer is
+// right, minus the weight of the trials in which the other is right.
 struct Group {
   double first = 0, last = 0, excess = 0;
 };

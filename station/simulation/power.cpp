@@ -20,7 +20,7 @@ namespace turnpoint::simulation {
 
 namespace {
 
-/// One number that the analysis of one session found.
+/// One number that the analysis of one session estimated.
 struct Finding {
   std::string source, parameter, unit;
   double value = 0;

@@ -45,7 +45,7 @@ struct Recovery {
   double median = 0, lower_quartile = 0, upper_quartile = 0;
   std::optional<double> bias;                    ///< mean - truth; if heavy-tailed, median - truth
   std::optional<analysis::Proportion> coverage;  ///< share of 95 % intervals that contain the truth
-  std::optional<double> interval_width;          ///< median width of these intervals
+  std::optional<double> interval_width;          ///< median width of the 95 % intervals
 };
 
 /// What sessions of a protocol would find if their participant were this observer.

@@ -28,7 +28,8 @@ class TrialCensus {
   /// The number of trials of each kind. The key holds the factors that the block, procedure or catch trial
   /// sets.
   const std::map<protocol::Factors, double>& cells() const { return cells_; }
-  /// All combinations of factors that the trials of a cell can have. Each is equally likely.
+  /// All combinations of factors that the trials of one cell (one kind of trial) can have. Each is equally
+  /// likely.
   std::vector<protocol::Factors> combinations(const protocol::Factors& cell) const;
 
  private:

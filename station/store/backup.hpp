@@ -61,8 +61,8 @@ struct Restoration {
   std::string quarantined;  ///< path to which the damaged database was moved; "" if there was none
   std::int64_t sessions = 0, trials = 0;
   std::vector<std::string> rejected;  ///< backups of this database that failed the check
-  /// Sessions whose rows differ from what was recorded (see checksum.hpp). The backup already contained these
-  /// changes.
+  /// Sessions whose rows do not match their recorded checksums (see checksum.hpp). The backup already
+  /// contained these changes.
   std::vector<std::string> changed;
 };
 

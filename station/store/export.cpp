@@ -85,7 +85,7 @@ namespace {
 /// Size of the text that is collected before it is written to a table's file.
 constexpr std::size_t kPieceBytes = 1U << 18U;
 
-/// Calls `write`. If it fails, throws an export error instead.
+/// Calls `write`. If `write` fails, throws an error that says what the export was writing and what to do.
 template <class Write>
 auto writing(const std::string& path, Write write) {
   try {

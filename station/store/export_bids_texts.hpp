@@ -23,7 +23,8 @@ ExportColumns bids_trial_columns(const std::vector<std::string>& factors);
 std::vector<Column> bids_participant_columns();
 std::vector<Column> bids_event_columns();
 
-/// Returns the cells of an event. `origin_ns` is the start of the event's segment on the station's clock.
+/// Returns the values of an event's row in the table. `origin_ns` is the start of the event's segment on the
+/// station's clock.
 std::vector<Cell> bids_event_cells(const EventRow& event, std::int64_t origin_ns);
 
 /// Returns only the letters and digits of a text. A BIDS label may contain no other characters.

@@ -33,8 +33,8 @@ double event_length_s(const EventRow& event);
 /// which the session learned of them.
 std::vector<EventRow> in_order_of_time(std::vector<EventRow> events);
 
-/// The data for one line of an export. Each kind of table sets the pointers that it needs; the others are
-/// null.
+/// What the columns of one line of an export are computed from. Each table sets the pointers that its columns
+/// need; the others are null.
 struct ExportRow {
   const SessionRecord* session = nullptr;
   const BlockStart* block = nullptr;

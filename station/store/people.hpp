@@ -36,7 +36,7 @@ class People {
   std::vector<std::vector<Bearer>> named(const std::string& name) const;
 
  private:
-  /// the bearers of each person; the bearer after whom the person is named comes first
+  /// the bearers of each person; the first one gives the person's name
   std::vector<std::vector<Bearer>> persons_;
   std::map<Bearer, std::size_t> person_of_;
   std::map<std::string, int> persons_with_code_;  ///< number of people who have each code

@@ -151,8 +151,8 @@ struct SessionLog::Impl {
     auto index = next_event;
     for (const auto& event : events) rows.event(place, index++, event);
   }
-  /// Adds a checksum link over everything that the transaction wrote, and commits. The events kept in memory
-  /// are durable afterwards.
+  /// Adds a checksum link over everything that the transaction wrote, and commits. Events that were kept in
+  /// memory are then on disk.
   void commit(Transaction& transaction) {
     auto link = chain->add();
     transaction.commit();
@@ -164,7 +164,7 @@ struct SessionLog::Impl {
 
   Writer writer;
   RowWriter rows;
-  std::optional<Chain> chain;  ///< set once the session's id is known
+  std::optional<Chain> chain;  ///< set when the session's id is known
   TrialPlace place;
   SessionRecord session;
   std::vector<BlockRecord> blocks;

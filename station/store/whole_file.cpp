@@ -54,8 +54,8 @@ void publish(const std::string& to, const std::string& original,
   sync_path(folder_of(to));
 }
 
-/// Returns a file that shows that a database of this name once existed: its log, or an unfinished restore.
-/// Returns "" if there is none.
+/// If files show that a database of this name once existed (its log, or an unfinished restore), returns one
+/// of them. Otherwise returns "".
 std::string orphan_of(const std::string& path) {
   for (const auto* suffix : {"-wal", "-journal"})
     if (file_size(path + suffix) > 0) return path + suffix;
