@@ -42,6 +42,7 @@ std::string stem_of(const std::string& rig_path) {
 rig::Rig applied(const Calibration& calibration, rig::Rig rig) {
   for (const auto& transducer : calibration.transducers) apply(transducer, rig);
   if (calibration.quality_factor) rig.surface.quality_factor = *calibration.quality_factor;
+  if (calibration.boundary) rig.surface.fit = calibration.boundary->surface;
   if (!calibration.friction) return rig;
   rig.friction.stated = rig.friction.measured = true;
   rig.friction.table.clear();

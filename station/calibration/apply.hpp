@@ -7,10 +7,10 @@
 
 namespace turnpoint::calibration {
 
-/// Returns the rig with the calibration's values: each transducer's response, its usable band (never wider
-/// than in the rig file), the loss, and the friction, which then counts as measured. The boundary fit is not
-/// applied. It shows by how much the geometry in the rig file is wrong; correct that in the rig file. Throws
-/// terms::UsageError for a transducer that the rig does not have, or that would be left without a band.
+/// Returns the rig with the calibration's values: each transducer's response and usable band (within the
+/// rig's own), loss, the surface that measured boundaries determine, and friction, which then counts as
+/// measured. Throws terms::UsageError for a transducer that the rig does not have, or that would be left
+/// without a band.
 rig::Rig applied(const Calibration& calibration, rig::Rig rig);
 
 /// newest_for() returns the newest file named `RIG.calibration-YYYY-MM-DD.toml` beside the rig file; "" if

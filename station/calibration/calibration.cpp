@@ -27,7 +27,7 @@ std::optional<std::chrono::sys_days> parsed_date(const std::string& text) {
 
 }  // namespace
 
-Calibration fit_measurements(const Measurements& measurements) {
+Calibration fit_measurements(const Measurements& measurements, const rig::Rig& rig) {
   text::Findings findings;
   const auto table = [&](const std::string& path, const std::vector<std::string>& columns) {
     return path.empty() ? std::vector<std::vector<double>>{}
@@ -58,8 +58,11 @@ Calibration fit_measurements(const Measurements& measurements) {
     for (const Resonance& resonance : find_resonances(sweeps[k])) resonances.push_back(resonance);
   }
   calibration.quality_factor = quality_of(resonances);
-  if (!measurements.boundaries_csv.empty())
-    calibration.boundary = fit_boundaries(boundaries, measurements.law);
+  if (!measurements.boundaries_csv.empty()) {
+    auto lossy = rig;
+    if (calibration.quality_factor) lossy.surface.quality_factor = *calibration.quality_factor;
+    calibration.boundary = fit_boundaries(lossy, measurements.edge, std::move(boundaries));
+  }
   if (!measurements.friction_csv.empty()) calibration.friction = fit_friction(friction);
   std::sort(calibration.sound.begin(), calibration.sound.end(),
             [](const SoundPoint& a, const SoundPoint& b) { return a.frequency_Hz < b.frequency_Hz; });
@@ -87,8 +90,8 @@ std::vector<std::string> problems(const Calibration& calibration, const std::str
     found.push_back(
         fmt::format("the date of the calibration, {}, is in the future according to this computer's clock",
                     calibration.made_on));
-  if (calibration.transducers.empty() && !calibration.panel)
-    found.push_back("the calibration does not contain the response of any transducer");
+  if (calibration.transducers.empty() && !calibration.panel && !calibration.boundary)
+    found.push_back("the calibration contains neither boundaries nor the response of any transducer");
   return found;
 }
 

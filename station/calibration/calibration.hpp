@@ -47,12 +47,12 @@ struct Measurements {
   };
   std::vector<Sweep> sweeps;
   std::string boundaries_csv, friction_csv, sound_csv;
-  std::optional<BoundaryFit::Law> law;
+  std::string edge = "p50";  ///< which edge the boundaries are
 };
 
 /// Reads the files and fits. Throws text::BadInput with all problems of all files, or terms::UsageError for
 /// points that do not determine a fit.
-Calibration fit_measurements(const Measurements& measurements);
+Calibration fit_measurements(const Measurements& measurements, const rig::Rig& rig);
 
 /// Convert to the text of a calibration file (format "friction-calibration/1") and back. load() throws
 /// text::BadInput or std::system_error.

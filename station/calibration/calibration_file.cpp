@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "physics/boundary_budget.hpp"
 #include "station/calibration/calibration.hpp"
 #include "station/text/number.hpp"
 #include "station/text/reader.hpp"
@@ -30,15 +31,21 @@ std::string numbers(const char* key, const Points& points, Get&& get) {
 }
 
 std::string boundary_toml(const BoundaryFit& fit) {
-  std::string out = "\n[boundary]                    # x = apex - constant f^-exponent\n";
-  out += fmt::format("law = \"{}\"\n", fit.law == BoundaryFit::Law::plate ? "plate" : "membrane");
-  out += fmt::format("apex_mm = {}\napex_sd_mm = {}\n", exact(fit.apex_m * 1e3), exact(fit.apex_sd_m * 1e3));
-  out += fmt::format("constant = {}\nconstant_sd = {}\n", exact(fit.constant), exact(fit.constant_sd));
-  out += fmt::format("residual_mm = {}\nmembrane_residual_mm = {}\nplate_residual_mm = {}\n",
-                     exact(fit.residual_m * 1e3), exact(fit.membrane_residual_m * 1e3),
-                     exact(fit.plate_residual_m * 1e3));
-  if (fit.curvature_z) out += fmt::format("curvature_z = {}\n", exact(*fit.curvature_z));
-  return out + numbers("residuals_mm", fit.residuals_m, [](double r) { return r * 1e3; });
+  std::string out =
+      "\n[boundary]                    # measured boundaries, and the surface that fits them (SI units)\n";
+  out += fmt::format("edge = {}\n", quoted(fit.edge));
+  out += numbers("frequency_Hz", fit.points, [](const auto& p) { return p.frequency_Hz; });
+  out += numbers("boundary_mm", fit.points, [](const auto& p) { return p.boundary_m * 1e3; });
+  out += numbers("sd_mm", fit.points, [](const auto& p) { return p.sd_m * 1e3; });
+  out += numbers("residual_mm", fit.points, [](const auto& p) { return p.residual_m * 1e3; });
+  out += numbers("deviation", fit.points, [](const auto& p) { return p.deviation; });
+  out += numbers("outlier", fit.points, [](const auto& p) { return p.outlier ? 1.0 : 0.0; });
+  for (const auto& p : fit.surface.parameters) {
+    out += fmt::format("\n[[boundary.parameter]]\nname = {}\nchange = {}\nsd = {}\nstated_sd = {}\n",
+                       quoted(p.name), exact(p.change), exact(p.sd), exact(p.stated_sd));
+    if (!p.correlations.empty()) out += numbers("correlations", p.correlations, [](double r) { return r; });
+  }
+  return out;
 }
 
 std::string transducer_toml(const Calibration::Transducer& transducer) {
@@ -120,22 +127,44 @@ Calibration::Transducer read_transducer(const text::Value& table, text::Findings
   return transducer;
 }
 
-BoundaryFit read_boundary(const text::Value& table, text::Findings& findings) {
+rig::SurfaceFit::Parameter read_parameter(const text::Value& table, std::size_t before,
+                                          text::Findings& findings) {
+  text::TableReader reader(table, text::titled("boundary.parameter", table), findings);
+  rig::SurfaceFit::Parameter parameter;
+  parameter.name = reader.string("name", "write the name of a parameter of the surface");
+  if (!physics::find_parameter(parameter.name))
+    reader.problem("name", "\"" + parameter.name + "\" is not a parameter of a surface");
+  parameter.change = reader.number("change", {-large, large});
+  parameter.sd = reader.number("sd", {0, large});
+  parameter.stated_sd = reader.number("stated_sd", {0, large, Ends::open_low});
+  parameter.correlations = reader.maybe_numbers("correlations", {-1, 1});
+  same_length(reader, "correlations", parameter.correlations.size(), before);
+  reader.finish();
+  return parameter;
+}
+
+/// A calibration of an earlier release describes boundaries by a law, which nothing used.
+std::optional<BoundaryFit> read_boundary(const text::Value& table, text::Findings& findings) {
   text::TableReader reader(table, "boundary", findings);
+  if (reader.has("law")) return std::nullopt;
   BoundaryFit fit;
-  fit.law = reader.word("law", {"membrane", "plate"}) == "plate" ? BoundaryFit::Law::plate
-                                                                 : BoundaryFit::Law::membrane;
-  fit.exponent = fit.law == BoundaryFit::Law::plate ? 0.5 : 1;
-  fit.apex_m = reader.number("apex_mm", {-1e6, 1e6, Ends::closed, "mm"}) * 1e-3;
-  fit.apex_sd_m = reader.number("apex_sd_mm", {0, 1e6, Ends::closed, "mm"}, 0) * 1e-3;
-  fit.constant = reader.number("constant", {0, large, Ends::open_low});
-  fit.constant_sd = reader.number("constant_sd", {0, large}, 0);
-  fit.residual_m = reader.number("residual_mm", {0, 1e6, Ends::closed, "mm"}, 0) * 1e-3;
-  fit.membrane_residual_m = reader.number("membrane_residual_mm", {0, 1e6, Ends::closed, "mm"}, 0) * 1e-3;
-  fit.plate_residual_m = reader.number("plate_residual_mm", {0, 1e6, Ends::closed, "mm"}, 0) * 1e-3;
-  fit.curvature_z = reader.maybe_number("curvature_z", {0, large});
-  for (const double r : reader.maybe_numbers("residuals_mm", {-1e6, 1e6}))
-    fit.residuals_m.push_back(r * 1e-3);
+  fit.edge = reader.string("edge", "write the edge that was measured");
+  const Range mm{-1e6, 1e6, Ends::closed, "mm"};
+  const auto frequency = reader.numbers("frequency_Hz", {0, 1e6, Ends::open_low, "Hz"}),
+             boundary = reader.numbers("boundary_mm", mm), sd = reader.numbers("sd_mm", mm),
+             residual = reader.numbers("residual_mm", mm),
+             deviation = reader.numbers("deviation", {-large, large}),
+             outlier = reader.numbers("outlier", {0, 1});
+  const auto n = frequency.size();
+  if (same_length(reader, "boundary_mm", boundary.size(), n) && same_length(reader, "sd_mm", sd.size(), n) &&
+      same_length(reader, "residual_mm", residual.size(), n) &&
+      same_length(reader, "deviation", deviation.size(), n) &&
+      same_length(reader, "outlier", outlier.size(), n))
+    for (std::size_t k = 0; k < n; ++k)
+      fit.points.push_back(
+          {frequency[k], boundary[k] * 1e-3, sd[k] * 1e-3, residual[k] * 1e-3, deviation[k], outlier[k] > 0});
+  for (const text::Value* parameter : reader.tables("parameter"))
+    fit.surface.parameters.push_back(read_parameter(*parameter, fit.surface.parameters.size(), findings));
   reader.finish();
   return fit;
 }

@@ -4,44 +4,33 @@
 #include <string>
 #include <vector>
 
+#include "station/rig/rig.hpp"
+
 namespace turnpoint::calibration {
 
 /// Files give angles in degrees, the program uses radians.
 constexpr double kDegree_rad = std::numbers::pi / 180;
 
-/// The position of a boundary that was seen or felt at a frequency. `sd_m` is its standard uncertainty (0:
-/// not known).
+/// The position of a boundary that was measured at a frequency.
 struct BoundaryPoint {
   double frequency_Hz = 0;
   double boundary_m = 0;
-  double sd_m = 0;
+  double sd_m = 0;        ///< precision of the measurement, above 0
+  double residual_m = 0;  ///< measured minus fitted
+  double deviation = 0;   ///< distance from where the others put it, in standard deviations
+  bool outlier = false;
 };
 
-/// A boundary's position x as a function of frequency f: x = apex - constant f^-exponent. Without loss, the
-/// boundaries on a linear taper follow this law, with exponent 1 on a membrane and 1/2 on a plate. If both
-/// tension and bending matter, the exponent lies in between.
+/// What measured boundaries say about the rig's surface.
 struct BoundaryFit {
-  double apex_m = 0, apex_sd_m = 0;
-  double constant = 0, constant_sd = 0;  ///< m Hz^exponent
-  double exponent = 1;
-  double residual_m = 0;            ///< rms of the residuals; 0 with two points
-  std::vector<double> residuals_m;  ///< measured minus fitted position of each point
-  /// Rms of the residuals with the exponents 1 and 1/2. With three or more points, the smaller one tells
-  /// membrane from plate.
-  double membrane_residual_m = 0, plate_residual_m = 0;
-  enum class Law { membrane, plate } law = Law::membrane;
-  /// Quadratic coefficient of a parabola in 1/f divided by its standard error; empty with fewer than four
-  /// points. A value above 2 indicates bending.
-  std::optional<double> curvature_z;
+  std::string edge;  ///< which edge was measured, as physics::format() writes it
+  std::vector<BoundaryPoint> points;
+  rig::SurfaceFit surface;
 };
 
-/// Fits the law by least squares, weighted if all uncertainties are known. `law` says whether the surface is
-/// a membrane or a plate; without it, at least three points are needed to find out. Throws terms::UsageError
-/// for fewer than two points (three without a law) and for equal frequencies.
-BoundaryFit fit_boundaries(const std::vector<BoundaryPoint>& points, std::optional<BoundaryFit::Law> law);
-
-/// Returns the position of the boundary according to the fitted law.
-double boundary_at(const BoundaryFit& fit, double frequency_Hz);
+/// Fits all parameters of the surface for which the rig file states a standard deviation (see
+/// physics::fit_boundaries()). Throws terms::UsageError for points that cannot be used.
+BoundaryFit fit_boundaries(const rig::Rig& rig, const std::string& edge, std::vector<BoundaryPoint> points);
 
 /// One frequency of a sweep: displacement of the drive edge at full scale and its phase.
 struct ResponsePoint {

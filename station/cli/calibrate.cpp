@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <cmath>
 #include <iostream>
 #include <memory>
 
+#include "physics/boundary_budget.hpp"
 #include "station/calibration/apply.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
@@ -21,7 +23,7 @@ using calibration::BoundaryFit;
 using text::number;
 
 struct Options {
-  std::string rig, out, plots, law, note, boundaries, friction, sound, sweep_out;
+  std::string rig, out, plots, edge = "p50", note, boundaries, friction, sound, sweep_out;
   std::vector<std::string> sweeps;
   double full_scale = 1;
   int valid_days = 90;
@@ -41,14 +43,52 @@ calibration::Measurements measurements_of(const Options& options) {
   measurements.boundaries_csv = options.boundaries;
   measurements.friction_csv = options.friction;
   measurements.sound_csv = options.sound;
-  if (options.law == "plate") measurements.law = BoundaryFit::Law::plate;
-  if (options.law == "membrane") measurements.law = BoundaryFit::Law::membrane;
+  measurements.edge = options.edge;
   if (options.sweeps.empty() && options.boundaries.empty() && options.friction.empty() &&
       options.sound.empty())
     throw UsageError(
         "calibrate: no measurements were given; use --response, --boundaries, --friction or --sound (or "
         "--sweep for a list of test tones)");
   return measurements;
+}
+
+Json boundary_json(const BoundaryFit& fit) {
+  Json parameters = Json::array(), points = Json::array();
+  for (const auto& p : fit.surface.parameters)
+    parameters.push_back({{"parameter", p.name},
+                          {"change", json_number(p.change)},
+                          {"sd", json_number(p.sd)},
+                          {"stated_sd", json_number(p.stated_sd)}});
+  for (const auto& p : fit.points)
+    points.push_back({{"frequency_Hz", json_number(p.frequency_Hz)},
+                      {"boundary_mm", json_number(1e3 * p.boundary_m)},
+                      {"sd_mm", json_number(1e3 * p.sd_m)},
+                      {"residual_mm", json_number(1e3 * p.residual_m)},
+                      {"deviation", json_number(p.deviation)},
+                      {"outlier", p.outlier}});
+  return {{"edge", fit.edge}, {"parameters", parameters}, {"points", points}};
+}
+
+void print(std::ostream& out, const BoundaryFit& fit) {
+  constexpr double surprising = 3;
+  fmt::print(out, "boundaries ({} edge), {} measured:\n", fit.edge, fit.points.size());
+  for (const auto& p : fit.points)
+    fmt::print(out, "  {} kHz: {} mm, {} mm from the fit{}\n", number(p.frequency_Hz * 1e-3, 5),
+               number(1e3 * p.boundary_m, 5), number(1e3 * p.residual_m, 2),
+               p.outlier
+                   ? fmt::format("; OUTLIER, {} deviations from where the others put it: measure it again",
+                                 number(std::abs(p.deviation), 2))
+                   : "");
+  for (const auto& p : fit.surface.parameters) {
+    const auto parameter = *physics::find_parameter(p.name);
+    const auto unit = physics::unit(parameter);
+    fmt::print(out, "  {}: changed by {} {} (SD {}; {} in the rig file){}\n", p.name,
+               number(p.change / unit.size, 3), unit.name, number(p.sd / unit.size, 2),
+               number(p.stated_sd / unit.size, 2),
+               std::abs(p.change) > surprising * p.stated_sd
+                   ? "; that is much: check plate_theory and the rig file"
+                   : "");
+  }
 }
 
 Json to_json(const calibration::Calibration& c, const std::string& out, const std::string& plots) {
@@ -60,14 +100,7 @@ Json to_json(const calibration::Calibration& c, const std::string& out, const st
                                    {"high_Hz", t.response.high_Hz},
                                    {"residual_dB", json_number(t.response.residual_dB)}});
   json["quality_factor"] = c.quality_factor ? json_number(*c.quality_factor) : Json();
-  if (c.boundary)
-    json["boundary"] = {
-        {"law", c.boundary->law == BoundaryFit::Law::plate ? "plate" : "membrane"},
-        {"apex_mm", json_number(1e3 * c.boundary->apex_m)},
-        {"apex_sd_mm", json_number(1e3 * c.boundary->apex_sd_m)},
-        {"constant", json_number(c.boundary->constant)},
-        {"residual_mm", json_number(1e3 * c.boundary->residual_m)},
-        {"curvature_z", c.boundary->curvature_z ? json_number(*c.boundary->curvature_z) : Json()}};
+  if (c.boundary) json["boundary"] = boundary_json(*c.boundary);
   return json;
 }
 
@@ -77,15 +110,7 @@ void print(std::ostream& out, const calibration::Calibration& c) {
                number(t.response.low_Hz * 1e-3, 5), number(t.response.high_Hz * 1e-3, 5),
                number(calibration::equalisation_cap_dB), number(t.response.residual_dB, 2));
   if (c.quality_factor) fmt::print(out, "quality factor {}\n", number(*c.quality_factor, 3));
-  if (c.boundary) {
-    const auto& b = *c.boundary;
-    fmt::print(out, "boundary: {}, apex {} mm (SD {}), C {}, residual {} mm\n",
-               b.law == BoundaryFit::Law::plate ? "plate" : "membrane", number(1e3 * b.apex_m, 5),
-               number(1e3 * b.apex_sd_m, 2), number(b.constant, 6), number(1e3 * b.residual_m, 2));
-    if (b.curvature_z && *b.curvature_z > 2)
-      fmt::print(out, "  the data show bending: the curvature is {} standard errors from zero\n",
-                 number(*b.curvature_z, 2));
-  }
+  if (c.boundary) print(out, *c.boundary);
   if (c.friction)
     fmt::print(out, "friction: {} points, residual {}\n", c.friction->points.size(),
                number(c.friction->residual, 2));
@@ -179,12 +204,13 @@ void add_calibrate(CommandLine& app, Context& context) {
       ->add_option("--full-scale", options->full_scale,
                    "Amplitude of the drive signal during the measurement; 1 is full scale")
       ->capture_default_str();
-  command->add_option("--boundaries", options->boundaries,
-                      "File with columns frequency_Hz,boundary_mm,sd_mm (0 if the SD is unknown)");
+  command->add_option(
+      "--boundaries", options->boundaries,
+      "File with columns frequency_Hz,boundary_mm,sd_mm; sd_mm is the precision of the reading");
   command
-      ->add_option("--law", options->law,
-                   "membrane | plate; by default chosen from the data if there are three boundaries or more")
-      ->check(one_of({"membrane", "plate"}));
+      ->add_option("--edge", options->edge,
+                   "The edge that was measured as boundary: turning | peak | p70 | p50 | p25 | p10")
+      ->capture_default_str();
   command->add_option("--friction", options->friction, "File with columns displacement_um,relative_friction");
   command->add_option("--sound", options->sound,
                       "File with columns frequency_Hz,level_dB (sound pressure level at full scale)");

@@ -15,6 +15,7 @@
 #include "station/scene/planner.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/scene/under_finger.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/system/write_file.hpp"
 #include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
@@ -24,7 +25,7 @@ namespace turnpoint::cli {
 namespace map_command {
 
 struct Options {
-  std::string rig, edge = "turning", model, plot;
+  std::string rig, calibration, edge = "turning", model, plot;
   std::vector<double> boundaries_mm, frequencies_Hz;
   double tolerance_mm = 0;
   bool budget = false;
@@ -49,7 +50,8 @@ Json to_json(const physics::BoundaryBudget& budget) {
   return {{"total_mm", json_number(budget.total_m * 1e3)}, {"contributions", list}};
 }
 
-void print(std::ostream& out, const physics::MapAnswer& answer, const physics::BoundaryBudget& budget) {
+void print(std::ostream& out, const physics::MapAnswer& answer, const physics::BoundaryBudget& budget,
+           bool calibrated) {
   if (budget.contributions.empty()) {
     fmt::print(out,
                "\nThe rig file states no standard deviations, so the boundary's uncertainty is not known.\n");
@@ -63,11 +65,13 @@ void print(std::ostream& out, const physics::MapAnswer& answer, const physics::B
     fmt::print(out, "{:>14} {:>16} {:>14} {:>24}\n", name(c.parameter), with_unit(c.sd, c.parameter),
                number(c.moved_m * 1e3, 3), number(c.left_m * 1e3, 3));
   const auto& best = budget.contributions.front();
-  fmt::print(out,
-             "Of these, measuring the {} would help most: {} mm would be left. Measured boundaries help "
-             "more, because "
-             "they include all of these (turnpoint calibrate --boundaries).\n",
-             name(best.parameter), number(best.left_m * 1e3, 3));
+  fmt::print(
+      out, "Of these, measuring the {} would help most: {} mm would be left. {}\n", name(best.parameter),
+      number(best.left_m * 1e3, 3),
+      calibrated
+          ? "The parameters' errors cancel in part, because measured boundaries determined them together."
+          : "Measured boundaries help more, because they include all of these (turnpoint calibrate "
+            "--boundaries).");
 }
 
 Json to_json(const std::optional<scene::FingerShift>& shift) {
@@ -167,7 +171,7 @@ void map(const Options& options, Context& context) {
   if (options.boundaries_mm.empty() == options.frequencies_Hz.empty())
     throw UsageError("map: give either --boundary or --frequency");
   if (!options.plot.empty() && !options.budget) throw UsageError("map: --plot needs --budget");
-  const auto rig = rig::load(options.rig);
+  const auto rig = setup::calibrated_rig(options.rig, options.calibration, context.err);
   physics::MapOptions wanted;
   wanted.edge = physics::parse_edge(options.edge);
   if (!options.model.empty()) wanted.model = physics::parse_model(options.model);
@@ -191,7 +195,7 @@ void map(const Options& options, Context& context) {
     print(context.out, answers);
     for (const auto& answer : answers)
       if (has_budget(answer)) {
-        print(context.out, answer, budget_of(answer));
+        print(context.out, answer, budget_of(answer), !surface.correlations.empty());
         print(context.out, scene::finger_shift(rig, *answer.frequency_Hz, wanted.edge));
       }
     return;
@@ -214,6 +218,9 @@ void add_map(CommandLine& app, Context& context) {
   auto* command =
       app.add_subcommand("map", "Convert boundaries to frequencies, or frequencies to boundaries");
   command->add_option("--rig", options->rig, "Rig file")->required();
+  command->add_option(
+      "--calibration", options->calibration,
+      "Calibration file; by default the newest valid one beside the rig file, if there is one");
   command->add_option("--boundary", options->boundaries_mm, "Boundaries in mm from the wide end");
   command->add_option("--frequency", options->frequencies_Hz, "Frequencies in Hz");
   command->add_option("--edge", options->edge, "turning | peak | p70 | p50 | p25 | p10 | friction=0.7")

@@ -13,6 +13,7 @@
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
 #include "station/setup/places.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
@@ -20,7 +21,7 @@ namespace turnpoint::cli {
 namespace plan_command {
 
 struct Options {
-  std::string protocol, rig, scene;
+  std::string protocol, rig, calibration, scene;
   std::vector<std::string> set;
 };
 
@@ -182,7 +183,8 @@ void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<
 
 void plan(const Options& options, Context& context) {
   const auto protocol = protocol::load(options.protocol);
-  const auto rig = rig::load(setup::rig_or_default(options.rig, context.err));
+  const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), options.calibration,
+                                         context.err);
   if (!protocol.scenes.count(options.scene)) {
     std::string known;
     for (const auto& [name, scene] : protocol.scenes) known += (known.empty() ? "" : ", ") + name;
@@ -223,6 +225,9 @@ void add_plan(CommandLine& app, Context& context) {
       "--set", options->set,
       "Value of a factor, as factor=value; by default its first level or the middle of its range");
   command->add_option("--rig", options->rig, "Rig file");
+  command->add_option(
+      "--calibration", options->calibration,
+      "Calibration file; by default the newest valid one beside the rig file, if there is one");
   add_json(*command, context);
   command->footer("Example: turnpoint plan protocols/demo.toml --scene edge --set offset_mm=9");
   command->callback([options, &context] { with_users_numbers([&] { plan(*options, context); }); });

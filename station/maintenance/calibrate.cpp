@@ -75,20 +75,21 @@ void add_response(plot::Figure& figure, const Calibration::Transducer& transduce
   add(figure, phase);
 }
 
-void add_boundary(plot::Figure& figure, const BoundaryFit& fit, const std::string& csv) {
+void add_boundary(plot::Figure& figure, const BoundaryFit& fit) {
   Comparison c;
-  c.title = fit.law == BoundaryFit::Law::plate ? "Boundary: plate" : "Boundary: membrane";
+  c.title = "Boundary: " + fit.edge;
   c.x_label = "Frequency (kHz)", c.y_label = "Boundary (mm)", c.residual_label = "Residual (mm)";
-  for (const auto& row : rows_of(csv, {"frequency_Hz", "boundary_mm", "sd_mm"})) {
-    c.x.push_back(row[0] * 1e-3);
-    c.measured.push_back(row[1]);
-    c.residuals.push_back(row[1] - 1e3 * calibration::boundary_at(fit, row[0]));
+  for (const auto& point : fit.points) {
+    c.x.push_back(point.frequency_Hz * 1e-3);
+    c.measured.push_back(point.boundary_m * 1e3);
+    c.residuals.push_back(point.residual_m * 1e3);
+    c.fit_x.push_back(c.x.back());
   }
-  const auto [low, high] = std::minmax_element(c.x.begin(), c.x.end());
-  for (int k = 0; k <= 100; ++k) {
-    const double f_kHz = *low + (*high - *low) * k / 100;
-    c.fit_x.push_back(f_kHz);
-    c.fit_y.push_back(1e3 * calibration::boundary_at(fit, f_kHz * 1e3));
+  std::sort(c.fit_x.begin(), c.fit_x.end());
+  for (const double f_kHz : c.fit_x) {
+    const auto same = [&](const auto& point) { return point.frequency_Hz * 1e-3 == f_kHz; };
+    const auto point = *std::find_if(fit.points.begin(), fit.points.end(), same);
+    c.fit_y.push_back((point.boundary_m - point.residual_m) * 1e3);
   }
   add(figure, c);
 }
@@ -136,7 +137,7 @@ void add_sound(plot::Figure& figure, const std::vector<calibration::SoundPoint>&
 
 Calibration calibrate(const rig::Rig& rig, const Measurements& measurements, int valid_days,
                       const std::string& note) {
-  Calibration calibration = calibration::fit_measurements(measurements);
+  Calibration calibration = calibration::fit_measurements(measurements, rig);
   calibration.rig_name = rig.name;
   calibration.rig_sha256 = rig.sha256;
   calibration.made_on = calibration::today();
@@ -153,7 +154,7 @@ plot::Figure calibration_figure(const Calibration& calibration, const Measuremen
   figure.columns = 2;
   for (std::size_t k = 0; k < calibration.transducers.size(); ++k)
     add_response(figure, calibration.transducers[k], measurements.sweeps[k]);
-  if (calibration.boundary) add_boundary(figure, *calibration.boundary, measurements.boundaries_csv);
+  if (calibration.boundary) add_boundary(figure, *calibration.boundary);
   if (calibration.friction) add_friction(figure, *calibration.friction, measurements.friction_csv);
   if (!calibration.sound.empty()) add_sound(figure, calibration.sound);
   return figure;

@@ -23,6 +23,18 @@ enum class WideEnd { left, right };
 /// The theory of a clamped plate; `automatic` is the simplest that meets a scene's tolerance.
 enum class PlateTheory { kirchhoff, mindlin, elastic, automatic };
 
+/// What measured boundaries say about a surface; part of its calibration. SI units.
+struct SurfaceFit {
+  struct Parameter {
+    std::string name;                  ///< as physics::name() writes it
+    double change = 0;                 ///< how far the estimate is from the rig file's value
+    double sd = 0;                     ///< standard deviation of the estimate
+    double stated_sd = 0;              ///< in the rig file
+    std::vector<double> correlations;  ///< of the errors, with each of the parameters before it
+  };
+  std::vector<Parameter> parameters;
+};
+
 /// The vibrating surface: material, tension (as a stress), geometry and loss.
 struct Surface {
   std::string material;  ///< name of the material; "" if the file gives the constants itself
@@ -45,6 +57,7 @@ struct Surface {
          modulus_sd_Pa = 0, decay_length_sd_m = 0, clamp_line_sd_m = 0, temperature_sd_K = 0;
   /// Relative change of every length, and of Young's modulus, per kelvin; 0 if not known.
   double expansion_per_K = 0, modulus_per_K = 0;
+  SurfaceFit fit;  ///< empty without a calibration that has measured boundaries
 };
 
 /// One drive element with its band, output channel and displacement of the drive edge at full scale.

@@ -1,3 +1,7 @@
+#include <stdexcept>
+
+#include "physics/boundary_budget.hpp"
+#include "physics/boundary_fit.hpp"
 #include "station/scene/planner.hpp"
 
 namespace turnpoint::scene {
@@ -43,6 +47,20 @@ physics::PlateTheory theory_of(rig::PlateTheory theory, const rig::Surface& surf
                                                           : physics::PlateTheory::kirchhoff;
 }
 
+physics::Surface fitted(physics::Surface surface, const rig::SurfaceFit& fit) {
+  std::vector<physics::FittedParameter> parameters;
+  std::vector<physics::Correlation> correlations;
+  for (const auto& p : fit.parameters) {
+    const auto parameter = physics::find_parameter(p.name);
+    if (!parameter)
+      throw std::invalid_argument("the calibration fits an unknown parameter, \"" + p.name + "\"");
+    for (std::size_t k = 0; k < p.correlations.size() && k < parameters.size(); ++k)
+      correlations.push_back({parameters[k].parameter, *parameter, p.correlations[k]});
+    parameters.push_back({*parameter, p.change, p.sd, p.stated_sd});
+  }
+  return physics::with_fit(std::move(surface), parameters, correlations);
+}
+
 }  // namespace
 
 physics::Surface surface_of(const rig::Rig& rig) {
@@ -71,6 +89,7 @@ physics::Surface surface_of(const rig::Rig& rig) {
   surface.sd.temperature_K = s.temperature_sd_K;
   surface.expansion_per_K = s.expansion_per_K;
   surface.modulus_per_K = s.modulus_per_K;
+  if (!s.fit.parameters.empty()) surface = fitted(std::move(surface), s.fit);
   physics::validate(surface);
   return surface;
 }

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ostream>
 #include <regex>
 
 #include "station/calibration/apply.hpp"
 #include "station/limits/exposure.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/scene/sound.hpp"
+#include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 #include "station/text/toml.hpp"
 
@@ -130,6 +132,18 @@ void find_calibration(const RunRequest& request, session::Setup& setup, std::vec
 }
 
 }  // namespace
+
+rig::Rig calibrated_rig(const std::string& rig_path, const std::string& named, std::ostream& messages) {
+  auto rig = rig::load(rig_path);
+  const auto path = named.empty() ? calibration::newest_for(rig_path) : named;
+  if (path.empty()) return rig;
+  const auto calibration = calibration::load(path);
+  const auto faults = calibration::problems(calibration, rig.sha256, calibration::today());
+  if (!faults.empty() && !named.empty()) throw terms::UsageError(path + ": " + faults.front());
+  if (!faults.empty()) return rig;
+  messages << "calibration " << path << "\n";
+  return calibration::applied(calibration, std::move(rig));
+}
 
 session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
   session::Setup setup;

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <iosfwd>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -30,5 +31,10 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop = 
 /// Applies the text of a calibration file to the rig, to the sound levels, and to the values that are stored
 /// with the session. Throws text::BadInput or terms::UsageError.
 void take_calibration(const std::string& source, const std::string& path, session::Setup& setup);
+
+/// The rig with the named calibration, or with the newest valid one beside its file, if there is one. Says on
+/// `messages` which one it is. Throws text::BadInput, or terms::UsageError for a named calibration that this
+/// rig must not use.
+rig::Rig calibrated_rig(const std::string& rig, const std::string& calibration, std::ostream& messages);
 
 }  // namespace turnpoint::setup

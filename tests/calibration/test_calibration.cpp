@@ -2,7 +2,10 @@
 #include <cstdio>
 #include <fstream>
 
+#include "physics/boundary_budget.hpp"
+#include "station/calibration/apply.hpp"
 #include "station/calibration/calibration.hpp"
+#include "station/scene/planner.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/problem.hpp"
 #include "tests/support/catch.hpp"
@@ -32,13 +35,35 @@ Measurements measurements() {
   files.boundaries_csv =
       written("boundaries.csv",
               "frequency_Hz,boundary_mm,sd_mm\n22400,97,1\n30000,147,1\n40000,190,1\n45000,206,1\n");
+  files.edge = "turning";
   files.friction_csv = written("friction.csv", "displacement_um,relative_friction\n0,1\n1,0.4\n2,0.2\n");
   files.sound_csv = written("sound.csv", "frequency_Hz,level_dB\n20000,71\n40000,95\n");
   return files;
 }
 
+rig::Rig plate() { return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml"); }
+
+// A plate that is held 0.25 mm behind the clamp's edge and is 2 % too thin.
+physics::Surface other_plate() {
+  const auto surface = scene::surface_of(plate());
+  return physics::changed(physics::changed(surface, physics::Parameter::clamp_line, 0.25e-3),
+                          physics::Parameter::thickness, -0.04e-3);
+}
+
+physics::BoundaryMap map_of(const physics::Surface& surface) {
+  physics::MapOptions options;
+  options.edge = physics::parse_edge("p50");
+  return physics::BoundaryMap(surface, options);
+}
+
+std::vector<BoundaryPoint> points_on(const physics::BoundaryMap& map) {
+  std::vector<BoundaryPoint> points;
+  for (const double f : {23e3, 30e3, 44e3}) points.push_back({f, map.boundary_m(f).value(), 0.3e-3});
+  return points;
+}
+
 Calibration made() {
-  Calibration calibration = fit_measurements(measurements());
+  Calibration calibration = fit_measurements(measurements(), plate());
   calibration.rig_name = "Plate \"A\"";
   calibration.rig_sha256 = "abc";
   calibration.made_on = "2026-02-27";
@@ -60,13 +85,55 @@ TEST_CASE("measurements become a file that reads back as the same calibration", 
     CHECK(points[k].m_per_full_scale == Approx(made_point.m_per_full_scale).epsilon(1e-14));
     CHECK(points[k].phase_rad == Approx(made_point.phase_rad).margin(1e-14));
   }
-  CHECK(back.boundary->apex_m == Approx(calibration.boundary->apex_m).epsilon(1e-14));
   CHECK(back.friction->points.size() == 3);
   CHECK(back.rig_name == "Plate \"A\"");
   REQUIRE(back.boundary.has_value());
-  CHECK(back.boundary->law == BoundaryFit::Law::plate);
-  CHECK(boundary_at(*back.boundary, 30000) == Approx(0.147).margin(0.002));
+  const auto &fit = *calibration.boundary, &read = *back.boundary;
+  CHECK(read.edge == "turning");
+  REQUIRE(read.points.size() == 4);
+  CHECK(read.points[2].boundary_m == Approx(0.190));
+  CHECK(read.points[2].residual_m == Approx(fit.points[2].residual_m).epsilon(1e-12));
+  REQUIRE(read.surface.parameters.size() == fit.surface.parameters.size());
+  for (std::size_t k = 0; k < fit.surface.parameters.size(); ++k) {
+    CHECK(read.surface.parameters[k].name == fit.surface.parameters[k].name);
+    CHECK(read.surface.parameters[k].change == fit.surface.parameters[k].change);
+    CHECK(read.surface.parameters[k].sd == fit.surface.parameters[k].sd);
+    CHECK(read.surface.parameters[k].correlations == fit.surface.parameters[k].correlations);
+  }
   CHECK(back.sound.size() == 2);
+}
+
+TEST_CASE("the map of a rig with measured boundaries is that of the plate on which they were measured",
+          "[calibration]") {
+  const auto truth = map_of(other_plate()), stated = map_of(scene::surface_of(plate()));
+  Calibration calibration;
+  calibration.boundary = fit_boundaries(plate(), "p50", points_on(truth));
+  const auto fitted = map_of(scene::surface_of(applied(calibration, plate())));
+  for (const double f : {25e3, 33e3, 42e3}) {
+    const double x = truth.boundary_m(f).value();
+    CHECK(std::abs(fitted.boundary_m(f).value() - x) < 0.3e-3);
+    CHECK(std::abs(stated.boundary_m(f).value() - x) > 8e-3);
+    CHECK(fitted.at_frequency(f).uncertainty_m < 0.4e-3);
+    CHECK(stated.at_frequency(f).uncertainty_m > 7e-3);
+  }
+  CHECK(problems(calibration, "", calibration.made_on = today()).empty());
+}
+
+TEST_CASE("boundaries that cannot be used are refused, wrong ones are named", "[calibration]") {
+  auto points = points_on(map_of(other_plate()));
+  points[1].boundary_m += 10e-3;
+  CHECK(fit_boundaries(plate(), "p50", points).points[1].outlier);
+  points[1].sd_m = 0;
+  CHECK_THROWS_AS(fit_boundaries(plate(), "p50", points), terms::UsageError);
+  CHECK_THROWS_AS(fit_boundaries(plate(), "friction=0.7", points), terms::UsageError);
+  CHECK_THROWS_AS(fit_boundaries(plate(), "p50", {}), terms::UsageError);
+}
+
+TEST_CASE("a calibration with the law of an earlier release is read without it", "[calibration]") {
+  auto calibration = made();
+  calibration.boundary.reset();
+  const auto text = to_toml(calibration) + "\n[boundary]\nlaw = \"plate\"\napex_mm = 466\nconstant = 55\n";
+  CHECK_FALSE(parse(text, "old.toml").boundary.has_value());
 }
 
 TEST_CASE("a calibration expires, belongs to one rig file, and says so", "[calibration]") {
@@ -86,7 +153,7 @@ TEST_CASE("all problems of all files are reported together, each with its place"
   files.friction_csv = written("bad_friction.csv", "displacement_um,friction\n0,1\n");
   files.sound_csv = written("bad_sound.csv", "frequency_Hz,level_dB\n20000,loud\n");
   try {
-    fit_measurements(files);
+    fit_measurements(files, plate());
     FAIL("accepted");
   } catch (const text::BadInput& error) {
     CHECK(error.problems().size() >= 2);

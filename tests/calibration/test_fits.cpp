@@ -7,16 +7,8 @@
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::calibration;
-using Law = BoundaryFit::Law;
 
 namespace {
-
-// Turning points of the 1998 brass membrane, with its apex at 300 mm and C = c / 4 d.
-std::vector<BoundaryPoint> brass(std::initializer_list<double> frequencies_Hz) {
-  std::vector<BoundaryPoint> points;
-  for (const double f : frequencies_Hz) points.push_back({f, 0.3 - 1986.39 / f, 0});
-  return points;
-}
 
 // The amplitude |u| of a resonator, multiplied by a constant.
 std::vector<ResponsePoint> resonator(double f0_Hz, double q, double from_Hz, double to_Hz, int count) {
@@ -30,60 +22,6 @@ std::vector<ResponsePoint> resonator(double f0_Hz, double q, double from_Hz, dou
 }
 
 }  // namespace
-
-TEST_CASE("two boundaries of a known law give apex and constant exactly", "[calibration]") {
-  const BoundaryFit fit = fit_boundaries(brass({19600, 40000}), Law::membrane);
-  CHECK(fit.apex_m == Approx(0.3).epsilon(1e-12));
-  CHECK(fit.constant == Approx(1986.39).epsilon(1e-12));
-  CHECK(boundary_at(fit, 45000) == Approx(0.3 - 1986.39 / 45000));
-  CHECK(fit.residual_m == 0);
-}
-
-TEST_CASE("three boundaries tell a membrane from a plate", "[calibration]") {
-  CHECK(fit_boundaries(brass({8000, 19600, 40000}), std::nullopt).law == Law::membrane);
-  std::vector<BoundaryPoint> plate;
-  for (const double f : {22400.0, 30000.0, 40000.0}) plate.push_back({f, 0.4667 - 55.3 / std::sqrt(f), 0});
-  const BoundaryFit fit = fit_boundaries(plate, std::nullopt);
-  CHECK(fit.law == Law::plate);
-  CHECK(fit.apex_m == Approx(0.4667));
-  CHECK(fit.membrane_residual_m > 100 * fit.plate_residual_m);
-}
-
-TEST_CASE("the stated uncertainty of the apex is that of repeated measurements", "[calibration]") {
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> error(0, 0.5e-3);
-  double sum = 0, square = 0, stated = 0;
-  constexpr int repeats = 2000;
-  for (int k = 0; k < repeats; ++k) {
-    auto points = brass({8000, 15000, 25000, 45000});
-    for (auto& point : points) point.boundary_m += error(random), point.sd_m = 0.5e-3;
-    const BoundaryFit fit = fit_boundaries(points, Law::membrane);
-    sum += fit.apex_m - 0.3;
-    square += (fit.apex_m - 0.3) * (fit.apex_m - 0.3);
-    stated = fit.apex_sd_m;
-  }
-  CHECK(std::abs(sum / repeats) < 4 * stated / std::sqrt(repeats));
-  CHECK(std::sqrt(square / repeats) == Approx(stated).epsilon(0.06));
-}
-
-TEST_CASE("curvature against 1/f exposes bending, and stays quiet without it", "[calibration]") {
-  auto points = brass({8000, 12000, 18000, 27000, 40000});
-  double sign = 1;
-  for (auto& point : points) point.boundary_m += (sign = -sign) * 0.1e-3;
-  CHECK(fit_boundaries(points, Law::membrane).curvature_z.value() < 2);
-  for (auto& point : points) point.boundary_m += 3.0e5 / (point.frequency_Hz * point.frequency_Hz);
-  CHECK(fit_boundaries(points, Law::membrane).curvature_z.value() > 2);
-  CHECK_FALSE(fit_boundaries(brass({8000, 20000, 40000}), Law::membrane).curvature_z.has_value());
-}
-
-TEST_CASE("points that determine nothing are refused", "[calibration]") {
-  CHECK_THROWS_AS(fit_boundaries(brass({20000}), Law::membrane), turnpoint::terms::UsageError);
-  CHECK_THROWS_AS(fit_boundaries(brass({20000, 40000}), std::nullopt), turnpoint::terms::UsageError);
-  CHECK_THROWS_AS(fit_boundaries(brass({20000, 20000}), Law::plate), turnpoint::terms::UsageError);
-  CHECK_THROWS_AS(fit_boundaries(brass({20000, 20000, 20000}), Law::plate), turnpoint::terms::UsageError);
-  CHECK_THROWS_AS(fit_response({{1, 1, 0}}), turnpoint::terms::UsageError);
-  CHECK_THROWS_AS(fit_friction({{0, 1}}), turnpoint::terms::UsageError);
-}
 
 TEST_CASE("frequency and Q of a resonance come from its width", "[calibration]") {
   for (const double q : {20.0, 60.0, 300.0}) {

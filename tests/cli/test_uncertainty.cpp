@@ -1,4 +1,5 @@
 // Tests that map, plan and check say how uncertain a boundary is.
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "station/system/read_file.hpp"
@@ -48,4 +49,23 @@ TEST_CASE("map says what moves a boundary, and what to measure", "[cli]") {
 TEST_CASE("plan and check say how uncertain boundaries are", "[cli]") {
   CHECK(contains(output_of({"plan", demo, "--scene", "edge", "--rig", rig}), "uncertain by 7."));
   CHECK(contains(output_of({"check", demo, "--rig", rig, "--sessions", "0"}), "uncertain by "));
+}
+
+TEST_CASE("map and plan use the boundaries that were measured on a rig", "[cli]") {
+  const TemporaryFolder folder;
+  const auto copy = folder / "plate.toml", boundaries = folder / "boundaries.csv";
+  std::ofstream(copy) << turnpoint::system::read_file(rig);
+  // by the plate of a clamp line 0.25 mm back, whose boundaries are 8.3 mm further out
+  std::ofstream(boundaries)
+      << "frequency_Hz,boundary_mm,sd_mm\n22400,110.8,0.5\n30000,160.3,0.5\n43000,212.1,0.5\n";
+  const std::vector<std::string> map{"map", "--rig", copy, "--frequency", "30000", "--edge", "p50", "--json"};
+  const auto said = output_of({"calibrate", "--rig", copy, "--boundaries", boundaries});
+  CHECK(contains(said, "clamp line: changed by"));
+  CHECK_FALSE(contains(said, "OUTLIER"));
+  const auto text = output_of(map);
+  CHECK(contains(text, "calibration "));  // which one, on standard error
+  const auto json = nlohmann::json::parse(text.substr(text.find('[')));
+  CHECK(json[0]["boundary_mm"].get<double>() == Approx(160.3).margin(0.5));
+  CHECK(json[0]["uncertainty_mm"].get<double>() < 0.5);
+  CHECK(contains(output_of({"plan", demo, "--scene", "edge", "--rig", copy}), "uncertain by 0."));
 }
