@@ -126,8 +126,9 @@ plot::Figure figure_of(const rig::Rig& rig, const physics::Surface& surface, con
       chart.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, *answer.boundary_m * 1e3, ""});
   std::vector<plot::Line> largest;
   for (auto& [parameter, line] : lines) largest.push_back(std::move(line));
+  const auto top = [](const plot::Line& line) { return *std::max_element(line.y.begin(), line.y.end()); };
   std::stable_sort(largest.begin(), largest.end(),
-                   [](const auto& a, const auto& b) { return a.y.front() > b.y.front(); });
+                   [&](const auto& a, const auto& b) { return top(a) > top(b); });
   largest.resize(std::min(largest.size(), most_lines));
   for (std::size_t k = 0; k < largest.size(); ++k) {
     largest[k].series = static_cast<int>(k);
