@@ -41,7 +41,7 @@ double boundary_derivative(const Surface& surface, Parameter parameter, double f
 // What one parameter contributes.
 struct Contribution {
   Parameter parameter;
-  double sd = 0;       // its standard deviation, SI units
+  double sd = 0;       // standard deviation of the parameter, SI units
   double moved_m = 0;  // how far one standard deviation moves the boundary, positive outward
   double left_m = 0;   // the total that would be left if this parameter were known exactly
 };

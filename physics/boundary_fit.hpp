@@ -16,7 +16,7 @@ struct MeasuredBoundary {
 
 struct FittedParameter {
   Parameter parameter;
-  double change = 0;    // how far the estimate is from what the surface states, SI units
+  double change = 0;    // the estimate minus the value in the surface, SI units
   double sd = 0;        // standard deviation of the estimate
   double prior_sd = 0;  // the surface's own
 };

@@ -28,7 +28,7 @@ class ElasticCutOff {
   static constexpr std::size_t terms = 18;
   static constexpr double largest = 2;
   std::array<double, terms> coefficient_{};  // Chebyshev series of value() divided by Kirchhoff's value
-  double kirchhoff_;                         // Kirchhoff's value divided by h/W
+  double kirchhoff_;                         // omega W / c_s by Kirchhoff's theory, divided by h/W
 };
 
 // Computes omega W / c_s by finite elements, without the table. The error against a mesh refined towards the

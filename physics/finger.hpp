@@ -25,7 +25,7 @@ struct FingerLoad {
   std::complex<double> loaded;             // displacement under the finger, unloaded / (1 + Z mobility)
   std::complex<double> mobility_m_per_Ns;  // velocity of the free surface per unit of force on the disc
 
-  // Share of the amplitude that the finger leaves.
+  // Fraction of the amplitude that remains under the finger.
   double share(const Finger& finger) const {
     return 1 / std::abs(1.0 + finger.impedance_Ns_per_m * mobility_m_per_Ns);
   }

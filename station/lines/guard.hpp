@@ -20,9 +20,10 @@ class Guard {
  public:
   struct Config {
     std::int64_t toggle_ns = 10'000'000;              ///< half a period of the heartbeat
-    std::int64_t audio_timeout_ns = 100'000'000;      ///< limit without a report from the audio thread
-    std::int64_t session_timeout_ns = 2'000'000'000;  ///< limit without a report from the session
-    std::int64_t page_timeout_ns = 2'000'000'000;     ///< limit without a report from the participant's page
+    std::int64_t audio_timeout_ns = 100'000'000;      ///< longest time without a report from the audio thread
+    std::int64_t session_timeout_ns = 2'000'000'000;  ///< longest time without a report from the session
+    std::int64_t page_timeout_ns =
+        2'000'000'000;  ///< longest time without a report from the participant's page
   };
 
   /// Why a command is refused: the current problem, or the latched fault that has to be cleared first.

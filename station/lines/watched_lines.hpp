@@ -21,8 +21,8 @@ struct WatchedLines {
   EdgeFilter::Rules button_rules, contact_rules;
 };
 
-/// Like open_buttons(), but `request` provides the lines that the rig names.
 using RequestLines = std::function<std::unique_ptr<Lines>(const std::vector<LineRequest>&)>;
+/// The same as the other open_buttons(), but calls `request` to open the lines that the rig names.
 std::unique_ptr<Buttons> open_buttons(const std::optional<ButtonsConfig>& buttons,
                                       const std::optional<ContactConfig>& contact, ButtonsHandlers handlers,
                                       const RequestLines& request);

@@ -28,7 +28,8 @@ struct Sight {
   double lowest_friction = 1;
   std::string model;
   double error_bound_mm = 0;
-  double uncertainty_mm = 0;  ///< one standard deviation of the boundary, from those in the rig file
+  /// standard deviation of the boundary, computed from the standard deviations in the rig file
+  double uncertainty_mm = 0;
   bool inside_tolerance = true;
   scene::Cues cues;  ///< the cues when the strength is roved upwards
   /// The cues when the strength is roved downwards. Set only if roving changes more than the strength, that

@@ -36,7 +36,7 @@ class CueTable {
  private:
   struct Entry {
     std::vector<double> values;  ///< values of the scene's factors, in the order of their names
-    double sum = 0;              ///< value of the scene's only expression with factors
+    double sum = 0;              ///< value of the expression in the scene that contains factors
     RovedCues cues;
   };
   struct SceneEntries {

@@ -109,7 +109,7 @@ TEST_CASE("the first-order uncertainty is that of random surfaces", "[physics]")
   std::normal_distribution<double> normal;
   for (const Surface& nominal : {plate(), membrane(LinearTaper{0.03, 0.1})}) {
     const double f = 25e3, x = solved_m(nominal, "p50", f);
-    constexpr int count = 800;  // the sample's deviation is accurate to 2.5 %
+    constexpr int count = 800;  // the standard error of their standard deviation is 2.5 %
     double sum = 0, square = 0;
     for (int i = 0; i < count; ++i) {
       Surface s = nominal;

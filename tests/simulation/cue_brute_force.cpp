@@ -272,8 +272,9 @@ struct OwnSessions {
   double gain = 0, error = 0;
 };
 
-/// Simulates whole sessions in which the observer gives all answers. Returns how much more accurate it is
-/// than guessing, or than always pressing the same key.
+/// Simulates whole sessions in which this observer gives every answer, so its answers also steer the
+/// procedure. Returns by how much its accuracy exceeds that of guessing or of always pressing the same key,
+/// whichever is better.
 OwnSessions do_sessions(const protocol::Protocol& protocol, World& world, std::size_t cue, int feature,
                         const Strategy& strategy) {
   std::vector<Count> each;
