@@ -131,10 +131,13 @@ UnderFinger finger_figures(const physics::Surface& surface, const physics::Frict
   UnderFinger under;
   const auto finger = finger_of(rig);
   const auto& wanted = plan.scene.under_finger;
-  const auto peak_m = plan.tones.empty() ? std::nullopt : plan.tones.front().last_peak_m;
-  const auto place_m = wanted ? std::optional(wanted->finger_m) : peak_m;
-  under.finger_m =
-      std::clamp(place_m.value_or(plan.boundary_m.value_or(0.5 * surface.length_m)), 0.0, surface.length_m);
+  double place_m = plan.boundary_m.value_or(0.5 * surface.length_m);
+  if (wanted) {
+    place_m = wanted->finger_m;
+  } else if (!plan.tones.empty()) {
+    place_m = plan.tones.front().last_peak_m.value_or(place_m);
+  }
+  under.finger_m = std::clamp(place_m, 0.0, surface.length_m);
   const auto loaded = solve(surface, finger, field_model, plan, under.finger_m);
   const physics::Finger none{0, finger.contact_radius_m};
   under.free_m = displacement_under(loaded, plan, none);
