@@ -227,8 +227,7 @@ void draw_axes(Canvas& canvas, const Frame& frame, const std::vector<Tick>& acro
   canvas.text({frame.x + frame.width / 2, bottom + 37}, frame.across->label, kText, Anchor::middle, kInk);
 }
 
-/// Returns as many ticks of the horizontal axis as there is room for labels. On a log axis, some ticks have
-/// no label.
+/// Returns the ticks of the horizontal axis whose labels fit. On a log axis, some ticks have no label.
 std::vector<Tick> ticks_with_room(const Axis& axis, double width) {
   for (int wanted = 7; wanted > 2 && axis.scale == AxisScale::linear; --wanted) {
     const auto some = ticks(axis, wanted);
@@ -272,8 +271,7 @@ Division divided(const Chart& chart, const Place& place, VerticalLabels where, i
   return d;
 }
 
-/// Divides a chart's area with as many vertical ticks as possible, at least one and a half lines of text
-/// apart.
+/// Divides a chart's area. Vertical ticks are as many as fit, one and a half lines of text apart or more.
 Division divided(const Chart& chart, const Place& place, VerticalLabels where) {
   for (int wanted = 5;; --wanted) {
     auto d = divided(chart, place, where, wanted);
@@ -305,8 +303,7 @@ void draw_chart(Canvas& canvas, const Chart& chart, const Place& place, const Di
   if (const auto* map = heat_map(chart)) draw_colour_bar(canvas, frame, d.left + d.width, *map);
 }
 
-/// Charts side by side are compared, so their data must have the same height. If one chart has to put a label
-/// above its data, all charts leave room for labels there.
+/// Data of charts side by side have the same height: if one has a label above them, all leave room for it.
 VerticalLabels labels_of(const std::vector<Chart>& charts, const std::vector<Place>& places) {
   for (std::size_t i = 0; i < charts.size(); ++i)
     for (const auto& label : divided(charts[i], places[i], VerticalLabels::beside).labelled.labels)
