@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "station/analysis/least_squares.hpp"
 #include "station/calibration/fits.hpp"
-#include "station/calibration/least_squares.hpp"
 #include "station/terms/usage_error.hpp"
 
 namespace turnpoint::calibration {
@@ -55,7 +55,7 @@ double smoothed(const std::vector<ResponsePoint>& sweep, const std::vector<doubl
     some.push_back(values[i]);
     weights.push_back(std::pow(1 - std::pow(std::abs(u), 3), 3));
   }
-  return least_squares(rows, some, weights).value[0];
+  return analysis::least_squares(rows, some, weights).value[0];
 }
 
 }  // namespace
@@ -113,7 +113,7 @@ std::vector<Resonance> find_resonances(const std::vector<ResponsePoint>& sweep) 
       rows.push_back({1, u, u * u});
       values.push_back(r * r);
     }
-    const auto c = least_squares(rows, values, std::vector<double>(rows.size(), 1)).value;
+    const auto c = analysis::least_squares(rows, values, std::vector<double>(rows.size(), 1)).value;
     const double offset = -c[1] / (2 * c[2]), square = c[0] / c[2] - offset * offset;
     if (!(c[2] > 0 && square > 0)) continue;
     found.push_back({sweep[k].frequency_Hz * (1 + offset), (1 + offset) / (2 * std::sqrt(square))});

@@ -1,13 +1,15 @@
 #pragma once
 #include <vector>
 
-namespace turnpoint::calibration {
+namespace turnpoint::analysis {
 
 /// A linear fit with few parameters.
 struct LeastSquares {
   std::vector<double> value;
   std::vector<double> sd;        ///< standard errors from the residuals; 0 without degrees of freedom
   std::vector<double> known_sd;  ///< standard errors if the weights are 1 / variance
+  /// The covariance matrix that belongs to known_sd.
+  std::vector<std::vector<double>> known_covariance;
 };
 
 /// Minimises sum w (y - row . value)^2 by Householder QR with column pivoting (columns scaled to unit
@@ -15,4 +17,4 @@ struct LeastSquares {
 LeastSquares least_squares(const std::vector<std::vector<double>>& rows, const std::vector<double>& values,
                            const std::vector<double>& weights);
 
-}  // namespace turnpoint::calibration
+}  // namespace turnpoint::analysis

@@ -1,4 +1,4 @@
-#include "station/calibration/least_squares.hpp"
+#include "station/analysis/least_squares.hpp"
 
 #include <cmath>
 
@@ -6,9 +6,9 @@
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
-using calibration::least_squares;
+using analysis::least_squares;
 
-TEST_CASE("a line through points far from the origin keeps its digits", "[calibration]") {
+TEST_CASE("a line through points far from the origin keeps its digits", "[analysis]") {
   // The columns 1 and x are nearly the same: a method that squares them would keep only five digits of the
   // slope.
   std::vector<std::vector<double>> rows;
@@ -34,9 +34,13 @@ TEST_CASE("a line through points far from the origin keeps its digits", "[calibr
   CHECK(fit.value[1] == Approx(3 + slope / 4).epsilon(1e-9));
   CHECK(fit.known_sd[1] == Approx(std::ldexp(1.0, 20) / std::sqrt(square)).epsilon(1e-9));
   CHECK(fit.sd[1] == Approx(std::sqrt(rest / 9 / square) / 4).epsilon(1e-9));
+  // cov(intercept, slope) = -mean(x) / sum w (x - mean)^2
+  const double mean = 1 + std::ldexp(wx / w, -20);
+  CHECK(fit.known_covariance[0][1] == Approx(-mean * std::ldexp(1.0, 40) / square).epsilon(1e-8));
+  CHECK(fit.known_covariance[1][1] == Approx(std::pow(fit.known_sd[1], 2)));
 }
 
-TEST_CASE("as many points as parameters are met, without a scatter to judge by", "[calibration]") {
+TEST_CASE("as many points as parameters are met, without a scatter to judge by", "[analysis]") {
   const auto fit = least_squares({{1, 0, 0}, {1, 1, 1}, {1, 2, 4}}, {5, 4, 7}, {1, 2, 3});
   CHECK(fit.value[0] == Approx(5));
   CHECK(fit.value[1] == Approx(-3));
@@ -44,7 +48,7 @@ TEST_CASE("as many points as parameters are met, without a scatter to judge by",
   for (const double sd : fit.sd) CHECK(sd == 0);
 }
 
-TEST_CASE("columns that do not determine the fit are refused", "[calibration]") {
+TEST_CASE("columns that do not determine the fit are refused", "[analysis]") {
   const std::vector<double> three{1, 2, 3}, ones{1, 1, 1};
   CHECK_THROWS_AS(least_squares({{1, 2}, {1, 2}, {1, 2}}, three, ones), terms::UsageError);
   CHECK_THROWS_AS(least_squares({{1, 0}, {1, 0}, {1, 0}}, three, ones), terms::UsageError);
