@@ -1,0 +1,149 @@
+#include "station/sensing/carrier.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <stdexcept>
+
+#include "station/drive/sine.hpp"
+#include "station/terms/usage_error.hpp"
+
+namespace turnpoint::sensing {
+namespace {
+
+constexpr int middle_rate_Hz = 8000;
+constexpr double attenuation_dB = 100;
+constexpr double reference_tolerance = 0.03, quadrature_share = 0.05, overload_share = 1.5;
+
+double pass_Hz(Band band) { return band == Band::force ? 400 : 1000; }
+double stop_Hz(Band band) { return band == Band::force ? 600 : 2000; }
+
+const BridgeOptions& checked(const BridgeOptions& options) {
+  const auto fail = [](const std::string& what) { throw terms::UsageError("strain-gauge bridges: " + what); };
+  if (options.rate_Hz < 2 * middle_rate_Hz || options.rate_Hz % middle_rate_Hz != 0)
+    fail(fmt::format("rate {} Hz is not a multiple of {} Hz", options.rate_Hz, middle_rate_Hz));
+  if (!(options.carrier_Hz > 2 * stop_Hz(options.band) && options.carrier_Hz < 0.45 * options.rate_Hz))
+    fail(fmt::format("carrier {} Hz is outside {} to {} Hz", options.carrier_Hz, 2 * stop_Hz(options.band),
+                     0.45 * options.rate_Hz));
+  if (options.reference >= options.channels || std::ranges::max(options.bridges) >= options.channels)
+    fail(fmt::format("a channel is not among the {} captured ones", options.channels));
+  if (!(options.reference_amplitude > 0) || !(std::ranges::min(options.full_scale) > 0))
+    fail("reference amplitude and full scale must be positive");
+  return options;
+}
+
+double folded(double frequency_Hz, int rate_Hz) {
+  return std::abs(frequency_Hz - rate_Hz * std::round(frequency_Hz / rate_Hz));
+}
+
+double clearance_Hz(double carrier_Hz, std::span<const std::vector<double>> plans, int rate_Hz) {
+  double nearest = std::numeric_limits<double>::infinity();
+  const auto see = [&](double product_Hz) {
+    nearest = std::min(nearest, std::abs(folded(product_Hz, rate_Hz) - carrier_Hz));
+  };
+  for (const auto& tones : plans)
+    for (const double f : tones) {
+      see(f);
+      for (const double g : tones) {
+        if (g == f) continue;
+        see(2 * f - g);
+        for (int k = 1; k <= 4; ++k) see(k * (f - g));
+      }
+    }
+  return nearest;
+}
+
+}  // namespace
+
+CarrierChoice choose_carrier(std::span<const std::vector<double>> plans, int rate_Hz) {
+  CarrierChoice best{carriers_Hz.front(), -1};
+  for (const double carrier_Hz : carriers_Hz) {
+    const double clearance = clearance_Hz(carrier_Hz, plans, rate_Hz);
+    if (clearance >= enough_clearance_Hz) return {carrier_Hz, clearance};
+    if (clearance > best.clearance_Hz) best = {carrier_Hz, clearance};
+  }
+  return best;
+}
+
+double bridge_rotation_rad(const BridgePoint& without, const BridgePoint& with, std::size_t bridge) {
+  return std::atan2(with.quadrature[bridge] - without.quadrature[bridge],
+                    with.ratio[bridge] - without.ratio[bridge]);
+}
+
+BridgeDemodulator::BridgeDemodulator(const BridgeOptions& options)
+    : options_(checked(options)),
+      // The first stage lets products alias only to where the second stops them.
+      first_(low_pass(pass_Hz(options.band), middle_rate_Hz - stop_Hz(options.band), options.rate_Hz,
+                      attenuation_dB),
+             options.rate_Hz / middle_rate_Hz),
+      second_(low_pass(pass_Hz(options.band), stop_Hz(options.band), middle_rate_Hz, attenuation_dB),
+              middle_rate_Hz / points_per_second(options.band)),
+      increment_(drive::phase_increment(options.carrier_Hz, options.rate_Hz)) {
+  for (std::size_t i = 0; i < bridge_count; ++i) {
+    cos_[i] = std::cos(options_.rotation_rad[i]);
+    sin_[i] = std::sin(options_.rotation_rad[i]);
+  }
+}
+
+void BridgeDemodulator::start_or_check(std::int64_t frame) {
+  if (!started_) next_frame_ = frame;
+  started_ = true;
+  if (frame < next_frame_)
+    throw std::logic_error(
+        fmt::format("captured frames go back from playback frame {} to {}", next_frame_, frame));
+}
+
+bool BridgeDemodulator::add(std::span<const std::int32_t> frame) noexcept {
+  Decimator::Lanes lanes;
+  if (frame.empty()) {
+    lanes.fill(std::numeric_limits<double>::quiet_NaN());
+  } else {
+    // z = 2 s e^(-i phi); full scale is 1
+    const std::uint64_t phase = increment_ * static_cast<std::uint64_t>(next_frame_);
+    const double scale = 0x1p-30;
+    const double cosine = scale * drive::sine_of_phase(phase + drive::quarter_cycle);
+    const double minus_sine = -scale * drive::sine_of_phase(phase);
+    const auto put = [&](std::size_t lane, std::int32_t sample) {
+      lanes[lane] = sample * cosine;
+      lanes[lane + 1] = sample * minus_sine;
+    };
+    put(0, frame[options_.reference]);
+    for (std::size_t i = 0; i < bridge_count; ++i) put(2 * i + 2, frame[options_.bridges[i]]);
+  }
+  const std::int64_t index = next_frame_++;
+  if (!first_.push(index, lanes)) return false;
+  if (!second_.push(first_.output_index(), first_.output())) return false;
+  finish_point();
+  return true;
+}
+
+void BridgeDemodulator::finish_point() noexcept {
+  const Decimator::Lanes& z = second_.output();
+  point_ = {.index = second_.output_index(), .reference = std::hypot(z[0], z[1])};
+  const double square = z[0] * z[0] + z[1] * z[1];
+  for (std::size_t i = 0; i < bridge_count; ++i) {
+    const double real = z[2 * i + 2], imaginary = z[2 * i + 3];
+    const double in = (real * z[0] + imaginary * z[1]) / square;
+    const double across = (imaginary * z[0] - real * z[1]) / square;
+    point_.ratio[i] = in * cos_[i] + across * sin_[i];
+    point_.quadrature[i] = across * cos_[i] - in * sin_[i];
+  }
+  if (std::abs(point_.reference / options_.reference_amplitude - 1) > reference_tolerance) {
+    point_.fault = WireFault::reference;
+    point_.ratio.fill(std::numeric_limits<double>::quiet_NaN());
+    point_.quadrature = point_.ratio;
+    return;
+  }
+  for (std::size_t i = 0; i < bridge_count && point_.fault == WireFault::none; ++i) {
+    point_.bridge = i;
+    if (std::abs(point_.quadrature[i]) > quadrature_share * options_.full_scale[i])
+      point_.fault = WireFault::quadrature;
+    else if (std::abs(point_.ratio[i]) > overload_share * options_.full_scale[i])
+      point_.fault = WireFault::overload;
+  }
+}
+
+}  // namespace turnpoint::sensing

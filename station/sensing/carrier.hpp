@@ -1,0 +1,120 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "station/sensing/decimator.hpp"
+
+namespace turnpoint::sensing {
+
+/// The carriers that bridges may be excited with. Each is 25 Hz above a multiple of 300 Hz, so at least 25 Hz
+/// away from every harmonic of a mains of 50 and of 60 Hz. The first is the default.
+inline constexpr std::array carriers_Hz{10525.0, 6325.0, 8425.0, 12625.0, 14725.0};
+
+/// A carrier, and how far the nearest product of the drive tones is from it.
+struct CarrierChoice {
+  double carrier_Hz = carriers_Hz.front();
+  double clearance_Hz = 0;
+};
+/// Distance that keeps the products of the drive tones far outside the filters of either band.
+inline constexpr double enough_clearance_Hz = 1500;
+
+/// Chooses the first of carriers_Hz with enough clearance, or else the one with the most clearance. Products
+/// are the tones themselves, the differences k |f_i - f_j| up to k = 4, and 2 f_i - f_j, all folded at the
+/// sampling rate. `plans` are the tones of all stimuli of a block: tones of different plans never sound
+/// together, and all plans get the same carrier. With four tones or more there is often no carrier with
+/// enough clearance. One with more than the band's stop edge still keeps the products out of the force.
+CarrierChoice choose_carrier(std::span<const std::vector<double>> plans, int rate_Hz);
+
+/// Width of the force signal and rate of its points. `force` passes 0 to 400 Hz and stops 600 Hz, with 1000
+/// points a second. `wide` passes 0 to 1 kHz and stops 2 kHz, with 4000 points a second; use it with one
+/// drive tone only, because two tones 1 kHz apart cause a line of force at 1 kHz. Both reject by 100 dB.
+enum class Band { force, wide };
+constexpr int points_per_second(Band band) { return band == Band::force ? 1000 : 4000; }
+
+inline constexpr std::size_t bridge_count = 3;
+
+/// Wiring and calibration of three bridges with a common carrier: the two cells a and b below the surface,
+/// and the lateral cell.
+struct BridgeOptions {
+  int rate_Hz = 192000;  ///< a multiple of 8000
+  double carrier_Hz = carriers_Hz.front();
+  Band band = Band::force;
+  std::size_t channels = 4;   ///< of an interleaved frame
+  std::size_t reference = 0;  ///< the channel that captures the excitation itself
+  std::array<std::size_t, bridge_count> bridges{1, 2, 3};  ///< channels of a, b and the lateral cell
+  double reference_amplitude = 0.5;  ///< amplitude of the reference at calibration; full scale is 1
+  /// Ratio of bridge to reference at the cell's rated load.
+  std::array<double, bridge_count> full_scale{0.4, 0.4, 0.4};
+  /// Phase of the bridge's resistive part against the reference (bridge_rotation_rad()).
+  std::array<double, bridge_count> rotation_rad{};
+};
+
+/// Why a point must not be used.
+enum class WireFault {
+  none,
+  reference,   ///< the reference is more than 3 % off; the ratios are NaN
+  quadrature,  ///< a bridge's quadrature exceeds 5 % of full scale: a wire or a shield is off
+  overload,    ///< a bridge shows more than 1.5 times full scale: a wire is off, or the cell is overloaded
+};
+
+/// Bridge against reference, at one point of the grid.
+struct BridgePoint {
+  std::int64_t index = 0;  ///< point k lies exactly at playback frame k * rate / points_per_second()
+  /// In-phase and quadrature part of bridge / reference. NaN if a captured frame within the filter's reach is
+  /// missing.
+  std::array<double, bridge_count> ratio{}, quadrature{};
+  double reference = 0;  ///< amplitude of the reference; full scale is 1
+  WireFault fault = WireFault::none;
+  std::size_t bridge = 0;  ///< the bridge to which a fault of quadrature or overload belongs
+};
+
+/// Phase between the resistive part of a bridge and the reference, from two points with and without a load. A
+/// constant capacitive part cancels.
+double bridge_rotation_rad(const BridgePoint& without, const BridgePoint& with, std::size_t bridge);
+
+/// Demodulates the bridges at the phase of playback, divides by the reference, and reduces the result to the
+/// grid of points. Gain and drift of converters, buffer and excitation cancel in the division. The result
+/// does not depend on how the frames are divided into blocks. Point k comes once frames 16 ms (wide: 3.6 ms)
+/// beyond it have arrived. Not thread-safe; allocates only in the constructor, which throws
+/// terms::UsageError for impossible options.
+class BridgeDemodulator {
+ public:
+  explicit BridgeDemodulator(const BridgeOptions& options);
+
+  /// Takes interleaved samples (S32, full scale 2^31). `first_frame` is the playback frame that sounded when
+  /// the first of them was captured; it must not be before the end of the previous block (std::logic_error).
+  /// Frames that were left out count as missing. Calls `take` for each point that is complete.
+  template <typename Take>
+  void push(std::int64_t first_frame, std::span<const std::int32_t> samples, Take&& take) {
+    skip_to(first_frame, take);
+    for (; samples.size() >= options_.channels; samples = samples.subspan(options_.channels))
+      if (add(samples.first(options_.channels))) take(point_);
+  }
+
+  /// Playback frames from one point to the next.
+  int frames_per_point() const { return options_.rate_Hz / points_per_second(options_.band); }
+
+ private:
+  template <typename Take>
+  void skip_to(std::int64_t frame, Take& take) {
+    start_or_check(frame);
+    while (next_frame_ < frame)
+      if (add({})) take(point_);
+  }
+  void start_or_check(std::int64_t frame);
+  bool add(std::span<const std::int32_t> frame) noexcept;
+  void finish_point() noexcept;
+
+  BridgeOptions options_;
+  std::array<double, bridge_count> cos_, sin_;
+  Decimator first_, second_;
+  std::uint64_t increment_;
+  std::int64_t next_frame_ = 0;
+  bool started_ = false;
+  BridgePoint point_;
+};
+
+}  // namespace turnpoint::sensing

@@ -1,0 +1,38 @@
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace turnpoint::sensing {
+
+/// Designs a linear-phase low-pass filter of odd length by the window method: the ideal low-pass half way
+/// between the edges, with a Kaiser window (Kaiser 1974). The gain at 0 Hz is exactly 1. Ripple and stop band
+/// are `attenuation_dB` below it (60 dB or more).
+std::vector<double> low_pass(double pass_Hz, double stop_Hz, double rate_Hz, double attenuation_dB);
+
+/// Filters eight signals at once and keeps every `factor`-th result. Samples carry an index, and output m is
+/// centred on input index m * factor, so no delay is left. NaN makes all outputs NaN that it contributes to;
+/// so do the samples before the first one. Allocates only in the constructor.
+class Decimator {
+ public:
+  static constexpr std::size_t lanes = 8;
+  using Lanes = std::array<double, lanes>;
+
+  Decimator(std::vector<double> taps, int factor);
+
+  /// Takes the sample with this index, which must be one more than that of the previous sample. Returns true
+  /// if it completes an output.
+  bool push(std::int64_t index, const Lanes& sample) noexcept;
+  const Lanes& output() const noexcept { return output_; }
+  std::int64_t output_index() const noexcept { return output_index_; }
+
+ private:
+  std::vector<double> taps_;
+  std::vector<Lanes> ring_;
+  std::size_t newest_ = 0;
+  std::int64_t half_, factor_, output_index_ = 0;
+  Lanes output_{};
+};
+
+}  // namespace turnpoint::sensing

@@ -1,0 +1,85 @@
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "station/sensing/carrier.hpp"
+
+namespace turnpoint::sensing {
+
+/// What a codec captures of a reference and three bridges, from formulas alone: 2.5 V of excitation, 10 N
+/// cells of 2 mV/V, an amplifier with gain 200, full scale at 3 V.
+struct BridgeSignal {
+  double rate_Hz = 192000, carrier_Hz = 10525;
+  std::function<double(double)> force_N = [](double) { return 0.0; };  ///< of time, the same on all cells
+  std::function<double(double)> gain = [](double) { return 1.0; };     ///< of the excitation
+  double phase_rad = 0.4;                                              ///< of the whole path
+  double bridge_phase_rad = 0;                                         ///< of the resistive part
+  double quadrature_V_V = 0;               ///< unbalanced capacitance of the bridges
+  std::vector<double> tones_Hz;            ///< crosstalk of the drive at the bridge
+  double tone_V = 1e-3, cubic_per_V2 = 0;  ///< the latter at the amplifier's output
+  double noise_V_rtHz = 0;                 ///< at the bridge
+  unsigned seed = 1;
+
+  static constexpr double excitation_V = 2.5, volt_per_volt_N = 2e-4, amplifier = 200, full_scale_V = 3;
+  static constexpr double reference_share = 0.5;  ///< of full scale
+
+  std::vector<std::int32_t> frames(std::int64_t first, std::size_t count) const {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    const double noise_V = noise_V_rtHz * std::sqrt(rate_Hz / 2);
+    const double turn = 2 * std::numbers::pi;
+    std::vector<std::int32_t> all;
+    for (std::size_t n = 0; n < count; ++n) {
+      const double t = static_cast<double>(first + static_cast<std::int64_t>(n)) / rate_Hz;
+      const double angle = turn * std::fmod(carrier_Hz * t, 1.0) + phase_rad;
+      double tones = 0;
+      for (std::size_t i = 0; i < tones_Hz.size(); ++i)
+        tones += tone_V * std::sin(turn * tones_Hz[i] * t + static_cast<double>(i));
+      const double in = volt_per_volt_N * force_N(t) * std::cos(angle + bridge_phase_rad);
+      const double across = quadrature_V_V * -std::sin(angle + bridge_phase_rad);
+      const double bridge = excitation_V * gain(t) * (in + across) + tones;
+      all.push_back(sample(reference_share * gain(t) * std::cos(angle)));
+      for (int i = 0; i < 3; ++i) {
+        const double out = amplifier * (bridge + (noise_V > 0 ? noise_V * normal(random) : 0));
+        all.push_back(sample((out + cubic_per_V2 * out * out * out) / full_scale_V));
+      }
+    }
+    return all;
+  }
+
+  /// Newtons per unit of bridge / reference.
+  static constexpr double N_per_ratio =
+      full_scale_V * reference_share / (amplifier * excitation_V * volt_per_volt_N);
+
+  static std::int32_t sample(double share) {  // 24 bit
+    return static_cast<std::int32_t>(std::lround(share * 0x1p23)) * 256;
+  }
+};
+
+inline BridgeOptions bridge_options() {
+  BridgeOptions options;
+  options.full_scale.fill(10 / BridgeSignal::N_per_ratio);
+  options.reference_amplitude = BridgeSignal::reference_share;
+  return options;
+}
+
+/// All points of a capture that begins at playback frame `first`.
+inline std::vector<BridgePoint> demodulated(const BridgeOptions& options, std::int64_t first,
+                                            const std::vector<std::int32_t>& samples) {
+  BridgeDemodulator demodulator(options);
+  std::vector<BridgePoint> points;
+  demodulator.push(first, samples, [&](const BridgePoint& point) { points.push_back(point); });
+  return points;
+}
+
+/// The points without missing frames.
+inline std::vector<BridgePoint> complete(std::vector<BridgePoint> points) {
+  std::erase_if(points, [](const BridgePoint& point) { return std::isnan(point.ratio[0]); });
+  return points;
+}
+
+}  // namespace turnpoint::sensing

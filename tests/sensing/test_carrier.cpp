@@ -1,0 +1,258 @@
+#include "station/sensing/carrier.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <stdexcept>
+
+#include "station/terms/usage_error.hpp"
+#include "tests/sensing/bridge_signal.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+using namespace turnpoint::sensing;
+
+namespace {
+
+constexpr double newton = BridgeSignal::N_per_ratio;
+constexpr std::size_t second = 192000;
+
+std::vector<double> forces_N(const std::vector<BridgePoint>& points) {
+  std::vector<double> all;
+  for (const auto& point : points) all.push_back(newton * point.ratio[0]);
+  return all;
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+double sd(const std::vector<double>& values) {
+  double square = 0;
+  for (const double value : values) square += std::pow(value - mean(values), 2);
+  return std::sqrt(square / static_cast<double>(values.size() - 1));
+}
+
+std::vector<double> measured_N(const BridgeSignal& signal, std::size_t frames, std::int64_t first = 0,
+                               BridgeOptions options = bridge_options()) {
+  return forces_N(complete(demodulated(options, first, signal.frames(first, frames))));
+}
+
+/// How much later than the given frames the demodulated force is, in frames, for a force of one frequency.
+double delay_frames(std::int64_t first, std::int64_t said, Band band, double frequency_Hz) {
+  BridgeSignal signal;
+  const double omega = 2 * std::numbers::pi * frequency_Hz;
+  signal.force_N = [&](double t) { return 1 + 0.5 * std::sin(omega * t); };
+  auto options = bridge_options();
+  options.band = band;
+  const double rate = points_per_second(band);
+  std::complex<double> sum = 0;
+  const auto points = complete(demodulated(options, said, signal.frames(first, second / 4)));
+  // whole periods only, so that the constant force does not matter
+  const auto whole =
+      static_cast<std::size_t>(rate / frequency_Hz * std::floor(points.size() * frequency_Hz / rate));
+  for (std::size_t i = 0; i < whole; ++i)
+    sum += points[i].ratio[0] *
+           std::exp(std::complex<double>(0, -omega * static_cast<double>(points[i].index) / rate));
+  return -std::arg(sum * std::complex<double>(0, 1)) / omega * 192000;
+}
+
+}  // namespace
+
+TEST_CASE("a force of 0 to 2 N is measured without a constant error", "[sensing]") {
+  for (const double force : {0.0, 0.05, 0.5, 1.0, 2.0}) {
+    BridgeSignal signal;
+    signal.force_N = [&](double) { return force; };
+    signal.noise_V_rtHz = 4e-9;
+    CHECK(std::abs(mean(measured_N(signal, second / 4)) - force) < 1e-3 * force + 0.5e-3);
+  }
+  // a phase of the bridge that nobody measured would cost 0.4 % of the force
+  BridgeSignal signal;
+  signal.force_N = [](double) { return 2; };
+  signal.bridge_phase_rad = 0.09;
+  CHECK(std::abs(mean(measured_N(signal, second / 8)) - 2) > 2.5e-3);
+  const auto with = complete(demodulated(bridge_options(), 0, signal.frames(0, second / 8)));
+  signal.force_N = [](double) { return 0.3; };
+  const auto without = complete(demodulated(bridge_options(), 0, signal.frames(0, second / 8)));
+  auto options = bridge_options();
+  for (std::size_t i = 0; i < bridge_count; ++i)
+    options.rotation_rad[i] = bridge_rotation_rad(without.back(), with.back(), i);
+  CHECK(options.rotation_rad[2] == Approx(0.09).epsilon(1e-3));
+  signal.force_N = [](double) { return 2; };
+  CHECK(std::abs(mean(measured_N(signal, second / 8, 0, options)) - 2) < 1e-5);
+}
+
+TEST_CASE("noise of the force is that of bridge and amplifier in its band", "[sensing]") {
+  BridgeSignal signal;
+  signal.noise_V_rtHz = 4e-9;
+  const auto closed_N = [&](double bandwidth_Hz) {
+    return 4e-9 * std::sqrt(2 * bandwidth_Hz) / (BridgeSignal::excitation_V * BridgeSignal::volt_per_volt_N);
+  };
+  CHECK(sd(measured_N(signal, 3 * second)) == Approx(closed_N(480)).epsilon(0.1));
+  auto wide = bridge_options();
+  wide.band = Band::wide;
+  const double wide_sd = sd(measured_N(signal, second, 0, wide));
+  CHECK(wide_sd == Approx(closed_N(1410)).epsilon(0.1));
+  CHECK(wide_sd > 1.3 * closed_N(480));  // so the comparison would notice a wrong band
+}
+
+TEST_CASE("drive tones at the bridge do not look like a force", "[sensing]") {
+  BridgeSignal signal;
+  signal.force_N = [](double) { return 1; };
+  signal.cubic_per_V2 = 1e-4;
+  const double off = mean(measured_N(signal, second / 4));
+  const auto with_tones = [&](double volt) {
+    signal.tone_V = volt;
+    signal.tones_Hz = {23e3, 26.1e3, 31.3e3, 38.9e3};
+    const auto on = measured_N(signal, second / 4);
+    return std::max(std::abs(mean(on) - off), sd(on));
+  };
+  CHECK(with_tones(1e-3) < 0.1e-3);
+  CHECK(with_tones(5e-3) > 0.5e-3);  // five times the crosstalk must show
+}
+
+TEST_CASE("no delay is left in the force", "[sensing]") {
+  for (const std::int64_t first : {0, 12345}) {
+    CHECK(std::abs(delay_frames(first, first, Band::force, 100)) < 0.1);
+    CHECK(std::abs(delay_frames(first, first, Band::wide, 500)) < 0.1);
+  }
+  CHECK(delay_frames(0, 1, Band::force, 100) == Approx(1).margin(0.1));
+}
+
+TEST_CASE("a step is within one per cent after 5 ms, and 0.1 per cent after 10 ms", "[sensing]") {
+  BridgeSignal signal;
+  signal.force_N = [](double t) { return t < 0.1 ? 0 : 1; };
+  const auto points = complete(demodulated(bridge_options(), 0, signal.frames(0, second / 4)));
+  double largest = 0;
+  for (const auto& point : points) {
+    const double late_s = static_cast<double>(point.index) / 1000 - 0.1, force = newton * point.ratio[0];
+    const double error = std::abs(force - (late_s < 0 ? 0 : 1));
+    largest = std::max(largest, force);
+    if (std::abs(late_s) > 5.5e-3) CHECK(error < 0.01);
+    if (std::abs(late_s) > 10.5e-3) CHECK(error < 0.001);
+  }
+  CHECK(largest > 1.03);  // it rings: a filter that does not would not be this short
+}
+
+TEST_CASE("drift of the excitation cancels, drift of one amplifier does not", "[sensing]") {
+  BridgeSignal signal;
+  signal.force_N = [](double) { return 1.5; };
+  signal.gain = [](double t) { return 1 + 0.004 * t; };
+  const auto force = measured_N(signal, second / 4);
+  CHECK(std::abs(force.back() - force.front()) < 2e-6);
+  signal.gain = [](double) { return 1; };
+  signal.force_N = [](double t) { return 1.5 * (1 + 0.004 * t); };
+  const auto drifting = measured_N(signal, second / 4);
+  CHECK(drifting.back() - drifting.front() > 1e-3);
+}
+
+TEST_CASE("the size of the blocks does not matter", "[sensing]") {
+  BridgeSignal signal;
+  signal.force_N = [](double t) { return std::sin(300 * t); };
+  signal.noise_V_rtHz = 4e-9;
+  const auto samples = signal.frames(777, second / 5);
+  const auto whole = demodulated(bridge_options(), 777, samples);
+  BridgeDemodulator demodulator(bridge_options());
+  std::vector<BridgePoint> points;
+  std::size_t at = 0;
+  for (std::size_t size = 1; at < samples.size(); size = size * 7 % 1021) {
+    const std::size_t count = std::min(4 * size, samples.size() - at);
+    demodulator.push(static_cast<std::int64_t>(777 + at / 4), std::span(samples).subspan(at, count),
+                     [&](const BridgePoint& point) { points.push_back(point); });
+    at += count;
+  }
+  REQUIRE(points.size() == whole.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    CHECK(points[i].index == whole[i].index);
+    CHECK((points[i].ratio == whole[i].ratio || std::isnan(whole[i].ratio[0])));
+  }
+}
+
+TEST_CASE("missing frames make the points within reach NaN, and no others", "[sensing]") {
+  BridgeSignal signal;
+  signal.force_N = [](double t) { return std::sin(200 * t); };
+  const auto samples = signal.frames(0, second / 4);
+  const auto whole = demodulated(bridge_options(), 0, samples);
+  BridgeDemodulator demodulator(bridge_options());
+  std::vector<BridgePoint> points;
+  const auto take = [&](const BridgePoint& point) { points.push_back(point); };
+  demodulator.push(0, std::span(samples).first(4 * 20000), take);
+  demodulator.push(20100, std::span(samples).subspan(4 * 20100), take);
+  REQUIRE(points.size() == whole.size());
+  std::size_t lost = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    CHECK(points[i].index == whole[i].index);
+    const bool now = std::isnan(points[i].ratio[0]), before = std::isnan(whole[i].ratio[0]);
+    lost += now && !before ? 1 : 0;
+    if (!now) CHECK(points[i].ratio == whole[i].ratio);
+    if (now && !before) CHECK(std::abs(192.0 * static_cast<double>(points[i].index) - 20050) < 3200);
+  }
+  CHECK(lost > 25);
+  CHECK(lost < 35);
+  CHECK_THROWS_AS(demodulator.push(5, samples, take), std::logic_error);
+}
+
+TEST_CASE("a wire that is off is a fault with a name", "[sensing]") {
+  BridgeSignal signal;
+  signal.force_N = [](double) { return 1; };
+  const auto worst = [&] {
+    const auto points = demodulated(bridge_options(), 0, signal.frames(0, second / 8));
+    return points.back();
+  };
+  CHECK(worst().fault == WireFault::none);
+  signal.quadrature_V_V = 0.04 * 2e-3;
+  CHECK(worst().fault == WireFault::none);
+  signal.quadrature_V_V = 0.06 * 2e-3;
+  CHECK(worst().fault == WireFault::quadrature);
+  signal.quadrature_V_V = 0;
+  signal.gain = [](double) { return 0.975; };
+  CHECK(worst().fault == WireFault::none);
+  signal.gain = [](double) { return 0.965; };
+  CHECK(worst().fault == WireFault::reference);
+  CHECK(std::isnan(worst().ratio[1]));
+  signal.gain = [](double) { return 1; };
+  signal.force_N = [](double) { return 16; };
+  CHECK(worst().fault == WireFault::overload);
+}
+
+TEST_CASE("the carrier keeps away from mains and from products of the drive tones", "[sensing]") {
+  for (const double carrier : carriers_Hz)
+    for (const double mains : {50.0, 60.0}) CHECK(std::abs(std::remainder(carrier, mains)) >= 20);
+  const auto choose = [](std::vector<std::vector<double>> plans) { return choose_carrier(plans, 192000); };
+  CHECK(choose({}).carrier_Hz == 10525);
+  CHECK(choose({{30e3}}).carrier_Hz == 10525);
+  CHECK(choose({{30e3, 32e3}}).carrier_Hz == 10525);  // 2, 4, 6, 8 kHz; 28 and 34 kHz
+  const auto moved = choose({{30e3, 33.4e3}});        // 3 x 3.4 kHz is 325 Hz below the default
+  CHECK(moved.carrier_Hz != 10525);
+  CHECK(moved.clearance_Hz >= enough_clearance_Hz);
+  // the same tones in different stimuli have no products
+  CHECK(choose({{30e3}, {33.4e3}}).carrier_Hz == 10525);
+  const auto crowded = choose({{22.4e3, 23.5e3, 25e3, 27e3}});
+  CHECK(crowded.clearance_Hz < enough_clearance_Hz);
+  for (const double carrier : carriers_Hz) {
+    double nearest = 1e9;
+    for (const double product :
+         {1.1e3, 2.2e3, 3.3e3, 4.4e3, 2.6e3, 5.2e3, 7.8e3,  10.4e3, 4.6e3, 9.2e3, 13.8e3, 18.4e3,
+          1.5e3, 3e3,   4.5e3, 6e3,   3.5e3, 7e3,   10.5e3, 14e3,   2e3,   4e3,   8e3,    17.8e3})
+      nearest = std::min(nearest, std::abs(carrier - product));
+    CHECK(crowded.clearance_Hz >= nearest);
+  }
+  CHECK(choose({{20e3, 65.4e3}}).carrier_Hz != 10525);  // 4 x 45.4 = 181.6 kHz folds to 10.4 kHz
+}
+
+TEST_CASE("impossible wiring of the bridges is refused", "[sensing]") {
+  const auto refused = [](auto change) {
+    auto options = bridge_options();
+    change(options);
+    CHECK_THROWS_AS(BridgeDemodulator(options), terms::UsageError);
+  };
+  refused([](BridgeOptions& o) { o.rate_Hz = 44100; });
+  refused([](BridgeOptions& o) { o.carrier_Hz = 500; });
+  refused([](BridgeOptions& o) { o.bridges[2] = 4; });
+  refused([](BridgeOptions& o) { o.full_scale[1] = 0; });
+  auto options = bridge_options();
+  options.rate_Hz = 96000;
+  CHECK(BridgeDemodulator(options).frames_per_point() == 96);
+}

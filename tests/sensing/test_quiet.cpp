@@ -1,0 +1,20 @@
+// Demodulation must not allocate: it may run on a thread with real-time priority.
+#include "station/sensing/carrier.hpp"
+#include "tests/drive/watch.hpp"
+#include "tests/sensing/bridge_signal.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::sensing;
+
+TEST_CASE("demodulating bridges allocates nothing", "[sensing]") {
+  BridgeSignal signal;
+  const auto samples = signal.frames(0, 20000);
+  BridgeDemodulator demodulator(bridge_options());
+  double sum = 0;
+  const auto take = [&](const BridgePoint& point) { sum += point.reference; };
+  CHECK(turnpoint::drive::violations_in([&] {
+          demodulator.push(0, samples, take);
+          demodulator.push(30000, samples, take);
+        }) == 0);
+  CHECK(turnpoint::drive::violations_in([] { delete new BridgeDemodulator(bridge_options()); }) > 0);
+}
