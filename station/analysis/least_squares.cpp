@@ -29,15 +29,12 @@ LeastSquares least_squares(const std::vector<std::vector<double>>& rows, const s
   // The covariance is (R'R)^-1, in the order of the pivots.
   const Eigen::MatrixXd inverse =
       qr.matrixR().topLeftCorner(n, n).triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
-  const Eigen::MatrixXd root_of = qr.colsPermutation() * inverse;
-  const Eigen::MatrixXd covariance =
-      scale.cwiseInverse().asDiagonal() * (root_of * root_of.transpose()) * scale.cwiseInverse().asDiagonal();
+  const Eigen::VectorXd sd = qr.colsPermutation() * inverse.rowwise().norm();
   const double variance = m > n ? (right - matrix * solution).squaredNorm() / static_cast<double>(m - n) : 0;
   LeastSquares fit;
   for (Eigen::Index k = 0; k < n; ++k) {
     fit.value.push_back(solution(k) / scale(k));
-    fit.known_sd.push_back(std::sqrt(covariance(k, k)));
-    fit.known_covariance.emplace_back(covariance.col(k).begin(), covariance.col(k).end());
+    fit.known_sd.push_back(sd(k) / scale(k));
     fit.sd.push_back(std::sqrt(variance) * fit.known_sd.back());
   }
   return fit;

@@ -8,8 +8,6 @@ struct LeastSquares {
   std::vector<double> value;
   std::vector<double> sd;        ///< standard errors from the residuals; 0 without degrees of freedom
   std::vector<double> known_sd;  ///< standard errors if the weights are 1 / variance
-  /// The covariance matrix that belongs to known_sd.
-  std::vector<std::vector<double>> known_covariance;
 };
 
 /// Minimises sum w (y - row . value)^2 by Householder QR with column pivoting (columns scaled to unit

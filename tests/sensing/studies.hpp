@@ -1,0 +1,24 @@
+#pragma once
+#include <cstdlib>
+#include <sstream>
+
+#include "tests/support/catch.hpp"
+
+namespace turnpoint::sensing {
+
+/// TURNPOINT_STUDIES=400 repeats each simulated study so many times and prints its figures; without it, a
+/// study has the small number given here.
+inline const char* const wanted_studies = std::getenv("TURNPOINT_STUDIES");
+inline int repetitions(int everyday) {
+  return wanted_studies != nullptr ? std::atoi(wanted_studies) : everyday;
+}
+
+template <typename... Parts>
+void say(const Parts&... parts) {
+  if (wanted_studies == nullptr) return;
+  std::ostringstream text;
+  (text << ... << parts);
+  WARN(text.str());
+}
+
+}  // namespace turnpoint::sensing
