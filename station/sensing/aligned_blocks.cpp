@@ -1,0 +1,92 @@
+#include "station/sensing/aligned_blocks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace turnpoint::sensing {
+
+AlignedBlocks::AlignedBlocks(int rate_Hz, int channels, std::vector<int> inputs, int block_frames,
+                             int high_pass_step)
+    : rate_Hz_(rate_Hz),
+      channels_(channels),
+      block_frames_(block_frames),
+      step_(high_pass_step),
+      inputs_(std::move(inputs)),
+      capacity_(block_frames + 2 * high_pass_step),
+      raw_(inputs_.size(), std::vector<double>(static_cast<std::size_t>(capacity_))),
+      filtered_(inputs_.size(), std::vector<double>(static_cast<std::size_t>(block_frames))),
+      energies_(inputs_.size()) {
+  for (const int input : inputs_)
+    if (input < 0 || input >= channels) throw std::logic_error("sensing: no such captured channel");
+  for (const auto& row : filtered_) rows_.push_back(row.data());
+  block_.frames = block_frames;
+  block_.row = rows_.data();
+  block_.energy = energies_.data();
+}
+
+void AlignedBlocks::check(const CaptureBlock& block) const {
+  if (block.rate_Hz != rate_Hz_ || block.channels != channels_)
+    throw std::logic_error("sensing: captured block with another rate or number of channels");
+}
+
+// Begins in the middle of an aligned block, whose first frames are lost.
+void AlignedBlocks::start_at(std::int64_t frame) noexcept {
+  const std::int64_t inside = ((frame + step_) % block_frames_ + block_frames_) % block_frames_;
+  next_ = frame - inside;
+  block_.first_frame = next_ + step_;
+  filled_ = 0;
+  started_ = true;
+}
+
+void AlignedBlocks::take_lost(std::int64_t frames) noexcept {
+  const std::int64_t count = std::min(frames, capacity_ - filled_);
+  for (auto& row : raw_) std::fill_n(row.begin() + filled_, count, std::numeric_limits<double>::quiet_NaN());
+  filled_ += count;
+  next_ += count;
+}
+
+void AlignedBlocks::take(const CaptureBlock& block, std::int64_t at) noexcept {
+  const std::int64_t count = std::min(block.frames() - at, capacity_ - filled_);
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const std::int32_t* from = block.samples.data() + at * channels_ + inputs_[i];
+    double* to = raw_[i].data() + filled_;
+    for (std::int64_t n = 0; n < count; ++n) to[n] = 0x1p-31 * from[n * channels_];
+  }
+  filled_ += count;
+  next_ += count;
+}
+
+const AlignedBlock& AlignedBlocks::finish() noexcept {
+  block_.first_frame = next_ - step_ - block_frames_;
+  block_.lost = false;
+  block_.largest = 0;
+  for (std::size_t i = 0; i < inputs_.size(); ++i) {
+    const double* s = raw_[i].data() + step_;
+    double* y = filtered_[i].data();
+    double largest = 0, energy = 0;
+    for (int n = 0; n < block_frames_; ++n) largest = std::max(largest, std::fabs(s[n]));
+    if (step_ > 0)
+      for (int n = 0; n < block_frames_; ++n) y[n] = 0.25 * (2 * s[n] - s[n - step_] - s[n + step_]);
+    else
+      std::copy_n(s, block_frames_, y);
+    for (int n = 0; n < block_frames_; ++n) energy += y[n] * y[n];
+    energies_[i] = energy;
+    block_.largest = std::max(block_.largest, largest);
+    block_.lost = block_.lost || std::isnan(energy);
+    std::copy_n(raw_[i].end() - 2 * step_, 2 * step_, raw_[i].begin());
+  }
+  filled_ = 2 * step_;
+  return block_;
+}
+
+double high_pass_gain(double frequency_Hz, int rate_Hz, int step) noexcept {
+  if (step == 0) return 1;
+  const double s = std::sin(M_PI * frequency_Hz * step / rate_Hz);
+  return s * s;
+}
+
+int high_pass_step(int rate_Hz) noexcept { return std::max(1, rate_Hz / 96000); }
+
+}  // namespace turnpoint::sensing

@@ -1,0 +1,75 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "station/sensing/capture_block.hpp"
+
+namespace turnpoint::sensing {
+
+/// Some channels of a stretch of captured frames, one row per channel.
+struct AlignedBlock {
+  std::int64_t first_frame = 0;
+  std::int64_t frames = 0;
+  bool lost = false;                   ///< some of the frames are missing
+  double largest = 0;                  ///< largest absolute sample of these channels, before the filter
+  const double* const* row = nullptr;  ///< row[i][n]: frame n of input i
+  const double* energy = nullptr;      ///< energy[i]: sum of the squares of row i
+};
+
+/// Cuts captured blocks of any size into blocks of one size, which begin at multiples of that size. Whatever
+/// is computed from the blocks therefore does not depend on how the samples arrived. Allocates only in its
+/// constructor.
+class AlignedBlocks {
+ public:
+  /// `inputs` are the captured channels to use. With a step d > 0, a symmetric filter removes low frequencies
+  /// (mains hum, friction noise): y(n) = (2 s(n) - s(n-d) - s(n+d)) / 4, see high_pass_gain().
+  AlignedBlocks(int rate_Hz, int channels, std::vector<int> inputs, int block_frames, int high_pass_step);
+  AlignedBlocks(const AlignedBlocks&) = delete;
+  AlignedBlocks& operator=(const AlignedBlocks&) = delete;
+
+  /// Calls `sink(const AlignedBlock&)` for each block that is complete. Frames that were already received are
+  /// ignored. Throws std::logic_error for a block with another rate or number of channels.
+  template <class Sink>
+  void push(const CaptureBlock& block, Sink&& sink) {
+    check(block);
+    if (!started_) start_at(block.first_frame);
+    for (std::int64_t lost = block.first_frame - next_; lost > 0; lost = block.first_frame - next_) {
+      take_lost(lost);
+      if (full()) sink(finish());
+    }
+    for (std::int64_t at = next_ - block.first_frame; at < block.frames(); at = next_ - block.first_frame) {
+      take(block, at);
+      if (full()) sink(finish());
+    }
+  }
+
+  int block_frames() const noexcept { return block_frames_; }
+
+ private:
+  void check(const CaptureBlock& block) const;
+  void start_at(std::int64_t frame) noexcept;
+  void take_lost(std::int64_t frames) noexcept;
+  void take(const CaptureBlock& block, std::int64_t at) noexcept;
+  bool full() const noexcept { return filled_ == capacity_; }
+  const AlignedBlock& finish() noexcept;
+
+  int rate_Hz_, channels_, block_frames_, step_;
+  std::vector<int> inputs_;
+  std::int64_t capacity_;  ///< frames of a block and of the filter's margins
+  std::int64_t filled_ = 0;
+  std::int64_t next_ = 0;  ///< frame that is expected next
+  bool started_ = false;
+  std::vector<std::vector<double>> raw_, filtered_;
+  std::vector<const double*> rows_;
+  std::vector<double> energies_;
+  AlignedBlock block_;
+};
+
+/// Gain of the filter of AlignedBlocks at a frequency, from 0 to 1; its phase is zero.
+double high_pass_gain(double frequency_Hz, int rate_Hz, int step) noexcept;
+
+/// The step whose gain is largest near 48 kHz, or as close to that as the rate allows.
+int high_pass_step(int rate_Hz) noexcept;
+
+}  // namespace turnpoint::sensing

@@ -1,0 +1,22 @@
+#pragma once
+#include <cstdint>
+#include <span>
+
+namespace turnpoint::sensing {
+
+/// A block of captured samples: frames in order, the channels of a frame side by side, full scale 2^31 (S32).
+/// If the device lost frames, the next block begins later.
+///
+/// Frames are counted like those of the playback: what is played at frame n is captured at frame n + delay.
+/// Whoever numbers the blocks may already have subtracted a whole number of frames; the delay is then the
+/// rest.
+struct CaptureBlock {
+  std::span<const std::int32_t> samples;  ///< frames x channels
+  int channels = 1;
+  std::int64_t first_frame = 0;
+  int rate_Hz = 192000;
+
+  std::int64_t frames() const noexcept { return static_cast<std::int64_t>(samples.size()) / channels; }
+};
+
+}  // namespace turnpoint::sensing

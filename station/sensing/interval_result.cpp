@@ -1,0 +1,52 @@
+#include "station/sensing/interval_result.hpp"
+
+#include <algorithm>
+
+namespace turnpoint::sensing {
+
+using terms::Proof;
+using terms::ProofCause;
+
+namespace {
+
+int severity(Proof verdict) {
+  switch (verdict) {
+    case Proof::ok:
+      return 0;
+    case Proof::flagged:
+      return 1;
+    case Proof::unproven:
+      return 2;
+    case Proof::lost:
+      return 3;
+    case Proof::refused:
+      return 4;
+    case Proof::stopped:
+      return 5;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Proof judged(double value, const Limits& limits) {
+  if (value >= limits.stop) return Proof::stopped;
+  if (value >= limits.refuse) return Proof::refused;
+  return value >= limits.flag ? Proof::flagged : Proof::ok;
+}
+
+Finding concluded(const std::vector<Finding>& findings) {
+  Finding all;
+  for (const Finding& finding : findings)
+    if (severity(finding.verdict) > severity(all.verdict)) all = finding;
+  // The late onset of a burst refuses it, but can make a residual that stops the session. So the cause is
+  // chosen among the findings of both verdicts.
+  const int least = std::min(severity(all.verdict), severity(Proof::refused));
+  for (const Finding& finding : findings)
+    if (all.verdict != Proof::ok && severity(finding.verdict) >= least)
+      all.cause = std::min(all.cause, finding.cause);
+  if (all.verdict == Proof::ok) all.cause = ProofCause::none;
+  return all;
+}
+
+}  // namespace turnpoint::sensing

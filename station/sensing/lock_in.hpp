@@ -1,0 +1,85 @@
+#pragma once
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "station/sensing/aligned_blocks.hpp"
+#include "station/sensing/tone_sums.hpp"
+
+namespace turnpoint::sensing {
+
+/// Turns block sums into points of a lock-in amplifier with a Hann window. Used by LockIn and by the proof of
+/// an interval.
+class HannWindow {
+ public:
+  HannWindow(std::size_t tones, std::size_t inputs, int block_frames, int window_frames);
+
+  /// Takes the sums of the next block (with Parts::windowed). Returns true if there is a point.
+  bool take(const AlignedBlock& block, const ToneSums& sums) noexcept;
+
+  /// The captured frame on which the newest point's window is centred.
+  std::int64_t centre() const noexcept { return centre_; }
+
+  /// Complex amplitudes [input][tone] of the newest point; NaN if its window contains lost frames.
+  std::span<const std::complex<double>> values() const noexcept { return values_; }
+
+ private:
+  std::size_t count_;   ///< inputs x tones
+  std::size_t blocks_;  ///< blocks of a window
+  int block_frames_, window_frames_;
+  std::size_t newest_ = 0;
+  std::size_t taken_ = 0;
+  std::int64_t centre_ = 0;
+  std::int64_t expected_ = 0;                ///< first frame of the next block
+  std::vector<std::complex<double>> kept_;   ///< [block][part][input][tone]
+  std::vector<std::complex<double>> angle_;  ///< e^(i 2 pi k block / window) for block k of the window
+  std::vector<std::complex<double>> values_;
+};
+
+/// How a lock-in amplifier samples: everything in frames.
+struct LockInShape {
+  int block_frames = 96;     ///< distance of its points: 0.5 ms at 192 kHz
+  int window_frames = 1920;  ///< 10 ms at 192 kHz
+
+  /// Points every 0.5 ms with a window of 10 ms.
+  static LockInShape of_rate(int rate_Hz) noexcept;
+};
+
+/// A lock-in amplifier: the complex amplitude of each tone of the playback in each input,
+/// z = 2 LPF{ s i e^(-i phase) }, so that A sin(phase + theta) gives A e^(i theta). The phase is the
+/// playback's own (drive::Partial), also while a tone glides.
+///
+/// The low-pass filter is a Hann window: linear phase, an odd number of taps (1919 at 192 kHz), and its delay
+/// is removed exactly, because a point belongs to the centre of its window. A neighbouring tone at a distance
+/// of 1.05 kHz leaks by 6e-4. The points do not depend on the sizes of the captured blocks.
+/// Allocates only in its constructor.
+class LockIn {
+ public:
+  /// `inputs` are the captured channels; captured frame n carries what was played at frame n - delay.
+  LockIn(int rate_Hz, int channels, std::vector<int> inputs, std::vector<FollowedTone> tones,
+         double delay_frames);
+  LockIn(int rate_Hz, int channels, std::vector<int> inputs, std::vector<FollowedTone> tones,
+         double delay_frames, const LockInShape& shape);
+
+  /// Calls `sink(double playback_frame, std::span<const std::complex<double>> values)` for each new point.
+  /// The values are ordered [input][tone] in units of full scale, and are NaN if the window contains lost
+  /// frames. Throws std::logic_error for a block with another rate or number of channels.
+  template <class Sink>
+  void push(const CaptureBlock& block, Sink&& sink) {
+    blocks_.push(block, [&](const AlignedBlock& aligned) {
+      sums_.compute(aligned, ToneSums::Parts::windowed);
+      if (window_.take(aligned, sums_))
+        sink(static_cast<double>(window_.centre()) - delay_, window_.values());
+    });
+  }
+
+ private:
+  AlignedBlocks blocks_;
+  ToneSums sums_;
+  HannWindow window_;
+  double delay_;
+};
+
+}  // namespace turnpoint::sensing

@@ -1,0 +1,87 @@
+#include "station/sensing/planned_stretches.hpp"
+
+#include <algorithm>
+
+#include "station/drive/oscillator.hpp"
+#include "station/drive/sine.hpp"
+
+namespace turnpoint::sensing {
+
+namespace {
+
+// A tone of the burst as it runs on, counted from the frame of the last change.
+struct Running {
+  drive::Partial partial;
+  int channel = 0;
+};
+
+Running running(const drive::Tone& tone, int rate_Hz) {
+  Running made;
+  made.partial.phase = drive::phase_of_angle(tone.phase_rad);
+  made.partial.increment = drive::phase_increment(tone.frequency_Hz, rate_Hz);
+  made.partial.amplitude = tone.amplitude;
+  made.channel = tone.channel;
+  return made;
+}
+
+// What the synthesiser does at a change: frequencies glide linearly without a jump of phase.
+void change(std::vector<Running>& tones, const drive::Change& change, std::int64_t origin, int rate_Hz) {
+  const auto since = static_cast<std::uint64_t>(change.at_frame - origin);
+  const std::int64_t frames = std::max<std::int64_t>(1, change.frames);
+  for (int i = static_cast<int>(tones.size()); i < change.to.count; ++i) {
+    Running added = running(change.to.tones[static_cast<std::size_t>(i)], rate_Hz);
+    added.partial.phase += added.partial.increment * static_cast<std::uint64_t>(origin);
+    tones.push_back(added);
+  }
+  for (std::size_t i = 0; i < tones.size(); ++i) {
+    drive::Partial partial = drive::advanced(tones[i].partial, since);
+    const bool stays = static_cast<int>(i) < change.to.count;
+    const std::uint64_t target =
+        stays ? drive::phase_increment(change.to.tones[i].frequency_Hz, rate_Hz) : partial.increment;
+    partial.curvature =
+        static_cast<std::uint64_t>(static_cast<std::int64_t>(target - partial.increment) / frames);
+    partial = drive::advanced(partial, static_cast<std::uint64_t>(frames));
+    partial.increment = target;
+    partial.curvature = 0;
+    partial.amplitude = stays ? change.to.tones[i].amplitude : 0;
+    tones[i].partial = partial;
+  }
+}
+
+Stretch stretch_of(const std::vector<Running>& tones, std::int64_t origin, std::int64_t first,
+                   std::int64_t end, int rate_Hz) {
+  Stretch stretch{origin, first, end, {}};
+  for (std::size_t i = 0; i < tones.size(); ++i) {
+    const auto& [partial, channel] = tones[i];
+    if (partial.amplitude == 0) continue;
+    stretch.tones.push_back({static_cast<int>(i), channel,
+                             static_cast<double>(partial.increment) * 0x1p-64 * rate_Hz, partial.amplitude,
+                             partial.phase, partial.increment});
+  }
+  return stretch;
+}
+
+}  // namespace
+
+std::vector<Stretch> planned_stretches(const drive::Burst& burst, int rate_Hz) {
+  std::vector<Running> tones;
+  for (int i = 0; i < burst.tones.count; ++i)
+    tones.push_back(running(burst.tones.tones[static_cast<std::size_t>(i)], rate_Hz));
+  const std::int64_t start = burst.start_frame, risen = burst.ramp.frames,
+                     falls = burst.length_frames - burst.ramp.frames;
+  std::vector<Stretch> stretches;
+  std::int64_t origin = 0;
+  for (int c = 0; c <= burst.change_count; ++c) {
+    const bool last = c == burst.change_count;
+    const drive::Change* next = last ? nullptr : &burst.changes[static_cast<std::size_t>(c)];
+    const std::int64_t first = std::max(origin, risen), end = last ? falls : std::min(next->at_frame, falls);
+    if (first < end)
+      stretches.push_back(stretch_of(tones, start + origin, start + first, start + end, rate_Hz));
+    if (last) break;
+    change(tones, *next, origin, rate_Hz);
+    origin = next->at_frame + std::max<std::int64_t>(1, next->frames);
+  }
+  return stretches;
+}
+
+}  // namespace turnpoint::sensing

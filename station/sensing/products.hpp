@@ -1,0 +1,42 @@
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+namespace turnpoint::sensing {
+
+/// What a nonlinear plate, clamp or amplifier makes of tones: subharmonics (a part that rattles answers at
+/// f/2 or f/3), harmonics and combinations to third order.
+enum class ProductKind {
+  half,             ///< f_i / 2
+  third,            ///< f_i / 3
+  second_harmonic,  ///< 2 f_i
+  third_harmonic,   ///< 3 f_i
+  sum,              ///< f_i + f_j
+  difference,       ///< |f_i - f_j|
+  two_minus_one,    ///< |2 f_i - f_j|
+  two_plus_one,     ///< 2 f_i + f_j
+};
+
+struct Product {
+  ProductKind kind = ProductKind::half;
+  int i = 0, j = 0;         ///< places of the tones in the list of frequencies, from 0
+  double frequency_Hz = 0;  ///< where it is found, which may be the alias below half of the rate
+  double level_dB = 0;      ///< rms relative to that of all planned tones at the same pick-up
+};
+
+/// "2 f1 - f3", with tones counted from 1.
+std::string name(const Product& product);
+
+/// True for those that a symmetric limiter makes: 3 f, 2 f_i - f_j, 2 f_i + f_j.
+bool is_odd(ProductKind kind);
+
+/// The products of these tones from `low_Hz` to 0.49 of the rate that are at least `apart_Hz` away from every
+/// tone. Of two products less than `apart_Hz` apart, only the first is kept.
+std::vector<Product> products_of(std::span<const double> frequencies_Hz, int rate_Hz, double low_Hz,
+                                 double apart_Hz);
+
+/// Amplitude of a sinusoid in samples, measured with a Hann window over all of them.
+double amplitude_at(std::span<const float> samples, double frequency_Hz, int rate_Hz);
+
+}  // namespace turnpoint::sensing
