@@ -15,8 +15,6 @@ using Complex = std::complex<double>;
 
 namespace {
 
-constexpr double kSpacing_Hz = 200;
-
 double quadrature_power(const std::vector<Complex>& v) {
   double sum = 0;
   for (const Complex& z : v) sum += z.imag() * z.imag();
@@ -32,7 +30,8 @@ std::vector<double> resonances_of(const SurfaceResponse& response) {
   for (std::size_t k = 1; k + 1 < v.size(); ++k) {
     const double a = v[k - 1].imag(), b = v[k].imag(), c = v[k + 1].imag();
     if (b < a && b <= c)
-      found.push_back(response.frequency_Hz[k] + 0.5 * (a - c) / (a - 2 * b + c) * kSpacing_Hz);
+      found.push_back(response.frequency_Hz[k] + 0.5 * (a - c) / (a - 2 * b + c) *
+                                                     (response.frequency_Hz[1] - response.frequency_Hz[0]));
   }
   // Those outside of the band contribute to its ends.
   if (found.size() > 1) {
@@ -84,7 +83,9 @@ SurfaceResponse surface_response(const physics::Surface& surface, std::span<cons
                                  double high_Hz) {
   SurfaceResponse response;
   response.at.resize(x_m.size());
-  for (double f = low_Hz; f <= high_Hz; f += kSpacing_Hz) {
+  // less than half of the width of a resonance: 200 Hz at Q = 60
+  const double spacing_Hz = std::clamp(12000 / surface.quality_factor, 20.0, 400.0);
+  for (double f = low_Hz; f <= high_Hz; f += spacing_Hz) {
     const physics::Tone tone{f, 1, 0};
     const auto field =
         physics::evaluate_tones(surface, {&tone, 1}, x_m, physics::Model::mode, physics::Normalise::none);
@@ -110,7 +111,7 @@ PickupFilter::PickupFilter(const SurfaceResponse& response, double rate_Hz, doub
   Eigen::MatrixXd weights;
   fit_error_ = 1e300;
   // Loss depends on the theory of the surface (1/2Q for a membrane, up to 1/Q for a plate): try.
-  for (double loss = 0.001; loss < 0.2; loss *= 1.05) {
+  for (double loss = 0.001; loss < 0.2; loss *= 1.1) {
     const auto tried = poles_of(resonances, loss, scale, rate_Hz);
     const auto basis = basis_of(tried, kTaps, frequency_Hz, rate_Hz);
     const Eigen::MatrixXd solution = fitted(basis, wanted);
