@@ -6,12 +6,15 @@
 #include <variant>
 #include <vector>
 
+#include "station/terms/proof.hpp"
 #include "station/terms/trial.hpp"
 
 namespace turnpoint::records {
 
 using terms::name;
 using terms::Outcome;
+using terms::Proof;
+using terms::ProofCause;
 using terms::RunMode;
 using terms::TrialType;
 
@@ -73,6 +76,9 @@ struct ToneRow {
   double error_bound_mm = 0, uncertainty_mm = 0;
   std::string reason;
   std::int64_t onset_frame = 0, length_frames = 0;
+  /// amplitude at the pick-up relative to the plan, and its phase relative to the calibration; empty if the
+  /// tone was not measured
+  std::optional<double> measured_dB, measured_phase_deg;
 };
 
 /// The result of one trial. It is committed as a whole before the next trial begins.
@@ -100,6 +106,12 @@ struct TrialRow {
   /// slope and residual of the regression of time over frames
   std::optional<double> clock_slope_ns_per_frame, clock_residual_ns;
   std::uint64_t state_hash = 0;  ///< hash of the state of the block's procedures after this trial
+  /// What the pick-up says about the stimuli of the trial; of several intervals, the worst counts.
+  Proof proof = Proof::unproven;
+  ProofCause proof_cause = ProofCause::none;
+  std::optional<double> drive_ratio_dB;     ///< measured over planned amplitude; furthest from 0 dB
+  std::optional<double> drive_residual_dB;  ///< what was not planned, relative to the plan
+  std::optional<double> onset_error_us;     ///< measured minus planned onset
   std::vector<ToneRow> tones;
 };
 

@@ -13,7 +13,7 @@ namespace turnpoint::store {
 /// Number of the rule that turns rows into the bytes to be hashed. The bytes of an encoding never change. A
 /// later release that adds columns or tables adds an encoding; older links are still checked with the
 /// encoding that they were made with.
-constexpr int kEncoding = 1;
+constexpr int kEncoding = 2;
 
 /// The last row of a session in each table, given by the row's key. If a table has no rows, the value is
 /// below the first key.

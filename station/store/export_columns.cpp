@@ -191,7 +191,9 @@ ExportColumns trial_columns(const std::vector<std::string>& factors) {
        "movement_time", "response_zero", "response_time_quality", "response_offset_s", "deadline", "xruns",
        "extra_touches", "threshold_est", "threshold_sd"});
   add(columns, session, {"seed", "station_id", "calibration_id", "software_version"});
-  add(columns, trial, {"response_zero_onset", "trial_duration"});
+  add(columns, trial,
+      {"response_zero_onset", "trial_duration", "proof", "proof_cause", "drive_ratio_db", "drive_residual_db",
+       "onset_error_us"});
   columns.push_back(columns_version());
   add_factors(columns, at, factors);
   return columns;
@@ -204,7 +206,7 @@ ExportColumns interval_columns() {
   add(columns, tone,
       {"interval_index", "scene_index", "tone_index", "scene", "boundary_mm", "frequency_hz", "amplitude_um",
        "displacement_um", "friction", "rove_db", "model", "error_bound_mm", "uncertainty_mm", "reason",
-       "onset_frame", "length_frames"});
+       "onset_frame", "length_frames", "measured_db", "measured_phase_deg"});
   columns.push_back(columns_version());
   return columns;
 }

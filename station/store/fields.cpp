@@ -10,6 +10,8 @@ void parse(const std::string& word, RunMode& mode) { mode = run_mode_named(word)
 void parse(const std::string& word, SessionStatus& status) { status = session_status_named(word); }
 void parse(const std::string& word, Outcome& outcome) { outcome = trial_outcome_named(word); }
 void parse(const std::string& word, TrialType& type) { type = trial_type_named(word); }
+void parse(const std::string& word, Proof& proof) { proof = proof_named(word); }
+void parse(const std::string& word, ProofCause& cause) { cause = proof_cause_named(word); }
 
 template <class Value>
 struct Optional : std::false_type {};
@@ -126,6 +128,13 @@ Field<typename MemberOf<decltype(First)>::Record> field(const About& about) {
           [](Statement& s, int i, const Record& r) { bind(s, i, member<First, Rest...>(r)); },
           [](const Statement& s, int i, Record& r) { read(s, i, member<First, Rest...>(r)); },
           [](const Record& r) { return cell_of(member<First, Rest...>(r)); }};
+}
+
+/// A column that the checksum covers only from this encoding on.
+template <class Record>
+Field<Record> since(int encoding, Field<Record> field) {
+  field.since = encoding;
+  return field;
 }
 
 /// Describes the database column that stores one data member of SessionRecord::start.
@@ -251,7 +260,23 @@ const Table<TrialRow>& trial_table() {
            {"threshold_sd", "threshold_sd", "Standard deviation of threshold_est", "see level_unit"}),
        field<&T::clock_slope_ns_per_frame>({"clock_slope_ns_per_frame"}),
        field<&T::clock_residual_ns>({"clock_residual_ns"}),
-       field<&T::state_hash>({"state_hash"})}};
+       field<&T::state_hash>({"state_hash"}),
+       since(2, field<&T::proof>({"proof", "proof",
+                                  "What the pick-up on the surface says about the trial's stimuli", "",
+                                  "unproven | ok | flagged | refused | stopped | lost"})),
+       since(2, field<&T::proof_cause>({"proof_cause", "proof_cause",
+                                        "Why the stimuli are not proven to be as planned", "",
+                                        "gap | clipped | dead | frequency | half | late | phase | level | "
+                                        "residual | noisy | n/a"})),
+       since(2,
+             field<&T::drive_ratio_dB>(
+                 {"drive_ratio_dB", "drive_ratio_db",
+                  "Measured over planned amplitude of the vibration, of the tone that differs most", "dB"})),
+       since(2, field<&T::drive_residual_dB>({"drive_residual_dB", "drive_residual_db",
+                                              "Vibration that was not planned, relative to the plan", "dB"})),
+       since(2, field<&T::onset_error_us>(
+                    {"onset_error_us", "onset_error_us",
+                     "Measured minus planned onset of the stimulus; of several, the largest", "us"}))}};
   return table;
 }
 
@@ -289,7 +314,14 @@ const Table<ToneRow>& tone_table() {
                                "Output frame at which the tone starts, counted from the start of the segment",
                                "frames"}),
        field<&T::length_frames>(
-           {"length_frames", "length_frames", "Length of the tone, including both ramps", "frames"})}};
+           {"length_frames", "length_frames", "Length of the tone, including both ramps", "frames"}),
+       since(2,
+             field<&T::measured_dB>(
+                 {"measured_dB", "measured_db",
+                  "Amplitude of the tone at the pick-up, relative to the plan; n/a if not measured", "dB"})),
+       since(2, field<&T::measured_phase_deg>(
+                    {"measured_phase_deg", "measured_phase_deg",
+                     "Phase of the tone at the pick-up, relative to the calibration", "deg"}))}};
   return table;
 }
 

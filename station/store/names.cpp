@@ -26,6 +26,8 @@ SessionStatus session_status_named(const std::string& word) {
 }
 
 Outcome trial_outcome_named(const std::string& word) { return named(word, terms::outcomes); }
+Proof proof_named(const std::string& word) { return named(word, terms::proofs); }
+ProofCause proof_cause_named(const std::string& word) { return named(word, terms::proof_causes); }
 
 TrialType trial_type_named(const std::string& word) { return named(word, terms::trial_types); }
 

@@ -13,6 +13,8 @@ using namespace records;
 RunMode run_mode_named(const std::string& word);
 SessionStatus session_status_named(const std::string& word);
 Outcome trial_outcome_named(const std::string& word);
+Proof proof_named(const std::string& word);
+ProofCause proof_cause_named(const std::string& word);
 TrialType trial_type_named(const std::string& word);
 
 }  // namespace turnpoint::store

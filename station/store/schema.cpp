@@ -281,6 +281,18 @@ CREATE TABLE same_person (
 ALTER TABLE tombstone ADD COLUMN station_id TEXT NOT NULL DEFAULT '';
 )sql";
 
+// Version 5. What a pick-up on the surface measured during a trial. Earlier trials are unproven.
+const char* const kStep5 = R"sql(
+ALTER TABLE trial ADD COLUMN proof TEXT NOT NULL DEFAULT 'unproven'
+  CHECK (proof IN ('unproven', 'ok', 'flagged', 'refused', 'stopped', 'lost'));
+ALTER TABLE trial ADD COLUMN proof_cause TEXT NOT NULL DEFAULT '';
+ALTER TABLE trial ADD COLUMN drive_ratio_dB REAL;
+ALTER TABLE trial ADD COLUMN drive_residual_dB REAL;
+ALTER TABLE trial ADD COLUMN onset_error_us REAL;
+ALTER TABLE tone ADD COLUMN measured_dB REAL;
+ALTER TABLE tone ADD COLUMN measured_phase_deg REAL;
+)sql";
+
 [[noreturn]] void refuse(ErrorKind kind, const Database& database, const std::string& what) {
   throw StoreError(kind, fmt::format("database {}: {}", database.path(), what));
 }
@@ -294,7 +306,7 @@ void apply(Database& database, int from, int to) {
 }  // namespace
 
 const std::vector<std::string>& schema_steps() {
-  static const std::vector<std::string> steps = {kStep1, kStep2, kStep3, kStep4};
+  static const std::vector<std::string> steps = {kStep1, kStep2, kStep3, kStep4, kStep5};
   return steps;
 }
 

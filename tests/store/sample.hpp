@@ -61,6 +61,8 @@ inline ToneRow tone(int interval, int index) {
   t.reason = "cheapest inside the tolerance";
   t.onset_frame = 192000 + interval * 96000;
   t.length_frames = 96000;
+  t.measured_dB = -0.5;
+  t.measured_phase_deg = 3.25;
   return t;
 }
 
@@ -88,6 +90,11 @@ inline TrialRow answered(int index, int tones = 2) {
   t.threshold_sd = 1.5;
   t.clock_slope_ns_per_frame = 5208.333;
   t.clock_residual_ns = 42;
+  t.proof = Proof::flagged;
+  t.proof_cause = ProofCause::level;
+  t.drive_ratio_dB = -0.75;
+  t.drive_residual_dB = -55;
+  t.onset_error_us = 12.5;
   t.state_hash = 0xfedcba9876543210ULL + static_cast<unsigned>(index);
   for (int i = 0; i < 2; ++i)
     for (int k = 0; k < tones; ++k) t.tones.push_back(tone(i, k));

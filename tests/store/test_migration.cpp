@@ -2,6 +2,7 @@
 #include "station/store/export.hpp"
 #include "station/store/read.hpp"
 #include "station/store/schema.hpp"
+#include "station/store/verify.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
@@ -10,10 +11,10 @@ using namespace turnpoint::store;
 namespace {
 
 /// Makes a database of an older schema version, from a dump of a database that the older release wrote.
-void make_old(const std::string& path, int version) {
+void make_old(const std::string& path, int version, const std::string& dump = "v") {
   Database database(path, Database::Access::create);
   database.execute("PRAGMA journal_mode = WAL");
-  database.execute(sample::bytes_of(std::string(TURNPOINT_SOURCE_DIR) + "/tests/store/schemas/v" +
+  database.execute(sample::bytes_of(std::string(TURNPOINT_SOURCE_DIR) + "/tests/store/schemas/" + dump +
                                     std::to_string(version) + ".sql"));
   database.execute("PRAGMA application_id = " + std::to_string(kApplicationId));
   database.execute("PRAGMA user_version = " + std::to_string(version));
@@ -71,6 +72,20 @@ TEST_CASE("migrating an older database keeps its rows, and a copy of the old fil
   REQUIRE(std::filesystem::exists(kept));
   CHECK(sample::raw(kept).integer("PRAGMA user_version") == version);
   CHECK(sample::raw(kept).integer("SELECT count(*) FROM trial") == 7);
+}
+
+TEST_CASE("checksums of an earlier encoding still hold after a migration, and find a change", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "old.sqlite";
+  make_old(db, 4, "linked_v");
+  CHECK(verify(db).good());
+  sample::session(db, 1, sample::start("P09"));  // migrates the database
+  auto database = sample::raw(db);
+  CHECK(database.integer("SELECT count(DISTINCT encoding) FROM link") == 2);
+  CHECK(verify(db).good());
+  database.execute("DROP TRIGGER trial_is_never_changed");
+  database.execute("UPDATE trial SET level = 9 WHERE trial_id = 3");
+  CHECK_FALSE(verify(db).good());
 }
 
 TEST_CASE("an older database can be read and exported without changing it", "[store]") {
