@@ -27,6 +27,17 @@ Interval percentile_interval(std::vector<double> replicates, double confidence) 
   return {sorted_quantile(replicates, tail), sorted_quantile(replicates, 1 - tail), confidence};
 }
 
+double student_t_975(int degrees) {
+  if (degrees < 1) throw std::invalid_argument("student_t_975: needs one degree of freedom or more");
+  if (degrees == 1) return 12.7062;
+  if (degrees == 2) return 4.30265;
+  // expansion around the normal quantile (Abramowitz & Stegun 26.7.5)
+  const double z = 1.959964, n = degrees, q = z * z;
+  const double first = z * (q + 1) / 4, second = z * (5 * q * q + 16 * q + 3) / 96;
+  const double third = z * (3 * q * q * q + 19 * q * q + 17 * q - 15) / 384;
+  return z + first / n + second / (n * n) + third / (n * n * n);
+}
+
 double mean(const std::vector<double>& values) {
   if (values.empty()) throw std::invalid_argument("mean: needs at least one value");
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());

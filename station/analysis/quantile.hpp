@@ -16,6 +16,10 @@ double quantile(std::vector<double> values, double p);
 /// ends.
 Interval percentile_interval(std::vector<double> replicates, double confidence = 0.95);
 
+/// The 97.5 % quantile of Student's t distribution with 1 degree of freedom or more, to 0.8 %. An estimate
+/// plus and minus this many standard errors is a 95 % interval.
+double student_t_975(int degrees);
+
 double mean(const std::vector<double>& values);      ///< needs at least one value
 double variance(const std::vector<double>& values);  ///< divisor n - 1; needs at least two values
 

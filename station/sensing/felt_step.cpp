@@ -1,0 +1,178 @@
+#include "station/sensing/felt_step.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "station/analysis/quantile.hpp"
+
+namespace turnpoint::sensing {
+namespace {
+
+constexpr std::size_t fewest_strokes = 3, fewest_bins = 6;
+// The fit looks for the largest step that noise contains, so a step must exceed its 95 % interval by this
+// factor.
+constexpr double certain_rise = 2;
+constexpr double narrowest_mm = 0.3, widest_mm = 10;
+
+struct Bin {
+  double position_mm, friction;
+};
+
+/// friction = below + rise / (1 + exp(-(x - place) / width))
+struct Step {
+  double place_mm = 0, width_mm = 1, below = 0, rise = 0;
+
+  double share(double x) const { return 1 / (1 + std::exp(-(x - place_mm) / width_mm)); }
+  double miss(const Bin& bin) const { return bin.friction - below - rise * share(bin.position_mm); }
+};
+
+double square_sum(const Step& step, const std::vector<Bin>& bins) {
+  double sum = 0;
+  for (const Bin& bin : bins) sum += step.miss(bin) * step.miss(bin);
+  return sum;
+}
+
+/// The best levels for a given place and width.
+Step with_levels(Step step, const std::vector<Bin>& bins) {
+  double s = 0, ss = 0, y = 0, sy = 0;
+  const auto n = static_cast<double>(bins.size());
+  for (const Bin& bin : bins) {
+    const double share = step.share(bin.position_mm);
+    s += share, ss += share * share, y += bin.friction, sy += share * bin.friction;
+  }
+  const double spread = ss - s * s / n;
+  step.rise = spread > 1e-9 ? (sy - s * y / n) / spread : 0;
+  step.below = (y - step.rise * s) / n;
+  return step;
+}
+
+Step search(const std::vector<Bin>& bins) {
+  Step best;
+  double least = std::numeric_limits<double>::infinity();
+  for (const double width_mm : {0.5, 1.0, 2.0, 4.0})
+    for (const Bin& bin : bins) {
+      const Step step = with_levels({bin.position_mm, width_mm}, bins);
+      const double sum = square_sum(step, bins);
+      if (sum < least) least = sum, best = step;
+    }
+  return best;
+}
+
+/// Size of a residual beyond which its influence no longer grows.
+double scale_of(const Step& step, const std::vector<Bin>& bins) {
+  std::vector<double> size;
+  for (const Bin& bin : bins) size.push_back(std::abs(step.miss(bin)));
+  return std::max(1.4826 * analysis::quantile(size, 0.5), 1e-9);
+}
+
+double soft_l1(const Step& step, const std::vector<Bin>& bins, double scale) {
+  double sum = 0;
+  for (const Bin& bin : bins) sum += std::sqrt(1 + std::pow(step.miss(bin) / scale, 2)) - 1;
+  return sum;
+}
+
+/// Minimises the soft-L1 loss by Gauss-Newton steps with reweighting and Levenberg damping.
+Step refine(Step step, const std::vector<Bin>& bins, double scale) {
+  double loss = soft_l1(step, bins, scale), damping = 1e-3;
+  for (int i = 0; i < 60 && damping < 1e8; ++i) {
+    Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
+    for (const Bin& bin : bins) {
+      const double share = step.share(bin.position_mm), miss = step.miss(bin);
+      const double slope = step.rise * share * (1 - share) / step.width_mm;
+      // by place, logarithm of width, lower level, rise
+      const Eigen::Vector4d by(-slope, -slope * (bin.position_mm - step.place_mm), 1, share);
+      const double weight = 1 / std::sqrt(1 + std::pow(miss / scale, 2));
+      normal += weight * by * by.transpose();
+      right += weight * miss * by;
+    }
+    normal.diagonal() *= 1 + damping;
+    normal.diagonal().array() += 1e-12;
+    const Eigen::Vector4d change = normal.ldlt().solve(right);
+    Step next = step;
+    next.place_mm += std::clamp(change(0), -5.0, 5.0);
+    next.width_mm =
+        std::clamp(next.width_mm * std::exp(std::clamp(change(1), -1.0, 1.0)), narrowest_mm, widest_mm);
+    next.below += change(2);
+    next.rise += change(3);
+    const double next_loss = soft_l1(next, bins, scale);
+    if (!(next_loss < loss)) {
+      damping *= 10;
+      continue;
+    }
+    const bool done = loss - next_loss < 1e-10 * loss;
+    step = next, loss = next_loss, damping /= 10;
+    if (done) break;
+  }
+  return step;
+}
+
+std::vector<Bin> usable(const FrictionProfile& profile, int direction) {
+  const auto mean = profile.mean(direction).friction;
+  std::vector<Bin> bins;
+  for (std::size_t i = 0; i < mean.size(); ++i)
+    if (!std::isnan(mean[i])) bins.push_back({profile.bins.centre_mm(i), mean[i]});
+  return bins;
+}
+
+/// The step of one direction, and the squared deviations of its jackknife pseudo-values.
+struct OneWay {
+  Step step;
+  double place_squares = 0, rise_squares = 0;
+  int strokes = 0;
+};
+
+std::optional<OneWay> one_way(const FrictionProfile& profile, int direction) {
+  const auto bins = usable(profile, direction);
+  if (bins.size() < fewest_bins) return std::nullopt;
+  const Step rough = search(bins);
+  const double scale = scale_of(rough, bins);
+  OneWay result{refine(rough, bins, scale)};
+  if (!(result.step.place_mm > bins.front().position_mm && result.step.place_mm < bins.back().position_mm))
+    return std::nullopt;
+  std::vector<double> places, rises;
+  for (std::size_t i = 0; i < profile.strokes.size(); ++i) {
+    if (profile.strokes[i].direction != direction) continue;
+    ++result.strokes;
+    FrictionProfile others{profile.bins, profile.strokes};
+    others.strokes.erase(others.strokes.begin() + static_cast<std::ptrdiff_t>(i));
+    const auto rest = usable(others, direction);
+    if (rest.size() < fewest_bins) continue;
+    const Step without = refine(result.step, rest, scale);
+    places.push_back(without.place_mm);
+    rises.push_back(without.rise);
+  }
+  if (places.size() > 1) {
+    const double factor = std::pow(static_cast<double>(places.size()) - 1, 3);
+    result.place_squares = factor * analysis::variance(places);
+    result.rise_squares = factor * analysis::variance(rises);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<FeltStep> felt_step(const FrictionProfile& profile) {
+  if (profile.strokes.size() < fewest_strokes) return std::nullopt;
+  const auto up = one_way(profile, 1), down = one_way(profile, -1);
+  if (!up || !down) return std::nullopt;
+  const int degrees = up->strokes + down->strokes - 2;
+  const auto se = [&](double squares) {
+    return std::sqrt(squares / degrees * (1.0 / up->strokes + 1.0 / down->strokes)) / 2;
+  };
+  const double t = analysis::student_t_975(degrees), rise = (up->step.rise + down->step.rise) / 2;
+  if (!(std::abs(rise) > certain_rise * t * se(up->rise_squares + down->rise_squares))) return std::nullopt;
+  FeltStep felt;
+  felt.boundary_mm = (up->step.place_mm + down->step.place_mm) / 2;
+  felt.lag_mm = (up->step.place_mm - down->step.place_mm) / 2;
+  felt.se_mm = se(up->place_squares + down->place_squares);
+  felt.half_interval_mm = t * felt.se_mm;
+  felt.friction_below = (up->step.below + down->step.below) / 2;
+  felt.friction_above = felt.friction_below + rise;
+  return felt;
+}
+
+}  // namespace turnpoint::sensing

@@ -1,0 +1,46 @@
+#include "station/sensing/trial_summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "station/analysis/quantile.hpp"
+
+namespace turnpoint::sensing {
+
+TrialSummary summarise(std::span<const FingerPoint> track, Band band, std::span<const Stroke> strokes,
+                       const std::optional<FeltStep>& step, const MovementWindow& window) {
+  TrialSummary summary;
+  const auto contacts = std::ranges::count_if(track, [](const FingerPoint& point) { return point.contact; });
+  summary.contact_s = static_cast<double>(contacts) / points_per_second(band);
+  summary.strokes = static_cast<int>(strokes.size());
+
+  std::vector<double> normal_N, speed_mm_s;
+  for (const Stroke& stroke : strokes)
+    for (const auto& point : track.subspan(stroke.first, stroke.end - stroke.first)) {
+      normal_N.push_back(point.normal_N);
+      speed_mm_s.push_back(std::abs(point.speed_mm_s));
+    }
+  if (normal_N.size() > 1) {
+    const auto share = [](const std::vector<double>& values, double least, double most) {
+      const auto inside =
+          std::ranges::count_if(values, [&](double value) { return value >= least && value <= most; });
+      return static_cast<double>(inside) / static_cast<double>(values.size());
+    };
+    summary.normal_N = analysis::mean(normal_N);
+    summary.normal_sd_N = std::sqrt(analysis::variance(normal_N));
+    summary.normal_in_window = share(normal_N, window.least_normal_N, window.most_normal_N);
+    summary.speed_mm_s = analysis::mean(speed_mm_s);
+    summary.speed_in_window = share(speed_mm_s, window.least_speed_mm_s, window.most_speed_mm_s);
+  }
+  if (step) {
+    summary.mu_low = std::min(step->friction_below, step->friction_above);
+    summary.mu_high = std::max(step->friction_below, step->friction_above);
+    summary.boundary_felt_mm = step->boundary_mm;
+    summary.boundary_se_mm = step->se_mm;
+    summary.lag_mm = step->lag_mm;
+  }
+  return summary;
+}
+
+}  // namespace turnpoint::sensing
