@@ -28,7 +28,8 @@ const BridgeOptions& checked(const BridgeOptions& options) {
   if (!(options.carrier_Hz > 2 * stop_Hz(options.band) && options.carrier_Hz < 0.45 * options.rate_Hz))
     fail(fmt::format("carrier {} Hz is outside {} to {} Hz", options.carrier_Hz, 2 * stop_Hz(options.band),
                      0.45 * options.rate_Hz));
-  if (options.reference >= options.channels || std::ranges::max(options.bridges) >= options.channels)
+  const auto [first, last] = std::ranges::minmax(options.bridges);
+  if (std::min(options.reference, first) < 0 || std::max(options.reference, last) >= options.channels)
     fail(fmt::format("a channel is not among the {} captured ones", options.channels));
   if (!(options.reference_amplitude > 0) || !(std::ranges::min(options.full_scale) > 0))
     fail("reference amplitude and full scale must be positive");
@@ -88,17 +89,15 @@ BridgeDemodulator::BridgeDemodulator(const BridgeOptions& options)
   }
 }
 
-void BridgeDemodulator::start_or_check(std::int64_t frame) {
-  if (!started_) next_frame_ = frame;
-  started_ = true;
-  if (frame < next_frame_)
-    throw std::logic_error(
-        fmt::format("captured frames go back from playback frame {} to {}", next_frame_, frame));
+void BridgeDemodulator::check(const CaptureBlock& block) const {
+  if (block.rate_Hz != options_.rate_Hz || block.channels != options_.channels)
+    throw std::logic_error(fmt::format("captured block of {} channels at {} Hz, expected {} at {} Hz",
+                                       block.channels, block.rate_Hz, options_.channels, options_.rate_Hz));
 }
 
-bool BridgeDemodulator::add(std::span<const std::int32_t> frame) noexcept {
+bool BridgeDemodulator::add(const std::int32_t* frame) noexcept {
   Decimator::Lanes lanes;
-  if (frame.empty()) {
+  if (frame == nullptr) {
     lanes.fill(std::numeric_limits<double>::quiet_NaN());
   } else {
     // z = 2 s e^(-i phi); full scale is 1

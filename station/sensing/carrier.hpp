@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "station/sensing/capture_block.hpp"
 #include "station/sensing/decimator.hpp"
 
 namespace turnpoint::sensing {
@@ -42,9 +43,9 @@ struct BridgeOptions {
   int rate_Hz = 192000;  ///< a multiple of 8000
   double carrier_Hz = carriers_Hz.front();
   Band band = Band::force;
-  std::size_t channels = 4;   ///< of an interleaved frame
-  std::size_t reference = 0;  ///< the channel that captures the excitation itself
-  std::array<std::size_t, bridge_count> bridges{1, 2, 3};  ///< channels of a, b and the lateral cell
+  int channels = 4;                                ///< of an interleaved frame
+  int reference = 0;                               ///< the channel that captures the excitation itself
+  std::array<int, bridge_count> bridges{1, 2, 3};  ///< channels of a, b and the lateral cell
   double reference_amplitude = 0.5;  ///< amplitude of the reference at calibration; full scale is 1
   /// Ratio of bridge to reference at the cell's rated load.
   std::array<double, bridge_count> full_scale{0.4, 0.4, 0.4};
@@ -77,35 +78,36 @@ double bridge_rotation_rad(const BridgePoint& without, const BridgePoint& with, 
 
 /// Demodulates the bridges at the phase of playback, divides by the reference, and reduces the result to the
 /// grid of points. Gain and drift of converters, buffer and excitation cancel in the division. The result
-/// does not depend on how the frames are divided into blocks. Point k comes once frames 16 ms (wide: 3.6 ms)
+/// does not depend on how the frames are divided into blocks. Point k comes once frames 17 ms (wide: 4 ms)
 /// beyond it have arrived. Not thread-safe; allocates only in the constructor, which throws
 /// terms::UsageError for impossible options.
 class BridgeDemodulator {
  public:
   explicit BridgeDemodulator(const BridgeOptions& options);
 
-  /// Takes interleaved samples (S32, full scale 2^31). `first_frame` is the playback frame that sounded when
-  /// the first of them was captured; it must not be before the end of the previous block (std::logic_error).
-  /// Frames that were left out count as missing. Calls `take` for each point that is complete.
+  /// Takes captured frames. Their numbers must be those of the frames that were playing, that is, with the
+  /// delay of the loop subtracted to the nearest frame. Frames that were left out count as missing; frames
+  /// that were already received are ignored. Throws std::logic_error for a block with another rate or number
+  /// of channels. Calls `take` for each point that is complete.
   template <typename Take>
-  void push(std::int64_t first_frame, std::span<const std::int32_t> samples, Take&& take) {
-    skip_to(first_frame, take);
-    for (; samples.size() >= options_.channels; samples = samples.subspan(options_.channels))
-      if (add(samples.first(options_.channels))) take(point_);
+  void push(const CaptureBlock& block, Take&& take) {
+    check(block);
+    if (!started_) next_frame_ = block.first_frame;
+    started_ = true;
+    while (next_frame_ < block.first_frame)
+      if (add(nullptr)) take(point_);
+    const std::int64_t end = block.first_frame + block.frames();
+    while (next_frame_ < end)
+      if (add(block.samples.data() + (next_frame_ - block.first_frame) * block.channels)) take(point_);
   }
 
   /// Playback frames from one point to the next.
   int frames_per_point() const { return options_.rate_Hz / points_per_second(options_.band); }
 
  private:
-  template <typename Take>
-  void skip_to(std::int64_t frame, Take& take) {
-    start_or_check(frame);
-    while (next_frame_ < frame)
-      if (add({})) take(point_);
-  }
-  void start_or_check(std::int64_t frame);
-  bool add(std::span<const std::int32_t> frame) noexcept;
+  void check(const CaptureBlock& block) const;
+  /// Takes the next frame, or none if it is missing. True if a point is complete.
+  bool add(const std::int32_t* frame) noexcept;
   void finish_point() noexcept;
 
   BridgeOptions options_;

@@ -72,7 +72,7 @@ inline std::vector<BridgePoint> demodulated(const BridgeOptions& options, std::i
                                             const std::vector<std::int32_t>& samples) {
   BridgeDemodulator demodulator(options);
   std::vector<BridgePoint> points;
-  demodulator.push(first, samples, [&](const BridgePoint& point) { points.push_back(point); });
+  demodulator.push({samples, 4, first}, [&](const BridgePoint& point) { points.push_back(point); });
   return points;
 }
 

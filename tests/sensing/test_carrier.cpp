@@ -159,7 +159,7 @@ TEST_CASE("the size of the blocks does not matter", "[sensing]") {
   std::size_t at = 0;
   for (std::size_t size = 1; at < samples.size(); size = size * 7 % 1021) {
     const std::size_t count = std::min(4 * size, samples.size() - at);
-    demodulator.push(static_cast<std::int64_t>(777 + at / 4), std::span(samples).subspan(at, count),
+    demodulator.push({std::span(samples).subspan(at, count), 4, static_cast<std::int64_t>(777 + at / 4)},
                      [&](const BridgePoint& point) { points.push_back(point); });
     at += count;
   }
@@ -178,8 +178,9 @@ TEST_CASE("missing frames make the points within reach NaN, and no others", "[se
   BridgeDemodulator demodulator(bridge_options());
   std::vector<BridgePoint> points;
   const auto take = [&](const BridgePoint& point) { points.push_back(point); };
-  demodulator.push(0, std::span(samples).first(4 * 20000), take);
-  demodulator.push(20100, std::span(samples).subspan(4 * 20100), take);
+  demodulator.push({std::span(samples).first(4 * 20000), 4, 0}, take);
+  demodulator.push({std::span(samples).first(4 * 15000), 4, 0}, take);  // received before: ignored
+  demodulator.push({std::span(samples).subspan(4 * 20100), 4, 20100}, take);
   REQUIRE(points.size() == whole.size());
   std::size_t lost = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -191,7 +192,8 @@ TEST_CASE("missing frames make the points within reach NaN, and no others", "[se
   }
   CHECK(lost > 25);
   CHECK(lost < 35);
-  CHECK_THROWS_AS(demodulator.push(5, samples, take), std::logic_error);
+  CHECK_THROWS_AS(demodulator.push({samples, 2, 5}, take), std::logic_error);
+  CHECK_THROWS_AS(demodulator.push({samples, 4, 5, 96000}, take), std::logic_error);
 }
 
 TEST_CASE("a wire that is off is a fault with a name", "[sensing]") {
@@ -251,6 +253,7 @@ TEST_CASE("impossible wiring of the bridges is refused", "[sensing]") {
   refused([](BridgeOptions& o) { o.rate_Hz = 44100; });
   refused([](BridgeOptions& o) { o.carrier_Hz = 500; });
   refused([](BridgeOptions& o) { o.bridges[2] = 4; });
+  refused([](BridgeOptions& o) { o.reference = -1; });
   refused([](BridgeOptions& o) { o.full_scale[1] = 0; });
   auto options = bridge_options();
   options.rate_Hz = 96000;

@@ -13,8 +13,8 @@ TEST_CASE("demodulating bridges allocates nothing", "[sensing]") {
   double sum = 0;
   const auto take = [&](const BridgePoint& point) { sum += point.reference; };
   CHECK(turnpoint::drive::violations_in([&] {
-          demodulator.push(0, samples, take);
-          demodulator.push(30000, samples, take);
+          demodulator.push({samples, 4, 0}, take);
+          demodulator.push({samples, 4, 30000}, take);
         }) == 0);
   CHECK(turnpoint::drive::violations_in([] { delete new BridgeDemodulator(bridge_options()); }) > 0);
 }
