@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "physics/field.hpp"
@@ -11,67 +10,6 @@
 namespace turnpoint::plant {
 
 namespace {
-
-double default_amount(FaultKind kind) {
-  switch (kind) {
-    case FaultKind::resonance_off:
-    case FaultKind::frequency_off:
-      return 0.03;
-    case FaultKind::drive_late:
-      return 0.005;
-    case FaultKind::clip:
-      return 0.5;
-    case FaultKind::gap:
-      return 480;
-    case FaultKind::warmer:
-      return 10;
-    default:
-      return 0;
-  }
-}
-
-double amount_of(const Fault& fault) { return fault.amount.value_or(default_amount(fault.kind)); }
-
-std::int64_t frames_lost(const std::vector<Fault>& faults) {
-  std::int64_t sum = 0;
-  for (const auto& fault : faults)
-    if (fault.kind == FaultKind::gap) sum += std::llround(amount_of(fault));
-  return sum;
-}
-
-void refuse(const std::string& why) { throw std::invalid_argument("plant: " + why); }
-
-void check_channel(int channel, int count, const char* what) {
-  if (channel < 0 || channel >= count)
-    refuse(std::string(what) + ": channel " + std::to_string(channel) + " of " + std::to_string(count));
-}
-
-Setup checked(const Setup& setup) {
-  if (setup.rate_Hz < 8000) refuse("rate_Hz must be at least 8000");
-  if (!(setup.surface.quality_factor < 1e6)) refuse("the surface needs a finite quality factor");
-  if (setup.loop_delay_frames < 0) refuse("loop_delay_frames must not be negative");
-  const double whole = std::floor(setup.loop_delay_frames);
-  if (whole != setup.loop_delay_frames && whole < Delay::kLeast)
-    refuse("a delay of less than " + std::to_string(Delay::kLeast) + " frames must be whole");
-  if (setup.transducers.size() > Plant::kMostTransducers) refuse("at most 8 transducers");
-  for (const auto& t : setup.transducers) check_channel(t.channel, setup.playback_channels, "transducer");
-  if (const auto c = setup.wires.carrier_channel) check_channel(*c, setup.playback_channels, "carrier");
-  if (const auto c = setup.marker_channel) check_channel(*c, setup.playback_channels, "marker");
-  std::vector<int> used;
-  const auto use = [&](int channel, const char* what) {
-    check_channel(channel, setup.capture.count, what);
-    if (std::find(used.begin(), used.end(), channel) != used.end())
-      refuse(std::string(what) + ": capture channel " + std::to_string(channel) + " is used twice");
-    used.push_back(channel);
-  };
-  if (setup.capture.reference) use(*setup.capture.reference, "reference");
-  if (setup.capture.bridge_a) use(*setup.capture.bridge_a, "bridge a");
-  if (setup.capture.bridge_b) use(*setup.capture.bridge_b, "bridge b");
-  if (setup.capture.lateral) use(*setup.capture.lateral, "lateral bridge");
-  if (setup.capture.marker) use(*setup.capture.marker, "marker");
-  for (const auto& pickup : setup.pickups) use(pickup.channel, "pick-up");
-  return setup;
-}
 
 std::vector<double> places_of(const std::vector<Pickup>& pickups) {
   std::vector<double> x_m;
@@ -85,7 +23,7 @@ int frames_per_step(int rate_Hz) { return static_cast<int>(std::lround(rate_Hz /
 }  // namespace
 
 Plant::Plant(const Setup& setup)
-    : setup_(checked(setup)),
+    : setup_(validated(setup)),
       step_frames_(frames_per_step(setup.rate_Hz)),
       whole_delay_(static_cast<std::int64_t>(std::floor(setup.loop_delay_frames))),
       response_(
@@ -106,68 +44,14 @@ Plant::Plant(const Setup& setup)
 }
 
 void Plant::add(const Fault& fault) {
-  if (fault.from_frame < captured_) refuse("a fault must begin at a frame that was not captured yet");
-  const double amount = amount_of(fault);
-  if (fault.kind == FaultKind::gap) {
-    const auto least = setup_.loop_delay_frames != static_cast<double>(whole_delay_) ? Delay::kLeast : 0;
-    if (amount < 0 || whole_delay_ - frames_lost(faults_) - std::llround(amount) < least)
-      refuse("gaps must not lose more frames than the loop delay has");
-  }
-  if (fault.kind == FaultKind::drive_late && !(amount >= 0 && amount < 1)) refuse("drive_late: 0 to 1 s");
-  const int count = fault.kind == FaultKind::broken_bridge ? 3 : static_cast<int>(setup_.transducers.size());
-  if (fault.index < 0 || fault.index >= count)
-    refuse("the fault's index must be below " + std::to_string(count));
-  faults_.push_back(fault);
+  if (fault.from_frame < captured_)
+    throw std::invalid_argument("plant: a fault must begin at a frame that was not captured yet");
+  auto faults = faults_;
+  faults.push_back(fault);
+  validate(setup_, faults);
+  faults_ = std::move(faults);
   prepare();
   next_change_ = captured_;
-}
-
-Plant::Condition Plant::condition_at(std::int64_t frame) const {
-  Condition c;
-  c.transducer_gain.fill(1);
-  c.warmth_K = setup_.temperature_C - setup_.surface_temperature_C;
-  for (const auto& fault : faults_) {
-    if (frame < fault.from_frame || frame >= fault.to_frame) continue;
-    const double amount = amount_of(fault);
-    const auto index = static_cast<std::size_t>(fault.index);
-    switch (fault.kind) {
-      case FaultKind::transducer_dead:
-        c.transducer_gain[index] = 0;
-        break;
-      case FaultKind::transducer_half:
-        c.transducer_gain[index] *= 0.5;
-        break;
-      case FaultKind::resonance_off:
-        c.resonance *= 1 + amount;
-        break;
-      case FaultKind::frequency_off:
-        c.frequency *= 1 + amount;
-        break;
-      case FaultKind::drive_late:
-        c.late_frames += std::llround(amount * setup_.rate_Hz);
-        break;
-      case FaultKind::clip:
-        c.clip = std::min(c.clip, amount);
-        break;
-      case FaultKind::broken_bridge:
-        c.bridge_open[index] = true;
-        break;
-      case FaultKind::no_reference:
-        c.no_reference = true;
-        break;
-      case FaultKind::finger_lifts:
-        c.lifted = true;
-        break;
-      case FaultKind::gap:
-        break;
-      case FaultKind::warmer:
-        c.warmth_K += amount;
-        break;
-    }
-  }
-  // f ~ sqrt(E / rho) h / W^2 for a plate; its lengths grow, and its density falls with their cube.
-  c.resonance *= 1 + 0.5 * (setup_.expansion_per_K + setup_.modulus_per_K) * c.warmth_K;
-  return c;
 }
 
 const Plant::Gains& Plant::gains_for(double frequency_Hz) {
@@ -198,7 +82,7 @@ void Plant::prepare() {
     frames.push_back(fault.to_frame);
   }
   for (const auto frame : frames) {
-    const Condition c = condition_at(frame);
+    const Condition c = condition_at(setup_, faults_, frame);
     filter_for(c.resonance);
     for (const auto& tone : tones_) gains_for(tone.lock_in.frequency_Hz() * c.frequency / c.resonance);
   }
@@ -221,8 +105,8 @@ void Plant::set_tones(std::vector<double> frequency_Hz) {
 void Plant::change(std::int64_t frame) {
   for (const auto& fault : faults_)
     if (fault.kind == FaultKind::gap && fault.from_frame == frame)
-      for (std::int64_t k = std::llround(amount_of(fault)); k > 0; --k) next_frame({});
-  now_ = condition_at(frame);
+      for (std::int64_t k = frames_lost(fault); k > 0; --k) next_frame({});
+  now_ = condition_at(setup_, faults_, frame);
   const std::size_t filter = filter_for(now_.resonance);
   if (filter != filter_) filters_[filter].second.continue_from(filters_[filter_].second);
   filter_ = filter;
@@ -239,7 +123,8 @@ void Plant::advance(std::span<const double> played, std::span<double> captured) 
   const auto outputs = static_cast<std::size_t>(setup_.capture.count);
   const std::size_t frames = played.size() / inputs;
   if (played.size() % inputs != 0 || captured.size() != frames * outputs)
-    refuse("played and captured blocks must have the same number of whole frames");
+    throw std::invalid_argument(
+        "plant: played and captured blocks must have the same number of whole frames");
   for (std::size_t k = 0; k < frames; ++k) {
     if (captured_ >= next_change_) change(captured_);
     const auto in = played.subspan(k * inputs, inputs);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "station/plant/cells.hpp"
+#include "station/plant/condition.hpp"
 #include "station/plant/delay.hpp"
 #include "station/plant/finger.hpp"
 #include "station/plant/lock_in.hpp"
@@ -39,8 +40,6 @@ struct Truth {
 /// into blocks. Not thread-safe.
 class Plant {
  public:
-  static constexpr std::size_t kMostTransducers = 8;
-
   /// Throws std::invalid_argument for a channel that does not exist or is used twice, a rate below 8000 Hz, a
   /// delay that is too short, or a surface without loss.
   explicit Plant(const Setup& setup);
@@ -79,19 +78,7 @@ class Plant {
     LockIn lock_in;
     const Gains* gains;
   };
-  /// What the faults that are on at a frame amount to.
-  struct Condition {
-    std::array<double, kMostTransducers> transducer_gain{};
-    std::array<bool, 3> bridge_open{};
-    bool no_reference = false, lifted = false;
-    double clip = 1e300;  // full scale
-    std::int64_t late_frames = 0;
-    double resonance = 1;  // factor on all resonances
-    double frequency = 1;  // factor on what is driven
-    double warmth_K = 0;   // above the surface's temperature
-  };
 
-  Condition condition_at(std::int64_t frame) const;
   const Gains& gains_for(double frequency_Hz);
   std::size_t filter_for(double resonance);
   void prepare();

@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -11,6 +12,8 @@
 namespace turnpoint::plant {
 
 inline constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+inline constexpr std::size_t kMostTransducers = 8;
 
 /// Moves the drive edge of the surface. The motions of several transducers add up.
 struct Transducer {

@@ -116,6 +116,10 @@ TEST_CASE("a setup that cannot work is refused", "[plant]") {
   CHECK_THROWS_AS(plant.advance(played, captured), std::invalid_argument);
   CHECK_THROWS_AS(plant.add({FaultKind::transducer_dead, 0, kNever, {}, 1}), std::invalid_argument);
   CHECK_THROWS_AS(plant.add({FaultKind::gap, 0, kNever, 401}), std::invalid_argument);
+  CHECK_THROWS_AS(plant.add({FaultKind::drive_late, 0, kNever, 1.1}), std::invalid_argument);
+  CHECK_THROWS_AS(plant.add({FaultKind::drive_late, 0, kNever, -0.1}), std::invalid_argument);
+  CHECK_THROWS_AS(plant.add({FaultKind::resonance_off, 0, kNever, 0.9}), std::invalid_argument);
+  CHECK_THROWS_AS(plant.add({FaultKind::broken_bridge, 0, kNever, {}, 3}), std::invalid_argument);
   captured.push_back(0);
   plant.advance(played, captured);
   CHECK_THROWS_AS(plant.add({FaultKind::clip, 9}), std::invalid_argument);
