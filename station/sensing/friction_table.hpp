@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "physics/friction.hpp"
+#include "station/analysis/quantile.hpp"
+
+namespace turnpoint::sensing {
+
+/// One stroke over the vibrating surface, or over the surface at rest (displacement 0).
+struct TableStroke {
+  double displacement_m = 0;  ///< peak displacement under the finger
+  double friction = 0;        ///< stroke_friction(); NaN if the stroke did not count
+};
+
+/// The displacements to present, in order: every level `strokes` times in random order, and a stroke over the
+/// surface at rest before, between and after them.
+std::vector<double> friction_table_order(std::span<const double> levels_m, int strokes, std::uint64_t seed);
+
+/// Friction at one displacement, relative to the surface at rest.
+struct FrictionLevel {
+  double displacement_m = 0;
+  int strokes = 0;
+  double measured = 1;           ///< geometric mean of the strokes
+  double relative_friction = 1;  ///< after the monotone regression: falls from level to level
+  double sd = 0;                 ///< standard error of relative_friction
+  analysis::Interval interval;   ///< of relative_friction
+};
+
+struct FrictionTable {
+  std::vector<FrictionLevel> levels;  ///< by ascending displacement
+  /// Displacement that halves friction; empty if the levels do not reach it.
+  std::optional<double> half_displacement_m;
+  double half_displacement_sd_m = 0;
+  analysis::Interval half_displacement_interval;
+  int unused = 0;  ///< driven strokes that do not count, or without a stroke at rest on both sides
+
+  /// The table of a rig, which begins at (0, 1).
+  std::vector<physics::FrictionPoint> points() const;
+};
+
+/// Estimates the friction table from strokes in the order in which they were made. Friction of skin drifts by
+/// tens of per cent within minutes, so each driven stroke is compared with its two neighbours at rest: the
+/// logarithm of friction minus the mean of theirs. The level means go through a monotone regression (pool
+/// adjacent violators) and are joined by monotone cubics; a curve with a few parameters would be wrong at the
+/// floor. Standard errors and intervals come from a bootstrap over the strokes of each level, enlarged for
+/// their small number. Throws terms::UsageError if a level has fewer than three usable strokes or if there
+/// are no levels.
+FrictionTable friction_table(std::span<const TableStroke> strokes, std::uint64_t seed, int replicates = 1000);
+
+}  // namespace turnpoint::sensing
