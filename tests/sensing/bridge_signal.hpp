@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -15,13 +16,15 @@ namespace turnpoint::sensing {
 struct BridgeSignal {
   double rate_Hz = 192000, carrier_Hz = 10525;
   std::function<double(double)> force_N = [](double) { return 0.0; };  ///< of time, the same on all cells
-  std::function<double(double)> gain = [](double) { return 1.0; };     ///< of the excitation
-  double phase_rad = 0.4;                                              ///< of the whole path
-  double bridge_phase_rad = 0;                                         ///< of the resistive part
-  double quadrature_V_V = 0;               ///< unbalanced capacitance of the bridges
-  std::vector<double> tones_Hz;            ///< crosstalk of the drive at the bridge
-  double tone_V = 1e-3, cubic_per_V2 = 0;  ///< the latter at the amplifier's output
-  double noise_V_rtHz = 0;                 ///< at the bridge
+  /// Of time, one force for each cell; replaces force_N.
+  std::function<std::array<double, bridge_count>(double)> forces_N;
+  std::function<double(double)> gain = [](double) { return 1.0; };  ///< of the excitation
+  double phase_rad = 0.4;                                           ///< of the whole path
+  double bridge_phase_rad = 0;                                      ///< of the resistive part
+  double quadrature_V_V = 0;                                        ///< unbalanced capacitance of the bridges
+  std::vector<double> tones_Hz;                                     ///< crosstalk of the drive at the bridge
+  double tone_V = 1e-3, cubic_per_V2 = 0;                           ///< the latter at the amplifier's output
+  double noise_V_rtHz = 0;                                          ///< at the bridge
   unsigned seed = 1;
 
   static constexpr double excitation_V = 2.5, volt_per_volt_N = 2e-4, amplifier = 200, full_scale_V = 3;
@@ -39,11 +42,16 @@ struct BridgeSignal {
       double tones = 0;
       for (std::size_t i = 0; i < tones_Hz.size(); ++i)
         tones += tone_V * std::sin(turn * tones_Hz[i] * t + static_cast<double>(i));
-      const double in = volt_per_volt_N * force_N(t) * std::cos(angle + bridge_phase_rad);
       const double across = quadrature_V_V * -std::sin(angle + bridge_phase_rad);
-      const double bridge = excitation_V * gain(t) * (in + across) + tones;
       all.push_back(sample(reference_share * gain(t) * std::cos(angle)));
-      for (int i = 0; i < 3; ++i) {
+      std::array<double, bridge_count> forces{};
+      if (forces_N)
+        forces = forces_N(t);
+      else
+        forces.fill(force_N(t));
+      for (const double force : forces) {
+        const double in = volt_per_volt_N * force * std::cos(angle + bridge_phase_rad);
+        const double bridge = excitation_V * gain(t) * (in + across) + tones;
         const double out = amplifier * (bridge + (noise_V > 0 ? noise_V * normal(random) : 0));
         all.push_back(sample((out + cubic_per_V2 * out * out * out) / full_scale_V));
       }

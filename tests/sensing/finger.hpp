@@ -53,6 +53,16 @@ struct Finger {
   struct Recording {
     std::vector<ForcePoint> forces;
     std::vector<Truth> truth;
+
+    /// Mean over 30 ms: the contact itself shakes with the noise of friction.
+    Truth smooth_truth(std::size_t at) const {
+      Truth mean{0, 0};
+      for (std::size_t k = at - 15; k <= at + 15; ++k) {
+        mean.position_mm += truth[k].position_mm / 31;
+        mean.speed_mm_s += truth[k].speed_mm_s / 31;
+      }
+      return mean;
+    }
   };
 
   /// Friction under a finger that covers both sides of the edge in part.

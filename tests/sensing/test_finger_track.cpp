@@ -27,16 +27,10 @@ Errors errors(const Finger& finger, unsigned seed) {
   double count = 0;
   for (const auto& stroke : find_strokes(track))
     for (std::size_t i = stroke.first; i < stroke.end; ++i) {
-      const auto at = static_cast<std::size_t>(track[i].index);
-      // the contact itself shakes with the noise of friction: compare with its mean over 30 ms
-      double position = 0, speed = 0;
-      for (std::size_t k = at - 15; k <= at + 15; ++k) {
-        position += recording.truth[k].position_mm / 31;
-        speed += recording.truth[k].speed_mm_s / 31;
-      }
-      sum.position_mm += std::pow(track[i].position_mm - position, 2);
-      sum.speed_mm_s += std::pow(track[i].speed_mm_s - speed, 2);
-      sum.mean_speed_mm_s += std::abs(speed);
+      const auto truth = recording.smooth_truth(static_cast<std::size_t>(track[i].index));
+      sum.position_mm += std::pow(track[i].position_mm - truth.position_mm, 2);
+      sum.speed_mm_s += std::pow(track[i].speed_mm_s - truth.speed_mm_s, 2);
+      sum.mean_speed_mm_s += std::abs(truth.speed_mm_s);
       ++count;
     }
   REQUIRE(count > 1000);
