@@ -44,6 +44,9 @@ class IntervalProof {
   /// Takes captured frames in order; ignores those that it does not need.
   void push(const CaptureBlock& block);
 
+  /// The burst was stopped: from this absolute frame of the playback on it falls, and is not judged.
+  void stopped(std::int64_t frame) noexcept;
+
   /// True if all frames have been received.
   bool complete() const noexcept;
 

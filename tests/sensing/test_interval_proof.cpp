@@ -2,7 +2,9 @@
 #include <random>
 #include <vector>
 
+#include "station/drive/synth.hpp"
 #include "station/sensing/interval_proof.hpp"
+#include "station/sensing/silence_proof.hpp"
 #include "tests/sensing/room.hpp"
 #include "tests/support/catch.hpp"
 
@@ -25,6 +27,22 @@ drive::Burst burst_of(std::vector<drive::Tone> tones, std::int64_t length = 7680
 
 drive::Burst three_tones() {
   return burst_of({{25000.5, 0.3, 0.2, 0}, {30321.7, 0.25, 1.9, 0}, {36543.2, 0.2, -2.5, 0}});
+}
+
+/// Tones at least 1 kHz apart between 22 and 46 kHz, with random levels (10 dB) and phases.
+drive::Burst random_burst(std::mt19937_64& random, int tones, double steady_s) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::vector<drive::Tone> made;
+  const double room_Hz = 24000.0 - 1000.0 * (tones - 1);
+  std::vector<double> places;
+  for (int i = 0; i < tones; ++i) places.push_back(room_Hz * uniform(random));
+  std::sort(places.begin(), places.end());
+  for (int i = 0; i < tones; ++i)
+    made.push_back({22000 + 1000.0 * i + places[static_cast<std::size_t>(i)],
+                    0.9 / tones * std::pow(10, -0.5 * uniform(random)), 6.28 * uniform(random), 0});
+  auto burst = burst_of(made, 2 * 960 + std::llround(192000 * (steady_s + 0.01)));
+  burst.start_frame = static_cast<std::int64_t>(random() % 1'000'000'000'000);
+  return burst;
 }
 
 IntervalPlan plan_of(const Room& room, const drive::Burst& burst) {
@@ -134,4 +152,268 @@ TEST_CASE("a gap of the capture is named", "[sensing][proof]") {
   CHECK(result.cause == ProofCause::gap);
   CHECK(result.lost_frames >= 384);
   CHECK(result.lost_frames <= 384 + 4 * 96);
+}
+
+TEST_CASE("amplitude and phase are measured to 0.01 dB and 0.1 degrees", "[sensing][proof]") {
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int tones = 1; tones <= 8; ++tones)
+    for (int k = 0; k < 3; ++k) {
+      Room room;
+      room.seed = random();
+      room.delay_frames = 96000 * uniform(random);
+      const auto burst = random_burst(random, tones, 0.3);
+      const IntervalResult result = proven(room, burst);
+      REQUIRE(result.tones.size() == static_cast<std::size_t>(tones));
+      for (const ToneProof& tone : result.tones) {
+        CAPTURE(tones, tone.frequency_Hz);
+        CHECK(tone.seen);
+        CHECK(std::fabs(tone.ratio_dB) < 0.01);
+        CHECK(std::fabs(tone.phase_error_deg) < 0.1);
+      }
+    }
+}
+
+TEST_CASE("the onset is measured to 30 us for ramps of 5 ms, and to 150 us for ramps of 50 ms",
+          "[sensing][proof]") {
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (const auto& [ramp, tolerance_us] : {std::pair<std::int64_t, double>{960, 30}, {9600, 150}})
+    for (int k = 0; k < 20; ++k) {
+      Room room;
+      room.seed = random();
+      room.noise = 1e-3;
+      room.delay_frames = 1000 * uniform(random);
+      room.late_s = k % 4 == 0 ? 0 : 0.004 * uniform(random) - 0.002;
+      auto burst = random_burst(random, 1 + k % 4, 0.2);
+      burst.ramp.frames = ramp;
+      const IntervalResult result = proven(room, burst);
+      REQUIRE(result.onset_error_us);
+      CHECK(*result.onset_error_us == Approx(1e6 * room.late_s).margin(tolerance_us));
+    }
+}
+
+namespace {
+
+double planned_rms(const Room& room, const drive::Burst& burst) {
+  double square = 0;
+  for (int i = 0; i < burst.tones.count; ++i) {
+    const drive::Tone& tone = burst.tones.tones[static_cast<std::size_t>(i)];
+    square += std::norm(tone.amplitude * room.pick_ups[0].response(tone.frequency_Hz)) / 2;
+  }
+  return std::sqrt(square);
+}
+
+/// A room without faults: levels within 0.3 dB, noise from -90 to -50 dB re the plan.
+Room random_room(std::mt19937_64& random) {
+  std::uniform_real_distribution<double> uniform(0, 1);
+  Room room;
+  room.channels = 2;
+  room.seed = random();
+  room.delay_frames = 96000 * uniform(random);
+  room.drive_gain = std::pow(10, (0.6 * uniform(random) - 0.3) / 20);
+  room.pick_ups[0] = {static_cast<int>(random() % 2), 0.2 + 0.6 * uniform(random), 6 * uniform(random),
+                      3e-4 * uniform(random)};
+  room.noise = std::pow(10, -4.5 + 2 * uniform(random));
+  return room;
+}
+
+}  // namespace
+
+TEST_CASE("of a thousand clean intervals, all are proven", "[sensing][proof]") {
+  std::mt19937_64 random(13);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int k = 0; k < 1000; ++k) {
+    Room room = random_room(random);
+    const auto burst = random_burst(random, 1 + k % 8, 0.02 + 0.03 * uniform(random));
+    room.noise *= planned_rms(room, burst);
+    const IntervalResult result = proven(room, burst);
+    if (result.verdict != Proof::ok)
+      FAIL_CHECK(k << ": " << name(result.verdict) << " " << name(result.cause) << " " << result.ratio_dB
+                   << " dB, residual " << result.residual_dB << " dB, onset "
+                   << result.onset_error_us.value_or(-1) << " us");
+  }
+}
+
+TEST_CASE("each fault of the drive is named in random intervals", "[sensing][proof]") {
+  std::mt19937_64 random(14);
+  const ProofCause causes[] = {ProofCause::dead, ProofCause::half,    ProofCause::frequency,
+                               ProofCause::late, ProofCause::clipped, ProofCause::level};
+  for (int k = 0; k < 120; ++k) {
+    Room room = random_room(random);
+    const auto burst = random_burst(random, 1 + k % 8, 0.1);
+    const double rms = planned_rms(room, burst);
+    room.noise *= rms;
+    const ProofCause cause = causes[k % 6];
+    if (cause == ProofCause::dead) room.drive_gain = 0;
+    if (cause == ProofCause::half) room.drive_gain *= 0.5;
+    if (cause == ProofCause::frequency) room.frequency_factor = 1.03;
+    if (cause == ProofCause::late) room.late_s = 0.005;
+    if (cause == ProofCause::clipped) room.limiter = 1.1 * rms;
+    if (cause == ProofCause::level) room.drive_gain = 0.8;
+    const IntervalResult result = proven(room, burst);
+    if (result.cause != cause || (result.verdict != Proof::refused && result.verdict != Proof::stopped))
+      FAIL_CHECK(k << ": " << burst.tones.count << " tones, " << name(cause) << " judged as "
+                   << name(result.verdict) << " " << name(result.cause) << ", " << result.ratio_dB
+                   << " dB, residual " << result.residual_dB << " dB, product "
+                   << (result.product ? name(*result.product) : "") << " "
+                   << (result.product ? result.product->level_dB : 0) << " dB, onset "
+                   << result.onset_error_us.value_or(-1) << " us");
+  }
+}
+
+TEST_CASE("a tone on a node of the pick-up is not proven, unless another pick-up sees it",
+          "[sensing][proof]") {
+  Room room;
+  room.pick_ups = {{4, 0.5, 0.7, 3e-4}, {5, 0.4, -0.4, 2e-4}};
+  const auto burst = three_tones();
+  IntervalPlan plan = plan_of(room, burst);
+  Transfer& first = plan.pick_ups[0].transfers[0];
+  for (std::size_t k = 0; k < first.response.size(); ++k)
+    if (std::fabs(first.frequency_Hz[k] - 30321.7) < 500) first.response[k] *= 0.04;
+  const IntervalResult both = proven(room, burst, false, &plan);
+  CHECK(both.verdict == Proof::ok);
+  CHECK(both.tones[1].pick_up == 1);
+  room.pick_ups.pop_back();
+  plan.pick_ups.pop_back();
+  const IntervalResult one = proven(room, burst, false, &plan);
+  CHECK(one.verdict == Proof::unproven);
+  CHECK(one.tones[0].seen);
+  CHECK_FALSE(one.tones[1].seen);
+}
+
+TEST_CASE("mains hum and friction noise of the finger hardly count", "[sensing][proof]") {
+  Room room;
+  room.hum = 0.05;
+  room.extra = [](double t) { return 0.02 * std::sin(2 * M_PI * 731 * t); };
+  const IntervalResult result = proven(room, three_tones());
+  CHECK(result.verdict == Proof::ok);
+  CHECK(result.residual_dB < -50);
+}
+
+TEST_CASE("a finger may change the level more before the trial is void", "[sensing][proof]") {
+  Room room;
+  room.gain_at = [](double t) { return t < 0.1 ? 1 : std::pow(10, -2.0 / 20); };
+  const auto burst = three_tones();
+  const IntervalResult alone = proven(room, burst, false), touched = proven(room, burst, true);
+  CHECK(alone.verdict == Proof::stopped);  // the step in the level is a residual as well
+  CHECK(alone.tones[0].worst_ratio_dB == Approx(-2).margin(0.05));
+  CHECK(touched.tones[0].worst_ratio_dB == Approx(-2).margin(0.05));
+}
+
+TEST_CASE("the result does not depend on the sizes of the captured blocks", "[sensing][proof]") {
+  const Room room;
+  const auto burst = three_tones();
+  const auto run = [&](const std::vector<std::int64_t>& sizes) {
+    IntervalProof proof(plan_of(room, burst));
+    const std::int64_t first = proof.first_frame() - 1000;
+    const auto samples = captured(room, burst, first, proof.end_frame() + 500 - first);
+    in_blocks(room, samples, first, sizes, [&](const CaptureBlock& block) { proof.push(block); });
+    return proof.result(false);
+  };
+  const IntervalResult expected = run({100'000});
+  for (const auto& sizes : std::vector<std::vector<std::int64_t>>{{1}, {384}, {7, 500, 1, 96}}) {
+    const IntervalResult result = run(sizes);
+    CHECK(result.verdict == expected.verdict);
+    CHECK(result.residual_dB == expected.residual_dB);
+    CHECK(result.onset_error_us == expected.onset_error_us);
+    for (std::size_t k = 0; k < 3; ++k) {
+      CHECK(result.tones[k].ratio_dB == expected.tones[k].ratio_dB);
+      CHECK(result.tones[k].phase_error_deg == expected.tones[k].phase_error_deg);
+    }
+  }
+}
+
+TEST_CASE("an interval that was not captured is lost", "[sensing][proof]") {
+  const Room room;
+  IntervalProof proof(plan_of(room, three_tones()));
+  CHECK_FALSE(proof.complete());
+  CHECK(proof.result().verdict == Proof::lost);
+  CHECK(proof.result().cause == ProofCause::gap);
+}
+
+TEST_CASE("a burst that was stopped is judged up to the stop", "[sensing][proof]") {
+  const Room room;
+  auto burst = burst_of({{25000.5, 0.3, 0.2, 0}, {30321.7, 0.25, 1.9, 0}}, 192000);
+  auto played = burst;
+  played.length_frames = 100'000;
+  for (const bool told : {true, false}) {
+    IntervalProof proof(plan_of(room, burst));
+    const std::int64_t first = proof.first_frame();
+    const auto samples = captured(room, played, first, proof.end_frame() - first);
+    if (told) proof.stopped(burst.start_frame + played.length_frames - played.ramp.frames);
+    in_blocks(room, samples, first, {384}, [&](const CaptureBlock& block) { proof.push(block); });
+    CHECK(proof.result(false).verdict == (told ? Proof::ok : Proof::stopped));
+  }
+}
+
+TEST_CASE("tones of equal frequency on two channels are measured as one", "[sensing][proof]") {
+  Room room;
+  auto burst = burst_of({{25000.5, 0.3, 0.2, 0}, {25000.5, 0.2, 1.0, 1}, {30321.7, 0.25, 1.9, 0}});
+  IntervalPlan plan = plan_of(room, burst);
+  plan.pick_ups[0].transfers.push_back(calibrated(room.pick_ups[0], 1).transfers[0]);
+  const IntervalResult result = proven(room, burst, false, &plan);
+  CHECK(result.verdict == Proof::ok);
+  REQUIRE(result.tones.size() == 3);
+  plan.pick_ups[0].transfers.pop_back();  // the second channel is not calibrated
+  CHECK(proven(room, burst, false, &plan).verdict == Proof::unproven);
+}
+
+TEST_CASE("both sets of tones of a burst with a change are proven as the synthesiser plays them",
+          "[sensing][proof]") {
+  auto burst = burst_of({{25000.5, 0.3, 0.2, 0}, {30321.7, 0.25, 1.9, 0}}, 96000);
+  burst.start_frame = 10'000;
+  burst.change_count = 1;
+  burst.changes[0].at_frame = 40'000;
+  burst.changes[0].frames = 9600;
+  burst.changes[0].to = burst_of({{26000.5, 0.2, 0, 0}, {30321.7, 0.3, 0, 0}, {35000.1, 0.1, 0.4, 0}}).tones;
+  const drive::Format format{192000, 1, 24};
+  drive::Synth synth(format);
+  REQUIRE(synth.start(drive::prepare(burst, format)));
+  std::vector<std::int32_t> samples(120'000);
+  synth.render(0, std::span(samples));
+  Room room;
+  room.channels = 1;
+  room.delay_frames = 0;
+  room.pick_ups = {{0, 1, 0, 0}};
+  IntervalPlan plan = plan_of(room, burst);
+  const auto run = [&] {
+    IntervalProof proof(plan);
+    proof.push({samples, 1, 0, 192000});
+    return proof.result(false);
+  };
+  const IntervalResult result = run();
+  CHECK(result.verdict == Proof::ok);
+  REQUIRE(result.tones.size() == 5);
+  for (const ToneProof& tone : result.tones) {
+    CAPTURE(tone.stretch, tone.tone);
+    CHECK(std::fabs(tone.ratio_dB) < 0.001);
+    CHECK(std::fabs(tone.phase_error_deg) < 0.01);
+  }
+  plan.burst.changes[0].frames += 1;  // turns the phase after the glide by 0.6 degrees
+  CHECK(std::fabs(run().tones[2].phase_error_deg) > 0.5);
+}
+
+TEST_CASE("silence is measured against the plan", "[sensing][proof]") {
+  Room room;
+  room.noise = 1e-6;
+  const auto burst = three_tones();
+  const auto level_of = [&](double amplitude) {
+    SilenceProof proof(plan_of(room, burst));
+    room.extra = [amplitude](double t) {
+      return t > -0.15 && t < -0.05 ? amplitude * std::sin(2 * M_PI * 30000 * t) : 0;
+    };
+    const std::int64_t first = burst.start_frame - 40'000;
+    const auto samples = captured(room, burst, first, 35'000);
+    in_blocks(room, samples, first, {384}, [&](const CaptureBlock& block) { proof.push(block); });
+    return proof.result();
+  };
+  // The plan's rms is 0.5 sqrt(0.3^2 + 0.25^2 + 0.2^2) / sqrt(2) = 0.155.
+  CHECK(level_of(0).verdict == Proof::ok);
+  CHECK(level_of(0.155 * std::sqrt(2) * 1e-3).level_dB == Approx(-60).margin(1));
+  CHECK(level_of(0.155 * std::sqrt(2) * 1e-3).verdict == Proof::flagged);
+  CHECK(level_of(0.155 * std::sqrt(2) * 1e-3).cause == ProofCause::noisy);
+  CHECK(level_of(0.01).verdict == Proof::refused);
+  SilenceProof nothing(plan_of(room, burst));
+  CHECK(nothing.result().verdict == Proof::unproven);
 }

@@ -1,0 +1,96 @@
+// The inside of IntervalProof: interval_proof.cpp takes the captured frames, interval_measure.cpp makes the
+// result of them.
+#pragma once
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "station/sensing/aligned_blocks.hpp"
+#include "station/sensing/interval_proof.hpp"
+#include "station/sensing/joint_fit.hpp"
+#include "station/sensing/lock_in.hpp"
+#include "station/sensing/planned_lines.hpp"
+#include "station/sensing/tone_sums.hpp"
+
+namespace turnpoint::sensing {
+
+/// Captured frames of one joint fit, within a steady stretch.
+struct Window {
+  std::size_t stretch = 0;
+  std::int64_t first = 0, end = 0;  // captured frames
+  bool valid = false;
+  std::vector<std::complex<double>> amplitude;  // [pick-up][line], as captured
+  std::vector<double> residual;                 // [pick-up]: mean square behind the high-pass filter
+};
+
+struct Measured {
+  Stretch plan;
+  std::vector<PlannedLine> lines;
+  std::unique_ptr<ToneSums> sums;
+};
+
+struct IntervalProof::State {
+  explicit State(const IntervalPlan& plan);
+
+  std::size_t pick_ups() const { return plan_.pick_ups.size(); }
+  std::int64_t frames_of(double seconds) const { return std::llround(seconds * plan_.rate_Hz); }
+  void add_stretches();
+  void add_windows(std::size_t stretch);
+  void add_onset();
+
+  void end_at(std::int64_t playback_frame) noexcept;
+
+  void take(const AlignedBlock& block) noexcept;
+  void accumulate(const AlignedBlock& block, Window& window, const ToneSums& sums) noexcept;
+  void finish(Window& window, const ToneSums& sums) noexcept;
+  void keep_if_worst(const Window& window) noexcept;
+
+  void conclude(std::optional<bool> in_contact);
+  void measure_tones();
+  void measure_tone(std::size_t stretch, const PlannedLine& line, std::size_t place);
+  void measure_residual();
+  void measure_products();
+  std::span<const float> unexplained();
+  void measure_onset();
+  void find_lost();
+  void judge_tones(const Limits& level);
+  void judge_rest();
+  std::optional<double> found_elsewhere(const ToneProof& tone);
+
+  IntervalPlan plan_;
+  LockInShape shape_;
+  AlignedBlocks blocks_;
+  std::vector<Measured> stretches_;
+  std::vector<Window> windows_;
+  std::size_t current_ = 0;           // window that is being filled
+  std::int64_t begin_ = 0, end_ = 0;  // captured frames of the burst
+  std::int64_t next_ = 0;             // first captured frame after those that were taken
+  std::vector<std::uint8_t> good_;    // 1 for each aligned block of the burst that was captured
+  std::size_t main_ = 0;              // the pick-up that sees most of the plan
+
+  JointFit fit_;
+  std::vector<std::complex<double>> products_;  // sums of the current window, [pick-up][line]
+  std::vector<double> energy_;
+  std::int64_t summed_ = 0;  // frames in them
+  std::vector<std::uint64_t> phases_, increments_;
+  std::vector<float> raw_, worst_raw_;  // of the main pick-up, in the current and in the worst window
+  std::optional<std::size_t> worst_;
+  bool fit_subtracted_ = false;
+
+  bool onset_planned_ = false;
+  std::int64_t onset_first_ = 0, onset_end_ = 0;  // captured frames of the lock-in
+  double onset_frame_ = 0;                        // where the half level is planned, as captured
+  std::unique_ptr<HannWindow> hann_;
+  std::vector<std::complex<double>> points_;  // of the main pick-up, [point][line]
+  std::int64_t first_point_ = 0;
+
+  IntervalResult result_;
+  bool vibrates_ = false;
+  std::vector<Finding> findings_;
+};
+
+}  // namespace turnpoint::sensing
