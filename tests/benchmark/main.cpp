@@ -11,6 +11,7 @@
 #include "tests/benchmark/intervals.hpp"
 #include "tests/benchmark/physics.hpp"
 #include "tests/benchmark/procedures.hpp"
+#include "tests/benchmark/sensing.hpp"
 #include "tests/benchmark/store.hpp"
 #include "tests/benchmark/synth.hpp"
 
@@ -28,13 +29,14 @@ struct Options {
   bool json = false;
 };
 
-const std::vector<std::string> kAll{"physics", "synth", "procedures", "intervals", "store"};
+const std::vector<std::string> kAll{"physics", "synth", "procedures", "intervals", "sensing", "store"};
 
 Report measure(const std::string& what, const Options& options) {
   if (what == "physics") return bench_physics(options.seconds);
   if (what == "synth") return bench_synth();
   if (what == "procedures") return bench_procedures();
   if (what == "intervals") return bench_intervals();
+  if (what == "sensing") return bench_sensing();
   return bench_store(options.disk, options.trials);
 }
 
@@ -92,7 +94,8 @@ int main(int argc, char** argv) {
   using namespace turnpoint::benchmark;
   Options options;
   CLI::App app{"Speed against accuracy on this machine, as tables and plots"};
-  app.add_option("what", options.what, "physics | synth | procedures | intervals | store; otherwise all")
+  app.add_option("what", options.what,
+                 "physics | synth | procedures | intervals | sensing | store; otherwise all")
       ->check(CLI::IsMember(kAll));
   app.add_option("--out", options.out, "Folder for CSV tables and SVG plots");
   app.add_option("--seconds", options.seconds, "About how long physics may measure")
