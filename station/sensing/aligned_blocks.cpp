@@ -7,6 +7,38 @@
 
 namespace turnpoint::sensing {
 
+namespace {
+
+// Several sums and maxima side by side, which do not wait for each other.
+constexpr int kLanes = 8;
+
+double energy_of(const double* y, int frames) noexcept {
+  double lane[kLanes] = {};
+  int n = 0;
+  for (; n + kLanes <= frames; n += kLanes)
+    for (int k = 0; k < kLanes; ++k) lane[k] += y[n + k] * y[n + k];
+  double sum = 0;
+  for (; n < frames; ++n) sum += y[n] * y[n];
+  for (const double value : lane) sum += value;
+  return sum;
+}
+
+double largest_of(const double* s, int frames) noexcept {
+  double lane[kLanes] = {};
+  int n = 0;
+  for (; n + kLanes <= frames; n += kLanes)
+    for (int k = 0; k < kLanes; ++k) {
+      const double size = std::fabs(s[n + k]);
+      lane[k] = size > lane[k] ? size : lane[k];
+    }
+  double largest = 0;
+  for (; n < frames; ++n) largest = std::max(largest, std::fabs(s[n]));
+  for (const double value : lane) largest = std::max(largest, value);
+  return largest;
+}
+
+}  // namespace
+
 AlignedBlocks::AlignedBlocks(int rate_Hz, int channels, std::vector<int> inputs, int block_frames,
                              int high_pass_step)
     : rate_Hz_(rate_Hz),
@@ -65,16 +97,13 @@ const AlignedBlock& AlignedBlocks::finish() noexcept {
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const double* s = raw_[i].data() + step_;
     double* y = filtered_[i].data();
-    double largest = 0, energy = 0;
-    for (int n = 0; n < block_frames_; ++n) largest = std::max(largest, std::fabs(s[n]));
     if (step_ > 0)
       for (int n = 0; n < block_frames_; ++n) y[n] = 0.25 * (2 * s[n] - s[n - step_] - s[n + step_]);
     else
       std::copy_n(s, block_frames_, y);
-    for (int n = 0; n < block_frames_; ++n) energy += y[n] * y[n];
-    energies_[i] = energy;
-    block_.largest = std::max(block_.largest, largest);
-    block_.lost = block_.lost || std::isnan(energy);
+    energies_[i] = energy_of(y, block_frames_);
+    block_.largest = std::max(block_.largest, largest_of(s, block_frames_));
+    block_.lost = block_.lost || std::isnan(energies_[i]);
     std::copy_n(raw_[i].end() - 2 * step_, 2 * step_, raw_[i].begin());
   }
   filled_ = 2 * step_;

@@ -104,10 +104,10 @@ void IntervalProof::State::measure_products() {
 }
 
 // What the fit does not explain in the kept samples of the worst window; empty if that window does not count.
-std::span<const float> IntervalProof::State::unexplained() {
+std::span<const double> IntervalProof::State::unexplained() {
   if (!worst_ || !windows_[*worst_].valid) return {};
   const Window& window = windows_[*worst_];
-  const std::span<float> rest{worst_raw_.data(), static_cast<std::size_t>(window.end - window.first)};
+  const std::span<double> rest{worst_raw_.data(), static_cast<std::size_t>(window.end - window.first)};
   if (fit_subtracted_) return rest;
   fit_subtracted_ = true;
   const auto& [plan, lines, sums] = stretches_[window.stretch];
@@ -115,8 +115,8 @@ std::span<const float> IntervalProof::State::unexplained() {
     const auto a = window.amplitude[main_ * lines.size() + l] * lines[l].gain;
     std::uint64_t phase = sums->phase_at(l, window.first) + drive::phase_of_angle(std::arg(a));
     const double size = std::abs(a);
-    for (float& sample : rest) {
-      sample = static_cast<float>(static_cast<double>(sample) - size * drive::sine_of_phase(phase));
+    for (double& sample : rest) {
+      sample -= size * drive::sine_of_phase(phase);
       phase += lines[l].increment;
     }
   }

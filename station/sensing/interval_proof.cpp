@@ -168,8 +168,7 @@ void IntervalProof::State::accumulate(const AlignedBlock& block, Window& window,
     energy_[p] += block.energy[p];
     for (std::size_t l = 0; l < lines; ++l) products_[p * lines + l] += sums.plain(p, l);
   }
-  for (std::int64_t n = 0; n < block.frames; ++n)
-    raw_[static_cast<std::size_t>(summed_ + n)] = static_cast<float>(block.row[main_][n]);
+  std::copy_n(block.row[main_], block.frames, raw_.begin() + summed_);
   summed_ += block.frames;
   if (window.first + summed_ == window.end) finish(window, sums);
 }

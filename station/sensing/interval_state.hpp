@@ -54,7 +54,7 @@ struct IntervalProof::State {
   void measure_tone(std::size_t stretch, const PlannedLine& line, std::size_t place);
   void measure_residual();
   void measure_products();
-  std::span<const float> unexplained();
+  std::span<const double> unexplained();
   void measure_onset();
   void find_lost();
   void judge_tones(const Limits& level);
@@ -77,7 +77,7 @@ struct IntervalProof::State {
   std::vector<double> energy_;
   std::int64_t summed_ = 0;  // frames in them
   std::vector<std::uint64_t> phases_, increments_;
-  std::vector<float> raw_, worst_raw_;  // of the main pick-up, in the current and in the worst window
+  std::vector<double> raw_, worst_raw_;  // of the main pick-up, in the current and in the worst window
   std::optional<std::size_t> worst_;
   bool fit_subtracted_ = false;
 

@@ -19,7 +19,8 @@ HannWindow::HannWindow(std::size_t tones, std::size_t inputs, int block_frames, 
       angle_(blocks_),
       values_(count_) {
   for (std::size_t k = 0; k < blocks_; ++k)
-    angle_[k] = std::polar(1.0, 2 * M_PI * static_cast<double>(k) / static_cast<double>(blocks_));
+    angle_[k] = std::polar(
+        1.0, 2 * M_PI * (static_cast<double>(k) + 0.5 - 0.5 / block_frames) / static_cast<double>(blocks_));
 }
 
 bool HannWindow::take(const AlignedBlock& block, const ToneSums& sums) noexcept {
@@ -35,7 +36,8 @@ bool HannWindow::take(const AlignedBlock& block, const ToneSums& sums) noexcept 
     kept[2 * count_ + k] = block.lost ? nan : sums.sine(input, tone);
   }
   if (++taken_ < blocks_) return false;
-  // The Hann weight of frame n of block k is (1 - cos(angle of the block + 2 pi n / window)) / 2.
+  // The Hann weight n frames after the middle of block k is (1 - cos(angle of the middle + 2 pi n / window))
+  // / 2.
   std::fill(values_.begin(), values_.end(), std::complex<double>{});
   for (std::size_t b = 0; b < blocks_; ++b) {
     const auto* one = kept_.data() + (newest_ + 1 + b) % blocks_ * kParts * count_;
@@ -50,7 +52,7 @@ bool HannWindow::take(const AlignedBlock& block, const ToneSums& sums) noexcept 
 }
 
 LockInShape LockInShape::of_rate(int rate_Hz) noexcept {
-  const int block = (rate_Hz + 1000) / 2000;
+  const int block = 2 * ((rate_Hz + 2000) / 4000);
   return {block, 20 * block};
 }
 

@@ -67,7 +67,7 @@ std::vector<Product> products_of(std::span<const double> frequencies_Hz, int rat
   return made;
 }
 
-double amplitude_at(std::span<const float> samples, double frequency_Hz, int rate_Hz) {
+double amplitude_at(std::span<const double> samples, double frequency_Hz, int rate_Hz) {
   const std::size_t count = samples.size();
   const double turn = 2 * M_PI * frequency_Hz / rate_Hz, bend = 2 * M_PI / static_cast<double>(count);
   // Rotations by a constant angle, renewed often enough that their error stays below 1e-13.
@@ -78,7 +78,7 @@ double amplitude_at(std::span<const float> samples, double frequency_Hz, int rat
     std::complex<double> e = std::polar(1.0, std::fmod(turn * static_cast<double>(start), 2 * M_PI));
     std::complex<double> w = std::polar(1.0, bend * (static_cast<double>(start) + 0.5));
     for (std::size_t n = start; n < std::min(count, start + chunk); ++n) {
-      const double s = static_cast<double>(samples[n]) * (1 - w.real());
+      const double s = samples[n] * (1 - w.real());
       re += s * e.real();
       im += s * e.imag();
       e = {e.real() * step.real() - e.imag() * step.imag(), e.real() * step.imag() + e.imag() * step.real()};

@@ -37,6 +37,6 @@ std::vector<Product> products_of(std::span<const double> frequencies_Hz, int rat
                                  double apart_Hz);
 
 /// Amplitude of a sinusoid in samples, measured with a Hann window over all of them.
-double amplitude_at(std::span<const float> samples, double frequency_Hz, int rate_Hz);
+double amplitude_at(std::span<const double> samples, double frequency_Hz, int rate_Hz);
 
 }  // namespace turnpoint::sensing

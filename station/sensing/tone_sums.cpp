@@ -17,20 +17,23 @@ std::complex<double> unit(std::uint64_t phase) noexcept {
   return {drive::sine_of_phase(phase + drive::quarter_cycle), drive::sine_of_phase(phase)};
 }
 
+/// Two numbers in one register, which every 64-bit processor has.
+using Lanes [[gnu::vector_size(2 * sizeof(double))]] = double;
+constexpr std::size_t kLanes = kWidth / 2;
+
 // Adds the products of `Inputs` rows with kWidth columns of the table. Each sum runs over the frames in
 // order, so its bits do not depend on the processor.
-template <int Inputs>
-void multiply(const double* const* row, std::size_t frames, const double* table, std::size_t columns,
-              double* const* sums) noexcept {
-  double sum[Inputs][kWidth] = {};
-  for (std::size_t n = 0; n < frames; ++n) {
-    const double* t = table + n * columns;
-    for (int i = 0; i < Inputs; ++i) {
-      const double s = row[i][n];
-      for (std::size_t k = 0; k < kWidth; ++k) sum[i][k] += s * t[k];
+template <std::size_t Inputs>
+void multiply(const double* x, std::size_t frames, const double* table, std::size_t columns,
+              double* sums) noexcept {
+  Lanes sum[Inputs][kLanes] = {};
+  for (std::size_t n = 0; n < frames; ++n, table += columns)
+    for (std::size_t k = 0; k < kLanes; ++k) {
+      const Lanes t{table[2 * k], table[2 * k + 1]};
+      for (std::size_t i = 0; i < Inputs; ++i) sum[i][k] += x[i * frames + n] * t;
     }
-  }
-  for (int i = 0; i < Inputs; ++i) std::copy_n(sum[i], kWidth, sums[i]);
+  for (std::size_t i = 0; i < Inputs; ++i)
+    for (std::size_t k = 0; k < kWidth; ++k) sums[i * columns + k] = sum[i][k / 2][k % 2];
 }
 
 }  // namespace
@@ -43,12 +46,14 @@ ToneSums::ToneSums(std::vector<FollowedTone> tones, std::size_t inputs, int bloc
       window_frames_(window_frames),
       delay_(static_cast<std::int64_t>(std::floor(delay_frames))),
       delay_fraction_(delay_frames - std::floor(delay_frames)),
-      part_columns_((2 * tones_.size() + kWidth - 1) / kWidth * kWidth),
-      table_(kParts * static_cast<std::size_t>(block_frames) * part_columns_),
-      sums_(kParts * inputs * part_columns_),
+      columns_((tones_.size() + kWidth - 1) / kWidth * kWidth),
+      table_(kParts * static_cast<std::size_t>(block_frames) * columns_),
+      folded_(inputs * static_cast<std::size_t>(block_frames)),
+      sums_(kParts * 2 * inputs * columns_),
       turn_(tones_.size()) {
-  if (window_frames % block_frames != 0) throw std::logic_error("sensing: the window is not whole blocks");
-  for (std::size_t t = 0; t < tones_.size(); ++t) fill(t, tones_[t].partial);
+  if (block_frames % 2 != 0 || window_frames % block_frames != 0)
+    throw std::logic_error("sensing: blocks of a lock-in must be even, and its window whole blocks");
+  for (std::size_t t = 0; t < tones_.size(); ++t) fill(t);
 }
 
 drive::Partial ToneSums::at(std::size_t tone, std::int64_t captured_frame) const noexcept {
@@ -64,49 +69,97 @@ std::uint64_t ToneSums::phase_at(std::size_t tone, std::int64_t captured_frame) 
   return at(tone, captured_frame).phase;
 }
 
-void ToneSums::fill(std::size_t tone, const drive::Partial& partial) noexcept {
-  const auto frames = static_cast<std::size_t>(block_frames_);
-  for (std::size_t n = 0; n < frames; ++n) {
-    drive::Partial from_zero = partial;
-    from_zero.phase = 0;
-    const auto e = unit(drive::advanced(from_zero, n).phase);
-    const double angle = 2 * M_PI * static_cast<double>(n) / window_frames_;
-    const double factors[kParts] = {1, std::cos(angle), std::sin(angle)};
+double* ToneSums::row(std::size_t part, std::size_t parity, std::size_t input) noexcept {
+  return sums_.data() + ((part * 2 + parity) * inputs_ + input) * columns_;
+}
+
+double ToneSums::factor(std::size_t part, double from_middle) const noexcept {
+  const double angle = 2 * M_PI * from_middle / window_frames_;
+  return part == 0 ? 1 : part == 1 ? std::cos(angle) : std::sin(angle);
+}
+
+// Columns of parity 0 are even about the middle of the block, those of parity 1 are odd.
+void ToneSums::fill(std::size_t tone) noexcept {
+  const auto half = static_cast<std::size_t>(block_frames_ / 2);
+  const std::uint64_t increment = tones_[tone].partial.increment;
+  for (std::size_t n = 0; n < half; ++n) {
+    const auto e = unit(increment / 2 * (2 * n + 1));
     for (std::size_t part = 0; part < kParts; ++part) {
-      double* column = table_.data() + (part * frames + n) * part_columns_ + 2 * tone;
-      column[0] = factors[part] * e.real();
-      column[1] = factors[part] * e.imag();
+      const double f = factor(part, static_cast<double>(n) + 0.5);
+      double* column = table_.data() + (part * 2 * half + n) * columns_ + tone;
+      const bool swaps = part == 2;  // the factor is odd itself
+      column[0] = f * (swaps ? e.imag() : e.real());
+      column[half * columns_] = f * (swaps ? e.real() : e.imag());
+    }
+  }
+}
+
+void ToneSums::fold(const AlignedBlock& block) noexcept {
+  const auto half = static_cast<std::size_t>(block_frames_ / 2);
+  for (std::size_t i = 0; i < inputs_; ++i) {
+    const double* x = block.row[i];
+    double* even = folded_.data() + i * half;
+    double* odd = folded_.data() + (inputs_ + i) * half;
+    for (std::size_t n = 0; n < half; ++n) {
+      const double after = x[half + n], before = x[half - 1 - n];
+      even[n] = after + before;
+      odd[n] = after - before;
     }
   }
 }
 
 void ToneSums::compute(const AlignedBlock& block, Parts parts) noexcept {
-  for (std::size_t t = 0; t < tones_.size(); ++t) {
-    const drive::Partial partial = at(t, block.first_frame);
-    if (partial.curvature != 0) fill(t, partial);
-    turn_[t] = unit(partial.phase);
-  }
-  const auto frames = static_cast<std::size_t>(block_frames_);
+  fold(block);
+  const auto half = static_cast<std::size_t>(block_frames_ / 2);
   const std::size_t used = parts == Parts::plain ? 1 : kParts;
   for (std::size_t part = 0; part < used; ++part)
-    for (std::size_t column = 0; column < part_columns_; column += kWidth) {
-      const double* table = table_.data() + part * frames * part_columns_ + column;
-      for (std::size_t input = 0; input < inputs_; input += 2) {
-        double* first = sums_.data() + (part * inputs_ + input) * part_columns_ + column;
-        double* const sums[2] = {first, first + part_columns_};
-        if (input + 1 < inputs_)
-          multiply<2>(block.row + input, frames, table, part_columns_, sums);
-        else
-          multiply<1>(block.row + input, frames, table, part_columns_, sums);
+    for (std::size_t parity = 0; parity < 2; ++parity)
+      for (std::size_t column = 0; column < columns_; column += kWidth) {
+        const double* table = table_.data() + (part * 2 + parity) * half * columns_ + column;
+        for (std::size_t input = 0; input < inputs_; input += 2) {
+          const double* x = folded_.data() + (parity * inputs_ + input) * half;
+          double* sums = row(part, parity, input) + column;
+          if (input + 1 < inputs_)
+            multiply<2>(x, half, table, columns_, sums);
+          else
+            multiply<1>(x, half, table, columns_, sums);
+        }
       }
-    }
+  for (std::size_t t = 0; t < tones_.size(); ++t) {
+    const drive::Partial partial = at(t, block.first_frame);
+    if (partial.curvature != 0) glide(block, t, partial);
+    turn_[t] =
+        partial.curvature != 0
+            ? std::complex<double>(1)
+            : unit(partial.phase + partial.increment / 2 * static_cast<std::uint64_t>(block_frames_ - 1));
+  }
 }
 
-// i e^(-i phase) = i conj(e^(i phase of the first frame) e^(i phase since)).
+// A gliding tone has no symmetry, so its sums are computed frame by frame.
+void ToneSums::glide(const AlignedBlock& block, std::size_t tone, const drive::Partial& partial) noexcept {
+  for (std::size_t part = 0; part < kParts; ++part)
+    for (std::size_t i = 0; i < inputs_; ++i) row(part, 0, i)[tone] = row(part, 1, i)[tone] = 0;
+  for (int n = 0; n < block_frames_; ++n) {
+    const auto e = unit(drive::advanced(partial, static_cast<std::uint64_t>(n)).phase);
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const double f = factor(part, n - (block_frames_ - 1) / 2.0);
+      const std::size_t real = part == 2 ? 1 : 0;
+      for (std::size_t i = 0; i < inputs_; ++i) {
+        row(part, real, i)[tone] += block.row[i][n] * f * e.real();
+        row(part, 1 - real, i)[tone] += block.row[i][n] * f * e.imag();
+      }
+    }
+  }
+}
+
+// i e^(-i phase) = i conj(e^(i phase of the middle) e^(i phase since)).
 std::complex<double> ToneSums::rotated(std::size_t input, std::size_t tone, std::size_t part) const noexcept {
-  const double* sum = sums_.data() + (part * inputs_ + input) * part_columns_ + 2 * tone;
-  const auto e = turn_[tone] * std::complex<double>(sum[0], sum[1]);
-  return {e.imag(), e.real()};
+  const double* even = sums_.data() + (part * 2 * inputs_ + input) * columns_ + tone;
+  const double* odd = even + inputs_ * columns_;
+  const auto sum = part == 2 ? std::complex<double>(*odd, *even) : std::complex<double>(*even, *odd);
+  const auto& turn = turn_[tone];
+  return {turn.real() * sum.imag() + turn.imag() * sum.real(),
+          turn.real() * sum.real() - turn.imag() * sum.imag()};
 }
 
 std::complex<double> ToneSums::plain(std::size_t input, std::size_t tone) const noexcept {

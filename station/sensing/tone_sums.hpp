@@ -20,9 +20,10 @@ struct FollowedTone {
 /// Sums of captured samples over aligned blocks, each multiplied by a tone of the playback. A signal
 /// A sin(phase + theta) with the tone's phase has the mean product A e^(i theta) / 2.
 ///
-/// The tone's phase at the first frame of a block is the playback's own integer. Within the block a table of
-/// sines is used, so a tone costs two multiplications per frame and input, and no error grows with time.
-/// Allocates only in its constructor.
+/// The tone's phase in the middle of a block is the playback's own integer, so no error grows with time.
+/// Within the block a table of sines is used. Their symmetry about the middle saves half of the work: a tone
+/// costs one multiplication per frame and input. Gliding tones cost about 20 times as much. Allocates only in
+/// its constructor.
 class ToneSums {
  public:
   enum class Parts {
@@ -30,15 +31,15 @@ class ToneSums {
     windowed  ///< also cosine() and sine(), from which a Hann window is composed; three times the cost
   };
 
-  /// The window has `window_frames`, a multiple of `block_frames`. Captured frame n carries what was played
-  /// at frame n - delay.
+  /// The window has `window_frames`, a multiple of `block_frames`, which is even. Captured frame n carries
+  /// what was played at frame n - delay.
   ToneSums(std::vector<FollowedTone> tones, std::size_t inputs, int block_frames, int window_frames,
            double delay_frames);
 
   void compute(const AlignedBlock& block, Parts parts) noexcept;
 
   /// Sum of sample times i e^(-i phase), and of the same with the factor cos or sin (2 pi n / window) for
-  /// frame n of the block.
+  /// the frame n frames after the middle of the block.
   std::complex<double> plain(std::size_t input, std::size_t tone) const noexcept;
   std::complex<double> cosine(std::size_t input, std::size_t tone) const noexcept;
   std::complex<double> sine(std::size_t input, std::size_t tone) const noexcept;
@@ -51,18 +52,24 @@ class ToneSums {
 
  private:
   drive::Partial at(std::size_t tone, std::int64_t captured_frame) const noexcept;
-  void fill(std::size_t tone, const drive::Partial& partial) noexcept;
+  void fill(std::size_t tone) noexcept;
+  void fold(const AlignedBlock& block) noexcept;
+  void glide(const AlignedBlock& block, std::size_t tone, const drive::Partial& partial) noexcept;
   std::complex<double> rotated(std::size_t input, std::size_t tone, std::size_t part) const noexcept;
+  double* row(std::size_t part, std::size_t parity, std::size_t input) noexcept;
+  double factor(std::size_t part, double from_middle) const noexcept;
 
   std::vector<FollowedTone> tones_;
   std::size_t inputs_;
   int block_frames_, window_frames_;
   std::int64_t delay_;
   double delay_fraction_;
-  std::size_t part_columns_;                ///< two per tone, rounded up to a multiple of the loops' width
-  std::vector<double> table_;               ///< [part][frame][column]
-  std::vector<double> sums_;                ///< [part][input][column]
-  std::vector<std::complex<double>> turn_;  ///< e^(i phase) at the first frame of the block
+  std::size_t columns_;        ///< one per tone, rounded up to a multiple of the loops' width
+  std::vector<double> table_;  ///< [part][parity][frame after the middle][column]
+  std::vector<double>
+      folded_;  ///< [parity][input][frame after the middle]: sum and difference of mirrored frames
+  std::vector<double> sums_;                ///< [part][parity][input][column]
+  std::vector<std::complex<double>> turn_;  ///< e^(i phase) in the middle of the block
 };
 
 }  // namespace turnpoint::sensing
