@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -64,7 +65,7 @@ struct BridgeSignal {
       full_scale_V * reference_share / (amplifier * excitation_V * volt_per_volt_N);
 
   static std::int32_t sample(double share) {  // 24 bit
-    return static_cast<std::int32_t>(std::lround(share * 0x1p23)) * 256;
+    return static_cast<std::int32_t>(std::lround(std::clamp(share, -1.0, 0.999999) * 0x1p23)) * 256;
   }
 };
 
