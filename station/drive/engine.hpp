@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -140,6 +141,9 @@ class SynchronousStream : public Stream {
   virtual std::int64_t frame() const = 0;     ///< the next frame to render
   virtual std::int64_t now_ns() const = 0;    ///< virtual time of the next frame to render
   virtual double largest_sample() const = 0;  ///< largest sample written so far, relative to full scale
+  /// Calls `listener` with each block that is rendered, and the frame at which it begins.
+  virtual void listen(
+      std::function<void(std::int64_t first_frame, std::span<const std::int32_t> interleaved)> listener) = 0;
   /// Completes the output (file headers). Throws std::system_error.
   virtual void finish() = 0;
 };

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <system_error>
+#include <utility>
 
 #include "station/drive/engine_core.hpp"
 #include "station/terms/usage_error.hpp"
@@ -67,10 +68,14 @@ class Synchronous final : public SynchronousStream {
       const WriteResult result = output_->write(samples);
       if (result.status != WriteStatus::ok)
         throw std::system_error(-result.error, std::generic_category(), config_.output.uri);
+      if (listener_) listener_(frame_, samples);
       frame_ += count;
       frames -= count;
       core_.heard(frame_);
     }
+  }
+  void listen(std::function<void(std::int64_t, std::span<const std::int32_t>)> listener) override {
+    listener_ = std::move(listener);
   }
 
   double largest_sample() const override { return static_cast<double>(largest_) * 0x1p-31; }
@@ -89,6 +94,7 @@ class Synchronous final : public SynchronousStream {
   EngineCore core_;
   std::unique_ptr<Output> output_;
   std::vector<std::int32_t> block_;
+  std::function<void(std::int64_t, std::span<const std::int32_t>)> listener_;
 };
 
 }  // namespace

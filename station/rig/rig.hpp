@@ -99,6 +99,24 @@ struct Marker {
   double frequency_Hz = 1000;  ///< frequency, if the marker is a tone
 };
 
+/// A sensor of the vibration on one captured channel, with its response by output channel: the captured
+/// amplitude (of full scale) and phase for a tone of full scale. From the calibration; empty without one.
+struct PickUp {
+  int channel = 0;
+  struct Response {
+    int drive_channel = 0;
+    std::vector<double> frequency_Hz, amplitude, phase_rad;
+  };
+  std::vector<Response> responses;
+};
+
+/// What the station captures of its own output: `sim:` (a simulated plate) or `alsa:NAME`.
+struct Capture {
+  std::string uri;
+  int channels = 2;  ///< of the capture device
+  std::vector<PickUp> pick_ups;
+};
+
 /// Headphones that mask the audible part of a stimulus, for protocols that require it.
 struct MaskingNoise {
   int channel = 1;
@@ -142,6 +160,7 @@ struct Rig {
   Output output;
   std::string amplifier_uri;
   std::optional<std::string> buttons_uri, contact_uri, touch_uri;
+  std::optional<Capture> capture;
   std::optional<Marker> marker;
   std::optional<MaskingNoise> noise;
   Friction friction;

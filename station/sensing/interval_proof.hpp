@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "station/drive/burst.hpp"
+#include "station/drive/prepared_burst.hpp"
 #include "station/sensing/capture_block.hpp"
 #include "station/sensing/interval_result.hpp"
 #include "station/sensing/pick_up.hpp"
@@ -12,7 +12,7 @@ namespace turnpoint::sensing {
 
 /// What an interval is measured against.
 struct IntervalPlan {
-  drive::Burst burst;  ///< as planned, and accepted by drive::prepare(); its start is an absolute frame
+  drive::PreparedBurst burst;  ///< as planned; its start is an absolute frame
   int rate_Hz = 192000;
   int capture_channels = 6;
   std::vector<PickUp> pick_ups;  ///< at least one

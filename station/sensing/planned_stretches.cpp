@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "station/drive/oscillator.hpp"
-#include "station/drive/sine.hpp"
 
 namespace turnpoint::sensing {
 
@@ -15,35 +14,34 @@ struct Running {
   int channel = 0;
 };
 
-Running running(const drive::Tone& tone, int rate_Hz) {
+Running running(const drive::PreparedTone& tone) {
   Running made;
-  made.partial.phase = drive::phase_of_angle(tone.phase_rad);
-  made.partial.increment = drive::phase_increment(tone.frequency_Hz, rate_Hz);
+  made.partial.phase = tone.phase;
+  made.partial.increment = tone.increment;
   made.partial.amplitude = tone.amplitude;
   made.channel = tone.channel;
   return made;
 }
 
 // What the synthesiser does at a change: frequencies glide linearly without a jump of phase.
-void change(std::vector<Running>& tones, const drive::Change& change, std::int64_t origin, int rate_Hz) {
+void change(std::vector<Running>& tones, const drive::PreparedChange& change, std::int64_t origin) {
   const auto since = static_cast<std::uint64_t>(change.at_frame - origin);
   const std::int64_t frames = std::max<std::int64_t>(1, change.frames);
-  for (int i = static_cast<int>(tones.size()); i < change.to.count; ++i) {
-    Running added = running(change.to.tones[static_cast<std::size_t>(i)], rate_Hz);
+  for (std::size_t i = tones.size(); i < static_cast<std::size_t>(change.count); ++i) {
+    Running added = running(change.to[i]);
+    added.partial.amplitude = 0;
     added.partial.phase += added.partial.increment * static_cast<std::uint64_t>(origin);
     tones.push_back(added);
   }
   for (std::size_t i = 0; i < tones.size(); ++i) {
     drive::Partial partial = drive::advanced(tones[i].partial, since);
-    const bool stays = static_cast<int>(i) < change.to.count;
-    const std::uint64_t target =
-        stays ? drive::phase_increment(change.to.tones[i].frequency_Hz, rate_Hz) : partial.increment;
+    const auto& to = change.to[i];
     partial.curvature =
-        static_cast<std::uint64_t>(static_cast<std::int64_t>(target - partial.increment) / frames);
+        static_cast<std::uint64_t>(static_cast<std::int64_t>(to.increment - partial.increment) / frames);
     partial = drive::advanced(partial, static_cast<std::uint64_t>(frames));
-    partial.increment = target;
+    partial.increment = to.increment;
     partial.curvature = 0;
-    partial.amplitude = stays ? change.to.tones[i].amplitude : 0;
+    partial.amplitude = to.amplitude;
     tones[i].partial = partial;
   }
 }
@@ -63,22 +61,22 @@ Stretch stretch_of(const std::vector<Running>& tones, std::int64_t origin, std::
 
 }  // namespace
 
-std::vector<Stretch> planned_stretches(const drive::Burst& burst, int rate_Hz) {
+std::vector<Stretch> planned_stretches(const drive::PreparedBurst& burst, int rate_Hz) {
   std::vector<Running> tones;
-  for (int i = 0; i < burst.tones.count; ++i)
-    tones.push_back(running(burst.tones.tones[static_cast<std::size_t>(i)], rate_Hz));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(burst.tone_count); ++i)
+    tones.push_back(running(burst.tones[i]));
   const std::int64_t start = burst.start_frame, risen = burst.ramp.frames,
                      falls = burst.length_frames - burst.ramp.frames;
   std::vector<Stretch> stretches;
   std::int64_t origin = 0;
   for (int c = 0; c <= burst.change_count; ++c) {
     const bool last = c == burst.change_count;
-    const drive::Change* next = last ? nullptr : &burst.changes[static_cast<std::size_t>(c)];
+    const drive::PreparedChange* next = last ? nullptr : &burst.changes[static_cast<std::size_t>(c)];
     const std::int64_t first = std::max(origin, risen), end = last ? falls : std::min(next->at_frame, falls);
     if (first < end)
       stretches.push_back(stretch_of(tones, start + origin, start + first, start + end, rate_Hz));
     if (last) break;
-    change(tones, *next, origin, rate_Hz);
+    change(tones, *next, origin);
     origin = next->at_frame + std::max<std::int64_t>(1, next->frames);
   }
   return stretches;

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "station/drive/burst.hpp"
+#include "station/drive/prepared_burst.hpp"
 #include "station/sensing/tone_sums.hpp"
 
 namespace turnpoint::sensing {
@@ -24,8 +24,8 @@ struct Stretch {
   std::vector<PlannedTone> tones;               ///< without those of amplitude 0
 };
 
-/// The steady stretches of a burst, as the synthesiser plays it. The burst is one that drive::prepare() has
-/// accepted. Changes that are sent while it plays are not known.
-std::vector<Stretch> planned_stretches(const drive::Burst& burst, int rate_Hz);
+/// The steady stretches of a burst, as the synthesiser plays it. Changes that are sent while it plays are not
+/// known.
+std::vector<Stretch> planned_stretches(const drive::PreparedBurst& burst, int rate_Hz);
 
 }  // namespace turnpoint::sensing

@@ -31,6 +31,9 @@ std::optional<trial::Event> event_of(const Input& input) {
       return trial::Event{input.time_ns, EventKind::xrun, input.value};
     case InputKind::heard:
       return trial::Event{input.time_ns, EventKind::heard, input.value};
+    case InputKind::measured:
+      if (input.measured->verdict < terms::Proof::refused) break;
+      return trial::Event{input.time_ns, EventKind::refuted, input.value};
     case InputKind::fault:
       return trial::Event{input.time_ns, EventKind::fault, 0};
     case InputKind::stop:

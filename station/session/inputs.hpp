@@ -3,10 +3,12 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 
+#include "station/sensing/interval_result.hpp"
 #include "station/terms/fault.hpp"
 #include "station/trial/machine.hpp"
 
@@ -30,6 +32,8 @@ enum class InputKind {
   pause,  ///< the operator wants a pause
   xrun,   ///< the drive lost frames; value 1: frames of the last stimulus, 0: frames of silence
   heard,  ///< value = index of an interval that has been played completely; never logged
+  /// what the pick-ups measured of interval `value`, in `measured`; comes before `heard` of the interval
+  measured,
   /// drive, amplifier or panel has a fault: `fault` is its kind, `text` the detail; the trial is void
   fault,
   failure,      ///< the session cannot continue; `text` says what happened
@@ -54,6 +58,7 @@ struct Input {
   std::string text;
   FaultKind fault = FaultKind::other;
   TimeQuality quality = TimeQuality::toolkit;
+  std::shared_ptr<const sensing::IntervalResult> measured;
 };
 
 /// Converts the input to an event of the trial machine; empty if the machine does not need it.

@@ -47,6 +47,14 @@ inline std::vector<Onset> schedule(drive::Stream& stream, std::span<const drive:
   return {};
 }
 
+/// The intervals with the frames at which they were scheduled.
+inline std::vector<drive::PreparedBurst> scheduled(std::span<const drive::PreparedBurst> intervals,
+                                                   const std::vector<Presented>& presented) {
+  std::vector<drive::PreparedBurst> bursts(intervals.begin(), intervals.end());
+  for (std::size_t i = 0; i < bursts.size(); ++i) bursts[i].start_frame = presented[i].start_frame;
+  return bursts;
+}
+
 inline std::optional<std::int64_t> glide_to(drive::Stream& stream, const std::vector<Presented>& presented,
                                             const drive::ToneSet& to, double seconds) {
   if (presented.empty()) return std::nullopt;

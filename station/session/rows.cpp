@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "station/text/number.hpp"
 
@@ -34,6 +35,8 @@ const char* kind_of(InputKind kind) {
       return "xrun";
     case InputKind::heard:
       return "heard";
+    case InputKind::measured:
+      return "measured";
     case InputKind::fault:
       return "fault";
     case InputKind::failure:
@@ -57,6 +60,8 @@ const char* kind_of(InputKind kind) {
 std::string value_of(const Input& input) {
   if (input.kind == InputKind::fault)
     return input.text.empty() ? name(input.fault) : fmt::format("{}: {}", name(input.fault), input.text);
+  if (input.kind == InputKind::measured)
+    return fmt::format("{} {} {}", input.value, name(input.measured->verdict), name(input.measured->cause));
   if (!input.text.empty()) return input.text;
   if (input.kind == InputKind::slider) return text::exact(input.number);
   if (input.kind == InputKind::contact && input.number >= 0)
@@ -119,6 +124,37 @@ void set_scene(records::TrialRow& row, const scene::DrivePlan& scene, std::int64
   for (auto& tone : row.tones) tone.length_frames = std::min(tone.length_frames, frame - tone.onset_frame);
   add_scene(row, scene, {0, 1, frame, end - frame});
   take_last(row, scene);
+}
+
+void add_measured(records::TrialRow& row, const sensing::IntervalResult& measured, int interval, bool first) {
+  for (const auto& tone : measured.tones)
+    for (auto& planned : row.tones) {
+      if (!tone.seen || planned.interval_index != interval || planned.scene_index != tone.stretch ||
+          planned.tone_index != tone.tone)
+        continue;
+      planned.measured_dB = tone.ratio_dB;
+      planned.measured_phase_deg = tone.phase_error_deg;
+    }
+  const auto further = [](std::optional<double>& worst, double value) {
+    if (!worst || std::abs(value) > std::abs(*worst)) worst = value;
+  };
+  for (const auto& tone : measured.tones)
+    if (tone.seen) further(row.drive_ratio_dB, tone.ratio_dB);
+  if (measured.onset_error_us) further(row.onset_error_us, *measured.onset_error_us);
+  if (!measured.tones.empty())
+    row.drive_residual_dB = std::max(row.drive_residual_dB.value_or(-1e9), measured.residual_dB);
+  const sensing::Finding now{measured.cause, measured.verdict};
+  const auto all = first ? now : sensing::concluded({{row.proof_cause, row.proof}, now});
+  row.proof = all.verdict;
+  row.proof_cause = all.cause;
+}
+
+std::string describe_proof(const records::TrialRow& row) {
+  std::string text = terms::describe(row.proof_cause);
+  if (row.drive_ratio_dB) text += fmt::format("; level {:+.1f} dB", *row.drive_ratio_dB);
+  if (row.drive_residual_dB) text += fmt::format("; residual {:.0f} dB", *row.drive_residual_dB);
+  if (row.onset_error_us) text += fmt::format("; onset {:+.0f} us", *row.onset_error_us);
+  return text;
 }
 
 records::EventRow event_row(const Input& input, int trial_index) {

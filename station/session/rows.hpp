@@ -24,6 +24,13 @@ void add_tones(records::TrialRow& row, const std::vector<scene::DrivePlan>& scen
 /// amplitude of the trial become those of scene 1.
 void set_scene(records::TrialRow& row, const scene::DrivePlan& scene, std::int64_t frame);
 
+/// Adds what was measured of an interval to the row: to the interval's tones, and to the verdict on the
+/// trial, for which the worst interval counts. `first`: no interval of this trial has been added yet.
+void add_measured(records::TrialRow& row, const sensing::IntervalResult& measured, int interval, bool first);
+
+/// Says what a pick-up found wrong with a trial, with figures: "the surface does not move (-62.1 dB)".
+std::string describe_proof(const records::TrialRow& row);
+
 records::EventRow event_row(const Input& input, int trial_index);
 
 }  // namespace turnpoint::session

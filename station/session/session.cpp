@@ -123,6 +123,8 @@ drive::StreamConfig stream_of(const rig::Rig& rig) {
 
 namespace {
 
+bool simulates_capture(const rig::Rig& rig) { return rig.capture && rig.capture->uri == "sim:"; }
+
 /// Returns the configuration of a simulated session's stream. It uses no hardware: if the rig's output is a
 /// converter, samples are discarded. Output to files and to plug-ins that the rig allows is kept.
 drive::StreamConfig simulated_stream(const rig::Rig& rig) {
@@ -131,7 +133,7 @@ drive::StreamConfig simulated_stream(const rig::Rig& rig) {
   const bool hardware = config.output.uri.starts_with("alsa:") && config.output.allow_plugin.empty();
   if (hardware) config.output.uri = "null:";
   // Do not compute samples that are discarded: half an hour has 300 million frames.
-  if (config.output.uri == "null:") config.samples = drive::Samples::passed;
+  if (config.output.uri == "null:" && !simulates_capture(rig)) config.samples = drive::Samples::passed;
   return config;
 }
 
@@ -186,7 +188,9 @@ Summary run_on(const Setup& setup, Display* display, std::unique_ptr<Stage> stag
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor) {
   if (setup.observer.empty()) return run(setup, display, inputs, open_devices(setup.rig, inputs), monitor);
   const observer::Observer observer(observer::parse(setup.observer));
-  return run_on(setup, display, virtual_stage(simulated_stream(setup.rig), observer, inputs), monitor);
+  auto room = simulates_capture(setup.rig) ? std::make_unique<SimulatedRoom>(setup.rig) : nullptr;
+  return run_on(setup, display, virtual_stage(simulated_stream(setup.rig), observer, inputs, std::move(room)),
+                monitor);
 }
 
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices, Monitor* monitor) {

@@ -35,6 +35,7 @@ class SessionRun {
     std::optional<trial::Slider> slider;  ///< the slider of an adjustment
     std::vector<Onset> onsets;            ///< onsets of all intervals; set once the intervals are scheduled
     std::size_t begun = 0;                ///< number of intervals whose presentation has begun
+    std::size_t measured = 0;             ///< number of intervals that pick-ups have measured
     bool decided = false;
     /// true if the answer came from a button, so that the touch panel's latency does not apply
     bool by_button = false;
@@ -84,7 +85,7 @@ class SessionRun {
   OperatorGate gate_;
   Summary summary_;
   int scored_ = 0, right_ = 0;
-  int voids_in_a_row_ = 0;
+  int voids_in_a_row_ = 0, refused_in_a_row_ = 0;
   std::int64_t started_ns_ = 0;
   std::vector<OnSurface> surface_;
 };

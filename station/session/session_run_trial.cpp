@@ -14,6 +14,7 @@ namespace turnpoint::session {
 namespace {
 
 constexpr int kVoidsBeforeStop = 3;
+constexpr int kRefusedBeforePage = 2;
 
 bool is_over(trial::Phase phase) {
   return phase == trial::Phase::feedback || phase == trial::Phase::late || phase == trial::Phase::interval ||
@@ -114,6 +115,11 @@ Flow SessionRun::after_trial(const records::TrialRow& row) {
   if (gate_.stop_asked()) return Flow::stop;
   const bool paused = gate_.take_pause();
   const bool is_void = row.outcome == terms::Outcome::fault;
+  // One refused stimulus can be a coincidence and is presented again; two in a row are not.
+  const bool refused = row.proof == terms::Proof::refused || row.proof == terms::Proof::stopped;
+  refused_in_a_row_ = refused ? refused_in_a_row_ + 1 : 0;
+  if ((row.proof == terms::Proof::stopped || refused_in_a_row_ >= kRefusedBeforePage) && !gate_.fault())
+    gate_.set_fault(Fault{FaultKind::vibration, describe_proof(row)});
   voids_in_a_row_ = is_void ? voids_in_a_row_ + 1 : 0;
   if (voids_in_a_row_ >= kVoidsBeforeStop) {
     gate_.stop("three trials in a row were void" +
@@ -146,6 +152,8 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
   const bool by_button = raw.kind == InputKind::button;
   const auto input = gate_.received(std::move(raw));
   gate_.note(input);
+  if (input.kind == InputKind::measured)
+    add_measured(trial.row, *input.measured, input.value, trial.measured++ == 0);
   const bool answers = input.kind == InputKind::answer || (trial.slider && input.kind == InputKind::next);
   if (answers && !trial.machine.result().response) {
     trial.row.response_time_quality = name(input.quality);
@@ -244,6 +252,8 @@ void SessionRun::leave_surface() {
 void SessionRun::finish_row(Running& trial) {
   auto& row = trial.row;
   trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_);
+  const bool good = row.proof == terms::Proof::ok || row.proof == terms::Proof::flagged;
+  if (good && trial.measured < trial.begun) row.proof = terms::Proof::unproven;
   if (trial.slider && row.response) row.response = text::exact(trial.slider->felt());
   const auto& found_for = setup_.response_offset_quality;
   const bool applies = !trial.by_button && (found_for.empty() || found_for == row.response_time_quality);

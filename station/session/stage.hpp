@@ -15,6 +15,7 @@
 #include "station/rig/rig.hpp"
 #include "station/session/devices.hpp"
 #include "station/session/inputs.hpp"
+#include "station/session/simulated_room.hpp"
 
 namespace turnpoint::session {
 
@@ -110,8 +111,9 @@ std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices dev
 
 /// Makes a stage on the virtual clock. The drive advances with the clock. The simulated observer answers,
 /// arms a simulated amplifier, and presses Continue when nothing else is left to do. `inputs` must outlive
-/// the stage. Of `inputs`, only a stop has an effect, and only between trials.
+/// the stage. Of `inputs`, only a stop has an effect, and only between trials. With a `room`, stimuli are
+/// computed sample by sample, and the surface is measured.
 std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer,
-                                     Inputs& inputs);
+                                     Inputs& inputs, std::unique_ptr<SimulatedRoom> room = nullptr);
 
 }  // namespace turnpoint::session

@@ -11,8 +11,20 @@ namespace {
 
 class VirtualStage : public Stage {
  public:
-  VirtualStage(const drive::StreamConfig& config, observer::Observer observer, Inputs& inputs)
-      : stream_(drive::open_synchronous(config)), observer_(std::move(observer)), inputs_(inputs) {
+  VirtualStage(const drive::StreamConfig& config, observer::Observer observer, Inputs& inputs,
+               std::unique_ptr<SimulatedRoom> room)
+      : stream_(drive::open_synchronous(config)),
+        observer_(std::move(observer)),
+        inputs_(inputs),
+        room_(std::move(room)) {
+    if (room_) {
+      watch_.emplace(room_->capture());
+      stream_->listen([this](std::int64_t first_frame, std::span<const std::int32_t> played) {
+        const auto frames = static_cast<std::int64_t>(played.size()) / stream_->config().output.channels;
+        if (watch_->needs(first_frame - kLead_frames, first_frame + frames))
+          watch_->push(room_->advance(first_frame, played));
+      });
+    }
     static_cast<void>(arm());  // a simulated amplifier never refuses at the start
   }
 
@@ -64,11 +76,17 @@ class VirtualStage : public Stage {
     advance_to(quiet_ns_);
     const auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
     unheard_ = presented_;
+    if (watch_) {
+      room_->expect(intervals);
+      watch_->expect(scheduled(intervals, presented_));
+    }
     return onsets;
   }
 
   std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
-    return glide_to(*stream_, presented_, to, seconds);
+    const auto at = glide_to(*stream_, presented_, to, seconds);
+    if (at && watch_) watch_->changed(presented_.size() - 1);
+    return at;
   }
 
   std::int64_t silence() override {
@@ -76,6 +94,7 @@ class VirtualStage : public Stage {
     std::erase_if(unheard_, [from](const Presented& interval) { return interval.start_frame >= from; });
     for (auto& interval : unheard_)
       interval.end_frame = std::min(interval.end_frame, from + presented_.back().ramp.frames);
+    if (watch_) watch_->cut(from);
     return quiet_ns_ = ramp_down(*stream_, presented_, now_ns_);
   }
 
@@ -122,18 +141,28 @@ class VirtualStage : public Stage {
   }
 
  private:
-  /// Reports the next interval that has been played completely, if it ends no later than `until_ns`.
+  /// Reports the next interval that has been played completely, if it ends no later than `until_ns`. What
+  /// was measured of the interval comes first.
   std::optional<Input> next_heard(std::int64_t until_ns) {
     if (unheard_.empty()) return std::nullopt;
-    const auto end_ns = stream_->time_of(unheard_.front().end_frame).value();
+    const auto interval = *interval_of(presented_, unheard_.front().burst);
+    const auto index = static_cast<std::size_t>(interval);
+    auto end_frame = unheard_.front().end_frame;
+    if (watch_) end_frame = std::max(end_frame, watch_->known_at(index));
+    const auto end_ns = stream_->time_of(end_frame).value();
     if (end_ns > until_ns) return std::nullopt;
     advance_to(end_ns);
     Input input;
     input.time_ns = now_ns_;
-    input.kind = InputKind::heard;
-    input.value = *interval_of(presented_, unheard_.front().burst);
+    input.value = interval;
     input.quality = TimeQuality::simulated;
+    if (watch_ && !std::exchange(measured_, true)) {
+      input.kind = InputKind::measured;
+      if ((input.measured = watch_->result(index))) return input;
+    }
+    input.kind = InputKind::heard;
     unheard_.erase(unheard_.begin());
+    measured_ = false;
     return input;
   }
 
@@ -168,13 +197,18 @@ class VirtualStage : public Stage {
   std::int64_t quiet_ns_ = 0;  ///< time at which the surface will be silent
   std::deque<Input> script_;   ///< what the simulated observer will do, in order of time
   std::vector<Presented> presented_, unheard_;
+  // The plate moves for this long after the drive, so it is simulated from a little earlier than is measured.
+  static constexpr std::int64_t kLead_frames = 9600;
+  std::unique_ptr<SimulatedRoom> room_;  ///< null: nothing is captured
+  std::optional<VibrationWatch> watch_;
+  bool measured_ = false;  ///< the first of unheard_ has been reported as measured
 };
 
 }  // namespace
 
 std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer,
-                                     Inputs& inputs) {
-  return std::make_unique<VirtualStage>(stream, std::move(observer), inputs);
+                                     Inputs& inputs, std::unique_ptr<SimulatedRoom> room) {
+  return std::make_unique<VirtualStage>(stream, std::move(observer), inputs, std::move(room));
 }
 
 }  // namespace turnpoint::session

@@ -29,6 +29,7 @@ constexpr Entry entries[] = {
     {FaultKind::disarmed, "disarmed", "amplifier not armed"},
     {FaultKind::limits, "limits", "safety limit reached"},
     {FaultKind::stimulus_missed, "stimulus_missed", "stimulus incomplete"},
+    {FaultKind::vibration, "vibration", "the surface did not move as planned"},
 };
 static_assert(std::size(entries) == fault_kinds.size());
 

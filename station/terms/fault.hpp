@@ -27,17 +27,18 @@ enum class FaultKind {
   /// a limit of the rig on exposure or sound level was reached, and the session cannot continue
   limits,
   stimulus_missed,  ///< frames were lost during a stimulus, or a stimulus came too late
+  vibration,        ///< the pick-up says that the surface did not move as planned
 };
 
-inline constexpr std::array fault_kinds{FaultKind::other,          FaultKind::converter_gone,
-                                        FaultKind::converter_rate, FaultKind::converter_saturated,
-                                        FaultKind::audio_silent,   FaultKind::session_silent,
-                                        FaultKind::page_silent,    FaultKind::suspended,
-                                        FaultKind::amplifier,      FaultKind::enable_line,
-                                        FaultKind::stop_pressed,   FaultKind::lines_gone,
-                                        FaultKind::touch_gone,     FaultKind::disk_full,
-                                        FaultKind::disarmed,       FaultKind::limits,
-                                        FaultKind::stimulus_missed};
+inline constexpr std::array fault_kinds{FaultKind::other,           FaultKind::converter_gone,
+                                        FaultKind::converter_rate,  FaultKind::converter_saturated,
+                                        FaultKind::audio_silent,    FaultKind::session_silent,
+                                        FaultKind::page_silent,     FaultKind::suspended,
+                                        FaultKind::amplifier,       FaultKind::enable_line,
+                                        FaultKind::stop_pressed,    FaultKind::lines_gone,
+                                        FaultKind::touch_gone,      FaultKind::disk_full,
+                                        FaultKind::disarmed,        FaultKind::limits,
+                                        FaultKind::stimulus_missed, FaultKind::vibration};
 
 /// Returns the kind's name for the log: "converter_gone", ...
 const char* name(FaultKind kind);

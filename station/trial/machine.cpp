@@ -81,6 +81,9 @@ std::vector<Action> Machine::handle(const Event& event) {
       ++result_.xruns;
       if (event.value != 0 && !decided()) end(Outcome::fault, event.time_ns);
       break;
+    case EventKind::refuted:
+      if (!decided()) end(Outcome::fault, event.time_ns);
+      break;
     case EventKind::fault:
       conclude(Outcome::fault, event.time_ns);
       break;

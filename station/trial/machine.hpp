@@ -61,6 +61,7 @@ enum class EventKind {
   touch,    ///< a touch beside the answers
   contact,  ///< value 1: finger on the surface; 0: finger lifted
   xrun,     ///< the drive lost frames; value 1: in an interval of this trial, 0: in silence
+  refuted,  ///< the surface did not move as planned in an interval; value: its index
   fault,    ///< drive, amplifier or panel cannot continue
   abort,    ///< the participant or the operator stops the trial
 };

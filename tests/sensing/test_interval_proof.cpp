@@ -47,7 +47,7 @@ drive::Burst random_burst(std::mt19937_64& random, int tones, double steady_s) {
 
 IntervalPlan plan_of(const Room& room, const drive::Burst& burst) {
   IntervalPlan plan;
-  plan.burst = burst;
+  plan.burst = drive::prepare(burst, {room.rate_Hz, 2, 24});
   plan.rate_Hz = room.rate_Hz;
   plan.capture_channels = room.channels;
   for (const SimplePickUp& pick_up : room.pick_ups) plan.pick_ups.push_back(calibrated(pick_up));

@@ -1,0 +1,101 @@
+#include "station/session/simulated_room.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <stdexcept>
+
+#include "station/scene/planner.hpp"
+
+namespace turnpoint::session {
+
+namespace {
+
+// A workshop glues the first patch 3 mm from the drive edge, and each further one 6 mm beyond.
+constexpr double kFirst_m = 3e-3, kNext_m = 6e-3;
+constexpr double kStep_Hz = 20;  // between two points of a pick-up's response
+
+plant::Setup room_of(const rig::Rig& rig) {
+  if (!rig.capture) throw std::logic_error("simulated room: the rig captures nothing");
+  plant::Setup room;
+  room.rate_Hz = rig.output.rate_Hz;
+  room.playback_channels = rig::channels(rig);
+  room.transducers.clear();
+  room.band_low_Hz = 1e9, room.band_high_Hz = 0;
+  for (const auto& t : rig.transducers) {
+    room.transducers.push_back({t.channel, 1e6 * t.m_per_full_scale.value_or(4e-6)});
+    room.band_low_Hz = std::min(room.band_low_Hz, t.low_Hz);
+    room.band_high_Hz = std::max(room.band_high_Hz, t.high_Hz);
+  }
+  room.wires.carrier_channel.reset();
+  room.capture.count = rig.capture->channels;
+  room.capture.reference = room.capture.bridge_a = room.capture.bridge_b = room.capture.lateral =
+      room.capture.marker = std::nullopt;
+  room.pickups.clear();
+  for (const auto& pick_up : rig.capture->pick_ups)
+    room.pickups.push_back({pick_up.channel, kFirst_m + kNext_m * static_cast<double>(room.pickups.size())});
+  room.surface = scene::surface_of(rig);
+  room.friction = scene::friction_of(rig);
+  return room;
+}
+
+}  // namespace
+
+SimulatedRoom::SimulatedRoom(const rig::Rig& rig) : plant_(room_of(rig)) {}
+
+void SimulatedRoom::expect(std::span<const drive::PreparedBurst> bursts) {
+  std::vector<double> frequencies;
+  const auto add = [&](std::uint64_t increment) {
+    frequencies.push_back(static_cast<double>(increment) * 0x1p-64 * plant_.setup().rate_Hz);
+  };
+  for (const auto& burst : bursts) {
+    for (std::size_t t = 0; t < static_cast<std::size_t>(burst.tone_count); ++t)
+      add(burst.tones[t].increment);
+    for (std::size_t c = 0; c < static_cast<std::size_t>(burst.change_count); ++c)
+      for (std::size_t t = 0; t < static_cast<std::size_t>(burst.changes[c].count); ++t)
+        add(burst.changes[c].to[t].increment);
+  }
+  std::sort(frequencies.begin(), frequencies.end());
+  frequencies.erase(std::unique(frequencies.begin(), frequencies.end()), frequencies.end());
+  plant_.set_tones(frequencies);
+}
+
+sensing::CaptureBlock SimulatedRoom::advance(std::int64_t first_frame, std::span<const std::int32_t> played) {
+  const auto& setup = plant_.setup();
+  const auto frames = played.size() / static_cast<std::size_t>(setup.playback_channels);
+  played_.resize(played.size());
+  std::transform(played.begin(), played.end(), played_.begin(),
+                 [](std::int32_t sample) { return 0x1p-31 * sample; });
+  captured_.resize(frames * static_cast<std::size_t>(setup.capture.count));
+  plant_.advance(played_, captured_);
+  samples_.resize(captured_.size());
+  std::transform(captured_.begin(), captured_.end(), samples_.begin(), [](double value) {
+    return static_cast<std::int32_t>(std::clamp(std::round(value * 0x1p31), -0x1p31, 0x1p31 - 1));
+  });
+  return {samples_, setup.capture.count, first_frame, setup.rate_Hz};
+}
+
+CaptureSetup SimulatedRoom::capture() const {
+  const auto& setup = plant_.setup();
+  CaptureSetup made;
+  made.rate_Hz = setup.rate_Hz;
+  made.channels = setup.capture.count;
+  made.delay_frames = setup.loop_delay_frames;
+  made.in_contact = !setup.finger.touches.empty();
+  for (std::size_t p = 0; p < setup.pickups.size(); ++p) {
+    auto& pick_up = made.pick_ups.emplace_back();
+    pick_up.channel = setup.pickups[p].channel;
+    for (const auto& transducer : setup.transducers) {
+      sensing::Transfer transfer{transducer.channel, {}, {}};
+      for (double f = setup.band_low_Hz; f <= setup.band_high_Hz; f += kStep_Hz) {
+        transfer.frequency_Hz.push_back(f);
+        transfer.response.push_back(plant_.pickup_response(p, f) * transducer.um_per_full_scale *
+                                    setup.pickups[p].full_scale_per_um);
+      }
+      pick_up.transfers.push_back(std::move(transfer));
+    }
+  }
+  return made;
+}
+
+}  // namespace turnpoint::session

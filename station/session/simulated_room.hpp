@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "station/plant/plant.hpp"
+#include "station/rig/rig.hpp"
+#include "station/session/vibration_watch.hpp"
+
+namespace turnpoint::session {
+
+/// The simulated laboratory behind the converter of a rig whose [capture] is `sim:`: the plate moves as its
+/// model says, and pick-ups near the drive edge record it.
+class SimulatedRoom {
+ public:
+  /// Throws std::logic_error if the rig captures nothing.
+  explicit SimulatedRoom(const rig::Rig& rig);
+
+  /// Tells which frequencies these bursts contain; call it before they are played.
+  void expect(std::span<const drive::PreparedBurst> bursts);
+  /// Takes what is played from `first_frame` on (interleaved, full scale 2^31) and returns what is captured
+  /// meanwhile. Frames may be left out while nothing is played.
+  sensing::CaptureBlock advance(std::int64_t first_frame, std::span<const std::int32_t> played);
+
+  /// How the station judges what it captures here. The responses of the pick-ups are those of the plate.
+  CaptureSetup capture() const;
+  plant::Plant& plant() { return plant_; }
+
+ private:
+  plant::Plant plant_;
+  std::vector<double> played_, captured_;
+  std::vector<std::int32_t> samples_;
+};
+
+}  // namespace turnpoint::session

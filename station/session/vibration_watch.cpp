@@ -1,0 +1,62 @@
+#include "station/session/vibration_watch.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+namespace turnpoint::session {
+
+VibrationWatch::VibrationWatch(CaptureSetup setup) : setup_(std::move(setup)) {}
+
+void VibrationWatch::set_delay(double frames) {
+  const std::lock_guard lock(mutex_);
+  setup_.delay_frames = frames;
+}
+
+void VibrationWatch::expect(std::span<const drive::PreparedBurst> intervals) {
+  std::vector<std::unique_ptr<sensing::IntervalProof>> proofs;
+  for (const auto& burst : intervals)
+    proofs.push_back(std::make_unique<sensing::IntervalProof>(sensing::IntervalPlan{
+        burst, setup_.rate_Hz, setup_.channels, setup_.pick_ups, setup_.delay_frames, setup_.limits}));
+  const std::lock_guard lock(mutex_);
+  proofs_ = std::move(proofs);
+}
+
+void VibrationWatch::cut(std::int64_t from_frame) {
+  const std::lock_guard lock(mutex_);
+  for (auto& proof : proofs_)
+    if (proof) proof->stopped(from_frame);
+}
+
+void VibrationWatch::changed(std::size_t interval) {
+  const std::lock_guard lock(mutex_);
+  if (interval < proofs_.size()) proofs_[interval].reset();
+}
+
+bool VibrationWatch::needs(std::int64_t first_frame, std::int64_t end_frame) const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(proofs_.begin(), proofs_.end(), [&](const auto& proof) {
+    return proof && !proof->complete() && first_frame < proof->end_frame() &&
+           end_frame > proof->first_frame();
+  });
+}
+
+void VibrationWatch::push(const sensing::CaptureBlock& block) {
+  const std::lock_guard lock(mutex_);
+  for (auto& proof : proofs_)
+    if (proof) proof->push(block);
+}
+
+std::int64_t VibrationWatch::known_at(std::size_t interval) const {
+  const std::lock_guard lock(mutex_);
+  return interval < proofs_.size() && proofs_[interval] ? proofs_[interval]->end_frame()
+                                                        : std::numeric_limits<std::int64_t>::min();
+}
+
+std::shared_ptr<const sensing::IntervalResult> VibrationWatch::result(std::size_t interval) {
+  const std::lock_guard lock(mutex_);
+  if (interval >= proofs_.size() || !proofs_[interval]) return nullptr;
+  return std::make_shared<sensing::IntervalResult>(proofs_[interval]->result(setup_.in_contact));
+}
+
+}  // namespace turnpoint::session
