@@ -54,6 +54,12 @@ void Plant::add(const Fault& fault) {
   next_change_ = captured_;
 }
 
+void Plant::repair() {
+  for (auto& fault : faults_) fault.to_frame = std::min(fault.to_frame, captured_);
+  std::erase_if(faults_, [](const Fault& fault) { return fault.to_frame <= fault.from_frame; });
+  next_change_ = captured_;
+}
+
 const Plant::Gains& Plant::gains_for(double frequency_Hz) {
   const auto found = gains_.find(frequency_Hz);
   if (found != gains_.end()) return found->second;

@@ -49,6 +49,8 @@ class Plant {
   void set_tones(std::vector<double> frequency_Hz);
   /// Adds a fault. It must begin at a frame that was not captured yet.
   void add(const Fault& fault);
+  /// Ends all faults with the next captured frame.
+  void repair();
   /// Puts this load on the surface, or takes it away, from the next frame on.
   void set_load(const Load& load) { load_ = load; }
 

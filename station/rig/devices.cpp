@@ -67,14 +67,14 @@ std::optional<std::string> read_device(TableReader& file, const std::string& key
 Capture read_capture(const text::Value& table, text::Findings& findings) {
   TableReader reader(table, "capture", findings);
   Capture capture;
-  capture.uri = read_uri(reader, {"sim:", "alsa:*"}, "\"sim:\" or \"alsa:NAME\"");
+  capture.uri = read_uri(reader, {"sim:"}, "\"sim:\"");
   capture.channels = reader.integer("channels", 1, 32);
   std::set<double> seen;
   for (const double channel : reader.numbers("pickups", {0, 31, text::Range::Ends::closed})) {
     if (channel != std::floor(channel) || channel >= capture.channels || !seen.insert(channel).second)
       reader.problem("pickups", "channel " + text::number(channel) + " is not a captured channel of its own",
                      "different whole numbers from 0 to " + std::to_string(capture.channels - 1));
-    capture.pick_ups.push_back({static_cast<int>(channel), {}});
+    capture.pick_ups.push_back(static_cast<int>(channel));
   }
   reader.finish();
   return capture;

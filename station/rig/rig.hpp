@@ -99,22 +99,11 @@ struct Marker {
   double frequency_Hz = 1000;  ///< frequency, if the marker is a tone
 };
 
-/// A sensor of the vibration on one captured channel, with its response by output channel: the captured
-/// amplitude (of full scale) and phase for a tone of full scale. From the calibration; empty without one.
-struct PickUp {
-  int channel = 0;
-  struct Response {
-    int drive_channel = 0;
-    std::vector<double> frequency_Hz, amplitude, phase_rad;
-  };
-  std::vector<Response> responses;
-};
-
-/// What the station captures of its own output: `sim:` (a simulated plate) or `alsa:NAME`.
+/// What the station captures of its own output: `sim:` (a simulated plate; only in simulated sessions).
 struct Capture {
   std::string uri;
-  int channels = 2;  ///< of the capture device
-  std::vector<PickUp> pick_ups;
+  int channels = 2;           ///< of the capture device
+  std::vector<int> pick_ups;  ///< captured channels of the sensors of vibration
 };
 
 /// Headphones that mask the audible part of a stimulus, for protocols that require it.

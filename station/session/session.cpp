@@ -16,6 +16,7 @@
 #include "station/limits/finger_account.hpp"
 #include "station/session/replay.hpp"
 #include "station/session/session_run.hpp"
+#include "station/session/simulated_room.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/clocks.hpp"
 #include "station/text/canonical.hpp"
@@ -187,8 +188,13 @@ Summary run_on(const Setup& setup, Display* display, std::unique_ptr<Stage> stag
 
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor) {
   if (setup.observer.empty()) return run(setup, display, inputs, open_devices(setup.rig, inputs), monitor);
-  const observer::Observer observer(observer::parse(setup.observer));
   auto room = simulates_capture(setup.rig) ? std::make_unique<SimulatedRoom>(setup.rig) : nullptr;
+  return run(setup, display, inputs, std::move(room), monitor);
+}
+
+Summary run(const Setup& setup, Display* display, Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
+            Monitor* monitor) {
+  const observer::Observer observer(observer::parse(setup.observer));
   return run_on(setup, display, virtual_stage(simulated_stream(setup.rig), observer, inputs, std::move(room)),
                 monitor);
 }

@@ -74,6 +74,12 @@ struct Summary {
 /// Throws text::BadInput for a setup that cannot run, store::StoreError, and std::system_error for devices.
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor = nullptr);
 
+class SimulatedRoom;
+
+/// Runs a simulated session in this room, which may have faults; null if nothing is captured.
+Summary run(const Setup& setup, Display* display, Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
+            Monitor* monitor = nullptr);
+
 /// Runs a real session with devices that are already open.
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices,
             Monitor* monitor = nullptr);

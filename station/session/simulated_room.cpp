@@ -32,8 +32,8 @@ plant::Setup room_of(const rig::Rig& rig) {
   room.capture.reference = room.capture.bridge_a = room.capture.bridge_b = room.capture.lateral =
       room.capture.marker = std::nullopt;
   room.pickups.clear();
-  for (const auto& pick_up : rig.capture->pick_ups)
-    room.pickups.push_back({pick_up.channel, kFirst_m + kNext_m * static_cast<double>(room.pickups.size())});
+  for (const int pick_up : rig.capture->pick_ups)
+    room.pickups.push_back({pick_up, kFirst_m + kNext_m * static_cast<double>(room.pickups.size())});
   room.surface = scene::surface_of(rig);
   room.friction = scene::friction_of(rig);
   return room;

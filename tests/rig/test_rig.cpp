@@ -181,6 +181,25 @@ TEST_CASE("spare channels carry a marker and masking noise", "[rig]") {
   CHECK(rig::channels(rig::load(simulated)) == 2);
 }
 
+TEST_CASE("a rig names the captured channels of its pick-ups", "[rig]") {
+  const auto with = [](const std::string& keys) {
+    return problems("[limits]", "[capture]\n" + keys + "\n[limits]");
+  };
+  const auto rig = rig::parse(
+      replaced(source(), "[limits]", "[capture]\nuri = \"sim:\"\nchannels = 4\npickups = [3, 1]\n[limits]"),
+      "r.toml");
+  REQUIRE(rig.capture);
+  CHECK(rig.capture->channels == 4);
+  CHECK(rig.capture->pick_ups == std::vector<int>{3, 1});
+  CHECK_FALSE(rig::load(simulated).capture);
+  CHECK(contains(with("uri = \"sim:\"\nchannels = 2\npickups = [2]"),
+                 "channel 2 is not a captured channel of its own; different whole numbers from 0 to 1"));
+  CHECK(contains(with("uri = \"sim:\"\nchannels = 2\npickups = [1, 1]"), "channel 1"));
+  CHECK(contains(with("uri = \"sim:\"\nchannels = 2\npickups = [0.5]"), "channel 0.5"));
+  CHECK(contains(with("uri = \"usb:\"\nchannels = 2\npickups = [0]"), "allowed: \"sim:\""));
+  CHECK(contains(with("uri = \"sim:\"\nchannels = 2"), "\"pickups\""));
+}
+
 TEST_CASE("a device may have more channels than the rig uses, not fewer", "[rig]") {
   CHECK(rig::parse(source(), "r.toml").output.device_channels == 0);
   CHECK(rig::parse(replaced(source(), "rate_Hz = 192000", "rate_Hz = 192000\ndevice_channels = 10"), "r.toml")
