@@ -54,7 +54,19 @@ void check_capture(const Setup& setup) {
   for (const auto& pickup : setup.pickups) use(pickup.channel, "pick-up");
 }
 
+constexpr std::array<std::string_view, 11> kNames{
+    "transducer dead", "transducer half", "resonance off", "frequency off", "drive late", "clip",
+    "broken bridge",   "no reference",    "finger lifts",  "gap",           "warmer"};
+
 }  // namespace
+
+std::string_view name(FaultKind kind) { return kNames.at(static_cast<std::size_t>(kind)); }
+
+std::optional<FaultKind> find_fault(std::string_view name) {
+  const auto found = std::find(kNames.begin(), kNames.end(), name);
+  if (found == kNames.end()) return std::nullopt;
+  return static_cast<FaultKind>(found - kNames.begin());
+}
 
 Condition condition_at(const Setup& setup, const std::vector<Fault>& faults, std::int64_t frame) {
   Condition c;

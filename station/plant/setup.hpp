@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "physics/friction.hpp"
@@ -107,6 +108,11 @@ enum class FaultKind {
   gap,              ///< `amount` captured frames are lost at `from_frame` (480)
   warmer            ///< surface and cells are warmer by `amount` kelvin (10)
 };
+
+/// "transducer dead", ...: the enumerators with spaces.
+std::string_view name(FaultKind kind);
+/// Empty if no kind has this name.
+std::optional<FaultKind> find_fault(std::string_view name);
 
 /// Lasts from one captured frame to another, the latter excluded.
 struct Fault {

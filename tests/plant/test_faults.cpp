@@ -34,6 +34,15 @@ struct Trial {
 
 }  // namespace
 
+TEST_CASE("each kind of fault has a name", "[plant]") {
+  CHECK(name(FaultKind::transducer_dead) == "transducer dead");
+  CHECK(name(FaultKind::broken_bridge) == "broken bridge");
+  CHECK(name(FaultKind::warmer) == "warmer");
+  for (int k = 0; k <= static_cast<int>(FaultKind::warmer); ++k)
+    CHECK(find_fault(name(static_cast<FaultKind>(k))) == static_cast<FaultKind>(k));
+  CHECK_FALSE(find_fault("dead"));
+}
+
 TEST_CASE("without a fault nothing changes", "[plant]") {
   const Trial trial({FaultKind::transducer_dead, kEnd + 1});
   CHECK(std::abs(trial.change_dB(kPickup, 30e3)) < 1e-4);
@@ -79,6 +88,21 @@ TEST_CASE("resonances that are 3 % higher change a pick-up as a tone 3 % lower w
   healthy.set_tones({30e3 / 1.03});
   for (const double x : {0.05, 0.1, 0.14}) CHECK(trial.plant.gain_at(0, x) == healthy.gain_at(0, x));
   CHECK(std::abs(trial.change_dB(kPickup + 1, 30e3)) > 0.5);
+}
+
+TEST_CASE("the surface moves on while its resonances change", "[plant]") {
+  // 1 mK changes nothing that can be seen, so the recording must go on as without a fault.
+  Plant healthy(quiet_setup());
+  const auto expected = run(healthy, kAt + 2000, tone_and_carrier);
+  Plant plant(quiet_setup());
+  plant.add({FaultKind::warmer, kAt, kNever, 1e-3});
+  const auto recording = run(plant, kAt + 2000, tone_and_carrier);
+  bool different = false;
+  for (std::int64_t n = kAt; n < kAt + 2000; ++n) {
+    REQUIRE(std::abs(recording.at(n, kPickup + 1) - expected.at(n, kPickup + 1)) < 2e-5);
+    different = different || recording.at(n, kPickup + 1) != expected.at(n, kPickup + 1);
+  }
+  CHECK(different);
 }
 
 TEST_CASE("a frequency that is 3 % off appears at the pick-ups instead of the played one", "[plant]") {
