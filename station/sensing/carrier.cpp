@@ -79,10 +79,11 @@ BridgeDemodulator::BridgeDemodulator(const BridgeOptions& options)
       // The first stage lets products alias only to where the second stops them.
       first_(low_pass(pass_Hz(options.band), middle_rate_Hz - stop_Hz(options.band), options.rate_Hz,
                       attenuation_dB),
-             options.rate_Hz / middle_rate_Hz),
+             options.rate_Hz / middle_rate_Hz, drive::phase_increment(options.carrier_Hz, options.rate_Hz),
+             {options.reference, options.bridges[0], options.bridges[1], options.bridges[2]},
+             options.channels),
       second_(low_pass(pass_Hz(options.band), stop_Hz(options.band), middle_rate_Hz, attenuation_dB),
-              middle_rate_Hz / points_per_second(options.band)),
-      increment_(drive::phase_increment(options.carrier_Hz, options.rate_Hz)) {
+              middle_rate_Hz / points_per_second(options.band)) {
   for (std::size_t i = 0; i < bridge_count; ++i) {
     cos_[i] = std::cos(options_.rotation_rad[i]);
     sin_[i] = std::sin(options_.rotation_rad[i]);
@@ -95,26 +96,15 @@ void BridgeDemodulator::check(const CaptureBlock& block) const {
                                        block.channels, block.rate_Hz, options_.channels, options_.rate_Hz));
 }
 
-bool BridgeDemodulator::add(const std::int32_t* frame) noexcept {
+bool BridgeDemodulator::add(const std::int32_t* frames, std::int64_t count) noexcept {
+  next_frame_ += first_.take(next_frame_, frames, count);
+  if (!first_.ready()) return false;
   Decimator::Lanes lanes;
-  if (frame == nullptr) {
-    lanes.fill(std::numeric_limits<double>::quiet_NaN());
-  } else {
-    // z = 2 s e^(-i phi); full scale is 1
-    const std::uint64_t phase = increment_ * static_cast<std::uint64_t>(next_frame_);
-    const double scale = 0x1p-30;
-    const double cosine = scale * drive::sine_of_phase(phase + drive::quarter_cycle);
-    const double minus_sine = -scale * drive::sine_of_phase(phase);
-    const auto put = [&](std::size_t lane, std::int32_t sample) {
-      lanes[lane] = sample * cosine;
-      lanes[lane + 1] = sample * minus_sine;
-    };
-    put(0, frame[options_.reference]);
-    for (std::size_t i = 0; i < bridge_count; ++i) put(2 * i + 2, frame[options_.bridges[i]]);
+  for (std::size_t i = 0; i < CarrierFilter::inputs; ++i) {
+    lanes[2 * i] = first_.output()[i].real();
+    lanes[2 * i + 1] = first_.output()[i].imag();
   }
-  const std::int64_t index = next_frame_++;
-  if (!first_.push(index, lanes)) return false;
-  if (!second_.push(first_.output_index(), first_.output())) return false;
+  if (!second_.push(first_.output_index(), lanes)) return false;
   finish_point();
   return true;
 }

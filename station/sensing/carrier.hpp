@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "station/sensing/capture_block.hpp"
+#include "station/sensing/carrier_filter.hpp"
 #include "station/sensing/decimator.hpp"
 
 namespace turnpoint::sensing {
@@ -100,10 +101,11 @@ class BridgeDemodulator {
     if (!started_) next_frame_ = block.first_frame;
     started_ = true;
     while (next_frame_ < block.first_frame)
-      if (add(nullptr)) take(point_);
+      if (add(nullptr, block.first_frame - next_frame_)) take(point_);
     const std::int64_t end = block.first_frame + block.frames();
     while (next_frame_ < end)
-      if (add(block.samples.data() + (next_frame_ - block.first_frame) * block.channels)) take(point_);
+      if (add(block.samples.data() + (next_frame_ - block.first_frame) * block.channels, end - next_frame_))
+        take(point_);
   }
 
   /// Playback frames from one point to the next.
@@ -111,14 +113,14 @@ class BridgeDemodulator {
 
  private:
   void check(const CaptureBlock& block) const;
-  /// Takes the next frame, or none if it is missing. True if a point is complete.
-  bool add(const std::int32_t* frame) noexcept;
+  /// Takes some of the next frames, which are missing if `frames` is null. True if a point is complete.
+  bool add(const std::int32_t* frames, std::int64_t count) noexcept;
   void finish_point() noexcept;
 
   BridgeOptions options_;
   std::array<double, bridge_count> cos_, sin_;
-  Decimator first_, second_;
-  std::uint64_t increment_;
+  CarrierFilter first_;
+  Decimator second_;
   std::int64_t next_frame_ = 0;
   bool started_ = false;
   BridgePoint point_;

@@ -1,5 +1,6 @@
 #include "station/sensing/decimator.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -7,6 +8,11 @@
 #include <utility>
 
 namespace turnpoint::sensing {
+
+namespace {
+/// Two numbers in one register, which every 64-bit processor has.
+using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
+}  // namespace
 
 std::vector<double> low_pass(double pass_Hz, double stop_Hz, double rate_Hz, double attenuation_dB) {
   const double transition = 2 * std::numbers::pi * (stop_Hz - pass_Hz) / rate_Hz;
@@ -40,13 +46,17 @@ bool Decimator::push(std::int64_t index, const Lanes& sample) noexcept {
   output_index_ = centre / factor_;
   // The filter is symmetric, so the order of time does not matter.
   const std::size_t first_part = ring_.size() - (newest_ + 1);
-  Lanes sum{};
-  const auto add = [&](const Lanes& in, double tap) {
-    for (std::size_t lane = 0; lane < lanes; ++lane) sum[lane] += in[lane] * tap;
+  double sum[lanes] = {};
+  const auto add = [&](const Lanes* in, const double* tap, std::size_t count) {
+    Pair local[lanes / 2];
+    for (std::size_t k = 0; k < lanes / 2; ++k) local[k] = Pair{sum[2 * k], sum[2 * k + 1]};
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t k = 0; k < lanes / 2; ++k) local[k] += Pair{in[i][2 * k], in[i][2 * k + 1]} * tap[i];
+    for (std::size_t k = 0; k < lanes; ++k) sum[k] = local[k / 2][k % 2];
   };
-  for (std::size_t i = 0; i < first_part; ++i) add(ring_[newest_ + 1 + i], taps_[i]);
-  for (std::size_t i = first_part; i < ring_.size(); ++i) add(ring_[i - first_part], taps_[i]);
-  output_ = sum;
+  add(ring_.data() + newest_ + 1, taps_.data(), first_part);
+  add(ring_.data(), taps_.data() + first_part, ring_.size() - first_part);
+  std::copy_n(sum, lanes, output_.begin());
   return true;
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kWidth = 8;
 constexpr std::size_t kParts = 3;
 
-std::complex<double> unit(std::uint64_t phase) noexcept {
+inline std::complex<double> unit(std::uint64_t phase) noexcept {
   return {drive::sine_of_phase(phase + drive::quarter_cycle), drive::sine_of_phase(phase)};
 }
 
@@ -50,18 +50,23 @@ ToneSums::ToneSums(std::vector<FollowedTone> tones, std::size_t inputs, int bloc
       table_(kParts * static_cast<std::size_t>(block_frames) * columns_),
       folded_(inputs * static_cast<std::size_t>(block_frames)),
       sums_(kParts * 2 * inputs * columns_),
+      phase_(tones_.size()),
       turn_(tones_.size()) {
   if (block_frames % 2 != 0 || window_frames % block_frames != 0)
     throw std::logic_error("sensing: blocks of a lock-in must be even, and its window whole blocks");
+  for (const FollowedTone& tone : tones_) part_of_frame_.push_back(of_fraction(tone.partial.increment));
   for (std::size_t t = 0; t < tones_.size(); ++t) fill(t);
+}
+
+std::uint64_t ToneSums::of_fraction(std::uint64_t increment) const noexcept {
+  return static_cast<std::uint64_t>(std::llround(static_cast<double>(increment) * delay_fraction_));
 }
 
 drive::Partial ToneSums::at(std::size_t tone, std::int64_t captured_frame) const noexcept {
   const FollowedTone& followed = tones_[tone];
   drive::Partial partial = drive::advanced(
       followed.partial, static_cast<std::uint64_t>(captured_frame - delay_ - followed.origin_frame));
-  partial.phase -=
-      static_cast<std::uint64_t>(std::llround(static_cast<double>(partial.increment) * delay_fraction_));
+  partial.phase -= partial.curvature == 0 ? part_of_frame_[tone] : of_fraction(partial.increment);
   return partial;
 }
 
@@ -125,14 +130,15 @@ void ToneSums::compute(const AlignedBlock& block, Parts parts) noexcept {
             multiply<1>(x, half, table, columns_, sums);
         }
       }
+  const auto to_middle = static_cast<std::uint64_t>(block_frames_ - 1);
   for (std::size_t t = 0; t < tones_.size(); ++t) {
     const drive::Partial partial = at(t, block.first_frame);
-    if (partial.curvature != 0) glide(block, t, partial);
-    turn_[t] =
-        partial.curvature != 0
-            ? std::complex<double>(1)
-            : unit(partial.phase + partial.increment / 2 * static_cast<std::uint64_t>(block_frames_ - 1));
+    phase_[t] = partial.phase + partial.increment / 2 * to_middle;
+    if (partial.curvature == 0) continue;
+    glide(block, t, partial);
+    phase_[t] = 0;
   }
+  for (std::size_t t = 0; t < tones_.size(); ++t) turn_[t] = unit(phase_[t]);
 }
 
 // A gliding tone has no symmetry, so its sums are computed frame by frame.

@@ -52,6 +52,7 @@ class ToneSums {
 
  private:
   drive::Partial at(std::size_t tone, std::int64_t captured_frame) const noexcept;
+  std::uint64_t of_fraction(std::uint64_t increment) const noexcept;
   void fill(std::size_t tone) noexcept;
   void fold(const AlignedBlock& block) noexcept;
   void glide(const AlignedBlock& block, std::size_t tone, const drive::Partial& partial) noexcept;
@@ -68,8 +69,10 @@ class ToneSums {
   std::vector<double> table_;  ///< [part][parity][frame after the middle][column]
   std::vector<double>
       folded_;  ///< [parity][input][frame after the middle]: sum and difference of mirrored frames
-  std::vector<double> sums_;                ///< [part][parity][input][column]
-  std::vector<std::complex<double>> turn_;  ///< e^(i phase) in the middle of the block
+  std::vector<double> sums_;                  ///< [part][parity][input][column]
+  std::vector<std::uint64_t> part_of_frame_;  ///< phase of each tone for the fraction of the delay
+  std::vector<std::uint64_t> phase_;          ///< in the middle of the block
+  std::vector<std::complex<double>> turn_;    ///< e^(i phase) in the middle of the block
 };
 
 }  // namespace turnpoint::sensing

@@ -1,0 +1,97 @@
+#include "station/sensing/carrier_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "station/drive/sine.hpp"
+
+namespace turnpoint::sensing {
+
+namespace {
+
+constexpr std::size_t kSpareOutputs = 16;  // the kept frames are moved to the front once in so many outputs
+
+/// Four numbers in one register, which every 64-bit processor has.
+using Lanes [[gnu::vector_size(CarrierFilter::inputs * sizeof(float))]] = float;
+
+Lanes lanes_of(const float (&x)[CarrierFilter::inputs]) noexcept { return Lanes{x[0], x[1], x[2], x[3]}; }
+
+}  // namespace
+
+CarrierFilter::CarrierFilter(const std::vector<double>& taps, int factor, std::uint64_t increment,
+                             const std::array<int, inputs>& channels, int stride)
+    : half_(static_cast<std::int64_t>(taps.size() / 2)),
+      factor_(factor),
+      increment_(increment),
+      channels_(channels),
+      stride_(stride),
+      kept_(taps.size() + kSpareOutputs * static_cast<std::size_t>(factor)),
+      filled_(taps.size()) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  std::fill(kept_.begin(), kept_.end(), Quad{{nan, nan, nan, nan}});
+  const double scale = 0x1p-30;  // 2, at a full scale of 2^31
+  for (std::int64_t n = 0; n <= half_; ++n) {
+    const double tap = scale * taps[static_cast<std::size_t>(half_ + n)] * (n == 0 ? 0.5 : 1);
+    const std::uint64_t phase = increment * static_cast<std::uint64_t>(n);
+    const auto even = static_cast<float>(tap * drive::sine_of_phase(phase + drive::quarter_cycle));
+    const auto odd = static_cast<float>(tap * drive::sine_of_phase(phase));
+    even_.push_back({{even, even, even, even}});
+    odd_.push_back({{odd, odd, odd, odd}});
+  }
+}
+
+std::int64_t CarrierFilter::take(std::int64_t first, const std::int32_t* frames,
+                                 std::int64_t count) noexcept {
+  // An output is complete with frame m factor + half.
+  const std::int64_t since = ((first - half_) % factor_ + factor_) % factor_;
+  const std::int64_t needed = since == 0 ? 1 : factor_ - since + 1;
+  const std::int64_t taken = std::min(count, needed);
+  append(frames, taken);
+  ready_ = taken == needed;
+  if (ready_) finish(first + taken - 1 - half_);
+  return taken;
+}
+
+void CarrierFilter::append(const std::int32_t* frames, std::int64_t count) noexcept {
+  if (filled_ + static_cast<std::size_t>(count) > kept_.size()) {
+    const auto kept = static_cast<std::size_t>(2 * half_);
+    std::copy_n(kept_.data() + filled_ - kept, kept, kept_.data());
+    filled_ = kept;
+  }
+  Quad* to = kept_.data() + filled_;
+  filled_ += static_cast<std::size_t>(count);
+  if (frames == nullptr) {
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    std::fill_n(to, count, Quad{{nan, nan, nan, nan}});
+    return;
+  }
+  for (std::int64_t n = 0; n < count; ++n, frames += stride_)
+    for (std::size_t i = 0; i < inputs; ++i) to[n].value[i] = static_cast<float>(frames[channels_[i]]);
+}
+
+void CarrierFilter::finish(std::int64_t centre) noexcept {
+  const Quad* middle = kept_.data() + filled_ - 1 - half_;
+  // Two sums each, so that an addition need not wait for the one before.
+  Lanes re[2] = {}, im[2] = {};
+  const auto add = [&](std::ptrdiff_t n, std::size_t k) {
+    const Lanes after = lanes_of(middle[n].value), before = lanes_of(middle[-n].value);
+    re[k] += (after + before) * lanes_of(even_[static_cast<std::size_t>(n)].value);
+    im[k] += (after - before) * lanes_of(odd_[static_cast<std::size_t>(n)].value);
+  };
+  for (std::ptrdiff_t n = 0; n + 1 <= half_; n += 2) {
+    add(n, 0);
+    add(n + 1, 1);
+  }
+  if (half_ % 2 == 0) add(half_, 0);
+  const Lanes sum_re = re[0] + re[1], sum_im = im[0] + im[1];
+  const std::uint64_t phase = increment_ * static_cast<std::uint64_t>(centre);
+  const double c = drive::sine_of_phase(phase + drive::quarter_cycle), s = drive::sine_of_phase(phase);
+  for (std::size_t i = 0; i < inputs; ++i) {
+    const double real = sum_re[i], imaginary = -sum_im[i];
+    output_[i] = {real * c + imaginary * s, imaginary * c - real * s};
+  }
+  output_index_ = centre / factor_;
+}
+
+}  // namespace turnpoint::sensing

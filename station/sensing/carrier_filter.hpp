@@ -1,0 +1,53 @@
+#pragma once
+#include <array>
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace turnpoint::sensing {
+
+/// Mixes four captured channels down from a carrier, filters them, and keeps every `factor`-th result:
+/// z = 2 sum h(n) s e^(-i phase), where full scale is 1 and phase is the carrier's at the absolute frame. The
+/// carrier is part of the taps, and their symmetry saves half of the products. Output m is centred on frame
+/// m * factor, so no delay is left. Missing frames, and those before the first, make all outputs NaN that
+/// they contribute to. Allocates only in the constructor.
+class CarrierFilter {
+ public:
+  static constexpr std::size_t inputs = 4;
+
+  /// `taps` are those of a low-pass filter of odd length. `channels` are places within a captured frame.
+  CarrierFilter(const std::vector<double>& taps, int factor, std::uint64_t increment,
+                const std::array<int, inputs>& channels, int stride);
+
+  /// Takes frames from number `first` on, or missing ones if `frames` is null, until an output is complete or
+  /// all are taken. Returns how many were taken. Frame numbers must continue from the previous call.
+  std::int64_t take(std::int64_t first, const std::int32_t* frames, std::int64_t count) noexcept;
+
+  bool ready() const noexcept { return ready_; }  ///< true if the last take() completed an output
+  std::int64_t output_index() const noexcept { return output_index_; }
+  const std::array<std::complex<double>, inputs>& output() const noexcept { return output_; }
+
+ private:
+  /// The four inputs of a frame, or a tap for each of them. Single precision holds the 24 bits of a
+  /// converter, and adds less than -130 dB of noise.
+  struct alignas(16) Quad {
+    float value[inputs];
+  };
+
+  void append(const std::int32_t* frames, std::int64_t count) noexcept;
+  void finish(std::int64_t centre) noexcept;
+
+  std::int64_t half_, factor_;
+  std::uint64_t increment_;
+  std::array<int, inputs> channels_;
+  std::int64_t stride_;
+  std::vector<Quad> even_, odd_;  ///< taps times cos and sin of the carrier, n frames from the centre
+  std::vector<Quad> kept_;        ///< the newest frame last
+  std::size_t filled_ = 0;
+  bool ready_ = false;
+  std::int64_t output_index_ = 0;
+  std::array<std::complex<double>, inputs> output_{};
+};
+
+}  // namespace turnpoint::sensing
