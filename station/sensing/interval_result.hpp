@@ -56,7 +56,7 @@ struct IntervalResult {
   std::optional<double> onset_error_us;  ///< half level against the plan, later is positive
   std::optional<double> found_Hz;        ///< if the cause is `frequency`: where the vibration is
   double largest_sample = 0;             ///< at the pick-ups, of full scale
-  std::int64_t lost_frames = 0;          ///< within the interval, rounded up to blocks of 0.5 ms
+  std::int64_t lost_frames = 0;          ///< within the interval, rounded up to blocks of 1 ms
 };
 
 /// One quantity that was judged.

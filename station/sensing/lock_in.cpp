@@ -52,8 +52,8 @@ bool HannWindow::take(const AlignedBlock& block, const ToneSums& sums) noexcept 
 }
 
 LockInShape LockInShape::of_rate(int rate_Hz) noexcept {
-  const int block = 2 * ((rate_Hz + 2000) / 4000);
-  return {block, 20 * block};
+  const int block = 2 * ((rate_Hz + 1000) / 2000);
+  return {block, 10 * block};
 }
 
 LockIn::LockIn(int rate_Hz, int channels, std::vector<int> inputs, std::vector<FollowedTone> tones,

@@ -41,10 +41,10 @@ class HannWindow {
 
 /// How a lock-in amplifier samples: everything in frames.
 struct LockInShape {
-  int block_frames = 96;     ///< distance of its points: 0.5 ms at 192 kHz
+  int block_frames = 192;    ///< distance of its points: 1 ms at 192 kHz
   int window_frames = 1920;  ///< 10 ms at 192 kHz
 
-  /// Points every 0.5 ms with a window of 10 ms.
+  /// Points every 1 ms with a window of 10 ms.
   static LockInShape of_rate(int rate_Hz) noexcept;
 };
 

@@ -151,7 +151,7 @@ TEST_CASE("a gap of the capture is named", "[sensing][proof]") {
   CHECK(result.verdict == Proof::lost);
   CHECK(result.cause == ProofCause::gap);
   CHECK(result.lost_frames >= 384);
-  CHECK(result.lost_frames <= 384 + 4 * 96);
+  CHECK(result.lost_frames <= 384 + 2 * 192);
 }
 
 TEST_CASE("amplitude and phase are measured to 0.01 dB and 0.1 degrees", "[sensing][proof]") {
