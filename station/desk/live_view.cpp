@@ -7,6 +7,7 @@
 #include <map>
 
 #include "station/desk/scene_figures.hpp"
+#include "station/session/rows.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::desk {
@@ -68,6 +69,15 @@ double stimulus_s(const records::TrialRow& row, int rate_Hz) {
 
 }  // namespace
 
+namespace {
+
+std::string vibration(const LiveTrial& trial) {
+  const bool measured = trial.proof != records::Proof::unproven;
+  return records::name(trial.proof) + (measured ? ": " + trial.measured : std::string());
+}
+
+}  // namespace
+
 Facts course_of(const std::vector<LiveTrial>& trials) {
   using terms::Outcome;
   std::vector<double> times;
@@ -90,6 +100,7 @@ Facts course_of(const std::vector<LiveTrial>& trials) {
   facts.emplace_back("Too late, too early", fmt::format("{}, {}", count(trials, Outcome::timeout),
                                                         count(trials, Outcome::anticipation)));
   facts.emplace_back("Void", std::to_string(count(trials, Outcome::fault) + count(trials, Outcome::aborted)));
+  if (!trials.empty()) facts.emplace_back("Vibration, last trial", vibration(trials.back()));
   facts.emplace_back("Xruns", std::to_string(xruns));
   facts.emplace_back("Touches that were not answers", std::to_string(extra));
   return facts;
@@ -203,6 +214,8 @@ void LiveView::trial_ended(const trial::TrialSpec& spec, const records::TrialRow
   trial.stimulus_s = stimulus_s(row, rig_.output.rate_Hz);
   trial.xruns = row.xruns;
   trial.extra_touches = row.extra_touches;
+  trial.proof = row.proof;
+  trial.measured = session::describe_proof(row);
   push({{}, {}, trial});
 }
 

@@ -40,6 +40,8 @@ struct LiveTrial {
   double onset_s = 0, ended_s = 0;  ///< relative to the start of the session
   double stimulus_s = 0;            ///< time for which the stimulus was presented
   int xruns = 0, extra_touches = 0;
+  records::Proof proof = records::Proof::unproven;
+  std::string measured;  ///< what the pick-up measured, in words
 };
 
 /// Describes the course of the session in words: accuracy, response times, lost frames. Pure.

@@ -32,6 +32,37 @@ std::string boundary_errors(const std::vector<store::BlockRecord>& blocks) {
          (uncertainty_mm > 0 ? text::number(uncertainty_mm, 3) + " mm (SD)" : std::string("not known"));
 }
 
+/// Says how many trials the pick-ups have proven, and why others are not: "57 ok, 2 flagged (level)".
+std::string proofs(const std::vector<store::BlockRecord>& blocks) {
+  std::map<records::Proof, int> counts;
+  std::map<records::Proof, std::map<std::string, int>> causes;
+  for (const auto& block : blocks)
+    for (const auto& row : block.trials) {
+      ++counts[row.proof];
+      if (row.proof_cause != records::ProofCause::none) ++causes[row.proof][name(row.proof_cause)];
+    }
+  std::string text;
+  for (const auto& [proof, count] : counts) {
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + name(proof);
+    std::string why;
+    for (const auto& [cause, times] : causes[proof])
+      why += (why.empty() ? "" : ", ") + cause + (times > 1 ? " " + std::to_string(times) : "");
+    if (!why.empty()) text += " (" + why + ")";
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::vector<report::MeasuredTrial> measured_trials(const std::vector<store::BlockRecord>& blocks) {
+  std::vector<report::MeasuredTrial> trials;
+  for (const auto& block : blocks)
+    for (const auto& row : block.trials)
+      if (row.drive_ratio_dB)
+        trials.push_back({row.trial_index, *row.drive_ratio_dB,
+                          row.proof != records::Proof::refused && row.proof != records::Proof::stopped &&
+                              row.proof != records::Proof::lost});
+  return trials;
+}
+
 void add_health(const store::StoredSession& stored, report::SessionData& data) {
   int xruns = 0, extra = 0, trials = 0;
   std::map<std::string, int> quality;
@@ -52,6 +83,7 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
   for (const auto& block : stored.blocks) attempts += block.start.attempt > 0;
   const auto& start = stored.session.start;
   data.health = {{"Trials stored", std::to_string(trials)},
+                 {"Vibration of the surface", proofs(stored.blocks)},
                  {"Underruns and overruns", std::to_string(xruns)},
                  {"Touches that were not answers", std::to_string(extra)},
                  {"Late screen frames", late_frames(stored.events)},
@@ -91,6 +123,7 @@ report::SessionData report_data(const std::string& database, const std::string& 
   report::add_trials(stored.blocks, protocol, data);
   data.seed = start.seed;
   add_health(stored, data);
+  data.measured = measured_trials(stored.blocks);
   return data;
 }
 

@@ -15,6 +15,7 @@ namespace {
 /// are left out of the figure. If there are more cells than kMostJoined, no line joins them.
 constexpr int kFewestOfCell = 5;
 constexpr std::size_t kMostJoined = 8;
+constexpr double kLowestLevel_dB = -40;  // a surface that hardly moves is drawn here
 
 plot::Points observed(const NamedFit& named, int series, const std::string& name) {
   plot::Points points;
@@ -172,6 +173,29 @@ std::optional<plot::Figure> settings_figure(const Summary& summary) {
     figure.charts.push_back(std::move(panel));
   }
   if (figure.charts.empty()) return std::nullopt;
+  return figure;
+}
+
+std::optional<plot::Figure> vibration_figure(const Summary& summary) {
+  if (summary.data.measured.empty()) return std::nullopt;
+  plot::Points points;
+  for (const auto& trial : summary.data.measured) {
+    points.x.push_back(trial.trial_index + 1);
+    points.y.push_back(std::max(trial.level_dB, kLowestLevel_dB));
+    points.open.push_back(!trial.counts);
+  }
+  plot::Chart chart;
+  chart.x = plot::fitted("Trial (number)", points.x, 0.03);
+  auto levels = points.y;
+  levels.insert(levels.end(), {-0.6, 0.6});  // the limits of a flag stay visible
+  chart.y = plot::fitted("Measured against plan (dB)", levels, 0.1);
+  chart.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, 0, "as planned"});
+  chart.layers.push_back(points);
+  plot::Figure figure;
+  figure.title = "Vibration of the surface";
+  figure.chart_width_px = 620;
+  figure.chart_height_px = 220;
+  figure.charts.push_back(std::move(chart));
   return figure;
 }
 

@@ -18,6 +18,9 @@ std::optional<plot::Figure> response_time_figure(const Summary& summary);
 /// Plots the settings of a slider in order of presentation, with the slider's starting positions and the mean
 /// setting.
 std::optional<plot::Figure> settings_figure(const Summary& summary);
+/// Plots the measured level of the vibration, relative to the plan, in order of presentation. Open markers
+/// are trials that are void for it.
+std::optional<plot::Figure> vibration_figure(const Summary& summary);
 /// Plots accuracy against response time, in two panels: the conditional accuracy functions, and the mean of
 /// each difficulty.
 std::optional<plot::Figure> trade_figure(const Summary& summary);

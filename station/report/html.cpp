@@ -334,6 +334,11 @@ std::string to_html(const Summary& summary) {
     html += settings_section(summary);
   }
   html += course_section(summary);
+  if (!data.measured.empty())
+    html +=
+        "<h2>Vibration of the surface</h2>\n<p class=\"soft\">Open markers: void, because the vibration was "
+        "too far from the plan.</p>\n" +
+        picture(vibration_figure(summary));
   if (!data.health.empty()) html += "<h2>The station</h2>\n" + facts(data.health);
   return html + "</body></html>\n";
 }

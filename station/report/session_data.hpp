@@ -37,6 +37,13 @@ struct StaircaseResult {
 /// A name and its text, for the head or the health table of a report.
 using Fact = std::pair<std::string, std::string>;
 
+/// How a trial's stimuli vibrated, measured against the plan.
+struct MeasuredTrial {
+  int trial_index = 0;
+  double level_dB = 0;  ///< of the tone that differs most
+  bool counts = true;   ///< false: too far from the plan, so the trial is void
+};
+
 /// All data for a report. They come from a database (desk/report_data.cpp) or from a simulated session.
 struct SessionData {
   std::string title;  ///< title of the protocol
@@ -61,6 +68,7 @@ struct SessionData {
   std::optional<std::vector<std::string>> show;
   std::vector<StaircaseResult> staircases;
   std::vector<analysis::TrialRecord> trials;
+  std::vector<MeasuredTrial> measured;  ///< empty without a pick-up
   /// Set if the answers determined the levels: intervals then come from the posterior under this prior. Empty
   /// if levels were fixed before the session: intervals then come from bootstraps.
   std::optional<analysis::Prior> prior;

@@ -104,6 +104,19 @@ TEST_CASE("the course of a session counts what was scored, and timeouts give no 
   CHECK(value_of(desk::course_of({}), "Right") == "none scored yet");
 }
 
+TEST_CASE("the course of a session says what the pick-up measured of the last trial", "[operator]") {
+  std::vector<desk::LiveTrial> trials(2);
+  const auto shown = [&] {
+    for (const auto& [label, value] : desk::course_of(trials))
+      if (label == "Vibration, last trial") return value;
+    return std::string();
+  };
+  CHECK(shown() == "unproven");
+  trials.back().proof = records::Proof::refused;
+  trials.back().measured = "the surface does not move; level -62.0 dB";
+  CHECK(shown() == "refused: the surface does not move; level -62.0 dB");
+}
+
 TEST_CASE("limits used look back one minute", "[operator]") {
   rig::Rig rig;
   rig.limits.displacement_m = 8e-6;

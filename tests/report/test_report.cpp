@@ -141,6 +141,22 @@ TEST_CASE("Degenerate sessions give statements instead of numbers", "[report]") 
   CHECK(parsed["fits"][0]["statements"].size() > 0);
 }
 
+TEST_CASE("The report draws the vibration of each trial only if a pick-up measured it", "[report]") {
+  auto data = staircase_session();
+  CHECK_FALSE(vibration_figure(summarise(data)).has_value());
+  CHECK(to_html(summarise(data)).find("Vibration of the surface") == std::string::npos);
+  data.measured = {{0, 0.1, true}, {1, -62, false}, {2, -0.2, true}};
+  const auto summary = summarise(data);
+  const auto figure = vibration_figure(summary);
+  REQUIRE(figure);
+  const auto& points = std::get<plot::Points>(figure->charts.front().layers.back());
+  CHECK(points.x == std::vector<double>{1, 2, 3});
+  CHECK(points.y == std::vector<double>{0.1, -40, -0.2});
+  CHECK(points.open == std::vector<bool>{false, true, false});
+  CHECK(to_html(summary).find("Vibration of the surface") != std::string::npos);
+  keep("vibration.svg", shown(figure));
+}
+
 TEST_CASE("A forced-choice session in dB has its threshold and 75 % point in the page", "[report]") {
   const auto summary = summarise(staircase_session());
   REQUIRE(summary.fits[0].fit.parameters);
