@@ -92,7 +92,7 @@ double lock_in_s(const std::vector<std::int32_t>& samples, const std::vector<int
 
 double proof_s(const std::vector<std::int32_t>& samples) {
   IntervalPlan plan;
-  plan.burst = eight_tones();
+  plan.burst = drive::prepare(eight_tones(), {kRate_Hz, 1, 24});
   plan.capture_channels = kChannels;
   plan.pick_ups = {flat_pick_up(4), flat_pick_up(5)};
   return best_time(kBudget_s, [&] {
