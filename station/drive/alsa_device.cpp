@@ -11,6 +11,8 @@
 namespace turnpoint::drive {
 namespace {
 
+bool captures(snd_pcm_t* pcm) { return snd_pcm_stream(pcm) == SND_PCM_STREAM_CAPTURE; }
+
 constexpr int no_conversion =
     SND_PCM_NO_AUTO_RESAMPLE | SND_PCM_NO_AUTO_FORMAT | SND_PCM_NO_AUTO_CHANNELS | SND_PCM_NO_SOFTVOL;
 
@@ -87,16 +89,17 @@ void set_layout(AlsaDevice& device, snd_pcm_hw_params_t* p, const OutputConfig& 
   snd_pcm_t* pcm = device.pcm.get();
   device.layout = {SampleFormat::s32_le, std::max(config.channels, config.device_channels)};
   if (snd_pcm_hw_params_set_format(pcm, p, SND_PCM_FORMAT_S32_LE) < 0) {
+    if (captures(pcm)) refuse(name, "does not capture 32-bit samples (S32_LE)");
     device.layout.format = SampleFormat::s24_3le;
     if (snd_pcm_hw_params_set_format(pcm, p, SND_PCM_FORMAT_S24_3LE) < 0)
       refuse(name, "accepts neither 32-bit samples (S32_LE) nor 24-bit samples (S24_3LE)");
   }
-  if (device.layout.bits() < config.bits)
+  if (!captures(pcm) && device.layout.bits() < config.bits)
     refuse(name, "accepts samples of {} bits, but the rig file says {}", device.layout.bits(), config.bits);
   const int channels = device.layout.channels;
   if (snd_pcm_hw_params_set_channels(pcm, p, static_cast<unsigned>(channels)) < 0)
-    refuse(name, "does not accept {} channels; it accepts {} (set device_channels in the rig file)", channels,
-           offered_channels(pcm, p));
+    refuse(name, "does not accept {} channels; it accepts {} (set {} in the rig file)", channels,
+           offered_channels(pcm, p), captures(pcm) ? "channels of [capture]" : "device_channels");
 }
 
 // Throws for every parameter that the device refuses. Otherwise alsa-lib would silently use another value.
@@ -121,13 +124,14 @@ void set_hardware(AlsaDevice& device, const OutputConfig& config, const std::str
   if (denominator == 0 || numerator != rate * denominator)
     refuse(name, "runs at {}/{} Hz instead of the requested {} Hz", numerator, denominator, rate);
   const int depth = snd_pcm_hw_params_get_sbits(p);
-  if (snd_pcm_type(pcm) == SND_PCM_TYPE_HW && depth > 0 && depth < config.bits)
+  if (!captures(pcm) && snd_pcm_type(pcm) == SND_PCM_TYPE_HW && depth > 0 && depth < config.bits)
     refuse(name, "the converter has {} bits, but the rig file says {}", depth, config.bits);
   device.period_frames = static_cast<snd_pcm_uframes_t>(config.period_frames);
   check(snd_pcm_hw_params_get_buffer_size(p, &device.buffer_frames), name, "reading the buffer size");
 }
 
-// On underrun the stream keeps running and plays silence; it never stops on its own.
+// On underrun the stream keeps running and plays silence; it never stops on its own. A capture keeps running
+// too, so that the number of lost frames is known.
 void set_software(const AlsaDevice& device, const std::string& name) {
   snd_pcm_t* pcm = device.pcm.get();
   snd_pcm_sw_params_t* p = nullptr;
@@ -138,8 +142,10 @@ void set_software(const AlsaDevice& device, const std::string& name) {
   check(snd_pcm_sw_params_get_boundary(p, &boundary), name, "software parameters");
   check(snd_pcm_sw_params_set_start_threshold(pcm, p, boundary), name, "start threshold");
   check(snd_pcm_sw_params_set_stop_threshold(pcm, p, boundary), name, "stop threshold");
-  check(snd_pcm_sw_params_set_silence_threshold(pcm, p, 0), name, "silence threshold");
-  check(snd_pcm_sw_params_set_silence_size(pcm, p, boundary), name, "silence size");
+  if (!captures(pcm)) {
+    check(snd_pcm_sw_params_set_silence_threshold(pcm, p, 0), name, "silence threshold");
+    check(snd_pcm_sw_params_set_silence_size(pcm, p, boundary), name, "silence size");
+  }
   check(snd_pcm_sw_params_set_avail_min(pcm, p, device.period_frames), name, "wake-up level");
   check(snd_pcm_sw_params_set_tstamp_mode(pcm, p, SND_PCM_TSTAMP_ENABLE), name, "time stamps");
   check(snd_pcm_sw_params_set_tstamp_type(pcm, p, SND_PCM_TSTAMP_TYPE_MONOTONIC), name,
@@ -182,8 +188,8 @@ void check_kernel(snd_pcm_t* pcm, const OutputConfig& config, const std::string&
   const std::unique_ptr<snd_pcm_info_t, ParamsFree> info(raw);
   check(snd_pcm_info(pcm, raw), name, "device information");
   const std::string path =
-      fmt::format("/proc/asound/card{}/pcm{}p/sub{}/hw_params", snd_pcm_info_get_card(raw),
-                  snd_pcm_info_get_device(raw), snd_pcm_info_get_subdevice(raw));
+      fmt::format("/proc/asound/card{}/pcm{}{}/sub{}/hw_params", snd_pcm_info_get_card(raw),
+                  snd_pcm_info_get_device(raw), captures(pcm) ? 'c' : 'p', snd_pcm_info_get_subdevice(raw));
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {
     if (line.rfind("rate: ", 0) != 0) continue;
@@ -208,12 +214,12 @@ struct QuietAlsa {
 
 }  // namespace
 
-AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name) {
+AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name, Direction direction) {
   const QuietAlsa quiet;
   AlsaDevice device;
   snd_pcm_t* pcm = nullptr;
-  const int opened =
-      snd_pcm_open(&pcm, name.c_str(), SND_PCM_STREAM_PLAYBACK, no_conversion | SND_PCM_NONBLOCK);
+  const auto stream = direction == Direction::capture ? SND_PCM_STREAM_CAPTURE : SND_PCM_STREAM_PLAYBACK;
+  const int opened = snd_pcm_open(&pcm, name.c_str(), stream, no_conversion | SND_PCM_NONBLOCK);
   check(opened, name,
         opened == -EBUSY ? "the device is in use by another program" : "the device cannot be opened");
   device.pcm.reset(pcm);

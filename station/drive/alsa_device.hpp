@@ -25,11 +25,14 @@ struct AlsaDevice {
   std::string chain;  ///< alsa-lib's own description of the plug-in chain that the samples pass through
 };
 
+enum class Direction { playback, capture };
+
 /// Opens a device and checks it: conversions are off, its type is hw or an allowed plug-in, the rate is
 /// exact, the format is S32_LE or else S24_3LE, the channels match the rig file, nothing in the chain
 /// converts rates, and the kernel reports the same rate. Throws OutputRefused (with what was asked and what
 /// is offered), or std::system_error with ENOENT, ENODEV, EBUSY or EACCES for a device that is currently not
-/// available.
-AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name);
+/// available. A capture must have S32_LE; the bits of its converter are not checked.
+AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name,
+                            Direction direction = Direction::playback);
 
 }  // namespace turnpoint::drive

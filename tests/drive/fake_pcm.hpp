@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace turnpoint::drive {
@@ -29,6 +30,17 @@ struct FakePcm {
   /// or to make the device fail. `before_write` is called only before writes, after the program has asked how
   /// much room the buffer has.
   std::function<void()> before_call, before_write;
+
+  /// The card's capture has its own state. In each frame of time while it runs, it captures one frame:
+  /// `wires` makes it from the frame that was played `loop_delay` frames ago. Without wires it is silent.
+  State capture_state = State::prepared;
+  int capture_channels = 1;
+  std::int64_t loop_delay = 0;
+  std::function<void(std::span<const std::int32_t> played, std::span<std::int32_t> captured)> wires;
+  std::int64_t captured = 0, taken = 0;  ///< frames since the last start
+  std::vector<std::int32_t> capture_ring, history;
+  std::function<void()>
+      before_read;  ///< called between the program's question how much there is and the read
 
   void pass(std::int64_t frames);
   /// Makes the device stop by itself: by an underrun (xrun), because the machine is suspended (suspended), or

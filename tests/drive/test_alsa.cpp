@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 
+#include "station/drive/alsa_capture.hpp"
 #include "station/drive/alsa_output.hpp"
 #include "station/drive/engine.hpp"
 #include "tests/drive/bursts.hpp"
@@ -34,6 +35,16 @@ bool opens(const OutputConfig& config) {
     return false;
   } catch (const std::system_error&) {
     return false;
+  }
+}
+
+/// Why the capture is refused; "" if it opens.
+std::string capture_refused(const OutputConfig& config) {
+  try {
+    DeviceCapture capture(config);
+    return "";
+  } catch (const std::exception& error) {
+    return error.what();
   }
 }
 
@@ -137,4 +148,30 @@ TEST_CASE("a device with more channels than the stream is opened with all its ch
   CHECK(output->config().channels == 2);
   const std::vector<std::int32_t> block(2 * 384);
   CHECK(output->write(block).taken == 384);
+}
+
+TEST_CASE("a capture is refused like a playback if alsa-lib would resample or convert",
+          "[drive][alsa][capture]") {
+  for (const char* name : resampling) {
+    INFO(name);
+    CHECK(capture_refused(config_for(name)) != "");
+    OutputConfig config = config_for(name);
+    config.allow_plugin = {"rate",  "plug",    "file",  "hooks",     "copy",         "linear", "route",
+                           "multi", "softvol", "meter", "mmap_emul", "linear_float", "null",   "asym"};
+    const bool straight = std::string(name) == "asym_over_rate";  // resamples the playback only
+    CHECK(capture_refused(config).empty() == straight);
+  }
+  CHECK(capture_refused(config_for("straight")).find("plug-in of type 'null'") != std::string::npos);
+  auto config = config_for("straight");
+  config.allow_plugin = {"null"};
+  CHECK(capture_refused(config) == "");
+  config = config_for("rated");
+  config.allow_plugin = {"rate", "null"};
+  CHECK(capture_refused(config) == "alsa:rated: resamples: the plug-in chain contains a rate converter");
+  config = config_for("compressed");
+  config.allow_plugin = {"adpcm"};
+  CHECK(capture_refused(config) == "alsa:compressed: does not capture 32-bit samples (S32_LE)");
+  config = config_for("straight");
+  config.uri = "wav:a.wav";
+  CHECK(capture_refused(config) == "capture 'wav:a.wav'; allowed is alsa:NAME");
 }
