@@ -134,6 +134,18 @@ TEST_CASE("each fault of the drive is named", "[sensing][proof]") {
     REQUIRE(proof.product);
     CHECK(name(*proof.product) == "f1 / 2");
   }
+  SECTION("phases that differ from the calibration") {
+    IntervalPlan plan = plan_of(room, three_tones());
+    for (const auto& [turn_deg, verdict] : {std::pair{15, Proof::flagged}, {40, Proof::refused}}) {
+      SimplePickUp turned = room.pick_ups[0];
+      turned.phase_rad -= turn_deg * M_PI / 180;
+      plan.pick_ups = {calibrated(turned)};
+      const IntervalResult result = proven(room, three_tones(), false, &plan);
+      CHECK(result.verdict == verdict);
+      CHECK(result.cause == ProofCause::phase);
+      CHECK(result.tones[0].phase_error_deg == Approx(turn_deg).margin(0.1));
+    }
+  }
   SECTION("nothing: the control") { check(Proof::ok, ProofCause::none); }
 }
 
@@ -401,10 +413,10 @@ TEST_CASE("silence is measured against the plan", "[sensing][proof]") {
   const auto level_of = [&](double amplitude) {
     SilenceProof proof(plan_of(room, burst));
     room.extra = [amplitude](double t) {
-      return t > -0.15 && t < -0.05 ? amplitude * std::sin(2 * M_PI * 30000 * t) : 0;
+      return t > -0.3 && t < -0.2 ? amplitude * std::sin(2 * M_PI * 30000 * t) : 0;
     };
-    const std::int64_t first = burst.start_frame - 40'000;
-    const auto samples = captured(room, burst, first, 35'000);
+    const std::int64_t first = burst.start_frame - 60'000;
+    const auto samples = captured(room, burst, first, 55'000);
     in_blocks(room, samples, first, {384}, [&](const CaptureBlock& block) { proof.push(block); });
     return proof.result();
   };
