@@ -76,9 +76,9 @@ calibrate_for_live() {
   turnpoint calibrate --rig "$1" --response main=sweep.csv --full-scale 0.1 --friction friction.csv --sound sound.csv
 }
 
-# loopback: makes a simulated sound card. hw:Loopback,1 records exactly the samples that are played on
-# hw:Loopback,0.
-loopback() { modprobe snd-aloop pcm_substreams=1; eventually 5 test -e /dev/snd/pcmC0D1c; }
+# loopback [PAIRS]: makes a simulated sound card. hw:Loopback,1 records exactly the samples that are played on
+# hw:Loopback,0. With two pairs, hw:Loopback,0,1 and hw:Loopback,1,1 are another such connection.
+loopback() { modprobe snd-aloop pcm_substreams="${1:-1}"; eventually 5 test -e /dev/snd/pcmC0D1c; }
 # record SECONDS FILE [RATE]: records raw S32_LE stereo in the background. $! is the recorder's process.
 record() { arecord -q -D hw:Loopback,1 -t raw -f S32_LE -c 2 -r "${3:-192000}" --period-size=9600 --buffer-size=192000 -d "$1" "$2" & }
 

@@ -1,0 +1,179 @@
+// plant KEY=VALUE...: the simulated laboratory between two sides of a loopback card. It captures what the
+// station plays on hw:Loopback,0,0 and plays what the station captures on hw:Loopback,1,1. Once a second it
+// prints "FRAME NORMAL_N LATERAL_N CONTACT_M AMPLITUDE_UM TEMPERATURE_C", the truth at that captured frame.
+// Exits with status 1 if it was too slow for the card even once, because frames are missing then.
+//   rig=FILE           surface, friction and transducers, from a rig file
+//   seconds=S          when to end
+//   tones=HZ,HZ...     the tones that the finger is to feel
+//   delay_ms=MS        how much silence is played first (default 250)
+//   touch=S            when the finger begins to stroke; without it there is none
+//   fault=NAME@S       a fault and when it begins, e.g. "fault=transducer dead@5"; may be repeated
+//   playback=N         channels that the station plays (default 4)
+//   from=PCM, to=PCM   the card's sides (default hw:Loopback,1,0 and hw:Loopback,0,1)
+#include <alsa/asoundlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "station/plant/plant.hpp"
+#include "station/rig/rig.hpp"
+#include "station/scene/planner.hpp"
+
+using namespace turnpoint;
+
+namespace {
+
+constexpr snd_pcm_uframes_t kPeriod = 1920;
+
+struct Arguments {
+  std::map<std::string, std::string> values{{"rig", ""},
+                                            {"seconds", "10"},
+                                            {"tones", ""},
+                                            {"delay_ms", "250"},
+                                            {"touch", ""},
+                                            {"playback", "4"},
+                                            {"from", "hw:Loopback,1,0"},
+                                            {"to", "hw:Loopback,0,1"}};
+  std::vector<std::string> faults;
+
+  const std::string& text(const std::string& key) const { return values.at(key); }
+  double number(const std::string& key) const { return std::stod(values.at(key)); }
+};
+
+Arguments read(int argc, char** argv) {
+  Arguments arguments;
+  for (int k = 1; k < argc; ++k) {
+    const std::string argument = argv[k];
+    const auto equals = argument.find('=');
+    const auto key = argument.substr(0, equals);
+    const auto value = equals == std::string::npos ? "" : argument.substr(equals + 1);
+    if (key == "fault")
+      arguments.faults.push_back(value);
+    else if (arguments.values.count(key) > 0)
+      arguments.values[key] = value;
+    else
+      throw std::invalid_argument("unknown argument: " + argument);
+  }
+  return arguments;
+}
+
+std::int64_t frame_at(const plant::Setup& setup, const std::string& seconds) {
+  return std::llround(std::stod(seconds) * setup.rate_Hz);
+}
+
+plant::Setup setup_from(const Arguments& arguments) {
+  const auto rig = rig::load(arguments.text("rig"));
+  plant::Setup setup;
+  setup.rate_Hz = rig.output.rate_Hz;
+  setup.band_high_Hz = std::min(setup.band_high_Hz, 0.45 * setup.rate_Hz);
+  setup.playback_channels = static_cast<int>(arguments.number("playback"));
+  setup.surface = scene::surface_of(rig);
+  setup.friction = scene::friction_of(rig);
+  setup.finger.fingertip_m = rig.friction.fingertip_m;
+  setup.transducers.clear();
+  for (const auto& transducer : rig.transducers)
+    setup.transducers.push_back({transducer.channel, 1e6 * transducer.m_per_full_scale.value()});
+  if (setup.playback_channels <= 3) setup.wires.carrier_channel.reset();
+  if (setup.playback_channels > 2) setup.marker_channel = 2;
+  setup.loop_delay_frames = 0;
+  if (!arguments.text("touch").empty())
+    setup.finger.touches = {{frame_at(setup, arguments.text("touch")), plant::kNever}};
+  return setup;
+}
+
+void add_faults(plant::Plant& plant, const Arguments& arguments) {
+  for (const auto& text : arguments.faults) {
+    const auto at = text.find('@');
+    const auto kind = plant::find_fault(text.substr(0, at));
+    if (!kind || at == std::string::npos) throw std::invalid_argument("not a fault: " + text);
+    plant.add({*kind, frame_at(plant.setup(), text.substr(at + 1))});
+  }
+}
+
+std::vector<double> tones_from(const Arguments& arguments) {
+  std::vector<double> tones;
+  std::istringstream list(arguments.text("tones"));
+  for (std::string tone; std::getline(list, tone, ',');) tones.push_back(std::stod(tone));
+  return tones;
+}
+
+void check(long result, const std::string& what) {
+  if (result < 0) throw std::runtime_error(what + ": " + snd_strerror(static_cast<int>(result)));
+}
+
+/// One side of the card, S32_LE, with a buffer of half a second.
+struct Side {
+  Side(const std::string& name, snd_pcm_stream_t stream, unsigned channels, unsigned rate_Hz) : what(name) {
+    check(snd_pcm_open(&pcm, name.c_str(), stream, 0), name);
+    check(snd_pcm_set_params(pcm, SND_PCM_FORMAT_S32_LE, SND_PCM_ACCESS_RW_INTERLEAVED, channels, rate_Hz, 0,
+                             500000),
+          name);
+  }
+  ~Side() { snd_pcm_close(pcm); }
+  Side(const Side&) = delete;
+  Side& operator=(const Side&) = delete;
+
+  std::string what;
+  snd_pcm_t* pcm = nullptr;
+};
+
+std::int32_t sample_of(double full_scale) {
+  return static_cast<std::int32_t>(std::clamp(full_scale * 0x1p31, -0x1p31, 0x1p31 - 1));
+}
+
+void print(const plant::Truth& truth) {
+  std::printf("%lld %.4f %.4f %.5f %.4f %.2f\n", static_cast<long long>(truth.frame), truth.normal_N,
+              truth.lateral_N, truth.finger.contact_m, truth.amplitude_um, truth.temperature_C);
+  std::fflush(stdout);
+}
+
+void run(const Arguments& arguments) {
+  plant::Plant plant(setup_from(arguments));
+  plant.set_tones(tones_from(arguments));
+  add_faults(plant, arguments);
+  const auto inputs = static_cast<std::size_t>(plant.setup().playback_channels);
+  const auto outputs = static_cast<std::size_t>(plant.setup().capture.count);
+  const auto rate_Hz = static_cast<unsigned>(plant.setup().rate_Hz);
+  Side from(arguments.text("from"), SND_PCM_STREAM_CAPTURE, static_cast<unsigned>(inputs), rate_Hz);
+  Side to(arguments.text("to"), SND_PCM_STREAM_PLAYBACK, static_cast<unsigned>(outputs), rate_Hz);
+
+  std::vector<std::int32_t> in(kPeriod * inputs), out(kPeriod * outputs);
+  std::vector<double> played(in.size()), captured(out.size());
+  const std::vector<std::int32_t> silence(
+      outputs * static_cast<std::size_t>(arguments.number("delay_ms") * rate_Hz / 1000));
+  check(snd_pcm_writei(to.pcm, silence.data(), silence.size() / outputs), to.what);
+  check(snd_pcm_start(from.pcm), from.what);
+  if (snd_pcm_state(to.pcm) != SND_PCM_STATE_RUNNING) check(snd_pcm_start(to.pcm), to.what);
+  std::int64_t next = 0;
+  while (plant.frames() < frame_at(plant.setup(), arguments.text("seconds"))) {
+    check(snd_pcm_readi(from.pcm, in.data(), kPeriod), from.what);
+    for (std::size_t k = 0; k < in.size(); ++k) played[k] = in[k] * 0x1p-31;
+    plant.advance(played, captured);
+    std::transform(captured.begin(), captured.end(), out.begin(), sample_of);
+    check(snd_pcm_writei(to.pcm, out.data(), kPeriod), to.what);
+    if (plant.frames() < next) continue;
+    print(plant.truth());
+    next += rate_Hz;
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    run(read(argc, argv));
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "plant: %s\n", error.what());
+    return 1;
+  }
+}
