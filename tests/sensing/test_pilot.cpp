@@ -36,10 +36,10 @@ std::optional<PilotEcho> heard(const Pilot& pilot, const Loop& loop, const Signa
   PilotListener listener(pilot, start, 1, 0);
   std::vector<std::int32_t> samples(100'000);
   std::mt19937_64 random(loop.seed);
-  std::normal_distribution<double> normal(0, loop.noise);
+  std::normal_distribution<double> normal(0, 1);
   for (std::size_t n = 0; n < samples.size(); ++n) {
     const auto at = static_cast<long double>(n) - 100;
-    samples[n] = converted(static_cast<double>(signal(at)) + normal(random));
+    samples[n] = converted(static_cast<double>(signal(at)) + loop.noise * normal(random));
   }
   listener.push({std::span(samples).first(5000), 1, start - 100, pilot.rate_Hz});
   listener.push({std::span(samples).subspan(5000), 1, start - 100 + 5000, pilot.rate_Hz});

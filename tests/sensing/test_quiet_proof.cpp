@@ -20,7 +20,7 @@ TEST_CASE("the proof of an interval, silence, pilot and lock-in allocate nothing
   burst.tones.tones[0] = {25000, 0.3, 0, 0};
   burst.tones.tones[1] = {30000, 0.3, 0, 0};
   IntervalPlan plan;
-  plan.burst = burst;
+  plan.burst = drive::prepare(burst, {room.rate_Hz, 1, 24});
   plan.pick_ups = {calibrated(room.pick_ups[0])};
   plan.delay_frames = room.delay_frames;
   const auto samples = captured(room, burst, 90'000, 150'000);
