@@ -22,7 +22,7 @@ struct FollowedTone {
 ///
 /// The tone's phase in the middle of a block is the playback's own integer, so no error grows with time.
 /// Within the block a table of sines is used. Their symmetry about the middle saves half of the work: a tone
-/// costs one multiplication per frame and input. Gliding tones cost about 20 times as much. Allocates only in
+/// costs one multiplication per frame and input. Gliding tones cost about 70 times as much. Allocates only in
 /// its constructor.
 class ToneSums {
  public:
