@@ -38,7 +38,7 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
   std::string bytes;
   try {
     bytes = text::read_text_file(path);
-  } catch (const std::system_error& error) {
+  } catch (const std::runtime_error& error) {
     findings.add(needed_by, "cannot read " + std::string(error.what()),
                  "write a path relative to the rig file");
     return {};

@@ -130,6 +130,8 @@ std::string describe(const Value& value) {
 std::string read_text_file(const std::string& path) try {
   return system::read_file(path, most_text_bytes);
 } catch (const std::system_error& error) {
+  if (error.code() == std::errc::no_such_file_or_directory)
+    throw BadInput({{{path, 0, 0}, "there is no such file", "check the path"}});
   if (error.code() != std::errc::file_too_large) throw;
   throw BadInput({{{path, 0, 0}, "the file has more than 4 MiB", "at most 4 MiB"}});
 }

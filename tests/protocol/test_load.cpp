@@ -190,7 +190,7 @@ TEST_CASE("the defaults that stood in are named", "[protocol]") {
 }
 
 TEST_CASE("a protocol file that is not there is a system error", "[protocol]") {
-  CHECK_THROWS_AS(protocol::load("no/such/protocol.toml"), std::system_error);
+  CHECK_THROWS_AS(protocol::load("no/such/protocol.toml"), text::BadInput);
 }
 
 TEST_CASE("a file with far too much of something is refused, and within a second", "[protocol]") {
