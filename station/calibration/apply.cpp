@@ -32,6 +32,22 @@ void apply(const Calibration::Transducer& measured, rig::Rig& rig) {
         text::number(measured.response.high_Hz * 1e-3)));
 }
 
+void apply(const rig::PickUpResponse& measured, rig::Rig& rig) {
+  auto& capture = rig.capture;
+  if (!capture || std::find(capture->pick_ups.begin(), capture->pick_ups.end(), measured.channel) ==
+                      capture->pick_ups.end())
+    throw terms::UsageError(fmt::format(
+        "the calibration has a pick-up on captured channel {}, but the rig does not", measured.channel));
+  if (std::any_of(capture->responses.begin(), capture->responses.end(), [&](const auto& other) {
+        return other.channel == measured.channel && other.drive_channel == measured.drive_channel;
+      }))
+    throw terms::UsageError(
+        fmt::format("the calibration has two responses of the pick-up on channel {} to "
+                    "output channel {}",
+                    measured.channel, measured.drive_channel));
+  capture->responses.push_back(measured);
+}
+
 std::string stem_of(const std::string& rig_path) {
   const std::filesystem::path path(rig_path);
   return (path.parent_path() / path.stem()).string() + ".calibration-";
@@ -41,6 +57,7 @@ std::string stem_of(const std::string& rig_path) {
 
 rig::Rig applied(const Calibration& calibration, rig::Rig rig) {
   for (const auto& transducer : calibration.transducers) apply(transducer, rig);
+  for (const auto& pick_up : calibration.pick_ups) apply(pick_up, rig);
   if (calibration.quality_factor) rig.surface.quality_factor = *calibration.quality_factor;
   if (calibration.boundary) rig.surface.fit = calibration.boundary->surface;
   if (!calibration.friction) return rig;

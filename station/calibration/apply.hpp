@@ -8,9 +8,9 @@
 namespace turnpoint::calibration {
 
 /// Returns the rig with the calibration's values: each transducer's response and usable band (within the
-/// rig's own), loss, the surface that measured boundaries determine, and friction, which then counts as
-/// measured. Throws terms::UsageError for a transducer that the rig does not have, or that would be left
-/// without a band.
+/// rig's own), loss, the surface that measured boundaries determine, the responses of the pick-ups, and
+/// friction, which then counts as measured. Throws terms::UsageError for a transducer or a pick-up that the
+/// rig does not have, or a transducer that would be left without a band.
 rig::Rig applied(const Calibration& calibration, rig::Rig rig);
 
 /// newest_for() returns the newest file named `RIG.calibration-YYYY-MM-DD.toml` beside the rig file; "" if

@@ -90,7 +90,8 @@ std::vector<std::string> problems(const Calibration& calibration, const std::str
     found.push_back(
         fmt::format("the date of the calibration, {}, is in the future according to this computer's clock",
                     calibration.made_on));
-  if (calibration.transducers.empty() && !calibration.panel && !calibration.boundary)
+  if (calibration.transducers.empty() && !calibration.panel && !calibration.boundary &&
+      calibration.pick_ups.empty())
     found.push_back("the calibration contains neither boundaries nor the response of any transducer");
   return found;
 }

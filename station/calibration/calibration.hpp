@@ -33,6 +33,7 @@ struct Calibration {
   std::optional<FrictionFit> friction;
   std::vector<SoundPoint> sound;
   std::optional<PanelLatency> panel;
+  std::vector<rig::PickUpResponse> pick_ups;
 };
 
 /// Files with measurements; "" if there is none. Their columns are:

@@ -59,6 +59,14 @@ std::string transducer_toml(const Calibration::Transducer& transducer) {
   return out + numbers("phase_deg", fit.points, [](const auto& p) { return p.phase_rad / kDegree_rad; });
 }
 
+std::string pick_up_toml(const rig::PickUpResponse& pick_up) {
+  std::string out =
+      fmt::format("\n[[pickup]]\nchannel = {}\ndrive_channel = {}\n", pick_up.channel, pick_up.drive_channel);
+  out += numbers("frequency_Hz", pick_up.points, [](const auto& p) { return p.frequency_Hz; });
+  out += numbers("amplitude", pick_up.points, [](const auto& p) { return p.amplitude; });
+  return out + numbers("phase_deg", pick_up.points, [](const auto& p) { return p.phase_rad / kDegree_rad; });
+}
+
 std::string delay_toml(const char* name, const std::optional<Delay>& delay) {
   if (!delay) return "";
   return fmt::format("{0}_s = {1}\n{0}_jitter_s = {2}\n{0}_pairs = {3}\n{0}_unmatched = {4}\n", name,
@@ -127,6 +135,25 @@ Calibration::Transducer read_transducer(const text::Value& table, text::Findings
   return transducer;
 }
 
+rig::PickUpResponse read_pick_up(const text::Value& table, text::Findings& findings) {
+  text::TableReader reader(table, "pickup", findings);
+  rig::PickUpResponse pick_up;
+  pick_up.channel = reader.integer("channel", 0, 31);
+  pick_up.drive_channel = reader.integer("drive_channel", 0, 31);
+  const auto frequency = reader.numbers("frequency_Hz", {0, 1e6, Ends::open_low, "Hz"}, 2);
+  const auto amplitude = reader.numbers("amplitude", {0, 1e6}, 2);
+  const auto phase = reader.numbers("phase_deg", {-1e6, 1e6}, 2);
+  if (same_length(reader, "amplitude", amplitude.size(), frequency.size()) &&
+      same_length(reader, "phase_deg", phase.size(), frequency.size()))
+    for (std::size_t k = 0; k < frequency.size(); ++k) {
+      if (k > 0 && frequency[k] <= frequency[k - 1])
+        reader.problem("frequency_Hz", "the values are not in ascending order");
+      pick_up.points.push_back({frequency[k], amplitude[k], phase[k] * kDegree_rad});
+    }
+  reader.finish();
+  return pick_up;
+}
+
 rig::SurfaceFit::Parameter read_parameter(const text::Value& table, std::size_t before,
                                           text::Findings& findings) {
   text::TableReader reader(table, text::titled("boundary.parameter", table), findings);
@@ -173,6 +200,8 @@ void read_tables(text::TableReader& reader, Calibration& calibration) {
   text::Findings& findings = reader.findings();
   for (const text::Value* table : reader.tables("transducer"))
     calibration.transducers.push_back(read_transducer(*table, findings));
+  for (const text::Value* table : reader.tables("pickup"))
+    calibration.pick_ups.push_back(read_pick_up(*table, findings));
   if (const text::Value* table = reader.maybe_table("boundary"))
     calibration.boundary = read_boundary(*table, findings);
   if (const text::Value* table = reader.maybe_table("panel"))
@@ -221,6 +250,7 @@ std::string to_toml(const Calibration& c) {
   }
   if (c.panel) out += panel_toml(*c.panel);
   for (const auto& transducer : c.transducers) out += transducer_toml(transducer);
+  for (const auto& pick_up : c.pick_ups) out += pick_up_toml(pick_up);
   return out;
 }
 

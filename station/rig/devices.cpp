@@ -1,7 +1,6 @@
 #include "station/rig/devices.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include "station/text/number.hpp"
@@ -64,22 +63,6 @@ std::optional<std::string> read_device(TableReader& file, const std::string& key
   return uri;
 }
 
-Capture read_capture(const text::Value& table, text::Findings& findings) {
-  TableReader reader(table, "capture", findings);
-  Capture capture;
-  capture.uri = read_uri(reader, {"sim:"}, "\"sim:\"");
-  capture.channels = reader.integer("channels", 1, 32);
-  std::set<double> seen;
-  for (const double channel : reader.numbers("pickups", {0, 31, text::Range::Ends::closed})) {
-    if (channel != std::floor(channel) || channel >= capture.channels || !seen.insert(channel).second)
-      reader.problem("pickups", "channel " + text::number(channel) + " is not a captured channel of its own",
-                     "different whole numbers from 0 to " + std::to_string(capture.channels - 1));
-    capture.pick_ups.push_back(static_cast<int>(channel));
-  }
-  reader.finish();
-  return capture;
-}
-
 }  // namespace
 
 void read_devices(TableReader& file, Rig& rig) {
@@ -95,7 +78,6 @@ void read_devices(TableReader& file, Rig& rig) {
   rig.contact_uri = read_device(file, "contact", {"sim:", "gpio:*", "evdev:*"},
                                 "\"sim:\", \"gpio:line=LINE\" or \"evdev:DEVICE\"", {"line"},
                                 {"active", "hold_ms", "refractory_ms"});
-  if (const auto* table = file.maybe_table("capture")) rig.capture = read_capture(*table, file.findings());
   rig.touch_uri =
       read_device(file, "touch", {"sim:", "qt:", "evdev:*"}, "\"sim:\", \"qt:\" or \"evdev:DEVICE\"", {});
 }

@@ -11,7 +11,7 @@ namespace turnpoint::rig {
 std::string read_uri(text::TableReader& reader, const std::vector<std::string>& schemes,
                      const std::string& allowed);
 
-/// Reads [amplifier], [buttons], [capture], [contact] and [touch] of the file.
+/// Reads [amplifier], [buttons], [contact] and [touch] of the file.
 void read_devices(text::TableReader& file, Rig& rig);
 
 }  // namespace turnpoint::rig

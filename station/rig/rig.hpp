@@ -99,11 +99,28 @@ struct Marker {
   double frequency_Hz = 1000;  ///< frequency, if the marker is a tone
 };
 
-/// What the station captures of its own output: `sim:` (a simulated plate; only in simulated sessions).
+/// What a pick-up captures per unit of drive on one output channel; part of the calibration.
+struct PickUpResponse {
+  int channel = 0;        ///< captured channel
+  int drive_channel = 0;  ///< output channel
+  struct Point {
+    double frequency_Hz = 0;
+    double amplitude = 0;  ///< of full scale of the capture, for a tone of full scale of the output
+    double phase_rad = 0;  ///< without the delay of the loop
+  };
+  std::vector<Point> points;  ///< in order of frequency
+};
+
+/// What the station captures of its own output: `sim:` (a simulated plate; only in simulated sessions) or
+/// `alsa:NAME` (the capture of the card that plays).
 struct Capture {
   std::string uri;
   int channels = 2;           ///< of the capture device
   std::vector<int> pick_ups;  ///< captured channels of the sensors of vibration
+  int reference = 0;          ///< captured channel to which `excitation_channel` is wired
+  /// output channel of the pilot, which finds the delay of the loop; set for `alsa:`
+  std::optional<int> excitation_channel;
+  std::vector<PickUpResponse> responses;  ///< empty without a calibration of the pick-ups
 };
 
 /// Headphones that mask the audible part of a stimulus, for protocols that require it.
@@ -157,6 +174,10 @@ struct Rig {
   Limits limits;
   std::vector<std::string> defaults_used;  ///< `key = value` for each default that was used
 };
+
+/// Names of the transducers whose vibration the rig captures with a card but cannot prove, because the
+/// calibration has no response of a pick-up to them.
+std::vector<std::string> unproven_transducers(const Rig& rig);
 
 /// Reads and checks a rig file (format "friction-rig/1"). Throws text::BadInput with all problems at once, or
 /// std::system_error if the file cannot be read.

@@ -7,8 +7,8 @@ namespace turnpoint::rig {
 /// The highest channel that a stream can have.
 inline constexpr int kLastChannel = 7;
 
-/// Reads [marker] and [noise], the uses of channels that drive no transducer. Call after the transducers and
-/// the output.
+/// Reads [marker], [noise] and [capture], which use channels that drive no transducer. Call after the
+/// transducers and the output.
 void read_spare_channels(text::TableReader& file, Rig& rig);
 
 }  // namespace turnpoint::rig

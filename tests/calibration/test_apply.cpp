@@ -3,6 +3,7 @@
 
 #include "station/calibration/apply.hpp"
 #include "station/terms/usage_error.hpp"
+#include "station/text/problem.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -47,6 +48,58 @@ TEST_CASE("a transducer of another rig, or without a common band, is refused", "
   calibration.transducers[0].response.low_Hz = 70000;
   calibration.transducers[0].response.high_Hz = 80000;
   CHECK_THROWS_AS(applied(calibration, plate()), terms::UsageError);
+}
+
+TEST_CASE("a calibration tells what each pick-up captures of each transducer", "[calibration][apply]") {
+  auto rig = plate();
+  rig.capture = rig::Capture{"alsa:hw:1", 4, {1, 3}, 0, 2, {}};
+  CHECK(rig::unproven_transducers(rig) == std::vector<std::string>{rig.transducers[0].name});
+  auto calibration = measured();
+  const int drive = rig.transducers[0].channel;
+  calibration.pick_ups = {{1, drive, {{20'000, 0.1, 0.5}, {30'000, 0.2, -0.25}}}};
+  calibration.rig_name = "r", calibration.rig_sha256 = "abc", calibration.made_on = "2026-02-27";
+  const auto again = parse(to_toml(calibration), "a.toml");
+  REQUIRE(again.pick_ups.size() == 1);
+  CHECK(to_toml(again) == to_toml(calibration));
+  const auto made = applied(again, rig);
+  REQUIRE(made.capture->responses.size() == 1);
+  const auto& response = made.capture->responses[0];
+  CHECK(response.channel == 1);
+  CHECK(response.drive_channel == drive);
+  REQUIRE(response.points.size() == 2);
+  CHECK(response.points[1].frequency_Hz == 30'000);
+  CHECK(response.points[1].amplitude == 0.2);
+  CHECK(response.points[1].phase_rad == Approx(-0.25));
+  CHECK(rig::unproven_transducers(made).empty());
+  CHECK(rig::unproven_transducers(plate()).empty());  // captures nothing
+
+  calibration.pick_ups.push_back(calibration.pick_ups[0]);
+  CHECK_THROWS_WITH(applied(calibration, rig),
+                    "the calibration has two responses of the pick-up on channel 1 to output channel " +
+                        std::to_string(drive));
+  calibration.pick_ups = {{2, drive, {{20'000, 0.1, 0}, {30'000, 0.2, 0}}}};
+  CHECK_THROWS_WITH(applied(calibration, rig),
+                    "the calibration has a pick-up on captured channel 2, but the rig does not");
+  CHECK_THROWS_AS(applied(calibration, plate()), terms::UsageError);
+}
+
+TEST_CASE("a table of a pick-up must have columns of one length, in order of frequency",
+          "[calibration][apply]") {
+  const auto problem = [](const std::string& columns) {
+    Calibration calibration;
+    calibration.rig_name = "r", calibration.rig_sha256 = "abc", calibration.made_on = "2026-02-27";
+    try {
+      parse(to_toml(calibration) + "[[pickup]]\nchannel = 1\ndrive_channel = 0\n" + columns, "a.toml");
+      return std::string();
+    } catch (const text::BadInput& error) {
+      return std::string(error.what());
+    }
+  };
+  CHECK(problem("frequency_Hz = [1, 2]\namplitude = [1, 1]\nphase_deg = [0, 0]\n") == "");
+  CHECK(problem("frequency_Hz = [1, 2]\namplitude = [1]\nphase_deg = [0, 0]\n") != "");
+  CHECK(problem("frequency_Hz = [2, 1]\namplitude = [1, 1]\nphase_deg = [0, 0]\n")
+            .find("not in ascending order") != std::string::npos);
+  CHECK(problem("frequency_Hz = [1, 2]\namplitude = [1, -1]\nphase_deg = [0, 0]\n") != "");
 }
 
 TEST_CASE("the newest calibration beside a rig is found by its date", "[calibration][apply]") {

@@ -196,8 +196,35 @@ TEST_CASE("a rig names the captured channels of its pick-ups", "[rig]") {
                  "channel 2 is not a captured channel of its own; different whole numbers from 0 to 1"));
   CHECK(contains(with("uri = \"sim:\"\nchannels = 2\npickups = [1, 1]"), "channel 1"));
   CHECK(contains(with("uri = \"sim:\"\nchannels = 2\npickups = [0.5]"), "channel 0.5"));
-  CHECK(contains(with("uri = \"usb:\"\nchannels = 2\npickups = [0]"), "allowed: \"sim:\""));
+  CHECK(contains(with("uri = \"usb:\"\nchannels = 2\npickups = [0]"), "allowed: \"sim:\" or \"alsa:NAME\""));
   CHECK(contains(with("uri = \"sim:\"\nchannels = 2"), "\"pickups\""));
+}
+
+TEST_CASE("a capture on a card needs a loop: an output channel of its own, wired to a captured one",
+          "[rig]") {
+  const std::string card = "[capture]\nuri = \"alsa:hw:1\"\nchannels = 4\npickups = [1, 2]\n";
+  const auto with = [&](const std::string& keys) {
+    return problems("[limits]", "[marker]\nchannel = 1\nkind = \"pulse\"\n" + card + keys + "\n[limits]");
+  };
+  const auto rig = rig::parse(
+      replaced(source(), "[limits]", card + "reference = 3\nexcitation_channel = 4\n[limits]"), "r.toml");
+  REQUIRE(rig.capture);
+  CHECK(rig.capture->uri == "alsa:hw:1");
+  CHECK(rig.capture->reference == 3);
+  CHECK(rig.capture->excitation_channel == 4);
+  CHECK(rig::channels(rig) == 5);
+  CHECK(contains(with(""), "\"reference\""));
+  CHECK(contains(with(""), "\"excitation_channel\""));
+  CHECK(contains(with("reference = 4\nexcitation_channel = 2"),
+                 "channel 4 is not captured; a whole number from 0 to 3"));
+  CHECK(contains(with("reference = 1\nexcitation_channel = 2"), "channel 1 is also in \"pickups\""));
+  CHECK(contains(with("reference = 0\nexcitation_channel = 0"), "channel 0 drives"));
+  CHECK(contains(with("reference = 0\nexcitation_channel = 1"), "channel 1 is used by the marker"));
+  CHECK(contains(with("reference = 0\nexcitation_channel = 9"), "0 to 7"));
+  CHECK(contains(problems("[limits]",
+                          "[capture]\nuri = \"sim:\"\nchannels = 2\npickups = [0]\n"
+                          "reference = 1\n[limits]"),
+                 "\"reference\""));
 }
 
 TEST_CASE("a device may have more channels than the rig uses, not fewer", "[rig]") {
