@@ -11,6 +11,7 @@
 #include "station/cli/uncertainty.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/setup/places.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/simulation/check.hpp"
 #include "station/text/number.hpp"
 
@@ -198,7 +199,13 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
 
 void check(const Options& options, Context& context) {
   const auto rig = setup::rig_or_default(options.rig, context.err);
-  const auto result = simulation::check(options.protocol, rig, {options.sessions, true, true});
+  auto result = simulation::check(options.protocol, rig, {options.sessions, true, true});
+  if (result.problems.empty())
+    for (const auto& name : rig::unproven_transducers(setup::calibrated_rig(rig, "", context.err)))
+      result.notes.push_back(
+          {{rig, 0, 0},
+           "no pick-up is calibrated for the transducer \"" + name + "\", so its stimuli will be unproven",
+           "add [[pickup]] to the calibration"});
   if (!result.problems.empty()) context.exit_code = 2;
   for (const auto& problem : result.problems) fmt::print(context.err, "{}\n", format(problem));
   for (const auto& warning : result.warnings) fmt::print(context.err, "warning: {}\n", format(warning));

@@ -8,6 +8,7 @@
 #include "station/cli/json.hpp"
 #include "station/maintenance/doctor.hpp"
 #include "station/setup/places.hpp"
+#include "station/setup/prepare.hpp"
 
 namespace turnpoint::cli {
 
@@ -26,7 +27,7 @@ const char* word(lines::Finding::Status status) {
 }
 
 void doctor(const std::string& rig_path, const std::string& data_path, Context& context) {
-  const auto rig = rig::load(setup::rig_or_default(rig_path, context.err));
+  const auto rig = setup::calibrated_rig(setup::rig_or_default(rig_path, context.err), "", context.err);
   const auto checks = maintenance::examine(rig, data_path);
   Json list = Json::array();
   for (const auto& check : checks) {

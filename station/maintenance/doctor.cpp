@@ -16,6 +16,7 @@
 #include <fstream>
 #include <string_view>
 
+#include "station/drive/alsa_capture.hpp"
 #include "station/drive/alsa_mixer.hpp"
 #include "station/drive/engine.hpp"
 #include "station/session/stage.hpp"
@@ -92,6 +93,39 @@ void converter(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
                       "correct [output] in the rig file (aplay -l lists devices), plug the device in, or end "
                       "the program that uses it"});
   }
+}
+
+// Opens the capture device and captures for half a second.
+lines::Finding capture(const session::CardCapture& plan) {
+  const std::string mend =
+      "correct [capture] in the rig file (arecord -l lists devices), plug the device in, or end the program "
+      "that uses it";
+  try {
+    const auto opened = drive::open_capture(plan.device);
+    const auto block = std::make_unique<drive::CapturedBlock>();
+    for (int k = 0; k < 50; ++k) {
+      system::sleep_until_ns(system::monotonic_ns() + 10'000'000);
+      while (opened->take(*block)) {
+      }
+    }
+    const auto counters = opened->counters();
+    const auto lost = counters.overruns + counters.unknown_gaps;
+    const bool good = counters.frames > 0 && lost == 0;
+    return {"capture", good ? Status::ok : Status::failed,
+            fmt::format("{}: {} channels at {} Hz without conversion, {} frames captured, {} gaps",
+                        plan.device.uri, plan.device.channels, plan.device.rate_Hz, counters.frames, lost),
+            good ? "" : mend};
+  } catch (const std::exception& error) {
+    return {"capture", Status::failed, error.what(), mend};
+  }
+}
+
+lines::Finding pick_ups(const rig::Rig& rig) {
+  const auto unproven = rig::unproven_transducers(rig);
+  if (unproven.empty()) return {"pick-ups", Status::ok, "calibrated for all transducers", ""};
+  return {"pick-ups", Status::warning,
+          fmt::format("not calibrated for {}: these stimuli will be unproven", fmt::join(unproven, ", ")),
+          "add [[pickup]] tables to the calibration file (deploy/rigs/README.md, Pick-ups)"};
 }
 
 // Warns about a simulated touch panel on a rig with a real converter. A new rig file has a simulated panel,
@@ -228,6 +262,10 @@ std::vector<lines::Finding> examine(const rig::Rig& rig, const std::string& data
   std::vector<lines::Finding> checks;
   converter(rig, checks);
   converter_mute(rig, checks);
+  if (const auto plan = session::card_capture_of(rig)) {
+    checks.push_back(capture(*plan));
+    checks.push_back(pick_ups(rig));
+  }
   const auto lines = [&checks](const char* device, const std::string& uri) {
     for (auto& check : lines::check_lines(device, uri)) checks.push_back(std::move(check));
   };

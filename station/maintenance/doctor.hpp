@@ -10,8 +10,9 @@ namespace turnpoint::maintenance {
 using lines::try_input_devices;
 
 /// Examines everything on which a session on this rig depends: converter (rate, type, depth, and its clock
-/// during some seconds of silence), GPIO lines, touch, display, input devices, real-time rights, swap,
-/// watchdog, disk, clock. Changes nothing; the amplifier stays off. `data_path` is the folder for databases.
+/// during some seconds of silence), capture device and the calibration of its pick-ups, GPIO lines, touch,
+/// display, input devices, real-time rights, swap, watchdog, disk, clock. Changes nothing; the amplifier
+/// stays off. `data_path` is the folder for databases.
 std::vector<lines::Finding> examine(const rig::Rig& rig, const std::string& data_path);
 
 /// Checks that the machine does not swap: reading a page back from a memory card takes longer than an audio

@@ -2,6 +2,7 @@
 #include <functional>
 #include <memory>
 
+#include "station/drive/alsa_capture.hpp"
 #include "station/drive/amplifier.hpp"
 #include "station/drive/engine.hpp"
 #include "station/lines/buttons.hpp"
@@ -12,12 +13,14 @@
 namespace turnpoint::session {
 
 /// The devices of a real session. `buttons` is null if the rig has neither buttons nor contact. Tests may
-/// replace the stream and the clocks.
+/// replace the stream, the capture and the clocks.
 struct Devices {
   std::unique_ptr<drive::Amplifier> amplifier;
   std::unique_ptr<lines::Buttons> buttons;
   std::function<std::unique_ptr<drive::Stream>(const drive::StreamConfig&)> open_stream =
       drive::open_realtime;
+  std::function<std::unique_ptr<drive::Capture>(const drive::OutputConfig&)> open_capture =
+      drive::open_capture;
   std::function<system::Clocks()> clocks = system::read_clocks;
 };
 

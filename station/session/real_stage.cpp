@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <deque>
 #include <utility>
 
 #include "station/drive/recovery.hpp"
@@ -22,15 +23,24 @@ constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
 // longest wait for the first position of a restarted device
 constexpr std::int64_t kFirstPosition_ns = 500'000'000;
 constexpr std::int64_t kHeard_ns = 1'000'000'000;  // longest wait for the report that an interval was played
+constexpr std::int64_t kPilot_ns = 1'000'000'000;  // beyond the longest time in which a pilot comes back
+constexpr std::int64_t kMeasured_ns = 1'000'000'000;  // longest wait for what was captured of an interval
+// A proof needs captured frames from before the onset, so it must be expected this long before.
+constexpr std::int64_t kExpected_ns = 50'000'000;
 // time from the end of the last stimulus to switching the amplifier off
 constexpr std::int64_t kTail_ns = 20'000'000;
 
 class RealStage : public Stage {
  public:
-  RealStage(drive::StreamConfig config, Devices devices, Inputs& inputs)
+  RealStage(drive::StreamConfig config, Devices devices, Inputs& inputs,
+            const std::optional<CardCapture>& capture)
       : devices_(std::move(devices)), inputs_(inputs), clocks_(devices_.clocks()) {
     config.amplifier = devices_.amplifier.get();
     stream_ = devices_.open_stream(config);
+    if (!capture) return;
+    pilot_ = capture->pilot;
+    reference_ = capture->reference;
+    feed_ = std::make_unique<CaptureFeed>(devices_.open_capture(capture->device), *capture);
   }
 
   std::int64_t now_ns() override { return system::monotonic_ns(); }
@@ -50,6 +60,7 @@ class RealStage : public Stage {
     // Forget the stimuli of the previous trial, so that late reports about them cannot reach the next trial.
     presented_.clear();
     unheard_ = 0;
+    unmeasured_.clear();
     lost_ns_.reset();
     const auto gathered = inputs_.drain();
     return {gathered.begin(), gathered.end()};
@@ -68,7 +79,10 @@ class RealStage : public Stage {
     wait_for([&] { return now_ns() >= quiet_ns_; });
     const auto until_ns = now_ns() + kFirstPosition_ns;
     wait_for([&] { return stream_->clock().pairs > 0 || now_ns() > until_ns; });
-    auto onsets = schedule(*stream_, intervals, std::max(earliest_ns, opened_ns_ + kSettle_ns), presented_);
+    earliest_ns = std::max(earliest_ns, opened_ns_ + kSettle_ns);
+    if (feed_) earliest_ns = std::max(earliest_ns, now_ns() + kExpected_ns);
+    auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
+    if (feed_ && !onsets.empty()) feed_->watch().expect(scheduled(intervals, presented_));
     if (onsets.empty())
       push_fault(now_ns(), FaultKind::stimulus_missed,
                  "the converter does not report which frame it is playing");
@@ -80,7 +94,9 @@ class RealStage : public Stage {
   }
 
   std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
-    return glide_to(*stream_, presented_, to, seconds);
+    const auto at = glide_to(*stream_, presented_, to, seconds);
+    if (at && feed_) feed_->watch().changed(presented_.size() - 1);
+    return at;
   }
 
   std::int64_t silence() override {
@@ -88,6 +104,7 @@ class RealStage : public Stage {
     // report.
     const auto from = stream_->earliest_frame();
     if (!presented_.empty() && presented_.back().start_frame >= from) unheard_ = 0;
+    if (feed_) feed_->watch().cut(stream_->counters().frames);
     const auto silent_ns = ramp_down(*stream_, presented_, now_ns());
     return quiet_ns_ = lost_ns_.value_or(silent_ns);
   }
@@ -111,6 +128,7 @@ class RealStage : public Stage {
   drive::AmplifierState amplifier() const override { return devices_.amplifier->state(); }
 
   Refusal open_amplifier() override {
+    if (const auto refusal = align()) return refusal;
     closing_ = false;
     if (amplifier() == drive::AmplifierState::enabled) return std::nullopt;
     opened_ns_ = now_ns();
@@ -126,7 +144,10 @@ class RealStage : public Stage {
   void question(const observer::Question&, std::int64_t) override {}
   void adjustment(const observer::Adjustment&, std::int64_t) override {}
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
-  std::string realtime_rights() const override { return describe(stream_->rights()); }
+  std::string realtime_rights() const override {
+    const auto playback = describe(stream_->rights());
+    return feed_ ? playback + "; capture: " + describe(feed_->rights()) : playback;
+  }
 
   void finish() override {
     closing_ = true;
@@ -136,6 +157,38 @@ class RealStage : public Stage {
 
  private:
   drive::Amplifier& amplifier_() { return *devices_.amplifier; }
+
+  /// Finds the delay from playback to capture, unless it is known, while the amplifier is off.
+  Refusal align() {
+    if (!feed_ || feed_->aligned()) return std::nullopt;
+    closing_ = true;
+    wait_for([this] { return amplifier() != drive::AmplifierState::enabled; });
+    feed_->listen(stream_->schedule_soon(sensing::pilot_burst(pilot_, 0)).start_frame);
+    const auto until_ns = now_ns() + static_cast<std::int64_t>(1e9 * feed_->longest_wait_s()) + kPilot_ns;
+    wait_for([&] { return feed_->pilot() != CaptureFeed::Pilot::awaited || now_ns() > until_ns; });
+    if (feed_->aligned()) return std::nullopt;
+    if (!feed_->counters().present) return Fault{FaultKind::capture, "the capture device is disconnected"};
+    return Fault{FaultKind::capture,
+                 fmt::format("the pilot on output channel {} was not heard on captured channel {}",
+                             pilot_.channel, reference_)};
+  }
+
+  /// Reports the intervals whose samples have been captured. What was measured of an interval comes first.
+  void measure(std::int64_t now) {
+    while (!unmeasured_.empty()) {
+      const auto [interval, limit_ns] = unmeasured_.front();
+      auto& watch = feed_->watch();
+      const auto index = static_cast<std::size_t>(interval);
+      if (feed_->aligned() && feed_->end_frame() < watch.known_at(index) && now < limit_ns) return;
+      unmeasured_.pop_front();
+      Input input;
+      input.time_ns = now;
+      input.kind = InputKind::measured;
+      input.value = interval;
+      if ((input.measured = watch.result(index))) inputs_.push(std::move(input));
+      push(InputKind::heard, now, "", interval);
+    }
+  }
 
   /// Reports to the guard that the session thread is alive, and passes on the page's own latest report.
   void show_life() {
@@ -152,6 +205,7 @@ class RealStage : public Stage {
       closing_ = false;
     }
     while (const auto event = stream_->poll()) hear(*event, now);
+    measure(now);
     look_at_samples();
     if (unheard_ > 0 && now > quiet_ns_ + kHeard_ns) {
       unheard_ = 0;
@@ -190,6 +244,7 @@ class RealStage : public Stage {
     const auto interval = interval_of(presented_, event.burst);
     switch (event.kind) {
       case drive::EventKind::underrun:
+        if (feed_ && event.retimed) feed_->misalign();
         push(InputKind::xrun, now, fmt::format("{} frames lost from frame {}", event.frames, event.frame),
              interval ? 1 : 0);
         if (underruns_.exceeded_by(now))
@@ -199,6 +254,7 @@ class RealStage : public Stage {
       case drive::EventKind::burst_missed:
         return push_fault(now, FaultKind::stimulus_missed, "a stimulus came too late to be played");
       case drive::EventKind::device_lost:
+        if (feed_) feed_->misalign();
         unheard_ = 0;  // the trial is void, so do not wait for reports about its intervals
         if (!presented_.empty()) lost_ns_ = later(first_onset_, event.frame - first_onset_.frame);
         amplifier_().trip(FaultKind::converter_gone,
@@ -217,8 +273,9 @@ class RealStage : public Stage {
         return;
       case drive::EventKind::burst_heard:
         if (!interval) return;
-        push(InputKind::heard, now, "", *interval);
         if (unheard_ > 0) --unheard_;
+        if (!feed_) return push(InputKind::heard, now, "", *interval);
+        unmeasured_.push_back({*interval, now + kMeasured_ns});
         return;
     }
   }
@@ -258,6 +315,15 @@ class RealStage : public Stage {
   Devices devices_;
   Inputs& inputs_;
   std::unique_ptr<drive::Stream> stream_;
+  std::unique_ptr<CaptureFeed> feed_;  ///< null: nothing is captured
+  sensing::Pilot pilot_;
+  int reference_ = 0;
+  /// An interval that was played, and until when to wait for its captured samples.
+  struct Unmeasured {
+    int interval = 0;
+    std::int64_t limit_ns = 0;
+  };
+  std::deque<Unmeasured> unmeasured_;
   std::vector<Presented> presented_;
   Onset first_onset_;        ///< onset of the trial's first interval
   std::size_t unheard_ = 0;  ///< number of intervals for which no `heard` report has come yet
@@ -283,8 +349,9 @@ std::string describe(const system::Rights& rights) {
                      rights.note);
 }
 
-std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices devices, Inputs& inputs) {
-  return std::make_unique<RealStage>(stream, std::move(devices), inputs);
+std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices devices, Inputs& inputs,
+                                  const std::optional<CardCapture>& capture) {
+  return std::make_unique<RealStage>(stream, std::move(devices), inputs, capture);
 }
 
 }  // namespace turnpoint::session

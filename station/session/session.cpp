@@ -200,7 +200,9 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs, std::unique_pt
 }
 
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices, Monitor* monitor) {
-  return run_on(setup, display, real_stage(stream_of(setup.rig), std::move(devices), inputs), monitor);
+  return run_on(setup, display,
+                real_stage(stream_of(setup.rig), std::move(devices), inputs, card_capture_of(setup.rig)),
+                monitor);
 }
 
 }  // namespace turnpoint::session

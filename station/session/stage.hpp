@@ -13,6 +13,7 @@
 #include "station/drive/engine.hpp"
 #include "station/observer/observer.hpp"
 #include "station/rig/rig.hpp"
+#include "station/session/capture_feed.hpp"
 #include "station/session/devices.hpp"
 #include "station/session/inputs.hpp"
 #include "station/session/simulated_room.hpp"
@@ -106,8 +107,10 @@ class Stage {
 drive::StreamConfig stream_of(const rig::Rig& rig);
 
 /// Makes a stage that runs in real time: CLOCK_MONOTONIC, the audio thread, the amplifier guard, and inputs
-/// from a display and the touch panel. `inputs` must outlive the stage.
-std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices devices, Inputs& inputs);
+/// from a display and the touch panel. `inputs` must outlive the stage. With a `capture`, the surface is
+/// measured: a pilot aligns playback and capture before the amplifier is enabled, unless they still are.
+std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices devices, Inputs& inputs,
+                                  const std::optional<CardCapture>& capture = std::nullopt);
 
 /// Makes a stage on the virtual clock. The drive advances with the clock. The simulated observer answers,
 /// arms a simulated amplifier, and presses Continue when nothing else is left to do. `inputs` must outlive

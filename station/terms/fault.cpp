@@ -30,6 +30,7 @@ constexpr Entry entries[] = {
     {FaultKind::limits, "limits", "safety limit reached"},
     {FaultKind::stimulus_missed, "stimulus_missed", "stimulus incomplete"},
     {FaultKind::vibration, "vibration", "the surface did not move as planned"},
+    {FaultKind::capture, "capture", "the surface cannot be measured"},
 };
 static_assert(std::size(entries) == fault_kinds.size());
 

@@ -28,6 +28,7 @@ enum class FaultKind {
   limits,
   stimulus_missed,  ///< frames were lost during a stimulus, or a stimulus came too late
   vibration,        ///< the pick-up says that the surface did not move as planned
+  capture,          ///< what the surface does cannot be measured: no capture device, or no pilot heard
 };
 
 inline constexpr std::array fault_kinds{FaultKind::other,           FaultKind::converter_gone,
@@ -38,7 +39,8 @@ inline constexpr std::array fault_kinds{FaultKind::other,           FaultKind::c
                                         FaultKind::stop_pressed,    FaultKind::lines_gone,
                                         FaultKind::touch_gone,      FaultKind::disk_full,
                                         FaultKind::disarmed,        FaultKind::limits,
-                                        FaultKind::stimulus_missed, FaultKind::vibration};
+                                        FaultKind::stimulus_missed, FaultKind::vibration,
+                                        FaultKind::capture};
 
 /// Returns the kind's name for the log: "converter_gone", ...
 const char* name(FaultKind kind);

@@ -1,16 +1,12 @@
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <stdexcept>
-#include <utility>
 
 #include "station/drive/device_stream.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/plan_ahead.hpp"
 #include "station/session/presented.hpp"
-#include "tests/drive/fake_pcm.hpp"
-#include "tests/session/live_room.hpp"
+#include "tests/session/card_session.hpp"
 #include "tests/session/many_tones.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -20,23 +16,13 @@
 // clock.
 
 using namespace turnpoint;
-using drive::fake_pcm;
+using namespace turnpoint::card_session;
 
 namespace {
 
 const std::string source = TURNPOINT_SOURCE_DIR;
 
-struct Buffer {
-  int period_frames, periods;
-};
 constexpr Buffer kBuffers[] = {{64, 2}, {384, 4}, {1920, 4}, {4096, 16}};
-
-void use_card(rig::Rig& rig, const Buffer& buffer) {
-  rig.output.uri = "alsa:fake";
-  rig.output.period_frames = buffer.period_frames;
-  rig.output.periods = buffer.periods;
-  rig.marker = rig::Marker{};
-}
 
 rig::Rig marked_rig(int period_frames, int periods) {
   auto rig = rig::load(source + "/deploy/rigs/simulated.toml");
@@ -171,121 +157,6 @@ TEST_CASE(
   CHECK(session::schedule(stream, bursts, now_ns, presented).empty());
   CHECK_FALSE(session::fit_of(stream));
 }
-
-namespace {
-
-using session::InputKind;
-using session::PageKind;
-using terms::FaultKind;
-
-constexpr std::int64_t kRate_Hz = 192000;
-
-/// A real stream that advances each time the session polls it. The session then takes as long as the card
-/// plays.
-struct SteppedStream : drive::DeviceStream {
-  SteppedStream(const drive::StreamConfig& config, const bool& holds, const std::function<void()>& then)
-      : DeviceStream(config), holding(holds), after_step(then) {}
-
-  std::optional<drive::Event> poll() override {
-    step();
-    after_step();
-    if (fake_pcm().now > 300 * kRate_Hz)
-      throw std::runtime_error("the session did not end within 300 s of the card's time");
-    auto event = DeviceStream::poll();
-    if (event && event->kind == drive::EventKind::burst_heard) {
-      held.push_back(*event);
-      event.reset();
-    }
-    if (event || holding || held.empty()) return event;
-    event = held.front();
-    held.pop_front();
-    return event;
-  }
-
-  const bool& holding;  ///< while true, the stream delays its reports of what was played
-  const std::function<void()> after_step;
-  std::deque<drive::Event> held;
-};
-
-/// An amplifier that follows the guard's rules on the card's clock. It has no thread of its own.
-struct RuledAmplifier : drive::Amplifier {
-  using Answer = std::optional<lines::Guard::Refusal>;
-  static Refusal refusal(const Answer& why) {
-    return why ? Refusal(terms::Fault{why->kind, ""}) : std::nullopt;
-  }
-  Refusal arm() override { return refusal(guard.arm(system::monotonic_ns())); }
-  void disarm() noexcept override { guard.disarm(); }
-  Refusal enable() override { return refusal(guard.enable(system::monotonic_ns())); }
-  void disable() noexcept override { guard.disable(); }
-  void trip(FaultKind kind, std::string_view) noexcept override { guard.trip(system::monotonic_ns(), kind); }
-  Refusal clear() override { return refusal(guard.clear()); }
-  void audio_alive() noexcept override { guard.audio_alive(system::monotonic_ns()); }
-  void session_alive() noexcept override { guard.session_alive(system::monotonic_ns()); }
-  void page_alive(std::int64_t time_ns) noexcept override { guard.page_alive(time_ns); }
-  drive::AmplifierState state() const noexcept override { return guard.state(); }
-  drive::AmplifierFault fault() const override {
-    return {{guard.fault().kind, guard.fault().detail}, guard.fault().time_ns};
-  }
-  std::int64_t reaction_ns() const noexcept override { return -1; }
-  lines::Guard guard;
-};
-
-/// Runs a live session of two trials on the card. The participant answers 0.3 s after an onset.
-struct CardSession {
-  TemporaryFolder folder;
-  session::Setup setup = live_room::live_setup(folder / "a.sqlite", "touch");
-  live_room::Room room;
-  bool holding = false;
-  bool first_answered = true;  ///< whether the participant answers the first stimulus
-  double repair_s = 0;         ///< time that the operator takes before clearing a fault
-  std::vector<std::pair<std::int64_t, std::function<void()>>> agenda;
-  std::function<void(const session::Page&)> reacts = [](const auto&) {};
-  std::vector<FaultKind> faults;
-  std::vector<std::string> details;
-  session::Summary summary;
-
-  CardSession() {
-    drive::reset_fake_pcm();
-    use_card(setup.rig, {384, 4});
-  }
-
-  void later(double s, std::function<void()> happens) {
-    agenda.emplace_back(system::monotonic_ns() + static_cast<std::int64_t>(1e9 * s), std::move(happens));
-  }
-
-  std::vector<records::TrialRow> runs() {
-    session::Devices devices;
-    devices.amplifier = std::make_unique<RuledAmplifier>();
-    devices.clocks = [] {
-      const auto now_ns = system::monotonic_ns();
-      return system::Clocks{now_ns, now_ns, now_ns};
-    };
-    devices.open_stream = [this](const drive::StreamConfig& config) {
-      return std::make_unique<SteppedStream>(config, holding, [this] {
-        const auto due = std::find_if(agenda.begin(), agenda.end(), [](const auto& entry) {
-          return entry.first <= system::monotonic_ns();
-        });
-        if (due == agenda.end()) return;
-        const auto happens = due->second;
-        agenda.erase(due);
-        happens();
-      });
-    };
-    room.reacts = [this](const session::Page& page) {
-      reacts(page);
-      if (page.kind == PageKind::fault) faults.push_back(page.fault), details.push_back(page.detail);
-      if (page.kind == PageKind::stimulus && (first_answered || room.stimuli > 1))
-        later(0.3, [this] { room.push(InputKind::answer); });
-      if (page.kind == PageKind::fault) return later(repair_s, [this, page] { room.cooperate(page); });
-      if (page.kind != PageKind::stimulus) room.cooperate(page);
-    };
-    summary = session::run(setup, &room, room.inputs, std::move(devices));
-    CHECK(summary.status == records::SessionStatus::completed);
-    return live_room::trials_of(setup.database, summary);
-  }
-};
-
-}  // namespace
 
 TEST_CASE(
     "if the converter is lost during a stimulus, exactly what was played until then is counted as exposure",

@@ -1,0 +1,142 @@
+#include "station/session/capture_feed.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <complex>
+#include <utility>
+
+namespace turnpoint::session {
+
+namespace {
+
+sensing::Pilot pilot_of(const rig::Rig& rig) {
+  sensing::Pilot pilot;
+  pilot.rate_Hz = rig.output.rate_Hz;
+  pilot.low_Hz = std::min(pilot.low_Hz, 0.115 * pilot.rate_Hz);
+  pilot.high_Hz = std::min(pilot.high_Hz, 0.24 * pilot.rate_Hz);
+  pilot.frames = pilot.rate_Hz / 200 * 2;
+  pilot.channel = *rig.capture->excitation_channel;
+  return pilot;
+}
+
+std::vector<sensing::PickUp> pick_ups_of(const rig::Capture& capture) {
+  std::vector<sensing::PickUp> pick_ups;
+  for (const int channel : capture.pick_ups) {
+    sensing::PickUp pick_up{channel, {}};
+    for (const auto& response : capture.responses) {
+      if (response.channel != channel) continue;
+      sensing::Transfer transfer{response.drive_channel, {}, {}};
+      for (const auto& point : response.points) {
+        transfer.frequency_Hz.push_back(point.frequency_Hz);
+        transfer.response.push_back(std::polar(point.amplitude, point.phase_rad));
+      }
+      pick_up.transfers.push_back(std::move(transfer));
+    }
+    pick_ups.push_back(std::move(pick_up));
+  }
+  return pick_ups;
+}
+
+}  // namespace
+
+std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
+  if (!rig.capture || !rig.capture->uri.starts_with("alsa:")) return std::nullopt;
+  CardCapture plan;
+  plan.device.uri = rig.capture->uri;
+  plan.device.rate_Hz = rig.output.rate_Hz;
+  plan.device.channels = rig.capture->channels;
+  plan.device.period_frames = rig.output.period_frames;
+  plan.device.periods = rig.output.periods;
+  plan.device.allow_plugin = rig.output.allow_plugin;
+  plan.setup.rate_Hz = rig.output.rate_Hz;
+  plan.setup.channels = rig.capture->channels;
+  plan.setup.pick_ups = pick_ups_of(*rig.capture);
+  plan.pilot = pilot_of(rig);
+  plan.reference = rig.capture->reference;
+  return plan;
+}
+
+CaptureFeed::CaptureFeed(std::unique_ptr<drive::Capture> capture, const CardCapture& plan)
+    : capture_(std::move(capture)),
+      plan_(plan),
+      // A pilot is scheduled a buffer before it is played, and captured up to a buffer before it is taken.
+      longest_wait_s_(0.5 + 2.0 * plan.device.periods * plan.device.period_frames / plan.device.rate_Hz),
+      watch_(plan.setup),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+bool CaptureFeed::aligned() const {
+  const std::lock_guard lock(mutex_);
+  return aligned_;
+}
+
+void CaptureFeed::misalign() {
+  const std::lock_guard lock(mutex_);
+  aligned_ = false;
+  if (std::exchange(listener_, nullptr)) pilot_ = Pilot::missing;
+}
+
+std::int64_t CaptureFeed::end_frame() const {
+  const std::lock_guard lock(mutex_);
+  return end_frame_;
+}
+
+CaptureFeed::Pilot CaptureFeed::pilot() const {
+  const std::lock_guard lock(mutex_);
+  return pilot_;
+}
+
+void CaptureFeed::listen(std::int64_t start_frame) {
+  auto listener = std::make_unique<sensing::PilotListener>(plan_.pilot, start_frame, plan_.device.channels,
+                                                           plan_.reference, longest_wait_s_);
+  const std::lock_guard lock(mutex_);
+  const auto counters = capture_->counters();
+  // Numbered in this way, the pilot comes back after its first frame, because it has not been played yet.
+  shift_ = start_frame - counters.frames;
+  numbering_ = counters.numbering;
+  aligned_ = false;
+  pilot_ = Pilot::awaited;
+  listener_ = std::move(listener);
+}
+
+void CaptureFeed::run(const std::stop_token& stop) {
+  const auto block = std::make_unique<drive::CapturedBlock>();
+  while (!stop.stop_requested()) {
+    const auto numbering = capture_->counters().numbering;
+    while (capture_->take(*block)) take(*block);
+    {
+      const std::lock_guard lock(mutex_);
+      if (numbering != numbering_) aligned_ = false;  // frames were lost after those that were just taken
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+}
+
+void CaptureFeed::take(const drive::CapturedBlock& captured) {
+  const std::lock_guard lock(mutex_);
+  const sensing::CaptureBlock block{captured.used(), plan_.device.channels, captured.first_frame + shift_,
+                                    plan_.device.rate_Hz};
+  if (captured.numbering != numbering_) aligned_ = false;
+  if (listener_) {
+    // A gap makes the pilot incomplete; frames from before the listening are not needed.
+    listener_->push(block);
+    if (listener_->complete()) conclude();
+    return;
+  }
+  if (!aligned_) return;
+  watch_.push(block);
+  end_frame_ = block.first_frame + block.frames();
+}
+
+void CaptureFeed::conclude() {
+  const auto echo = std::exchange(listener_, nullptr)->find();
+  pilot_ = echo ? Pilot::heard : Pilot::missing;
+  if (!echo) return;
+  const auto whole = std::llround(echo->delay_frames);
+  shift_ -= whole;
+  watch_.set_delay(echo->delay_frames - static_cast<double>(whole));
+  aligned_ = true;
+  end_frame_ = 0;
+}
+
+}  // namespace turnpoint::session

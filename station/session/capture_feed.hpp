@@ -1,0 +1,70 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "station/drive/alsa_capture.hpp"
+#include "station/rig/rig.hpp"
+#include "station/sensing/pilot.hpp"
+#include "station/session/vibration_watch.hpp"
+
+namespace turnpoint::session {
+
+/// What a rig captures with the card that plays, and how the two are aligned.
+struct CardCapture {
+  drive::OutputConfig device;
+  CaptureSetup setup;
+  sensing::Pilot pilot;
+  int reference = 0;  ///< captured channel on which the pilot comes back
+};
+
+/// None unless the rig's [capture] is `alsa:`.
+std::optional<CardCapture> card_capture_of(const rig::Rig& rig);
+
+/// Gives captured samples to a VibrationWatch, numbered like the playback. The numbers are known after a
+/// pilot was heard, until the capture loses frames or the playback is restarted; in between the watch gets
+/// nothing, so an interval that needed these frames is lost. The samples are taken by an ordinary thread.
+class CaptureFeed {
+ public:
+  CaptureFeed(std::unique_ptr<drive::Capture> capture, const CardCapture& plan);
+
+  VibrationWatch& watch() { return watch_; }
+
+  bool aligned() const;
+  /// The playback was restarted, so a pilot is needed.
+  void misalign();
+  /// Playback frames before this one have been captured and given to the watch.
+  std::int64_t end_frame() const;
+
+  enum class Pilot { awaited, heard, missing };
+  /// Call this once the pilot has been scheduled, before it is played.
+  void listen(std::int64_t start_frame);
+  Pilot pilot() const;
+  double longest_wait_s() const { return longest_wait_s_; }
+
+  drive::CaptureCounters counters() const { return capture_->counters(); }
+  system::Rights rights() const { return capture_->rights(); }
+
+ private:
+  void run(const std::stop_token& stop);
+  void take(const drive::CapturedBlock& block);
+  void conclude();
+
+  std::unique_ptr<drive::Capture> capture_;
+  const CardCapture plan_;
+  const double longest_wait_s_;
+  VibrationWatch watch_;
+  mutable std::mutex mutex_;
+  std::unique_ptr<sensing::PilotListener> listener_;  ///< null: no pilot is awaited
+  Pilot pilot_ = Pilot::missing;
+  std::int64_t shift_ = 0;       ///< from captured frames to playback frames; while listening, a first guess
+  std::uint32_t numbering_ = 0;  ///< for which the shift holds
+  bool aligned_ = false;
+  std::int64_t end_frame_ = 0;
+  // The last member, so that the thread is joined before the objects that it uses are destroyed.
+  std::jthread thread_;
+};
+
+}  // namespace turnpoint::session

@@ -1,0 +1,109 @@
+#include "tests/session/card_session.hpp"
+
+// Live sessions on the simulated sound card, whose capture returns what was played, delayed and attenuated.
+
+using namespace turnpoint;
+using namespace turnpoint::card_session;
+using terms::Proof;
+using terms::ProofCause;
+
+TEST_CASE(
+    "a session on a card proves its stimuli from what the card captures, whatever the delay of the loop",
+    "[session][card][proof]") {
+  CardSession card;
+  card.add_capture(GENERATE(0, 37, 12'345, 60'000));
+  const auto trials = card.runs();
+  REQUIRE(trials.size() == 2);
+  for (const auto& trial : trials) {
+    CHECK(trial.outcome == terms::Outcome::answered);
+    CHECK(trial.proof == Proof::ok);
+    CHECK(std::abs(trial.drive_ratio_dB.value()) < 0.01);
+    CHECK(std::abs(trial.onset_error_us.value()) < 30);
+    REQUIRE_FALSE(trial.tones.empty());
+    for (const auto& tone : trial.tones) CHECK(std::abs(tone.measured_phase_deg.value()) < 1);
+  }
+}
+
+TEST_CASE("a stimulus of half the amplitude is void, and the next one is proven", "[session][card][proof]") {
+  CardSession card;
+  card.add_capture(12'345);
+  card.reacts = [&](const session::Page& page) {
+    if (page.kind == PageKind::stimulus) card.gain = card.room.stimuli == 1 ? 0.25 : 0.5;
+  };
+  const auto trials = card.runs();
+  REQUIRE(trials.size() == 3);
+  CHECK(trials[0].outcome == terms::Outcome::fault);
+  CHECK(trials[0].proof == Proof::refused);
+  CHECK(trials[0].proof_cause == ProofCause::half);
+  CHECK(trials[0].drive_ratio_dB.value() == Approx(-6.02).margin(0.1));
+  CHECK(trials[1].proof == Proof::ok);
+  CHECK(trials[2].proof == Proof::ok);
+}
+
+TEST_CASE("a trial whose capture has a gap is void, and a new pilot aligns the next one",
+          "[session][card][proof]") {
+  const bool unknown = GENERATE(false, true);
+  CardSession card;
+  card.add_capture(12'345);
+  card.reacts = [&](const session::Page& page) {
+    if (page.kind != PageKind::stimulus || card.room.stimuli != 1) return;
+    card.later(0.1, [unknown] {
+      if (unknown)
+        fake_pcm().capture_state = drive::FakePcm::State::xrun;
+      else
+        fake_pcm().taken -= 5'000;  // as if nobody had read for a while
+    });
+  };
+  const auto trials = card.runs();
+  REQUIRE(trials.size() == 3);
+  CHECK(trials[0].outcome == terms::Outcome::fault);
+  CHECK(trials[0].proof == Proof::lost);
+  CHECK(trials[0].proof_cause == ProofCause::gap);
+  for (const auto i : {1, 2}) {
+    CHECK(trials[static_cast<std::size_t>(i)].proof == Proof::ok);
+    CHECK(std::abs(trials[static_cast<std::size_t>(i)].onset_error_us.value()) < 30);
+  }
+}
+
+TEST_CASE("if the pilot is not heard, no stimulus is presented, and the page names the channels",
+          "[session][card][proof]") {
+  CardSession card;
+  card.add_capture(12'345);
+  card.wired = false;
+  card.reacts = [&](const session::Page& page) {
+    if (page.kind == PageKind::fault && page.fault == FaultKind::capture) card.wired = true;
+  };
+  const auto trials = card.runs();
+  REQUIRE(trials.size() == 3);
+  CHECK(trials[0].outcome == terms::Outcome::fault);
+  CHECK(card.faults.back() == FaultKind::capture);
+  CHECK(card.details.back() == "the pilot on output channel 2 was not heard on captured channel 0");
+  CHECK(live_room::events_of(card.setup.database, card.summary, "stimulus").size() == 2);
+  CHECK(trials[1].proof == Proof::ok);
+  CHECK(trials[2].proof == Proof::ok);
+}
+
+TEST_CASE("after the playback was restarted, a new pilot aligns the capture", "[session][card][proof]") {
+  CardSession card;
+  card.add_capture(12'345);
+  card.reacts = [&](const session::Page& page) {
+    if (page.kind == PageKind::stimulus && card.room.stimuli == 1)
+      card.later(0.1, [] { fake_pcm().fail(drive::FakePcm::State::xrun); });
+  };
+  const auto trials = card.runs();
+  REQUIRE(trials.size() == 3);
+  CHECK(trials[0].outcome == terms::Outcome::fault);
+  CHECK(trials[1].proof == Proof::ok);
+  CHECK(trials[2].proof == Proof::ok);
+}
+
+TEST_CASE("without a calibration of the pick-ups, trials count and are unproven", "[session][card][proof]") {
+  CardSession card;
+  card.add_capture(37, false);
+  const auto trials = card.runs();
+  REQUIRE(trials.size() == 2);
+  for (const auto& trial : trials) {
+    CHECK(trial.outcome == terms::Outcome::answered);
+    CHECK(trial.proof == Proof::unproven);
+  }
+}
