@@ -194,7 +194,8 @@ class RealtimeCapture final : public DeviceCapture {
     rights_.fifo_priority = granted_ == 0 ? kFifoPriority : 0;
     if (stack_denied_ != 0) rights_.memory_locked = false;
     for (const int denied : {granted_, stack_denied_})
-      if (denied != 0) rights_.note += fmt::format("; capture: {}", std::strerror(denied));
+      if (denied != 0)
+        rights_.note += fmt::format("{}{}", rights_.note.empty() ? "" : "; ", std::strerror(denied));
   }
 
   system::Rights rights() const override { return rights_; }

@@ -10,6 +10,8 @@ namespace turnpoint::session {
 
 namespace {
 
+constexpr std::int64_t kBefore_frames = 80;
+
 sensing::Pilot pilot_of(const rig::Rig& rig) {
   sensing::Pilot pilot;
   pilot.rate_Hz = rig.output.rate_Hz;
@@ -73,7 +75,8 @@ bool CaptureFeed::aligned() const {
 void CaptureFeed::misalign() {
   const std::lock_guard lock(mutex_);
   aligned_ = false;
-  if (std::exchange(listener_, nullptr)) pilot_ = Pilot::missing;
+  listener_.reset();
+  if (pilot_ == Pilot::awaited) pilot_ = Pilot::missing;
 }
 
 std::int64_t CaptureFeed::end_frame() const {
@@ -91,8 +94,9 @@ void CaptureFeed::listen(std::int64_t start_frame) {
                                                            plan_.reference, longest_wait_s_);
   const std::lock_guard lock(mutex_);
   const auto counters = capture_->counters();
-  // Numbered in this way, the pilot comes back after its first frame, because it has not been played yet.
-  shift_ = start_frame - counters.frames;
+  // Numbered in this way, the pilot comes back after its first frame, because it has not been played yet. The
+  // listener wants some frames from before it, and the next block may begin with the next frame.
+  shift_ = start_frame - counters.frames - kBefore_frames;
   numbering_ = counters.numbering;
   aligned_ = false;
   pilot_ = Pilot::awaited;
@@ -103,7 +107,8 @@ void CaptureFeed::run(const std::stop_token& stop) {
   const auto block = std::make_unique<drive::CapturedBlock>();
   while (!stop.stop_requested()) {
     const auto numbering = capture_->counters().numbering;
-    while (capture_->take(*block)) take(*block);
+    while (capture_->take(*block))
+      if (take(*block)) conclude();
     {
       const std::lock_guard lock(mutex_);
       if (numbering != numbering_) aligned_ = false;  // frames were lost after those that were just taken
@@ -112,7 +117,8 @@ void CaptureFeed::run(const std::stop_token& stop) {
   }
 }
 
-void CaptureFeed::take(const drive::CapturedBlock& captured) {
+// Returns true if the pilot should be in what has been captured.
+bool CaptureFeed::take(const drive::CapturedBlock& captured) {
   const std::lock_guard lock(mutex_);
   const sensing::CaptureBlock block{captured.used(), plan_.device.channels, captured.first_frame + shift_,
                                     plan_.device.rate_Hz};
@@ -120,16 +126,23 @@ void CaptureFeed::take(const drive::CapturedBlock& captured) {
   if (listener_) {
     // A gap makes the pilot incomplete; frames from before the listening are not needed.
     listener_->push(block);
-    if (listener_->complete()) conclude();
-    return;
+    return listener_->complete();
   }
-  if (!aligned_) return;
+  if (!aligned_) return false;
   watch_.push(block);
   end_frame_ = block.first_frame + block.frames();
+  return false;
 }
 
+// Searches without the lock, because the session thread must not wait: it reports to the amplifier guard.
 void CaptureFeed::conclude() {
-  const auto echo = std::exchange(listener_, nullptr)->find();
+  std::unique_lock lock(mutex_);
+  const auto listener = std::exchange(listener_, nullptr);
+  if (!listener) return;  // cancelled since it was complete
+  lock.unlock();
+  const auto echo = listener->find();
+  lock.lock();
+  if (pilot_ != Pilot::awaited || listener_) return;  // cancelled meanwhile
   pilot_ = echo ? Pilot::heard : Pilot::missing;
   if (!echo) return;
   const auto whole = std::llround(echo->delay_frames);

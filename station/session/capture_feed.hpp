@@ -49,7 +49,7 @@ class CaptureFeed {
 
  private:
   void run(const std::stop_token& stop);
-  void take(const drive::CapturedBlock& block);
+  bool take(const drive::CapturedBlock& block);
   void conclude();
 
   std::unique_ptr<drive::Capture> capture_;

@@ -207,6 +207,7 @@ class RealStage : public Stage {
     while (const auto event = stream_->poll()) hear(*event, now);
     measure(now);
     look_at_samples();
+    look_at_capture(now);
     if (unheard_ > 0 && now > quiet_ns_ + kHeard_ns) {
       unheard_ = 0;
       push_fault(now, FaultKind::stimulus_missed,
@@ -233,6 +234,16 @@ class RealStage : public Stage {
       amplifier_().trip(FaultKind::converter_saturated,
                         fmt::format("{} samples clipped", saturated - saturated_));
     saturated_ = saturated;
+  }
+
+  /// Reports gaps of the capture for the log. They make a trial void only if they hit one of its intervals.
+  void look_at_capture(std::int64_t now) {
+    if (!feed_) return;
+    const auto counters = feed_->counters();
+    if (counters.numbering == std::exchange(numbering_, counters.numbering)) return;
+    push(InputKind::notice, now,
+         fmt::format("the capture has lost {} frames in {} overruns, and has had {} gaps of unknown length",
+                     counters.lost_frames, counters.overruns, counters.unknown_gaps));
   }
 
   /// Returns the time of the frame that comes `frames` after an onset.
@@ -335,7 +346,8 @@ class RealStage : public Stage {
   std::int64_t quiet_ns_ = 0;   ///< time at which the surface will be silent
   std::int64_t opened_ns_ = 0;  ///< time at which the amplifier was enabled
   bool closing_ = false, fault_told_ = false;
-  std::int64_t saturated_ = 0;  ///< number of samples clipped so far
+  std::uint32_t numbering_ = 0;  ///< of the capture, when its gaps were reported last
+  std::int64_t saturated_ = 0;   ///< number of samples clipped so far
   /// set if the converter runs at the wrong rate, until the device has been reopened
   Refusal wrong_rate_;
 };

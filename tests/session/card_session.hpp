@@ -76,7 +76,7 @@ struct SteppedCapture : drive::DeviceCapture {
       const auto now = counters();
       put = now.frames - now.lost_frames;
     }
-    while (put - got > kBacklog_frames) std::this_thread::yield();
+    while (put - got > backlog_frames) std::this_thread::yield();
   }
   bool take(drive::CapturedBlock& block) noexcept override {
     if (!DeviceCapture::take(block)) return false;
@@ -84,7 +84,7 @@ struct SteppedCapture : drive::DeviceCapture {
     return true;
   }
 
-  static constexpr std::int64_t kBacklog_frames = 20'000;
+  std::int64_t backlog_frames = 20'000;  ///< that may wait for the sensing thread
   std::int64_t put = 0;
   std::atomic<std::int64_t> got{0};
 };

@@ -24,6 +24,15 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a pilot is found if all frames captured before it have been taken", "[session][card][proof]") {
+  CardSession card;
+  card.add_capture(37);
+  card.reacts = [&](const session::Page& page) {
+    card.capture->backlog_frames = page.kind == PageKind::stimulus ? 20'000 : 0;
+  };
+  CHECK(card.runs().size() == 2);
+}
+
 TEST_CASE("a stimulus of half the amplitude is void, and the next one is proven", "[session][card][proof]") {
   CardSession card;
   card.add_capture(12'345);
@@ -59,6 +68,9 @@ TEST_CASE("a trial whose capture has a gap is void, and a new pilot aligns the n
   CHECK(trials[0].outcome == terms::Outcome::fault);
   CHECK(trials[0].proof == Proof::lost);
   CHECK(trials[0].proof_cause == ProofCause::gap);
+  const auto notices = live_room::events_of(card.setup.database, card.summary, "notice");
+  REQUIRE(notices.size() == 1);
+  CHECK(notices[0].value.find(unknown ? "1 gaps of unknown length" : "in 1 overruns") != std::string::npos);
   for (const auto i : {1, 2}) {
     CHECK(trials[static_cast<std::size_t>(i)].proof == Proof::ok);
     CHECK(std::abs(trials[static_cast<std::size_t>(i)].onset_error_us.value()) < 30);
