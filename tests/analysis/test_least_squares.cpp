@@ -9,8 +9,8 @@ using namespace turnpoint;
 using analysis::least_squares;
 
 TEST_CASE("a line through points far from the origin keeps its digits", "[analysis]") {
-  // The columns 1 and x are nearly the same: a method that squares them would keep only five digits of the
-  // slope.
+  // The columns 1 and x are nearly equal. Solving the normal equations, which square the condition number,
+  // would keep only five digits of the slope.
   std::vector<std::vector<double>> rows;
   std::vector<double> values, weights;
   const double scatter[] = {1, -2, 0, 3, -1, 0, -3, 2, 1, -2, 1};
@@ -22,7 +22,7 @@ TEST_CASE("a line through points far from the origin keeps its digits", "[analys
     weights.push_back(1 + i % 3);
     w += weights.back(), wx += weights.back() * i, wy += weights.back() * scatter[i];
   }
-  // Computes the expected fit in whole numbers, with i instead of x and the scatter instead of y.
+  // The expected fit, computed in whole numbers: i instead of x, and the scatter instead of y.
   double square = 0, product = 0, rest = 0;
   for (int i = 0; i <= 10; ++i) {
     square += weights[i] * (i - wx / w) * (i - wx / w);

@@ -262,7 +262,8 @@ TEST_CASE("Bootstrap intervals contain the true value about as often as they cla
     }
     CHECK(threshold >= 0.91 * sessions);
     CHECK(slope >= 0.90 * sessions);
-    CHECK(narrow < 0.85 * sessions);  // negative control: intervals of half the width contain it too rarely
+    CHECK(narrow < 0.85 * sessions);  // negative control: intervals of half the width contain the true
+                                      // threshold too rarely
   }
 }
 
@@ -291,7 +292,7 @@ TEST_CASE("Trials without a signal determine the rate of false alarms", "[analys
   REQUIRE(found.guess);
   CHECK(found.guess->interval.low > 0.3);
   CHECK(found.guess->interval.high < 0.5);
-  CHECK(found.band_level.front() > 0.5);  // the band excludes trials without a signal
+  CHECK(found.band_level.front() > 0.5);  // the band covers only levels with a signal
   const auto posterior = fit_posterior(data, options, {0.5, 30, 0.3, 10}, 5);
   REQUIRE(posterior.intervals.guess);
   CHECK(posterior.intervals.guess->interval.low > 0.3);

@@ -164,7 +164,7 @@ SynthBenchmark benchmark_synthesis(double frequency_Hz, int rate_Hz) {
     std::int64_t made = 0;
     for (const double time_s : result.times_s) {
       const std::int64_t frame = std::llround(time_s * rate_Hz) / block * block;
-      // A free-running method has to compute every frame. A day of that would take minutes, so stop at one
+      // A free-running method has to compute every frame. A day of frames would take minutes, so stop at one
       // minute.
       if (method.free_running && time_s > 60) break;
       for (; method.free_running && made < frame; made += block) method.render(made, samples);

@@ -32,7 +32,7 @@ drive::Burst eight_tones() {
   return burst;
 }
 
-/// Two seconds in which the pick-ups on channels 4 and 5 capture the burst, and the others a carrier.
+/// Two seconds of capture: channels 4 and 5 (the pick-ups) contain the burst, all other channels a carrier.
 std::vector<std::int32_t> captured_frames() {
   const drive::Format format{kRate_Hz, 1, 24};
   drive::Synth synth(format);

@@ -3,8 +3,8 @@
 
 namespace turnpoint::benchmark {
 
-/// Measures what it costs to demodulate six captured channels, in relation to the synthesis of what is
-/// measured: eight tones. Takes some seconds.
+/// Measures the time to demodulate eight tones and six captured channels, in relation to the time to
+/// synthesise eight tones. Takes some seconds.
 Report bench_sensing();
 
 }  // namespace turnpoint::benchmark

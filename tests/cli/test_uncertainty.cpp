@@ -55,7 +55,7 @@ TEST_CASE("map and plan use the boundaries that were measured on a rig", "[cli]"
   const TemporaryFolder folder;
   const auto copy = folder / "plate.toml", boundaries = folder / "boundaries.csv";
   std::ofstream(copy) << turnpoint::system::read_file(rig);
-  // by the plate of a clamp line 0.25 mm back, whose boundaries are 8.3 mm further out
+  // the boundaries of a plate whose clamp line is 0.25 mm further back, which moves them outward by 8.3 mm
   std::ofstream(boundaries)
       << "frequency_Hz,boundary_mm,sd_mm\n22400,110.8,0.5\n30000,160.3,0.5\n43000,212.1,0.5\n";
   const std::vector<std::string> map{"map", "--rig", copy, "--frequency", "30000", "--edge", "p50", "--json"};
@@ -63,7 +63,7 @@ TEST_CASE("map and plan use the boundaries that were measured on a rig", "[cli]"
   CHECK(contains(said, "clamp line: changed by"));
   CHECK_FALSE(contains(said, "OUTLIER"));
   const auto text = output_of(map);
-  CHECK(contains(text, "calibration "));  // which one, on standard error
+  CHECK(contains(text, "calibration "));  // standard error names the calibration that is used
   const auto json = nlohmann::json::parse(text.substr(text.find('[')));
   CHECK(json[0]["boundary_mm"].get<double>() == Approx(160.3).margin(0.5));
   CHECK(json[0]["uncertainty_mm"].get<double>() < 0.5);

@@ -29,8 +29,8 @@ struct Source {
   std::string name;
   std::optional<Truth> fixed;
 };
-/// All sources: the prior, and fixed values that are off its centre (-16.5 dB, slope 1.9) but within the
-/// middle half of its ranges.
+/// All sources: the prior, and fixed values. The fixed values are off the prior's centre (-16.5 dB, slope
+/// 1.9) but within the middle half of the prior's ranges.
 const std::vector<Source>& sources();
 
 using Ends = std::pair<double, double>;

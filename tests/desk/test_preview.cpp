@@ -72,7 +72,7 @@ TEST_CASE("a look puts the boundary where the factors say, and the displacement 
   const auto beyond = std::lower_bound(profile.x_m.begin(), profile.x_m.end(), *look.plan.boundary_m);
   const auto at = static_cast<std::size_t>(beyond - profile.x_m.begin());
   // The boundary is that of the lossless first mode. The profile includes loss and is sampled every 0.75 mm,
-  // so it agrees only roughly.
+  // so the two agree only roughly.
   CHECK(profile.displacement_m[at] / *last_peak == Approx(0.5).margin(0.05));
   CHECK(look.facts.front().second.find("159 mm") != std::string::npos);
   CHECK_FALSE(look.cues.empty());

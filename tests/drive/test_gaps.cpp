@@ -77,7 +77,8 @@ struct Run {
   trial::Result result;
   bool told_after_answer = false;  ///< true if a loss reported after the answer made the trial void
   /// True if time passed between a write and the check whether the device had already played past the written
-  /// frames. The stream cannot know whether that happened before the write, so it counts the block as lost.
+  /// frames. The stream cannot know whether the device had passed them before the write, so it counts the
+  /// block as lost.
   bool doubtful = false;
 
   bool both_heard() const { return heard.size() == 2; }

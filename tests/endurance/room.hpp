@@ -43,7 +43,8 @@ struct World {
 /// functions.
 struct Disk {
   std::function<void(Fault)> die;             ///< copies the files as this kind of death leaves them
-  std::function<void(Fault, int)> die_later;  ///< the same, after this many further file operations
+  std::function<void(Fault, int)> die_later;  ///< does what `die` does, after this many further file
+                                              ///< operations
   std::function<void(std::int64_t)> bytes_left;
   std::function<bool()> dead;
 };

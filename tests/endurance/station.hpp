@@ -10,8 +10,8 @@
 
 namespace endurance {
 
-/// A database and a participant's sessions in it. They continue after each death of the station's process,
-/// with the files that the death left, which are checked first. Uses the station's own session, store,
+/// A database and a participant's sessions in it. After each death of the station's process, the files that
+/// it left are checked, and the sessions continue with these files. Uses the station's own session, store,
 /// procedures, planner, drive and guard.
 class Station {
  public:

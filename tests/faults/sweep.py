@@ -405,7 +405,7 @@ class Sweep:
         before = {database: trials(os.path.join(self.start, database)) for database in ("lab.sqlite", "other.sqlite")
                   if name not in ("restore", "calibrate")}
         points = self.calls(operation)
-        if self.careless:  # only kill the program while it writes a .new file
+        if self.careless:  # kill the program only while it writes a .new file
             points = [point for point in points if point[2] == "kill" and ".new" in point[1]]
         failures, tried = [], 0
         for index, (number, what, kind) in enumerate(points):

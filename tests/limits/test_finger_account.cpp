@@ -59,7 +59,7 @@ TEST_CASE("a crash does not begin a new period of exposure, a pause of half an h
   add(earlier, 1500, "stimulus", "1");  // the finger was stimulated until 1500 s ago
   CHECK(finger_history({earlier}, kNow_s, 30).period_start_s == Approx(kNow_s - 3000).epsilon(1e-12));
   auto long_ago = session_of(5000);
-  // stimulated until 4000 s ago, which is 1000 s before the other session began
+  // stimulated until 4000 s ago, which is 1000 s before the session `earlier` began
   add(long_ago, 1000, "stimulus", "1");
   CHECK(finger_history({earlier, long_ago}, kNow_s, 30).period_start_s ==
         Approx(kNow_s - 5000).epsilon(1e-12));

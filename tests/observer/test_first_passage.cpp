@@ -72,7 +72,8 @@ TEST_CASE("the comparison with the series sees a drift that is 3 % off, and a st
 }
 
 TEST_CASE("accuracy and mean time are those of Palmer, Huk and Shadlen", "[observer]") {
-  // A' = .85, k = 9 and x = .1: the decision takes .60823 s on average, and with tR = .35 the whole .95823 s.
+  // For normalised bound A' = .85, sensitivity k = 9 and stimulus strength x = .1, their formulas give a mean
+  // decision time of .60823 s. With the residual time tR = .35 s, the whole response takes .95823 s.
   CHECK(observer::upper_probability(0.9, 0.85) == Approx(0.82201).margin(1e-5));
   CHECK(observer::upper_probability(0, 0.85) == 0.5);
   random::Draws draws({3, random::Stream::observer, 0, 0, 0});

@@ -47,8 +47,9 @@ void check_shares(const Observer& observer, const Question& question) {
 }  // namespace
 
 TEST_CASE("EZ-diffusion finds the drift, boundary and residual time of the observer", "[observer]") {
-  // Expected: a = 0.2 A' = .17, Ter = .35 + .15 and v = .1 logit(Pc) / (2 A'). Makes 100 fits of 10 000
-  // trials each.
+  // Expected for the normalised bound A' = .85 and the proportion correct Pc: boundary a = 0.2 A' = .17,
+  // non-decision time Ter = .35 s residual + .15 s travel time, drift v = .1 logit(Pc) / (2 A'). Each
+  // proportion gets 100 fits of 10 000 trials.
   const Observer observer(parse("sim:threshold=1,lapse=0"));
   const int fits = 100, trials = 10'000;
   for (const double proportion : {0.8, 0.9, 0.97}) {

@@ -74,7 +74,8 @@ void check_derivatives(const Surface& s, const char* text, double f) {
 }  // namespace
 
 TEST_CASE("a thin plate's boundary moves as its closed form says", "[physics]") {
-  // x = W0/d - C (E h^2 / rho)^(1/4) / (d sqrt f)
+  // x = W0/d - C (E h^2 / rho)^(1/4) / (d sqrt f), where x is the boundary, W0 and d are half-width and slope
+  // of the taper, E, rho and h are modulus, density and thickness, f is the frequency and C a constant.
   const Surface s = plate();
   for (const double f : {22.4e3, 30e3, 45e3}) {
     const double x = solved_m(s, "turning", f), w = 0.014 - 0.03 * x;
@@ -109,7 +110,7 @@ TEST_CASE("the first-order uncertainty is that of random surfaces", "[physics]")
   std::normal_distribution<double> normal;
   for (const Surface& nominal : {plate(), membrane(LinearTaper{0.03, 0.1})}) {
     const double f = 25e3, x = solved_m(nominal, "p50", f);
-    constexpr int count = 800;  // the standard error of their standard deviation is 2.5 %
+    constexpr int count = 800;  // standard error of the sampled standard deviation: 2.5 %
     double sum = 0, square = 0;
     for (int i = 0; i < count; ++i) {
       Surface s = nominal;

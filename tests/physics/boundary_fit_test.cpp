@@ -53,8 +53,8 @@ std::vector<MeasuredBoundary> measured(const Surface& nominal, const Surface& tr
 }
 
 struct Errors {
-  double rms_m = 0, largest_m = 0;  // largest_m: exceeded on only 5 % of the plates
-  double coverage = 0;              // of the stated 95 % interval
+  double rms_m = 0, largest_m = 0;  // largest_m: 95 % of the plates have no larger error
+  double coverage = 0;              // share of boundaries inside the stated 95 % interval
 };
 
 // Errors of a map for random plates, whose parameters scatter as `nominal` states, at boundaries from 100 to

@@ -41,8 +41,8 @@ TEST_CASE("relative to the last maximum, equation 11 is larger at the drive edge
     seed_first = std::max(seed_first, std::abs(seed[i]));
     mode_first = std::max(mode_first, std::abs(mode[i]));
   }
-  // Relative to the last maximum, eq. 11 is larger at the drive edge than the mode, by the factor sqrt(W0/W)
-  // = 1.7.
+  // Relative to the last maximum, eq. 11 of the 1998 paper is larger at the drive edge than the mode, by the
+  // factor sqrt(W0/W) = 1.7 (W0: half-width at the drive edge, W: at the last maximum).
   CHECK(seed_first / mode_first > 1.4);
   CHECK(seed_first / mode_first < 1.9);
 }

@@ -61,9 +61,10 @@ TEST_CASE("the motion of surfaces under a finger agrees with independent finite 
 
 TEST_CASE("on a uniform strip with loss, the response to a finger is a sum of the strip's waves",
           "[physics]") {
-  // Mode n leaves the finger in both directions as exp(-i kx |x|) / (2 i kx), with kx^2 = k^2 - (n pi /
-  // 2W)^2, and is averaged over the disc twice. With simply supported sides, the waves with k^2 = -k2^2 are
-  // subtracted.
+  // The response is a sum over modes n. Mode n spreads from a point in both directions as exp(-i kx |x|) over
+  // 2 i kx, with kx^2 = k^2 - (n pi / 2W)^2. It is averaged over the finger's disc twice: for the force and
+  // for the displacement. For a plate with simply supported sides, the same sum with -k^2 instead of k^2 (the
+  // near fields of bending) is subtracted.
   const double w = 0.012, radius = 4e-3, f = 30e3, omega = 2 * M_PI * f;
   Surface s = aluminium_plate();
   s.edges = Edges::supported;
@@ -166,7 +167,7 @@ TEST_CASE("the effect of a finger can be computed for every plate theory, taper 
   s.taper = TabulatedTaper{{{0, 0.014}, {0.1, 0.012}, {0.3, 0.006}}};
   shares();
   s = foil();
-  s.length_m = 0.3;  // to the apex
+  s.length_m = 0.3;  // the surface runs to its apex
   shares();
   CHECK_THROWS_AS(finger_load(s, 30e3, {0.31}, Finger{}), std::invalid_argument);
   CHECK_THROWS_AS(finger_load(s, 30e3, {0.1}, Finger{{55, 0}, 0}), std::invalid_argument);

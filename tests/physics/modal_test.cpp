@@ -135,8 +135,8 @@ TEST_CASE("the element matrix of a plate equals the integral of the product of t
 
 TEST_CASE("waves on a clamped strip have the wavelength that the dispersion of a clamped strip gives",
           "[physics]") {
-  // The dispersion relation of a clamped strip is q1 tan(q1 W) + q2 tanh(q2 W) = 0 with q1^2 = b^2 - kx^2 and
-  // q2^2 = b^2 + kx^2.
+  // The dispersion relation of a clamped strip of half-width W is q1 tan(q1 W) + q2 tanh(q2 W) = 0 with q1^2
+  // = b^2 - kx^2 and q2^2 = b^2 + kx^2 (b: wavenumber of the wide plate, kx: along the strip).
   Surface s = aluminium_plate();
   s.taper = LinearTaper{0.014, 0};
   s.quality_factor = std::numeric_limits<double>::infinity();
@@ -185,7 +185,8 @@ TEST_CASE("a clamped plate under tension acts like a membrane that is narrower b
   Surface plate = seed_brass();
   plate.quality_factor = 60;
   Surface membrane = plate;
-  const double layer = 0.25e-3;  // width of the boundary layer, sqrt(D/N)
+  const double layer = 0.25e-3;  // width of the boundary layer, sqrt(D/N): bending stiffness D, tension per
+                                 // width N
   plate.modulus_Pa = 1e9;
   plate.modulus_Pa = 1e9 * layer * layer * line_tension_N_per_m(plate) / bending_stiffness_N_m(plate).value();
   plate.edges = Edges::clamped;

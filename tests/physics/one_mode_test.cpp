@@ -87,8 +87,8 @@ TEST_CASE("the models seed and mode match exact solutions for extreme tapers, lo
 }
 
 TEST_CASE("the exact solutions of the two equations differ measurably", "[physics][oracle]") {
-  // Negative control: eq. 11 differs from the table of the corrected equation by far more than any tolerance
-  // of these tests.
+  // Negative control: eq. 11 of the 1998 paper differs from the table of the corrected equation by far more
+  // than any tolerance of these tests.
   const Case c = parse(oracle("one_mode.csv")[401]);
   REQUIRE(c.model == Model::mode);
   const auto line = make_centre_line(c.surface, c.frequency_Hz, Model::seed);

@@ -40,7 +40,8 @@ TEST_CASE(
       CHECK(cut_off_half_width_m(s, f) == Approx(w).epsilon(1e-12));
     }
   }
-  // For small bending stiffness D, the effective half-width is smaller by the boundary layer sqrt(D/N).
+  // For small bending stiffness D and tension per width N, the effective half-width is smaller by the
+  // boundary layer sqrt(D/N).
   s.tension_Pa = 1e12;
   const double layer = std::sqrt(stiffness / line_tension_N_per_m(s));
   const double k = wavenumber_per_m(s, cut_off_frequency_Hz(s, 0.014));

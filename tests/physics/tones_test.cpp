@@ -95,7 +95,7 @@ TEST_CASE("a zone has the requested friction inside and ends at the requested bo
       CHECK(mean / count == Approx(0.6).margin(2e-3));
       ZoneRequest single = request;
       single.tones = 1;
-      // with several tones, each fills the nodes of the others
+      // with several tones, the surface moves at a node of one tone because of the other tones
       CHECK(design.residual < 0.75 * design_zone(s, friction, single).residual);
     }
   }
@@ -112,7 +112,7 @@ TEST_CASE("impossible zones are refused, and the message says what is allowed", 
   request.boundary_m = 0.28;  // a boundary at 280 mm needs more than 45 kHz
   CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), std::domain_error);
   request.boundary_m = 0.16;
-  request.edge = Edge::friction(0.5);  // lower than the zone's friction of 0.6
+  request.edge = Edge::friction(0.5);  // impossible, because the zone's friction is 0.6
   CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), std::domain_error);
   request.edge = Edge::turning();
   request.from_m = 0.2;

@@ -39,11 +39,12 @@ double logistic(double x) { return 1 / (1 + std::exp(-x)); }
 }  // namespace
 
 TEST_CASE("accelerated stochastic approximation: a sequence worked out by hand", "[procedure]") {
-  // c = 8, phi = .75: after a 1 the level falls by c / k * .25, after a 0 it rises by c / k * .75.
-  //  answers        1   1   0   0   1     0     0
-  //  changes so far 0   0   1   1   2     3     3
-  //  k              1   2   3   3   4     5     5
-  //  level      10  8   7   9   11  10.5  11.7  12.9
+  // The step constant c is 8, and the target proportion phi is .75: after a 1 the level falls by c / k * .25,
+  // after a 0 it rises by c / k * .75.
+  //   answers        1   1   0   0   1     0     0
+  //   changes so far 0   0   1   1   2     3     3
+  //   k              1   2   3   3   4     5     5
+  //   level      10  8   7   9   11  10.5  11.7  12.9
   const auto result = trace(approximation(10, 8, 0.75), {}, "1100100");
   const double expected[] = {10, 8, 7, 9, 11, 10.5, 11.7};
   REQUIRE(result.levels.size() == 7);

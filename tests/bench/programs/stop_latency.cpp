@@ -53,10 +53,10 @@ std::vector<std::jthread> crowd(turnpoint::drive::Amplifier& amplifier) {
   return threads;
 }
 
-/// Gives the measuring thread this real-time priority. It must be above that of the load, so that the thread
-/// need not wait, and below that of the guard. The kernel delivers edges by a thread of priority 50. A
-/// measuring thread below 50 does not disturb that thread. Above 50 it blocks that thread, as a busy audio
-/// thread would, and the guard has to read the level of the line instead.
+/// Gives the measuring thread this real-time priority. It must be above the load's, so that the measuring
+/// thread need not wait, and below the guard's. A kernel thread of priority 50 delivers edges. With a
+/// priority below 50, the measuring thread does not disturb this delivery. Above 50 it delays the delivery,
+/// as a busy audio thread would, and the guard has to read the level of the line instead.
 void stand_at(int priority) {
   sched_param parameters{};
   parameters.sched_priority = priority;
