@@ -18,8 +18,8 @@ inline constexpr double kRate_Hz = 192000;
 inline constexpr double kCarrier_Hz = 10525;
 inline constexpr int kReference = 0, kBridgeA = 1, kBridgeB = 2, kLateral = 3, kMarker = 4, kPickup = 5;
 
-/// An aluminium plate without noise, distortion, crosstalk, zeros or finger. Drive on channel 0, carrier
-/// on 3.
+/// An aluminium plate without noise, distortion, crosstalk, zeros or finger. The transducer plays channel 0,
+/// and channel 3 is the carrier.
 inline Setup quiet_setup() {
   Setup setup;
   setup.surface = physics::aluminium_plate();
@@ -36,7 +36,7 @@ inline double cosine(double frequency_Hz, std::int64_t frame) {
   return std::cos(2 * pi * std::fmod(frequency_Hz / kRate_Hz * static_cast<double>(frame), 1.0));
 }
 
-/// What was captured, from the plant's first frame in this recording on.
+/// Captured samples. The recording begins at the plant's frame `first`.
 struct Recording {
   std::size_t channels;
   std::int64_t first;
@@ -48,7 +48,8 @@ struct Recording {
   std::int64_t end() const { return first + static_cast<std::int64_t>(samples.size() / channels); }
 };
 
-/// Plays `play(frame, channel)` for so many frames, in blocks of `block` frames.
+/// Plays the samples `play(frame, channel)` for `frames` frames, in blocks of `block` frames, and returns
+/// what was captured.
 template <typename Play>
 Recording run(Plant& plant, std::int64_t frames, Play play, std::int64_t block = 960) {
   const auto inputs = static_cast<std::size_t>(plant.setup().playback_channels);
@@ -75,7 +76,8 @@ inline double carrier(std::int64_t frame, int channel) {
   return channel == 3 ? cosine(kCarrier_Hz, frame) : 0;
 }
 
-/// Complex amplitude z of a tone: Re(z exp(2 pi i f frame / rate)), with a Hann window over the given frames.
+/// Complex amplitude z of the tone Re(z exp(2 pi i f frame / rate)) in a channel, with a Hann window over the
+/// frames [from, to).
 inline std::complex<double> amplitude(const Recording& recording, int channel, double frequency_Hz,
                                       std::int64_t from, std::int64_t to) {
   std::complex<double> sum = 0;
@@ -90,7 +92,7 @@ inline std::complex<double> amplitude(const Recording& recording, int channel, d
   return 2.0 * sum / total;
 }
 
-/// The phase at the frame at which it was played, for a tone that was played as cosine().
+/// Removes the phase that the loop delay causes. A tone that was played as cosine() then has phase 0.
 inline std::complex<double> without_delay(std::complex<double> z, double frequency_Hz, double delay_frames) {
   return z * std::polar(1.0, 2 * pi * std::fmod(frequency_Hz / kRate_Hz * delay_frames, 1.0));
 }

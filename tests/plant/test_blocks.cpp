@@ -7,7 +7,8 @@ using namespace turnpoint::plant;
 
 namespace {
 
-/// Everything on: noise, crosstalk, finger, two transducers, marker, a fraction of a frame.
+/// A laboratory with every feature: noise, crosstalk, a finger, two transducers, a marker, and a delay with a
+/// fraction of a frame.
 Setup whole_laboratory() {
   Setup setup;
   setup.surface = quiet_setup().surface;
@@ -78,7 +79,7 @@ TEST_CASE("the readings that the bridges carry are the truth's", "[plant]") {
   setup.cells.height_m = 0.008;
   setup.loop_delay_frames = 0;
   Plant plant(setup);
-  // a constant excitation shows the reading in each sample
+  // with a constant excitation, each sample shows the reading directly
   const auto direct = [](std::int64_t, int channel) { return channel == 3 ? 1.0 : 0.0; };
   for (int k = 0; k < 200; ++k) {
     const auto recording = run(plant, 961, direct);
@@ -89,7 +90,7 @@ TEST_CASE("the readings that the bridges carry are the truth's", "[plant]") {
       REQUIRE(reading_N == Approx(truth.reading_N[c]).margin(3e-6));
     }
   }
-  // the finger moves slowly compared with the cells' resonances, so they follow its forces
+  // the finger moves so slowly, compared with the cells' resonances, that the readings follow its forces
   CHECK(plant.truth().finger.speed_m_s > 0.05);
   CHECK(plant.truth().normal_N == Approx(0.5).epsilon(1e-9));
   CHECK(plant.truth().lateral_N == Approx(0.4).epsilon(1e-9));

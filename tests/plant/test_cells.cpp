@@ -11,7 +11,7 @@ TEST_CASE("the two cells carry the normal force, and their ratio shows where it 
   const auto [a, b, t] = forces_on(cells, {0.7, 0.35, 0.15});
   CHECK(a + b == Approx(0.7).epsilon(1e-14));
   CHECK(t == 0.35);
-  // centre of pressure: the force's place, moved by h T/N
+  // the centre of pressure is the force's position, moved by h T / N (height, lateral and normal force)
   CHECK(0.02 + 0.26 * b / (a + b) == Approx(0.15 + 0.008 * 0.35 / 0.7).epsilon(1e-14));
   const auto pulled_back = forces_on(cells, {0.7, -0.35, 0.15});
   CHECK(0.02 + 0.26 * pulled_back[1] / 0.7 == Approx(0.15 - 0.004).epsilon(1e-14));
@@ -21,7 +21,7 @@ TEST_CASE("a cell has the response of a second-order system", "[plant]") {
   const double f0 = 60, damping = 0.05;
   for (const double f : {6.0, 30.0, 60.0, 120.0, 400.0}) {
     Resonance resonance(f0, damping, kRate_Hz);
-    // 3 s for the ringing to decay below 1e-12, then exactly 1 s
+    // Wait 3 s, until the ringing has decayed below 1e-12, then sum over exactly 1 s.
     std::complex<double> sum = 0;
     for (std::int64_t n = 0; n < 4 * 192000; ++n) {
       const double y = resonance.step(cosine(f, n));
@@ -39,7 +39,8 @@ TEST_CASE("a cell has the response of a second-order system", "[plant]") {
 TEST_CASE("the lateral cell has its own resonance", "[plant]") {
   Cells cells = quiet_setup().cells;
   CellReadings readings(cells, kRate_Hz);
-  // The first maximum after a step comes half a period later; the overshoot is exp(-pi d / sqrt(1 - d^2)).
+  // The first maximum after a step comes half a period later; with the damping d, the overshoot is exp(-pi d
+  // / sqrt(1 - d^2)).
   double highest[3] = {}, at_s[3] = {};
   for (int n = 0; n < 3000; ++n) {
     const auto reading = readings.step({1, 1, 1}, 0);

@@ -11,7 +11,7 @@ double tone_and_carrier(std::int64_t n, int channel) {
   return channel == 0 ? 0.8 * cosine(30e3, n) : channel == 3 ? cosine(kCarrier_Hz, n) : 0;
 }
 
-/// Plays a tone and the carrier; the fault comes in the middle.
+/// Plays a tone and the carrier. `fault` should begin in the middle, at frame kAt.
 struct Trial {
   explicit Trial(const Fault& fault, const Setup& setup = quiet_setup()) : plant(setup) {
     plant.set_tones({30e3});
@@ -91,7 +91,7 @@ TEST_CASE("resonances that are 3 % higher change a pick-up as a tone 3 % lower w
 }
 
 TEST_CASE("the surface moves on while its resonances change", "[plant]") {
-  // 1 mK changes nothing that can be seen, so the recording must go on as without a fault.
+  // A change of 1 mK is too small to be seen, so the recording must continue as without a fault.
   Plant healthy(quiet_setup());
   const auto expected = run(healthy, kAt + 2000, tone_and_carrier);
   Plant plant(quiet_setup());
@@ -134,13 +134,14 @@ TEST_CASE("clipping limits the drive and adds a third harmonic", "[plant]") {
   setup.pickups = {{5, 0, 0.1, 0}};
   Plant plant(setup);
   plant.add({FaultKind::clip, kAt, kNever, 0.4});
-  // 1.6 kHz divides the rate, so that the harmonics can be read exactly
+  // 1.6 kHz divides the sampling rate, so the harmonics can be measured exactly
   const auto recording =
       run(plant, kEnd, [](std::int64_t n, int channel) { return channel == 0 ? 0.8 * cosine(1600, n) : 0; });
   double highest = 0;
   for (std::int64_t n = kAt; n < kEnd; ++n) highest = std::max(highest, std::abs(recording.at(n, kPickup)));
   CHECK(highest == Approx(0.4 * 4 * 0.1).margin(2e-7));
-  // The fundamental of a cosine of amplitude 2 that is clipped at 1, that is at an angle of 60 degrees.
+  // Closed form for the fundamental of a cosine of amplitude 2 that is clipped at 1, which it reaches at 60
+  // degrees.
   const double c = std::acos(0.5);
   const double harmonic1 = std::abs(amplitude(recording, kPickup, 1600, kAt + 9600, kEnd)) / (0.4 * 0.4);
   const double closed1 = 2 / pi * (2 * std::sin(c) + 2 * (pi / 2 - c) - std::sin(2 * c));
@@ -162,7 +163,7 @@ TEST_CASE("a broken bridge wire loses the force and brings the carrier a quarter
     const auto reference = amplitude(trial.recording, kReference, kCarrier_Hz, kEnd - 19200, kEnd);
     const double w = 2 * pi * kCarrier_Hz;
     CHECK(std::abs(open) == Approx(1.2e-8 * w * 2.5 * 200 / 2.1).epsilon(0.01));
-    // the difference of two samples lags by half a frame
+    // the plant takes the difference of two samples as the derivative, which lags by half a frame
     CHECK(std::arg(open / reference) == Approx(pi / 2 - w / 2 / kRate_Hz).epsilon(1e-3));
   }
 }
@@ -191,7 +192,7 @@ TEST_CASE("a finger that lifts takes its forces away", "[plant]") {
   run(plant, 19200, silence);
   CHECK(plant.truth().normal_N == 0);
   CHECK(plant.truth().lateral_N == 0);
-  CHECK(plant.truth().finger.finger_m > place_m);  // the hand moves on
+  CHECK(plant.truth().finger.finger_m > place_m);  // the hand continues its stroke
   run(plant, 38400, silence);
   CHECK(plant.truth().normal_N == Approx(0.5).epsilon(1e-9));
 }

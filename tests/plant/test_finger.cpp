@@ -30,13 +30,13 @@ TEST_CASE("a stroke has minimum jerk", "[plant]") {
   CHECK(minimum_jerk(1) == 1);
   CHECK(minimum_jerk(0.5) == 0.5);
   CHECK(minimum_jerk_speed(0.5) == 1.875);
-  // the sixth derivative of the position is zero: x is a polynomial of degree 5
+  // the sixth differences of the position are zero, because it is a polynomial of degree 5
   double difference[8];
   for (int k = 0; k < 8; ++k) difference[k] = minimum_jerk(0.1 + 0.1 * k);
   for (int order = 0; order < 6; ++order)
     for (int k = 0; k + 1 < 8 - order; ++k) difference[k] = difference[k + 1] - difference[k];
   CHECK(std::abs(difference[0]) < 1e-13);
-  // speed and acceleration are zero at both ends
+  // speed and acceleration are zero at both ends, so the position changes with the third power of time
   CHECK(minimum_jerk(1e-3) < 1.01e-8);
   CHECK(1 - minimum_jerk(1 - 1e-3) < 1.01e-8);
 }
@@ -75,7 +75,7 @@ TEST_CASE("while the skin slides, lateral force is friction times normal force",
     } else {
       continue;
     }
-    // the skin stays behind by T / k
+    // the skin stays behind the finger by T / k (lateral force, contact stiffness)
     REQUIRE(state.contact_m == Approx(state.finger_m - state.lateral_N / 1000).epsilon(1e-12));
   }
   CHECK(forward > 8000);
@@ -106,7 +106,7 @@ TEST_CASE("vibration lowers friction by the friction map, behind a low-pass", "[
   CHECK(stroker.step(0).relative_friction == Approx(1).epsilon(1e-9));
   const double low = physics::FrictionMap{}.relative_friction(1e-6);
   const double rest = physics::FrictionMap{}.relative_friction(0);
-  // after n steps, exp(-2 pi 300 n / 8000) of the change is left
+  // the low-pass has its cut-off at 300 Hz: after n steps, exp(-2 pi 300 n / 8000) of the change is left
   for (int n = 1; n <= 40; ++n) {
     const auto& state = stroker.step(1e-6);
     const double left = std::exp(-2 * pi * 300 * n / 8000);
@@ -147,8 +147,8 @@ TEST_CASE("force and friction vary with the given standard deviations", "[plant]
 
 TEST_CASE("pink noise has the same power in each octave", "[plant]") {
   PinkNoise noise(3, 5, 8000, 1, 1100);
-  // power between 2 and 4 Hz, and so on, by means of differences of first-order low-passes would be circular:
-  // use Fourier sums of blocks of 1 s
+  // Compares the power in the octaves from 4, 32 and 256 Hz. It uses Fourier sums over blocks of 1 s, because
+  // the noise itself is made of first-order low-passes.
   constexpr int blocks = 60;
   double power[9] = {};
   std::vector<double> x(8000);
@@ -173,7 +173,8 @@ TEST_CASE("the finger touches when it is scheduled, and its force builds up smoo
   std::vector<FingerState> states;
   for (int k = 0; k < 12000; ++k) states.push_back(stroker.step());
   CHECK(states[799].normal_N == 0);
-  CHECK(states[800 + 199].normal_N == Approx(0.25).epsilon(1e-9));  // half of 50 ms
+  CHECK(states[800 + 199].normal_N == Approx(0.25).epsilon(1e-9));  // after half of the 50 ms in which the
+                                                                    // force rises
   CHECK(states[800 + 399].normal_N == Approx(0.5).epsilon(1e-9));
   CHECK(states[3999].normal_N == Approx(0.5).epsilon(1e-9));
   CHECK(states[4400].normal_N == 0);
@@ -181,5 +182,5 @@ TEST_CASE("the finger touches when it is scheduled, and its force builds up smoo
   CHECK(states[4400].contact_m == states[4400].finger_m);
   CHECK(states[7999].normal_N == 0);
   CHECK(states[8400].normal_N == Approx(0.5).epsilon(1e-9));
-  CHECK(states[8400].finger_m == 0.06);  // strokes begin with the touch
+  CHECK(states[8400].finger_m == 0.06);  // each touch begins with a new stroke
 }

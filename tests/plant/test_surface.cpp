@@ -18,7 +18,7 @@ auto tone_on_drive(double frequency_Hz, double full_scale) {
   return [=](std::int64_t n, int channel) { return channel == 0 ? full_scale * cosine(frequency_Hz, n) : 0; };
 }
 
-/// The outermost place at which the gain is half of its last maximum.
+/// The position beyond the last maximum of the gain at which the gain is half of that maximum.
 double half_gain_m(const Plant& plant) {
   double x = 0.299;
   while (plant.gain_at(0, x - 1e-4) < 1e-2 || plant.gain_at(0, x - 1e-4) > plant.gain_at(0, x)) x -= 1e-4;
@@ -65,7 +65,8 @@ TEST_CASE("what a pick-up captures is its response times the drive", "[plant]") 
 }
 
 TEST_CASE("a pick-up's resonances are those of the surface, with its loss", "[plant]") {
-  // After the drive ends, the motion decays like exp(-pi f t / Q) for a membrane, twice as fast for a plate.
+  // After the drive ends, the motion of a membrane decays like exp(-pi f t / Q), and that of a plate twice as
+  // fast.
   Setup setup = quiet_setup();
   setup.surface.quality_factor = 200;
   setup.pickups = {{5, 0.009, 0.1, 0}};
@@ -111,7 +112,7 @@ TEST_CASE("the amplitudes of tones under the finger add as squares, and follow w
   });
   CHECK(std::abs(plant.tone_um(0)) == Approx(0.8).epsilon(2e-3));
   CHECK(std::abs(plant.tone_um(1)) == Approx(1.2).epsilon(2e-3));
-  // phase: played at frame 0, 400 frames later in the laboratory
+  // the tone is played with phase 0 and reaches the surface 400 frames later
   CHECK(std::abs(without_delay(plant.tone_um(0), 30e3, 400) - 0.8) < 3e-3);
   const double felt = std::hypot(0.8 * plant.gain_at(0, 0.1), 1.2 * plant.gain_at(1, 0.1));
   CHECK(plant.truth().amplitude_um == Approx(felt).epsilon(2e-3));
@@ -142,7 +143,8 @@ TEST_CASE("warmth moves the boundary outward by the closed form", "[plant]") {
     setup.temperature_C = 23;
     cold.set_tones({f});
     warm.set_tones({f});
-    // the strip's half-width at the edge, over the slope, times a quarter of both coefficients
+    // expected shift: half-width of the strip at the edge, over the slope, times a quarter of both
+    // coefficients
     const double x = half_gain_m(cold);
     const double width_m = 0.014 - 0.03 * x;
     const double shift_m = width_m / 0.03 * (4.8e-4 - 2.3e-5) / 4 * 10;

@@ -5,10 +5,10 @@ using namespace turnpoint::plant;
 
 namespace {
 
-constexpr std::int64_t kSettled = 4 * 192000;  // a step of force has decayed to 1e-15
+constexpr std::int64_t kSettled = 4 * 192000;  // by then, a step of force has decayed to 1e-15
 constexpr std::int64_t kTenth = 19200;
 
-/// Mean square of a channel about zero.
+/// Mean of the squared samples of a channel.
 double mean_square(const Recording& recording, int channel) {
   double sum = 0;
   for (std::int64_t n = recording.first; n < recording.end(); ++n)
@@ -29,13 +29,14 @@ TEST_CASE("a known load gives a carrier of known amplitude on each bridge", "[pl
   const auto b = amplitude(recording, kBridgeB, kCarrier_Hz, recording.first, recording.end());
   const auto t = amplitude(recording, kLateral, kCarrier_Hz, recording.first, recording.end());
   const auto reference = amplitude(recording, kReference, kCarrier_Hz, recording.first, recording.end());
-  // 0.5 mV/N at 2.5 V, amplified 200 times, of 2.1 V; the load's share of a cell, less h T / L
+  // 0.5 mV/N at 2.5 V, amplified 200 times, relative to a full scale of 2.1 V. Each cell carries its part of
+  // the load, changed by h T / L (height, lateral force, distance of the cells).
   const double per_N = 0.5e-3 * 200 / 2.1;
   CHECK(std::abs(a) == Approx(per_N * (1.0 * 2 / 3 - 0.01 * 0.4 / 0.3)).epsilon(1e-6));
   CHECK(std::abs(b) == Approx(per_N * (1.0 / 3 + 0.01 * 0.4 / 0.3)).epsilon(1e-6));
   CHECK(std::abs(t) == Approx(per_N * 0.4).epsilon(1e-6));
   CHECK(std::abs(reference) == Approx(2.5 / 3.0).epsilon(1e-6));
-  // all in phase, 400 frames after the playback
+  // reference and bridges are in phase with the playback, 400 frames later
   const auto at_playback = without_delay(reference, kCarrier_Hz, 400);
   CHECK(std::abs(std::arg(at_playback)) < 1e-6);
   CHECK(std::abs(std::arg(a / reference)) < 1e-5);
@@ -60,7 +61,7 @@ TEST_CASE("the noise of a bridge is white, with the given density", "[plant]") {
   const double variance = std::pow(4e-9 * 200 / 2.1, 2) * 96000;
   for (const int channel : {kBridgeA, kBridgeB, kLateral}) {
     CAPTURE(channel);
-    // sd of a variance from 192000 samples is 0.3 %
+    // the standard deviation of a variance from 192000 samples is 0.3 %
     CHECK(mean_square(recording, channel) == Approx(variance).epsilon(0.012));
     double neighbour = 0, next = 0;
     for (std::int64_t n = 1; n < recording.end(); ++n) {
@@ -68,7 +69,7 @@ TEST_CASE("the noise of a bridge is white, with the given density", "[plant]") {
       next += recording.at(n, channel) * recording.at(n, 1 + channel % 3);
     }
     CHECK(std::abs(neighbour) < 4 * std::sqrt(192000.0) * variance);
-    CHECK(std::abs(next) < 4 * std::sqrt(192000.0) * variance);  // the bridges have noise of their own
+    CHECK(std::abs(next) < 4 * std::sqrt(192000.0) * variance);  // the noise of the bridges is independent
   }
 }
 
@@ -77,12 +78,14 @@ TEST_CASE("the density of a bridge's noise near the carrier is that of the whole
   setup.wires.noise_V_per_rtHz = 4e-9;
   Plant plant(setup);
   const auto recording = run(plant, 192000, silence);
-  // 100 windows of 10 ms (1.5 bins of 100 Hz each) at 9 frequencies around the carrier
+  // Averages over 100 windows of 10 ms and 9 frequencies around the carrier. A Hann window of 10 ms has a
+  // noise bandwidth of 150 Hz.
   double sum = 0;
   for (int part = 0; part < 100; ++part)
     for (int k = -4; k <= 4; ++k)
       sum += std::norm(amplitude(recording, kBridgeA, kCarrier_Hz + 300 * k, part * 1920, (part + 1) * 1920));
-  // |z|^2 of white noise of variance s^2: 4 s^2 sum(w^2) / sum(w)^2, that is 6 s^2 / n for a Hann window
+  // For white noise of variance s^2 and a window w of n frames, the mean of |z|^2 is 4 s^2 sum(w^2) /
+  // sum(w)^2; for a Hann window that is 6 s^2 / n.
   const double variance = std::pow(4e-9 * 200 / 2.1, 2) * 96000;
   CHECK(sum / 900 == Approx(6 * variance / 1920).epsilon(0.15));
 }

@@ -12,24 +12,24 @@
 
 namespace turnpoint::sensing {
 
-/// What a codec captures of a reference and three bridges, from formulas alone: 2.5 V of excitation, 10 N
-/// cells of 2 mV/V, an amplifier with gain 200, full scale at 3 V.
+/// Computes from formulas what a codec captures of a reference and three bridges: excitation of 2.5 V, cells
+/// of 10 N and 2 mV/V, amplifiers with gain 200, converter full scale 3 V.
 struct BridgeSignal {
   double rate_Hz = 192000, carrier_Hz = 10525;
-  std::function<double(double)> force_N = [](double) { return 0.0; };  ///< of time, the same on all cells
-  /// Of time, one force for each cell; replaces force_N.
+  std::function<double(double)> force_N = [](double) { return 0.0; };  ///< of time (s), on all cells
+  /// As a function of time (s), one force for each cell; replaces force_N.
   std::function<std::array<double, bridge_count>(double)> forces_N;
-  std::function<double(double)> gain = [](double) { return 1.0; };  ///< of the excitation
-  double phase_rad = 0.4;                                           ///< of the whole path
-  double bridge_phase_rad = 0;                                      ///< of the resistive part
-  double quadrature_V_V = 0;                                        ///< unbalanced capacitance of the bridges
-  std::vector<double> tones_Hz;                                     ///< crosstalk of the drive at the bridge
-  double tone_V = 1e-3, cubic_per_V2 = 0;                           ///< the latter at the amplifier's output
-  double noise_V_rtHz = 0;                                          ///< at the bridge
+  std::function<double(double)> gain = [](double) { return 1.0; };  ///< of the excitation, by time (s)
+  double phase_rad = 0.4;                                           ///< of the carrier, on all channels
+  double bridge_phase_rad = 0;                                      ///< resistive part against reference
+  double quadrature_V_V = 0;                                        ///< from unbalanced capacitance
+  std::vector<double> tones_Hz;                                     ///< drive tones that reach the bridges
+  double tone_V = 1e-3, cubic_per_V2 = 0;  ///< tone: at the bridge; cubic: of the output
+  double noise_V_rtHz = 0;                 ///< at the bridge
   unsigned seed = 1;
 
   static constexpr double excitation_V = 2.5, volt_per_volt_N = 2e-4, amplifier = 200, full_scale_V = 3;
-  static constexpr double reference_share = 0.5;  ///< of full scale
+  static constexpr double reference_share = 0.5;  ///< amplitude of the reference, of full scale
 
   std::vector<std::int32_t> frames(std::int64_t first, std::size_t count) const {
     std::mt19937_64 random(seed);
@@ -60,11 +60,11 @@ struct BridgeSignal {
     return all;
   }
 
-  /// Newtons per unit of bridge / reference.
+  /// Force (N) for a ratio of bridge to reference of 1.
   static constexpr double N_per_ratio =
       full_scale_V * reference_share / (amplifier * excitation_V * volt_per_volt_N);
 
-  static std::int32_t sample(double share) {  // 24 bit
+  static std::int32_t sample(double share) {  // rounds to 24 bits
     return static_cast<std::int32_t>(std::lround(std::clamp(share, -1.0, 0.999999) * 0x1p23)) * 256;
   }
 };

@@ -6,11 +6,11 @@
 
 namespace turnpoint::sensing {
 
-/// Two cells 160 mm apart below the surface, a finger 8 mm above their pivots, a lateral cell, and 2 % of
-/// crosstalk between all three.
+/// Two cells 160 mm apart below the surface, and a lateral cell. The finger is 8 mm above the pivots of the
+/// two cells. The crosstalk between all three cells is random, with a standard deviation of 2 %.
 struct Cells {
   double span_mm = 160, height_mm = 8;
-  double gain[3] = {0.067, 0.069, 0.065};  // ratio per newton
+  double gain[3] = {0.067, 0.069, 0.065};  // ratio of bridge to reference per newton
   double crosstalk[3][3]{};
 
   explicit Cells(std::mt19937_64& random) {

@@ -9,8 +9,8 @@
 
 namespace turnpoint::sensing {
 
-/// Noise with a density that falls as 1 / frequency between 0.25 and 250 Hz, with standard deviation 1: a sum
-/// of first-order processes an octave apart.
+/// Noise of standard deviation 1 whose power density falls as 1 / frequency between 0.25 and 250 Hz. It is a
+/// sum of first-order low-pass noises, one per octave.
 class PinkNoise {
  public:
   explicit PinkNoise(std::mt19937_64& random) : random_(random) {
@@ -35,8 +35,8 @@ class PinkNoise {
   double keep_[octaves]{}, state_[octaves]{};
 };
 
-/// A finger that moves to and fro over a strip with one step of friction, and what the calibrated cells
-/// report of it at 1000 points a second. Strokes have minimum jerk, the finger rests 0.2 s between them.
+/// A finger that moves to and fro over a strip on which friction has one step, and the forces that calibrated
+/// cells report at 1000 points a second. Strokes have minimum jerk; the finger rests for 0.2 s between them.
 struct Finger {
   double from_mm = 40, to_mm = 120, mean_speed_mm_s = 80;
   int strokes = 12;
@@ -44,7 +44,8 @@ struct Finger {
   double edge_mm = 80, width_mm = 10;
   double friction_below = 0.8, friction_above = 0.4;
   double stiffness_N_mm = 1;  ///< of the skin
-  double lag_mm = 0;          ///< how far behind the finger the change of friction comes
+  double lag_mm = 0;          ///< distance that the finger has moved past the edge before it meets the change
+                              ///< of friction
   double cell_noise_N = 0.25e-3, span_mm = 200;
 
   struct Truth {
@@ -54,7 +55,7 @@ struct Finger {
     std::vector<ForcePoint> forces;
     std::vector<Truth> truth;
 
-    /// Mean over 30 ms: the contact itself shakes with the noise of friction.
+    /// The truth, averaged over 31 ms because noise of friction shakes the contact.
     Truth smooth_truth(std::size_t at) const {
       Truth mean{0, 0};
       for (std::size_t k = at - 15; k <= at + 15; ++k) {
@@ -65,7 +66,7 @@ struct Finger {
     }
   };
 
-  /// Friction under a finger that covers both sides of the edge in part.
+  /// Friction under a finger that partly covers both sides of the edge.
   double friction(double position_mm) const {
     const double share = std::clamp((position_mm - edge_mm) / width_mm + 0.5, 0.0, 1.0);
     return friction_below + (friction_above - friction_below) * share;

@@ -1,6 +1,6 @@
 #pragma once
-// A vibrating surface and its capture, computed from textbook formulas in long double. It shares no code with
-// the synthesiser and the measurement.
+// A vibrating surface and its capture, computed from textbook formulas. Phases are computed in long double.
+// The code shares nothing with the synthesiser or the measurement.
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -28,7 +28,7 @@ struct SimplePickUp {
   }
 };
 
-/// The calibration of such a pick-up for one output channel, with a point every 50 Hz from 20 to 48 kHz.
+/// The calibration of `pick_up` for one output channel, with a point every 50 Hz from 20 to 48 kHz.
 inline PickUp calibrated(const SimplePickUp& pick_up, int drive_channel = 0) {
   Transfer transfer{drive_channel, {}, {}};
   for (double f = 20e3; f <= 48e3; f += 50) {
@@ -38,7 +38,7 @@ inline PickUp calibrated(const SimplePickUp& pick_up, int drive_channel = 0) {
   return {pick_up.channel, {transfer}};
 }
 
-/// What happens between the plan and the capture.
+/// What happens to the played signal before it is captured: delay, noise, pick-ups and faults.
 struct Room {
   int rate_Hz = 192000;
   int channels = 6;
@@ -47,25 +47,25 @@ struct Room {
   std::uint64_t seed = 1;
   std::vector<SimplePickUp> pick_ups{SimplePickUp{}};
   // faults
-  double drive_gain = 1;  ///< of the vibration
+  double drive_gain = 1;  ///< factor on the vibration
   double frequency_factor = 1;
   double late_s = 0;
-  double limiter = 1e9;  ///< of the vibration's samples
+  double limiter = 1e9;  ///< largest absolute value of the vibration's samples
   double hum = 0;        ///< 50 Hz
-  /// added to the captured signal of each pick-up, by the time since the onset (s)
+  /// Added to the captured signal of each pick-up, as a function of the time since the onset (s).
   std::function<double(double)> extra;
   std::function<double(double)> gain_at;
 };
 
-/// A sample as a converter of 24 bits gives it.
+/// The sample that a 24-bit converter captures for this value.
 inline std::int32_t converted(double value) {
   const double full = 0x1p23;
   return static_cast<std::int32_t>(std::clamp(std::round(value * full), -full, full - 1)) * 256;
 }
 
-/// Gain of a raised-cosine ramp up and down at the time t (s) of a burst.
+/// Gain of a burst with raised-cosine ramps at the time t (s) since its start.
 inline long double gate(const drive::Burst& burst, int rate_Hz, long double t) {
-  // The synthesiser computes a ramp for the middle of each frame.
+  // The synthesiser computes the ramp at the middle of each frame.
   const long double at = t * rate_Hz + 0.5L, ramp = static_cast<long double>(burst.ramp.frames),
                     left = static_cast<long double>(burst.length_frames) - at;
   const auto rise = [ramp](long double x) {
@@ -111,7 +111,7 @@ inline std::vector<std::int32_t> captured(const Room& room, const drive::Burst& 
   return samples;
 }
 
-/// Passes samples on in blocks of the given sizes, repeated.
+/// Calls `take` with the samples in blocks. The block sizes repeat in the given order.
 template <class Take>
 void in_blocks(const Room& room, std::span<const std::int32_t> samples, std::int64_t first,
                const std::vector<std::int64_t>& sizes, Take&& take) {

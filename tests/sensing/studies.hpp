@@ -6,8 +6,8 @@
 
 namespace turnpoint::sensing {
 
-/// TURNPOINT_STUDIES=400 repeats each simulated study so many times and prints its figures; without it, a
-/// study has the small number given here.
+/// With TURNPOINT_STUDIES=400, each simulated study has 400 repetitions and prints its figures. Otherwise it
+/// has `everyday` repetitions.
 inline const char* const wanted_studies = std::getenv("TURNPOINT_STUDIES");
 inline int repetitions(int everyday) {
   return wanted_studies != nullptr ? std::atoi(wanted_studies) : everyday;

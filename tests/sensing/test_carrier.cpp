@@ -40,7 +40,8 @@ std::vector<double> measured_N(const BridgeSignal& signal, std::size_t frames, s
   return forces_N(complete(demodulated(options, first, signal.frames(first, frames))));
 }
 
-/// How much later than the given frames the demodulated force is, in frames, for a force of one frequency.
+/// Delay of the demodulated force (in frames) for a force of one frequency, if the first captured frame is
+/// `first` but is given as `said`.
 double delay_frames(std::int64_t first, std::int64_t said, Band band, double frequency_Hz) {
   BridgeSignal signal;
   const double omega = 2 * std::numbers::pi * frequency_Hz;
@@ -68,7 +69,7 @@ TEST_CASE("a force of 0 to 2 N is measured without a constant error", "[sensing]
     signal.noise_V_rtHz = 4e-9;
     CHECK(std::abs(mean(measured_N(signal, second / 4)) - force) < 1e-3 * force + 0.5e-3);
   }
-  // a phase of the bridge that nobody measured would cost 0.4 % of the force
+  // ignoring the bridge's phase of 0.09 rad makes the force too small by 0.4 %
   BridgeSignal signal;
   signal.force_N = [](double) { return 2; };
   signal.bridge_phase_rad = 0.09;
@@ -95,7 +96,7 @@ TEST_CASE("noise of the force is that of bridge and amplifier in its band", "[se
   wide.band = Band::wide;
   const double wide_sd = sd(measured_N(signal, second, 0, wide));
   CHECK(wide_sd == Approx(closed_N(1410)).epsilon(0.1));
-  CHECK(wide_sd > 1.3 * closed_N(480));  // so the comparison would notice a wrong band
+  CHECK(wide_sd > 1.3 * closed_N(480));  // negative control: the comparison would detect a wrong band
 }
 
 TEST_CASE("drive tones at the bridge do not look like a force", "[sensing]") {
@@ -110,7 +111,7 @@ TEST_CASE("drive tones at the bridge do not look like a force", "[sensing]") {
     return std::max(std::abs(mean(on) - off), sd(on));
   };
   CHECK(with_tones(1e-3) < 0.1e-3);
-  CHECK(with_tones(3e-3) > 0.15e-3);  // three times the crosstalk must show
+  CHECK(with_tones(3e-3) > 0.15e-3);  // negative control: three times the crosstalk is detected
 }
 
 TEST_CASE("no delay is left in the force", "[sensing]") {
@@ -133,7 +134,7 @@ TEST_CASE("a step is within one per cent after 5 ms, and 0.1 per cent after 10 m
     if (std::abs(late_s) > 5.5e-3) CHECK(error < 0.01);
     if (std::abs(late_s) > 10.5e-3) CHECK(error < 0.001);
   }
-  CHECK(largest > 1.03);  // it rings: a filter that does not would not be this short
+  CHECK(largest > 1.03);  // the step response overshoots; a filter without overshoot could not be this short
 }
 
 TEST_CASE("drift of the excitation cancels, drift of one amplifier does not", "[sensing]") {
@@ -179,7 +180,7 @@ TEST_CASE("missing frames make the points within reach NaN, and no others", "[se
   std::vector<BridgePoint> points;
   const auto take = [&](const BridgePoint& point) { points.push_back(point); };
   demodulator.push({std::span(samples).first(4 * 20000), 4, 0}, take);
-  demodulator.push({std::span(samples).first(4 * 15000), 4, 0}, take);  // received before: ignored
+  demodulator.push({std::span(samples).first(4 * 15000), 4, 0}, take);  // already received, so ignored
   demodulator.push({std::span(samples).subspan(4 * 20100), 4, 20100}, take);
   REQUIRE(points.size() == whole.size());
   std::size_t lost = 0;
@@ -225,11 +226,12 @@ TEST_CASE("the carrier keeps away from mains and from products of the drive tone
   const auto choose = [](std::vector<std::vector<double>> plans) { return choose_carrier(plans, 192000); };
   CHECK(choose({}).carrier_Hz == 10525);
   CHECK(choose({{30e3}}).carrier_Hz == 10525);
-  CHECK(choose({{30e3, 32e3}}).carrier_Hz == 10525);  // 2, 4, 6, 8 kHz; 28 and 34 kHz
-  const auto moved = choose({{30e3, 33.4e3}});        // 3 x 3.4 kHz is 325 Hz below the default
+  CHECK(choose({{30e3, 32e3}}).carrier_Hz == 10525);  // products: 2, 4, 6, 8 kHz; 28 and 34 kHz
+  const auto moved = choose({{30e3, 33.4e3}});        // the product 3 x 3.4 kHz is 325 Hz below the default
+                                                      // carrier
   CHECK(moved.carrier_Hz != 10525);
   CHECK(moved.clearance_Hz >= enough_clearance_Hz);
-  // the same tones in different stimuli have no products
+  // the same tones in two different stimuli cause no products
   CHECK(choose({{30e3}, {33.4e3}}).carrier_Hz == 10525);
   const auto crowded = choose({{22.4e3, 23.5e3, 25e3, 27e3}});
   CHECK(crowded.clearance_Hz < enough_clearance_Hz);
@@ -241,7 +243,7 @@ TEST_CASE("the carrier keeps away from mains and from products of the drive tone
       nearest = std::min(nearest, std::abs(carrier - product));
     CHECK(crowded.clearance_Hz >= nearest);
   }
-  CHECK(choose({{20e3, 65.4e3}}).carrier_Hz != 10525);  // 4 x 45.4 = 181.6 kHz folds to 10.4 kHz
+  CHECK(choose({{20e3, 65.4e3}}).carrier_Hz != 10525);  // the product 4 x 45.4 = 181.6 kHz folds to 10.4 kHz
 }
 
 TEST_CASE("impossible wiring of the bridges is refused", "[sensing]") {

@@ -37,7 +37,8 @@ Study study(const Finger& finger, int trials, unsigned seed) {
   double sum = 0, square = 0, count = 0;
   for (int i = 0; i < trials; ++i) {
     Finger moved = finger;
-    moved.edge_mm += std::uniform_real_distribution(-1.0, 1.0)(random);  // anywhere in a bin
+    moved.edge_mm += std::uniform_real_distribution(-1.0, 1.0)(random);  // the edge may be anywhere within a
+                                                                         // bin
     const auto step = felt_step(trial(moved, random).profile);
     if (!step) {
       result.missing += 1.0 / trials;
@@ -110,7 +111,7 @@ TEST_CASE("a felt step is where friction changes, and its standard error is righ
   CHECK(six.covered > (many ? 0.90 : 0.85));
   if (many) CHECK(six.covered < 0.98);
   CHECK(six.covered_by_half < 0.85);
-  // a calibration that is 2 % off in position must show
+  // negative control: a calibration that is 2 % off in position must be detected
   std::mt19937_64 random(4);
   auto recording = Finger().record(random);
   for (auto& point : recording.forces) point.force.moment_Nmm *= 1.02;

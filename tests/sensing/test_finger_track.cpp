@@ -62,7 +62,7 @@ TEST_CASE("position and speed of a moving finger are right", "[sensing]") {
       100 * rough.speed_mm_s / rough.mean_speed_mm_s, " %");
   CHECK(rough.position_mm < 0.2);
   finger.friction_noise = 0;
-  finger.cell_noise_N = 1.5e-3;  // noisy cells must show
+  finger.cell_noise_N = 1.5e-3;  // negative control: noisy cells must increase the error
   const auto noisy = errors(finger, 3);
   CHECK(noisy.speed_mm_s > 0.03 * noisy.mean_speed_mm_s);
 }
@@ -85,7 +85,7 @@ TEST_CASE("position and speed have no delay and no unit error", "[sensing]") {
 
 TEST_CASE("contact needs 20 ms of force, and ends with little", "[sensing]") {
   std::vector<double> normal(500, 0.0);
-  for (std::size_t i = 100; i < 119; ++i) normal[i] = 0.2;  // 19 ms: a touch in passing
+  for (std::size_t i = 100; i < 119; ++i) normal[i] = 0.2;  // 19 ms are too short for a contact
   for (std::size_t i = 200; i < 300; ++i) normal[i] = 0.2;
   for (std::size_t i = 300; i < 320; ++i) normal[i] = 0.04;  // below 0.05 N, above 0.03 N
   int contacts = 0;
@@ -122,7 +122,7 @@ TEST_CASE("with little force or with missing points there is no position", "[sen
 }
 
 TEST_CASE("strokes are long, fast and in one direction", "[sensing]") {
-  // 60 mm up, a rest, 60 mm down with a stop half way, and 25 mm up
+  // 60 mm up, a rest, 60 mm down with a slow moment after 40 mm, 25 mm up, and 40 mm up too slowly
   std::vector<FingerPoint> track;
   double x = 20;
   const auto move = [&](double speed_mm_s, int milliseconds) {
@@ -141,7 +141,8 @@ TEST_CASE("strokes are long, fast and in one direction", "[sensing]") {
   CHECK(track[strokes[1].first].position_mm == Approx(75).margin(0.2));
   CHECK(track[strokes[1].end - 1].position_mm == Approx(45).margin(0.2));
 
-  track[500].speed_mm_s = track[500].position_mm = nan_value;  // 30 mm on either side of it
+  track[500].speed_mm_s = track[500].position_mm = nan_value;  // a missing point with 30 mm of the stroke on
+                                                               // either side
   CHECK(find_strokes(track).size() <= 3);
   for (const auto& stroke : find_strokes(track)) CHECK((stroke.end <= 500 || stroke.first > 500));
   CHECK(find_strokes({}).empty());

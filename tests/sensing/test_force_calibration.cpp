@@ -16,8 +16,8 @@ namespace {
 
 constexpr double g = 9.80665;
 
-/// Weights of 20 to 200 g at five places; 20 to 100 g over a pulley, in both directions at two places, with
-/// 200 g standing. Places are off by 0.2 mm, the pulley by 1 %.
+/// Weights of 20 to 200 g at five places; pulls of 20 to 100 g over a pulley in both directions at two
+/// places, with 200 g on the surface. The true places differ by 0.2 mm (sd), the true pulls by 1 %.
 std::vector<DeadWeight> weights(const Cells& cells, std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   std::vector<DeadWeight> all;
@@ -46,7 +46,8 @@ struct Errors {
   double covered_position = 0, covered_friction = 0;       ///< share within 1.96 standard deviations
 };
 
-/// Errors over many calibrated stations, at 3 forces x 3 places, pulling to either side.
+/// Errors over many calibrated stations, at 3 forces x 3 positions, with friction in both directions. Without
+/// `with_height`, the calibration ignores the height of the finger above the cells.
 Errors errors(int stations, bool with_height) {
   std::mt19937_64 random(11);
   Errors sum;
@@ -79,7 +80,7 @@ Errors errors(int stations, bool with_height) {
           std::sqrt(sum.position_mm / count), sum.covered_position / count, sum.covered_friction / count};
 }
 
-/// 300 ms without a finger.
+/// 300 ms of points without a finger. `normal_N` is an offset.
 std::vector<BridgePoint> rest(const Cells& cells, double normal_N, double noise_N) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;
@@ -160,7 +161,7 @@ TEST_CASE("a tare says when the cells moved, and when something lies on the surf
   CHECK(state(points) == TareState::incomplete);
   CHECK(std::isnan(force_point(points[9], calibration, {}).force.normal_N));
 
-  // the force of the next finger does not contain the tare
+  // the tare is subtracted from the force of the next finger
   BridgePoint point{.index = 5, .ratio = cells.readings(0.5 + 4e-3, 0.2, 60)};
   CHECK(force_point(point, calibration, good.readings).force.normal_N == Approx(0.5).margin(1e-3));
   CHECK(force_point(point, calibration, {}).force.normal_N > 0.503);

@@ -17,11 +17,12 @@ namespace {
 
 const std::vector<double> levels_m{0.2e-6, 0.4e-6, 0.6e-6, 0.8e-6, 1.0e-6, 1.3e-6, 1.7e-6, 2.2e-6};
 
-/// Relative friction of the simulated skin, down to a floor.
+/// Relative friction of the simulated skin; it never falls below 0.15.
 double truth(double displacement_m) { return 0.15 + 0.85 / (1 + std::pow(displacement_m / 0.65e-6, 2.5)); }
 const double true_half_m = 0.65e-6 * std::pow(0.85 / 0.35 - 1, 0.4);
 
-/// Strokes with 10 % of noise each, over skin whose friction rises by 30 % during the measurement.
+/// Strokes with 10 % of noise each, over skin whose ln friction rises by nearly `drift` during the
+/// measurement.
 std::vector<TableStroke> measured(const std::vector<double>& order, std::mt19937_64& random,
                                   double drift = 0.3) {
   std::normal_distribution<double> noise(0, 0.1);
@@ -35,7 +36,7 @@ std::vector<TableStroke> measured(const std::vector<double>& order, std::mt19937
 }
 
 struct Study {
-  double rms = 0, worst_bias = 0;  ///< of ln friction, over levels
+  double rms = 0, worst_bias = 0;  ///< errors of ln friction over all levels
   double covered = 0, least_covered = 1, covered_by_half = 0;
   double half_bias = 0, half_sd = 0, half_covered = 0;
 };
@@ -102,7 +103,7 @@ TEST_CASE("a friction table is precise, and its intervals hold what they say", "
 TEST_CASE("strokes at rest between the driven ones remove a drift", "[sensing]") {
   std::mt19937_64 random(8);
   auto order = friction_table_order(levels_m, 20, 1);
-  // the worst order: one level after the other, while friction falls to a third
+  // the worst order: levels ascending, while friction falls to a third
   std::vector<double> driven;
   for (const double level : order)
     if (level > 0) driven.push_back(level);
@@ -126,7 +127,7 @@ TEST_CASE("strokes at rest between the driven ones remove a drift", "[sensing]")
 }
 
 TEST_CASE("a friction table falls strictly, and a rig can use it", "[sensing]") {
-  // the third level measures more than the second, and the first more than rest
+  // the third level measures higher friction than the second, and the first higher than the surface at rest
   std::vector<TableStroke> strokes{{0, 0.5}};
   const double friction[] = {0.52, 0.3, 0.36, 0.2};
   for (int repeat = 0; repeat < 3; ++repeat)
@@ -157,7 +158,8 @@ TEST_CASE("strokes without neighbours at rest do not count, and too few are refu
   const auto good = measured(friction_table_order(levels_m, 6, 4), random);
   CHECK(friction_table(good, 1, 10).unused == 0);
   auto strokes = good;
-  strokes[2].friction = std::numeric_limits<double>::quiet_NaN();  // at rest: spoils both neighbours
+  strokes[2].friction = std::numeric_limits<double>::quiet_NaN();  // a stroke at rest; both of its neighbours
+                                                                   // become unusable
   CHECK(friction_table(strokes, 1, 10).unused == 2);
   strokes = good;
   strokes[1].friction = std::numeric_limits<double>::quiet_NaN();

@@ -29,7 +29,7 @@ drive::Burst three_tones() {
   return burst_of({{25000.5, 0.3, 0.2, 0}, {30321.7, 0.25, 1.9, 0}, {36543.2, 0.2, -2.5, 0}});
 }
 
-/// Tones at least 1 kHz apart between 22 and 46 kHz, with random levels (10 dB) and phases.
+/// Tones at least 1 kHz apart between 22 and 46 kHz. Phases are random, and levels are random within 10 dB.
 drive::Burst random_burst(std::mt19937_64& random, int tones, double steady_s) {
   std::uniform_real_distribution<double> uniform(0, 1);
   std::vector<drive::Tone> made;
@@ -216,7 +216,7 @@ double planned_rms(const Room& room, const drive::Burst& burst) {
   return std::sqrt(square);
 }
 
-/// A room without faults: levels within 0.3 dB, noise from -90 to -50 dB re the plan.
+/// A room without faults: levels within 0.3 dB of the plan, noise of 10^-4.5 to 10^-2.5 of full scale.
 Room random_room(std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(0, 1);
   Room room;
@@ -308,7 +308,7 @@ TEST_CASE("a finger may change the level more before the trial is void", "[sensi
   room.gain_at = [](double t) { return t < 0.1 ? 1 : std::pow(10, -2.0 / 20); };
   const auto burst = three_tones();
   const IntervalResult alone = proven(room, burst, false), touched = proven(room, burst, true);
-  CHECK(alone.verdict == Proof::stopped);  // the step in the level is a residual as well
+  CHECK(alone.verdict == Proof::stopped);  // the step in level also leaves a residual
   CHECK(alone.tones[0].worst_ratio_dB == Approx(-2).margin(0.05));
   CHECK(touched.tones[0].worst_ratio_dB == Approx(-2).margin(0.05));
 }
@@ -402,7 +402,7 @@ TEST_CASE("both sets of tones of a burst with a change are proven as the synthes
     CHECK(std::fabs(tone.ratio_dB) < 0.001);
     CHECK(std::fabs(tone.phase_error_deg) < 0.01);
   }
-  plan.burst.changes[0].frames += 1;  // turns the phase after the glide by 0.6 degrees
+  plan.burst.changes[0].frames += 1;  // one more frame turns the phase after the glide by 0.6 degrees
   CHECK(std::fabs(run().tones[2].phase_error_deg) > 0.5);
 }
 
@@ -420,7 +420,7 @@ TEST_CASE("silence is measured against the plan", "[sensing][proof]") {
     in_blocks(room, samples, first, {384}, [&](const CaptureBlock& block) { proof.push(block); });
     return proof.result();
   };
-  // The plan's rms is 0.5 sqrt(0.3^2 + 0.25^2 + 0.2^2) / sqrt(2) = 0.155.
+  // The rms of the plan is 0.5 sqrt(0.3^2 + 0.25^2 + 0.2^2) / sqrt(2) = 0.155, with a pick-up gain of 0.5.
   CHECK(level_of(0).verdict == Proof::ok);
   CHECK(level_of(0.155 * std::sqrt(2) * 1e-3).level_dB == Approx(-60).margin(1));
   CHECK(level_of(0.155 * std::sqrt(2) * 1e-3).verdict == Proof::flagged);

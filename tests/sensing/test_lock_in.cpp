@@ -97,8 +97,9 @@ TEST_CASE("a tone at a distance of 1.05 kHz leaks into a lock-in by less than 6e
   };
   CHECK(leak(1050) < 6e-4);
   CHECK(leak(-1050) < 6e-4);
-  CHECK(leak(100) > 0.3);  // within the window's bandwidth: the negative control
-  double largest = 0;      // where block sums of 1 ms alone would let an alias through
+  CHECK(leak(100) > 0.3);  // negative control: 100 Hz is within the window's bandwidth
+  // near multiples of 1 kHz, sums over 1 ms alone would let aliases through
+  double largest = 0;
   for (const double distance : {2050.0, 3050.0, 4050.0, 8050.0, 16050.0})
     largest = std::max(largest, leak(distance));
   CHECK(largest < 1e-4);
@@ -130,7 +131,7 @@ TEST_CASE("lost frames make the points around them invalid and no others", "[sen
   Room room;
   room.noise = 0;
   const auto burst = two_tones();
-  const std::int64_t first = (burst.start_frame + 8000) / 192 * 192;  // where a block begins
+  const std::int64_t first = (burst.start_frame + 8000) / 192 * 192;  // first frame of a block
   const auto samples = captured(room, burst, first, 40000);
   const std::int64_t lost_at = 20000, lost = 300;
   const auto frames_between = [&](std::int64_t from, std::int64_t to) {
@@ -164,7 +165,7 @@ TEST_CASE("lost frames make the points around them invalid and no others", "[sen
 }
 
 TEST_CASE("a lock-in follows a tone that glides", "[sensing]") {
-  // 30 to 32 kHz in 0.2 s: the phase is 2 pi (f t + slope t^2 / 2).
+  // The tone glides from 30 to 32 kHz in 0.2 s; its phase is 2 pi (f t + slope t^2 / 2).
   constexpr int rate = 192000;
   constexpr std::int64_t frames = 38400, origin = 5'000'000'000;
   const std::uint64_t from = drive::phase_increment(30000, rate), to = drive::phase_increment(32000, rate);
@@ -189,5 +190,5 @@ TEST_CASE("a lock-in follows a tone that glides", "[sensing]") {
   steady.push({samples, 1, origin + 1234, rate}, [&](double, std::span<const Complex> values) {
     if (!std::isnan(values[0].real())) smallest = std::min(smallest, std::abs(values[0]));
   });
-  CHECK(smallest < 0.01);  // without curvature the tone is lost: the negative control
+  CHECK(smallest < 0.01);  // negative control: without curvature the lock-in loses the tone
 }

@@ -15,7 +15,7 @@ namespace {
 
 constexpr long double two_pi = 6.28318530717958647692529L;
 
-/// What a chirp is at n frames after its start, in long double.
+/// The chirp, computed in long double at `n` frames after its start.
 long double chirp(long double n, long double low_Hz, long double high_Hz, long double frames, int rate_Hz) {
   const long double u = (n + 0.5L) / frames;
   if (u <= 0 || u >= 1) return 0;
@@ -30,7 +30,8 @@ struct Loop {
 
 constexpr std::int64_t start = 987'654'321;
 
-/// The reference channel from 100 frames before the pilot, with `signal(frames since the pilot's start)`.
+/// What a listener finds if the reference channel carries `signal(frames since the pilot's start)` and noise.
+/// The capture begins 100 frames before the pilot.
 template <class Signal>
 std::optional<PilotEcho> heard(const Pilot& pilot, const Loop& loop, const Signal& signal) {
   PilotListener listener(pilot, start, 1, 0);
@@ -93,8 +94,8 @@ TEST_CASE("without the pilot there is no delay", "[sensing][pilot]") {
     });
   };
   CHECK(as(22000, 46000, 1920));
-  CHECK_FALSE(as(46000, 22000, 1920));                       // falling
-  CHECK_FALSE(as(22000, 46000, 960));                        // half as long
+  CHECK_FALSE(as(46000, 22000, 1920));                       // a falling chirp
+  CHECK_FALSE(as(22000, 46000, 960));                        // a chirp that is half as long
   CHECK_FALSE(as(22000 * 1.03, 46000 * 1.03, 1920 / 1.03));  // played at another rate
   CHECK_FALSE(as(10000, 20000, 1920));                       // another band
   CHECK_FALSE(as(34000, 34000, 1920));                       // a tone
@@ -107,7 +108,7 @@ TEST_CASE("without the pilot there is no delay", "[sensing][pilot]") {
   }
   CHECK_FALSE(
       heard(pilot, loop, [](long double at) { return 0.5L * std::sin(two_pi * 30000 / 192000 * at); }));
-  CHECK_FALSE(heard(pilot, loop, [](long double at) {  // twice
+  CHECK_FALSE(heard(pilot, loop, [](long double at) {  // the pilot comes twice
     return 0.2L *
            (chirp(at - 3000, 22000, 46000, 1920, 192000) + chirp(at - 40000, 22000, 46000, 1920, 192000));
   }));

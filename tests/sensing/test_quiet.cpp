@@ -1,4 +1,4 @@
-// Demodulation must not allocate: it may run on a thread with real-time priority.
+// Demodulation must not allocate memory, because it may run on a thread with real-time priority.
 #include "station/sensing/carrier.hpp"
 #include "tests/drive/watch.hpp"
 #include "tests/sensing/bridge_signal.hpp"

@@ -1,4 +1,4 @@
-// The proof of an interval must not allocate while it takes captured frames.
+// IntervalProof must not allocate memory while it takes captured frames.
 #include "station/sensing/interval_proof.hpp"
 #include "station/sensing/lock_in.hpp"
 #include "station/sensing/pilot.hpp"

@@ -1,4 +1,4 @@
-// From captured samples to the felt step, with all parts of the layer.
+// Tests the whole way from captured samples to the felt step, with all parts of the layer.
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double newton = BridgeSignal::N_per_ratio;
 
-/// Samples of a finger on cells whose readings are bridge / reference.
+/// The captured samples of a recorded finger. `cells` give the ratios of bridge to reference.
 std::vector<std::int32_t> captured(const Cells& cells, const Finger::Recording& recording) {
   std::vector<Readings> readings;
   for (const auto& point : recording.forces)
@@ -93,12 +93,12 @@ TEST_CASE("samples of a finger on the cells become its track and the step that i
   CHECK(good.step->friction_below == Approx(0.8).epsilon(0.05));
   CHECK(good.step->friction_above == Approx(0.4).epsilon(0.05));
 
-  // without the height of the finger above the cells
+  // negative control: a calibration that ignores the height of the finger above the cells
   auto matrix = calibration.matrix();
   matrix[2][2] = 0;
   CHECK(result(points, ForceCalibration(matrix, {}), recording).position_mm > 2);
 
-  // a gap of 50 ms divides the third stroke, and only one part of it is long enough
+  // A gap of 50 ms divides the third stroke. Only one part of this stroke is long enough to count.
   BridgeDemodulator demodulator(bridge_options());
   std::vector<BridgePoint> with_gap;
   const auto take = [&](const BridgePoint& point) { with_gap.push_back(point); };
