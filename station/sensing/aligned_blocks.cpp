@@ -9,7 +9,7 @@ namespace turnpoint::sensing {
 
 namespace {
 
-// Several sums and maxima side by side, which do not wait for each other.
+// Eight independent sums or maxima are kept side by side, so that they can be computed in parallel.
 constexpr int kLanes = 8;
 
 double energy_of(const double* y, int frames) noexcept {
@@ -63,7 +63,7 @@ void AlignedBlocks::check(const CaptureBlock& block) const {
     throw std::logic_error("sensing: captured block with another rate or number of channels");
 }
 
-// Begins in the middle of an aligned block, whose first frames are lost.
+// The capture may begin in the middle of an aligned block. The first frames of that block then count as lost.
 void AlignedBlocks::start_at(std::int64_t frame) noexcept {
   const std::int64_t inside = ((frame + step_) % block_frames_ + block_frames_) % block_frames_;
   next_ = frame - inside;

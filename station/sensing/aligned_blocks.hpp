@@ -7,29 +7,30 @@
 
 namespace turnpoint::sensing {
 
-/// Some channels of a stretch of captured frames, one row per channel.
+/// A block of captured frames of the chosen channels (inputs), one row per input.
 struct AlignedBlock {
   std::int64_t first_frame = 0;
   std::int64_t frames = 0;
   bool lost = false;                   ///< some of the frames are missing
-  double largest = 0;                  ///< largest absolute sample of these channels, before the filter
+  double largest = 0;                  ///< largest absolute sample of all inputs, before the filter
   const double* const* row = nullptr;  ///< row[i][n]: frame n of input i
   const double* energy = nullptr;      ///< energy[i]: sum of the squares of row i
 };
 
-/// Cuts captured blocks of any size into blocks of one size, which begin at multiples of that size. Whatever
-/// is computed from the blocks therefore does not depend on how the samples arrived. Allocates only in its
-/// constructor.
+/// Cuts captured blocks of any size into blocks of one size, whose first frames are multiples of that size.
+/// Results computed from these blocks therefore do not depend on how the samples arrived. Allocates only in
+/// its constructor.
 class AlignedBlocks {
  public:
-  /// `inputs` are the captured channels to use. With a step d > 0, a symmetric filter removes low frequencies
-  /// (mains hum, friction noise): y(n) = (2 s(n) - s(n-d) - s(n+d)) / 4, see high_pass_gain().
+  /// `inputs` are the captured channels to use. With a step d > 0 (in frames), a symmetric filter removes low
+  /// frequencies (mains hum, friction noise) from the samples s: y(n) = (2 s(n) - s(n-d) - s(n+d)) / 4, see
+  /// high_pass_gain().
   AlignedBlocks(int rate_Hz, int channels, std::vector<int> inputs, int block_frames, int high_pass_step);
   AlignedBlocks(const AlignedBlocks&) = delete;
   AlignedBlocks& operator=(const AlignedBlocks&) = delete;
 
-  /// Calls `sink(const AlignedBlock&)` for each block that is complete. Frames that were already received are
-  /// ignored. Throws std::logic_error for a block with another rate or number of channels.
+  /// Calls `sink(const AlignedBlock&)` for each complete block. Ignores frames that it has already received.
+  /// Throws std::logic_error for a block with another rate or number of channels.
   template <class Sink>
   void push(const CaptureBlock& block, Sink&& sink) {
     check(block);
@@ -56,9 +57,9 @@ class AlignedBlocks {
 
   int rate_Hz_, channels_, block_frames_, step_;
   std::vector<int> inputs_;
-  std::int64_t capacity_;  ///< frames of a block and of the filter's margins
+  std::int64_t capacity_;  ///< frames of a block and of the filter's margins on both sides
   std::int64_t filled_ = 0;
-  std::int64_t next_ = 0;  ///< frame that is expected next
+  std::int64_t next_ = 0;  ///< number of the next frame to receive
   bool started_ = false;
   std::vector<std::vector<double>> raw_, filtered_;
   std::vector<const double*> rows_;
@@ -66,10 +67,12 @@ class AlignedBlocks {
   AlignedBlock block_;
 };
 
-/// Gain of the filter of AlignedBlocks at a frequency, from 0 to 1; its phase is zero.
+/// Gain (0 to 1) of the filter in AlignedBlocks at this frequency; `step` is its step in frames. Its phase is
+/// zero.
 double high_pass_gain(double frequency_Hz, int rate_Hz, int step) noexcept;
 
-/// The step whose gain is largest near 48 kHz, or as close to that as the rate allows.
+/// The step (in frames) with which the filter's gain is largest at 48 kHz, or as near to 48 kHz as the rate
+/// allows.
 int high_pass_step(int rate_Hz) noexcept;
 
 }  // namespace turnpoint::sensing

@@ -5,11 +5,11 @@
 namespace turnpoint::sensing {
 
 /// A block of captured samples: frames in order, the channels of a frame side by side, full scale 2^31 (S32).
-/// If the device lost frames, the next block begins later.
+/// If the device lost frames, the next block's first_frame jumps.
 ///
-/// Frames are counted like those of the playback: what is played at frame n is captured at frame n + delay.
-/// Whoever numbers the blocks may already have subtracted a whole number of frames; the delay is then the
-/// rest.
+/// Captured and played frames have the same numbers, except for a delay: what is played at frame n is
+/// captured at frame n + delay. Whoever numbers the blocks may already subtract a whole number of frames;
+/// only the rest is then called delay.
 struct CaptureBlock {
   std::span<const std::int32_t> samples;  ///< frames x channels
   int channels = 1;

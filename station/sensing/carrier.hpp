@@ -11,33 +11,34 @@
 
 namespace turnpoint::sensing {
 
-/// The carriers that bridges may be excited with. Each is 25 Hz above a multiple of 300 Hz, so at least 25 Hz
-/// away from every harmonic of a mains of 50 and of 60 Hz. The first is the default. There are only five,
-/// because amplifier and filter treat each carrier differently, so each needs its own calibration.
+/// The possible carriers for the excitation of the bridges; the first is the default. Each is 25 Hz above a
+/// multiple of 300 Hz, and so at least 25 Hz away from every harmonic of 50 and 60 Hz mains. There are only
+/// five, because amplifier and filter treat each carrier differently, so each needs its own calibration.
 inline constexpr std::array carriers_Hz{10525.0, 6325.0, 8425.0, 12625.0, 14725.0};
 
-/// A carrier, and how far the nearest product of the drive tones is from it.
+/// A carrier, and its distance from the nearest product of the drive tones.
 struct CarrierChoice {
   double carrier_Hz = carriers_Hz.front();
   double clearance_Hz = 0;
 };
-/// Distance that keeps the products of the drive tones far outside the filters of either band.
+/// A distance (clearance) that keeps the products of the drive tones far outside the filter of either band.
 inline constexpr double enough_clearance_Hz = 1500;
 
 /// Chooses the first of carriers_Hz with enough clearance, or else the one with the most clearance. Products
-/// are the tones themselves, the differences k |f_i - f_j| up to k = 4, and 2 f_i - f_j, all folded at the
-/// sampling rate. `plans` are the tones of all stimuli of a block: tones of different plans never sound
-/// together, and all plans get the same carrier.
+/// of the drive tones f are the tones themselves, the differences k |f_i - f_j| up to k = 4, and 2 f_i - f_j,
+/// all folded at the sampling rate. Each plan lists the tones of one stimulus of a block. Tones of different
+/// plans never sound together, but all plans get the same carrier.
 ///
-/// Many tones leave no carrier with enough clearance. Of random plans from 22.4 to 46 kHz with tones 1 kHz
-/// apart, 98 % of those with two tones have one, 58 % with three, 11 % with four. A clearance above the
-/// band's stop edge (600 Hz) still keeps the products out of the force: 99 % of plans with three tones have
-/// it, 81 % with four, 15 % with six, hardly any with eight.
+/// Many tones leave no carrier with enough clearance. For random plans from 22.4 to 46 kHz with tones at
+/// least 1 kHz apart, there is such a carrier in 98 % of plans with two tones, 58 % with three and 11 % with
+/// four. A clearance above the stop edge of Band::force (600 Hz) still keeps the products out of the force.
+/// It is reached in 99 % of plans with three tones, 81 % with four, 15 % with six, and hardly any with eight.
 CarrierChoice choose_carrier(std::span<const std::vector<double>> plans, int rate_Hz);
 
-/// Width of the force signal and rate of its points. `force` passes 0 to 400 Hz and stops 600 Hz, with 1000
-/// points a second. `wide` passes 0 to 1 kHz and stops 2 kHz, with 4000 points a second; use it with one
-/// drive tone only, because two tones 1 kHz apart cause a line of force at 1 kHz. Both reject by 100 dB.
+/// Bandwidth of the force signal and rate of its points. `force` passes 0 to 400 Hz, stops 600 Hz and above,
+/// and gives 1000 points a second. `wide` passes 0 to 1 kHz, stops 2 kHz and above, and gives 4000 points a
+/// second. Use `wide` only with a single drive tone, because two tones 1 kHz apart add a false force at 1
+/// kHz. Both reject the stopped frequencies by 100 dB.
 enum class Band { force, wide };
 constexpr int points_per_second(Band band) { return band == Band::force ? 1000 : 4000; }
 
@@ -49,52 +50,52 @@ struct BridgeOptions {
   int rate_Hz = 192000;  ///< a multiple of 8000
   double carrier_Hz = carriers_Hz.front();
   Band band = Band::force;
-  int channels = 4;                                ///< of an interleaved frame
-  int reference = 0;                               ///< the channel that captures the excitation itself
+  int channels = 4;                                ///< number of channels in a captured frame
+  int reference = 0;                               ///< channel that captures the excitation itself
   std::array<int, bridge_count> bridges{1, 2, 3};  ///< channels of a, b and the lateral cell
   double reference_amplitude = 0.5;  ///< amplitude of the reference at calibration; full scale is 1
-  /// Ratio of bridge to reference at the cell's rated load.
+  /// Ratio of bridge to reference at the rated load of each cell.
   std::array<double, bridge_count> full_scale{0.4, 0.4, 0.4};
-  /// Phase of the bridge's resistive part against the reference (bridge_rotation_rad()).
+  /// Phase of each bridge's resistive part against the reference, from bridge_rotation_rad().
   std::array<double, bridge_count> rotation_rad{};
 };
 
-/// Why a point must not be used.
+/// The reason why a point must not be used.
 enum class WireFault {
   none,
-  reference,   ///< the reference is more than 3 % off; the ratios are NaN
-  quadrature,  ///< a bridge's quadrature exceeds 5 % of full scale: a wire or a shield is off
-  overload,    ///< a bridge shows more than 1.5 times full scale: a wire is off, or the cell is overloaded
+  reference,   ///< amplitude of the reference more than 3 % off; the ratios are then NaN
+  quadrature,  ///< quadrature of a bridge above 5 % of full scale: a wire or a shield is off
+  overload,    ///< a bridge above 1.5 times full scale: a wire is off, or the cell is overloaded
 };
 
-/// Bridge against reference, at one point of the grid.
+/// The bridges relative to the reference at one point in time.
 struct BridgePoint {
-  std::int64_t index = 0;  ///< point k lies exactly at playback frame k * rate / points_per_second()
-  /// In-phase and quadrature part of bridge / reference. NaN if a captured frame within the filter's reach is
-  /// missing.
+  std::int64_t index = 0;  ///< point k is exactly at playback frame k * rate / points_per_second()
+  /// In-phase and quadrature part of bridge / reference. NaN if a captured frame is missing that the filter
+  /// needs for this point.
   std::array<double, bridge_count> ratio{}, quadrature{};
   double reference = 0;  ///< amplitude of the reference; full scale is 1
   WireFault fault = WireFault::none;
-  std::size_t bridge = 0;  ///< the bridge to which a fault of quadrature or overload belongs
+  std::size_t bridge = 0;  ///< the bridge with the fault `quadrature` or `overload`
 };
 
-/// Phase between the resistive part of a bridge and the reference, from two points with and without a load. A
-/// constant capacitive part cancels.
+/// Phase between the resistive part of a bridge and the reference, from one point with and one without a
+/// load. A constant capacitive part cancels.
 double bridge_rotation_rad(const BridgePoint& without, const BridgePoint& with, std::size_t bridge);
 
-/// Demodulates the bridges at the phase of playback, divides by the reference, and reduces the result to the
-/// grid of points. Gain and drift of converters, buffer and excitation cancel in the division. The result
-/// does not depend on how the frames are divided into blocks. Point k comes once frames 17 ms (wide: 4 ms)
-/// beyond it have arrived. Not thread-safe; allocates only in the constructor, which throws
-/// terms::UsageError for impossible options.
+/// Demodulates the bridges with the phase of the played carrier, divides them by the reference, and reduces
+/// the result to points_per_second(). The division cancels gain and drift of converters, buffer and
+/// excitation. The result does not depend on how the frames are divided into blocks. Point k is complete once
+/// frames 17 ms (wide: 4 ms) beyond it have arrived. Not thread-safe; allocates only in the constructor,
+/// which throws terms::UsageError for impossible options.
 class BridgeDemodulator {
  public:
   explicit BridgeDemodulator(const BridgeOptions& options);
 
-  /// Takes captured frames. Their numbers must be those of the frames that were playing, that is, with the
-  /// delay of the loop subtracted to the nearest frame. Frames that were left out count as missing; frames
-  /// that were already received are ignored. Throws std::logic_error for a block with another rate or number
-  /// of channels. Calls `take` for each point that is complete.
+  /// Takes captured frames and calls `take` for each complete point. Frames must have the numbers at which
+  /// they were played, so subtract the loop delay, rounded to whole frames. Frames that are left out count as
+  /// missing; frames that were already received are ignored. Throws std::logic_error for a block with another
+  /// rate or number of channels.
   template <typename Take>
   void push(const CaptureBlock& block, Take&& take) {
     check(block);
@@ -113,7 +114,8 @@ class BridgeDemodulator {
 
  private:
   void check(const CaptureBlock& block) const;
-  /// Takes some of the next frames, which are missing if `frames` is null. True if a point is complete.
+  /// Takes some of the next `count` frames; a null `frames` means that they are missing. Returns true if a
+  /// point is complete.
   bool add(const std::int32_t* frames, std::int64_t count) noexcept;
   void finish_point() noexcept;
 

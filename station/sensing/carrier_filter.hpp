@@ -7,21 +7,23 @@
 
 namespace turnpoint::sensing {
 
-/// Mixes four captured channels down from a carrier, filters them, and keeps every `factor`-th result:
-/// z = 2 sum h(n) s e^(-i phase), where full scale is 1 and phase is the carrier's at the absolute frame. The
-/// carrier is part of the taps, and their symmetry saves half of the products. Output m is centred on frame
-/// m * factor, so no delay is left. Missing frames, and those before the first, make all outputs NaN that
-/// they contribute to. Allocates only in the constructor.
+/// Mixes four captured channels s down from a carrier, filters them with the taps h, and keeps every
+/// `factor`-th result: z = 2 sum h(n) s e^(-i phase), where full scale is 1 and phase is the carrier's phase
+/// at the frame's absolute number. The taps include the carrier; their symmetry saves half of the
+/// multiplications. Output m is centred on frame m * factor, so no delay is left. An output is NaN if a frame
+/// that contributes to it is missing or came before the first frame. Allocates only in the constructor.
 class CarrierFilter {
  public:
   static constexpr std::size_t inputs = 4;
 
-  /// `taps` are those of a low-pass filter of odd length. `channels` are places within a captured frame.
+  /// `taps` belong to a low-pass filter of odd length. `channels` are the channels to use; a captured frame
+  /// has `stride` channels. `increment` is the carrier's phase per frame in 2^-64 cycles.
   CarrierFilter(const std::vector<double>& taps, int factor, std::uint64_t increment,
                 const std::array<int, inputs>& channels, int stride);
 
-  /// Takes frames from number `first` on, or missing ones if `frames` is null, until an output is complete or
-  /// all are taken. Returns how many were taken. Frame numbers must continue from the previous call.
+  /// Takes frames, of which the first has the number `first`, until an output is complete or all are taken. A
+  /// null `frames` means that these frames are missing. Returns how many were taken. Frame numbers must
+  /// continue from the previous call.
   std::int64_t take(std::int64_t first, const std::int32_t* frames, std::int64_t count) noexcept;
 
   bool ready() const noexcept { return ready_; }  ///< true if the last take() completed an output
@@ -42,8 +44,8 @@ class CarrierFilter {
   std::uint64_t increment_;
   std::array<int, inputs> channels_;
   std::int64_t stride_;
-  std::vector<Quad> even_, odd_;  ///< taps times cos and sin of the carrier, n frames from the centre
-  std::vector<Quad> kept_;        ///< the newest frame last
+  std::vector<Quad> even_, odd_;  ///< taps times cos and sin of the carrier; n: frames from the centre
+  std::vector<Quad> kept_;        ///< recent frames, the newest last
   std::size_t filled_ = 0;
   bool ready_ = false;
   std::int64_t output_index_ = 0;

@@ -10,7 +10,7 @@
 namespace turnpoint::sensing {
 
 namespace {
-/// Two numbers in one register, which every 64-bit processor has.
+/// Two numbers in one vector register; every 64-bit processor has such registers.
 using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
 }  // namespace
 
@@ -44,7 +44,7 @@ bool Decimator::push(std::int64_t index, const Lanes& sample) noexcept {
   const std::int64_t centre = index - half_;
   if (centre % factor_ != 0) return false;
   output_index_ = centre / factor_;
-  // The filter is symmetric, so the order of time does not matter.
+  // The filter is symmetric, so samples and taps need not be in the same order of time.
   const std::size_t first_part = ring_.size() - (newest_ + 1);
   double sum[lanes] = {};
   const auto add = [&](const Lanes* in, const double* tap, std::size_t count) {

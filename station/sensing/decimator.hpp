@@ -6,14 +6,14 @@
 
 namespace turnpoint::sensing {
 
-/// Designs a linear-phase low-pass filter of odd length by the window method: the ideal low-pass half way
-/// between the edges, with a Kaiser window (Kaiser 1974). The gain at 0 Hz is exactly 1. Ripple and stop band
-/// are `attenuation_dB` below it (60 dB or more).
+/// Designs a linear-phase low-pass filter of odd length by the window method: an ideal low-pass with its edge
+/// in the middle between pass_Hz and stop_Hz, times a Kaiser window (Kaiser 1974). The gain at 0 Hz is
+/// exactly 1. Ripple and stop band are `attenuation_dB` below it (60 dB or more).
 std::vector<double> low_pass(double pass_Hz, double stop_Hz, double rate_Hz, double attenuation_dB);
 
-/// Filters eight signals at once and keeps every `factor`-th result. Samples carry an index, and output m is
-/// centred on input index m * factor, so no delay is left. NaN makes all outputs NaN that it contributes to;
-/// so do the samples before the first one. Allocates only in the constructor.
+/// Filters eight signals at once and keeps every `factor`-th result. Each sample has an index, and output m
+/// is centred on the index m * factor, so no delay is left. An output is NaN if a sample that contributes to
+/// it is NaN or came before the first sample. Allocates only in the constructor.
 class Decimator {
  public:
   static constexpr std::size_t lanes = 8;

@@ -12,8 +12,8 @@ namespace turnpoint::sensing {
 namespace {
 
 constexpr std::size_t fewest_strokes = 3, fewest_bins = 6;
-// The fit looks for the largest step that noise contains, so a step must exceed its 95 % interval by this
-// factor.
+// The fit finds the largest step that fits the noise. Therefore a step counts only if it exceeds the
+// half-width of its 95 % interval by this factor.
 constexpr double certain_rise = 2;
 constexpr double narrowest_mm = 0.3, widest_mm = 10;
 
@@ -21,7 +21,7 @@ struct Bin {
   double position_mm, friction;
 };
 
-/// friction = below + rise / (1 + exp(-(x - place) / width))
+/// The model: friction = below + rise / (1 + exp(-(x - place) / width)), where x is the position.
 struct Step {
   double place_mm = 0, width_mm = 1, below = 0, rise = 0;
 
@@ -35,7 +35,7 @@ double square_sum(const Step& step, const std::vector<Bin>& bins) {
   return sum;
 }
 
-/// The best levels for a given place and width.
+/// Sets `below` and `rise` by least squares, for the given place and width.
 Step with_levels(Step step, const std::vector<Bin>& bins) {
   double s = 0, ss = 0, y = 0, sy = 0;
   const auto n = static_cast<double>(bins.size());
@@ -61,7 +61,8 @@ Step search(const std::vector<Bin>& bins) {
   return best;
 }
 
-/// Size of a residual beyond which its influence no longer grows.
+/// Residuals larger than this scale have a limited influence on the fit: 1.48 times the median residual,
+/// which is the standard deviation of normal noise.
 double scale_of(const Step& step, const std::vector<Bin>& bins) {
   std::vector<double> size;
   for (const Bin& bin : bins) size.push_back(std::abs(step.miss(bin)));
@@ -83,7 +84,7 @@ Step refine(Step step, const std::vector<Bin>& bins, double scale) {
     for (const Bin& bin : bins) {
       const double share = step.share(bin.position_mm), miss = step.miss(bin);
       const double slope = step.rise * share * (1 - share) / step.width_mm;
-      // by place, logarithm of width, lower level, rise
+      // derivatives by place, logarithm of width, `below` and `rise`
       const Eigen::Vector4d by(-slope, -slope * (bin.position_mm - step.place_mm), 1, share);
       const double weight = 1 / std::sqrt(1 + std::pow(miss / scale, 2));
       normal += weight * by * by.transpose();
@@ -118,7 +119,7 @@ std::vector<Bin> usable(const FrictionProfile& profile, int direction) {
   return bins;
 }
 
-/// The step of one direction, and the squared deviations of its jackknife pseudo-values.
+/// The step in one direction of movement, and the squared deviations of its jackknife pseudo-values.
 struct OneWay {
   Step step;
   double place_squares = 0, rise_squares = 0;

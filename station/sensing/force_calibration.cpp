@@ -28,14 +28,14 @@ Force product(const Readings& readings, const Matrix& matrix) {
   return {sum[0], sum[1], sum[2]};
 }
 
-/// Normal force, lateral force and moment of one weight.
+/// Normal force, lateral force and moment that a weight exerts.
 std::array<double, 3> load(const DeadWeight& weight) {
   return {weight.normal_N, weight.lateral_N, weight.normal_N * weight.position_mm};
 }
 
 using Loads = std::vector<std::array<double, 3>>;
 
-/// Standard deviations of the loads.
+/// Standard deviations of the normal force, lateral force and moment of each weight.
 Loads load_sd(const std::vector<DeadWeight>& weights, const WeightErrors& errors) {
   double reach_mm = 0;
   for (const auto& weight : weights) reach_mm = std::max(reach_mm, std::abs(weight.position_mm));
@@ -70,8 +70,8 @@ Fit fit(const std::vector<DeadWeight>& weights, const Loads& loads, const Loads&
   return result;
 }
 
-/// Changes of the loads by one standard deviation of each source of error: every place, both directions of
-/// the pulley, and the masses as a whole.
+/// Changes of all loads by one standard deviation of each source of error. The sources are each place, each
+/// direction of the pulley, and the masses as a whole.
 std::vector<Loads> load_changes(const std::vector<DeadWeight>& weights, const WeightErrors& errors) {
   std::vector<Loads> all;
   const auto source = [&](auto change) {
@@ -125,7 +125,8 @@ WeightFit fit_weights(const std::vector<DeadWeight>& weights, const WeightErrors
 
   std::vector<Matrix> changes;
   for (const Loads& change : load_changes(weights, errors)) {
-    Matrix by = fit(weights, change, sd).matrix;  // the fit is linear in the loads
+    Matrix by = fit(weights, change, sd).matrix;  // the fit is linear in the loads, so it turns a change of
+                                                  // the loads into a change of the matrix
     for (auto& row : by)
       for (std::size_t k = 0; k < 3; ++k) row[k] *= std::max(1.0, best.misfit[k]);
     changes.push_back(by);

@@ -16,7 +16,7 @@ struct Sums {
     lateral_N += std::abs(point.lateral_N);
     normal_N += point.normal_N;
   }
-  double friction() const { return lateral_N / normal_N; }  // NaN without any point
+  double friction() const { return lateral_N / normal_N; }  // NaN if there was no point
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 namespace turnpoint::sensing {
 
-/// Stretches of equal length along the strip.
+/// Divides the strip into bins of equal length.
 struct Bins {
   double from_mm = 0, width_mm = 2;
   std::size_t count = 0;
@@ -15,15 +15,16 @@ struct Bins {
   double centre_mm(std::size_t i) const { return from_mm + (static_cast<double>(i) + 0.5) * width_mm; }
 };
 
-/// Friction in each bin during one stroke: the sum of |T| over the sum of N, because a mean of quotients
-/// would give weight to moments with little force. NaN where the finger was not, or pressed with less than
-/// least_normal_N.
+/// Friction in each bin during one stroke: the sum of |lateral force| over the sum of normal force. (A mean
+/// of quotients would give too much weight to moments of little force.) NaN in bins where the finger was not,
+/// or pressed with less than least_normal_N.
 struct StrokeFriction {
   int direction = 0;
   std::vector<double> friction;
 };
 
-/// Mean over strokes in one direction; NaN without strokes. The standard error is NaN for fewer than two.
+/// Mean friction and standard error in each bin, over the strokes in one direction. The mean is NaN without
+/// strokes, the standard error with fewer than two.
 struct MeanFriction {
   std::vector<double> friction, se;
 };
@@ -38,7 +39,8 @@ struct FrictionProfile {
 FrictionProfile friction_profile(std::span<const FingerPoint> track, std::span<const Stroke> strokes,
                                  const Bins& bins);
 
-/// Friction of one stroke as a whole: the sum of |T| over the sum of N. NaN if nothing of it counts.
+/// Friction of a whole stroke: the sum of |lateral force| over the sum of normal force. NaN if no point of
+/// the stroke counts.
 double stroke_friction(std::span<const FingerPoint> track, const Stroke& stroke);
 
 }  // namespace turnpoint::sensing

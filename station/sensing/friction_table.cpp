@@ -13,13 +13,13 @@ namespace turnpoint::sensing {
 namespace {
 
 constexpr std::size_t fewest_strokes_of_level = 3;
-/// Least fall of ln friction from level to level, so that a table can be inverted.
+/// ln friction must fall by at least this much from level to level, so that a table can be inverted.
 constexpr double least_fall = 1e-6;
 
-/// For each displacement, ln friction of its strokes relative to their neighbours at rest.
+/// For each displacement: ln friction of its strokes, relative to the neighbouring strokes at rest.
 using ByLevel = std::map<double, std::vector<double>>;
 
-/// Sequence that never rises, with the least weighted squared distance from the values: pool adjacent
+/// The sequence that never rises and has the least weighted squared distance from the values: pool adjacent
 /// violators (Ayer et al. 1955).
 std::vector<double> falling(const std::vector<double>& values, const std::vector<double>& weights) {
   struct Pool {
@@ -43,7 +43,7 @@ std::vector<double> falling(const std::vector<double>& values, const std::vector
   return result;
 }
 
-/// The same sequence, but below 0 and strictly falling.
+/// Lowers values where necessary, so that all are below 0 and each is below the one before.
 std::vector<double> strictly(std::vector<double> values) {
   double before = 0;
   for (double& value : values) before = value = std::min(value, before - least_fall);
@@ -58,8 +58,8 @@ std::optional<double> half_displacement_m(const std::vector<double>& displacemen
   return physics::FrictionMap(std::move(points)).displacement_m(0.5);
 }
 
-/// Means of the levels after drawing the strokes of each with replacement. Deviations are enlarged, because
-/// those from a sample's own mean are too small.
+/// Bootstrap: draws the strokes of each level with replacement, and returns the means of the levels.
+/// Deviations are enlarged by sqrt(n / (n - 1)), because deviations from the mean of n strokes are too small.
 std::vector<double> redrawn(const ByLevel& by_level, const std::vector<double>& means, random::Draws& draws) {
   std::vector<double> result;
   for (const auto& [displacement_m, values] : by_level) {
@@ -79,7 +79,8 @@ ByLevel by_level(std::span<const TableStroke> strokes, int& unused) {
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     const auto& [displacement_m, friction] = strokes[i];
     if (displacement_m == 0) continue;
-    auto& values = result[displacement_m];  // also without usable strokes, to be refused with its name
+    auto& values = result[displacement_m];  // keep a level without usable strokes, so that the error message
+                                            // can name it
     if (i > 0 && at_rest(i - 1) && at_rest(i + 1) && friction > 0)
       values.push_back(std::log(friction) -
                        (std::log(strokes[i - 1].friction) + std::log(strokes[i + 1].friction)) / 2);
@@ -150,7 +151,7 @@ FrictionTable friction_table(std::span<const TableStroke> strokes, std::uint64_t
                             {std::exp(ends.low), std::min(1.0, std::exp(ends.high))}});
   }
   if (table.half_displacement_m && halves.size() > 1) {
-    // It depends on the two levels around it, so on the scatter of their strokes.
+    // The half displacement depends on the two levels around it, so use the degrees of freedom of two levels.
     const double scatter_of_two = 2 * (*std::ranges::min_element(counts) - 1);
     table.half_displacement_sd_m = std::sqrt(analysis::variance(halves));
     table.half_displacement_interval =

@@ -12,42 +12,42 @@ namespace turnpoint::sensing {
 /// One stroke over the vibrating surface, or over the surface at rest (displacement 0).
 struct TableStroke {
   double displacement_m = 0;  ///< peak displacement under the finger
-  double friction = 0;        ///< stroke_friction(); NaN if the stroke did not count
+  double friction = 0;        ///< from stroke_friction(); NaN if the stroke did not count
 };
 
-/// The displacements to present, in order: every level `strokes` times in random order, and a stroke over the
-/// surface at rest before, between and after them.
+/// The displacements to present, in order: each level `strokes` times, in random order, with a stroke over
+/// the surface at rest (0) before, between and after them.
 std::vector<double> friction_table_order(std::span<const double> levels_m, int strokes, std::uint64_t seed);
 
-/// Friction at one displacement, relative to the surface at rest.
+/// Friction at one displacement, relative to friction on the surface at rest.
 struct FrictionLevel {
   double displacement_m = 0;
   int strokes = 0;
   double measured = 1;           ///< geometric mean of the strokes
-  double relative_friction = 1;  ///< after the monotone regression: falls from level to level
+  double relative_friction = 1;  ///< after the monotone regression, so it falls from level to level
   double sd = 0;                 ///< standard error of relative_friction
-  analysis::Interval interval;   ///< of relative_friction
+  analysis::Interval interval;   ///< 95 % interval of relative_friction
 };
 
 struct FrictionTable {
   std::vector<FrictionLevel> levels;  ///< by ascending displacement
-  /// Displacement that halves friction; empty if the levels do not reach it.
+  /// Displacement that halves friction; empty if no level reduces friction that far.
   std::optional<double> half_displacement_m;
   double half_displacement_sd_m = 0;
   analysis::Interval half_displacement_interval;
-  int unused = 0;  ///< driven strokes that do not count, or without a stroke at rest on both sides
+  int unused = 0;  ///< driven strokes that do not count, or that lack a valid neighbour at rest
 
-  /// The table of a rig, which begins at (0, 1).
+  /// The table in the form that a rig uses. It begins with relative friction 1 at displacement 0.
   std::vector<physics::FrictionPoint> points() const;
 };
 
 /// Estimates the friction table from strokes in the order in which they were made. Friction of skin drifts by
-/// tens of per cent within minutes, so each driven stroke is compared with its two neighbours at rest: the
-/// logarithm of friction minus the mean of theirs. The level means go through a monotone regression (pool
-/// adjacent violators) and are joined by monotone cubics; a curve with a few parameters would be wrong at the
-/// floor. Standard errors and intervals come from a bootstrap over the strokes of each level, enlarged for
-/// their small number. Throws terms::UsageError if a level has fewer than three usable strokes or if there
-/// are no levels.
+/// tens of per cent within minutes, so each driven stroke is compared with its two neighbours at rest: its
+/// value is the logarithm of friction, minus the mean logarithm of the neighbours. The means of the levels go
+/// through a monotone regression (pool adjacent violators) and are joined by monotone cubics. (A curve with
+/// few parameters would be wrong where friction no longer falls.) Standard errors and intervals come from a
+/// bootstrap over the strokes of each level, enlarged because the strokes are few. Throws terms::UsageError
+/// if a level has fewer than three usable strokes or if there are no levels.
 FrictionTable friction_table(std::span<const TableStroke> strokes, std::uint64_t seed, int replicates = 1000);
 
 }  // namespace turnpoint::sensing

@@ -12,10 +12,10 @@ using terms::ProofCause;
 
 namespace {
 
-constexpr double kLowest_Hz = 5000;    // of products
-constexpr double kApart_Hz = 20;       // least distance of a product from a tone
-constexpr double kUnseenNoise = 0.05;  // a tone whose relative standard error is larger is not judged
-constexpr double kVibrates_dB = -10;   // a weaker vibration has no onset to measure
+constexpr double kLowest_Hz = 5000;    // lowest frequency of a product
+constexpr double kApart_Hz = 20;       // least distance of a product from every tone
+constexpr double kUnseenNoise = 0.05;  // a tone whose relative standard error is not below this is not judged
+constexpr double kVibrates_dB = -10;   // below this level, re the plan, there is no onset to measure
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void IntervalProof::State::measure_tones() {
   vibrates_ = planned > 0 && result_.ratio_dB > kVibrates_dB;
 }
 
-// Adds one entry for each tone of the line, measured by the pick-up that sees it best.
+// Adds one entry for each tone of the line, measured by the pick-up with the best response to this line.
 void IntervalProof::State::measure_tone(std::size_t stretch, const PlannedLine& line, std::size_t place) {
   ToneProof made;
   made.stretch = static_cast<int>(stretch);
@@ -84,7 +84,7 @@ void IntervalProof::State::measure_residual() {
   if (result_.residual_dB >= plan_.limits.residual_dB.flag - 20) measure_products();
 }
 
-// Looks for the largest product in the kept samples.
+// Looks for the strongest product (harmonic, combination, ...) in the unexplained part of the worst window.
 void IntervalProof::State::measure_products() {
   const auto rest = unexplained();
   if (rest.empty()) return;
@@ -103,7 +103,7 @@ void IntervalProof::State::measure_products() {
   }
 }
 
-// What the fit does not explain in the kept samples of the worst window; empty if that window does not count.
+// The samples of the worst window, minus the fitted tones; empty if that window is not valid.
 std::span<const double> IntervalProof::State::unexplained() {
   if (!worst_ || !windows_[*worst_].valid) return {};
   const Window& window = windows_[*worst_];
@@ -153,7 +153,7 @@ void IntervalProof::State::find_lost() {
   if (result_.lost_frames > 0) findings_.push_back({ProofCause::gap, Proof::lost});
 }
 
-// Where a missing tone is found instead, if it is; within 8 % of its frequency.
+// If a planned tone is missing, looks for a vibration within 8 % of its frequency and returns where it is.
 std::optional<double> IntervalProof::State::found_elsewhere(const ToneProof& tone) {
   if (result_.residual_dB < plan_.limits.residual_dB.stop - 20) return std::nullopt;
   const auto rest = unexplained();
@@ -212,7 +212,7 @@ void IntervalProof::State::judge_rest() {
   const Proof residual = judged(std::max(result_.residual_dB, product), limits.residual_dB);
   findings_.push_back({ProofCause::residual, residual});
   if (result_.largest_sample >= limits.clipped) findings_.push_back({ProofCause::clipped, Proof::refused});
-  // A limiter makes odd products and takes a part of the tones away.
+  // A limiter makes odd products and reduces the level of the tones.
   if (product >= limits.residual_dB.flag && is_odd(result_.product->kind) && result_.ratio_dB < -0.1)
     findings_.push_back({ProofCause::clipped, residual});
   if (result_.onset_error_us)

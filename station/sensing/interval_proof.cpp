@@ -11,10 +11,10 @@ namespace turnpoint::sensing {
 
 namespace {
 
-constexpr double kWindow_s = 0.2;     // of a joint fit
+constexpr double kWindow_s = 0.2;     // approximate length of a joint fit
 constexpr double kShortest_s = 0.01;  // a shorter steady stretch is not measured
-constexpr double kSettle_s = 0.005;   // the plate needs this long to follow: 7 time constants at Q 60
-constexpr double kBefore_s = 0.02, kAfter_s = 0.06;  // around the rising ramp, where the onset is looked for
+constexpr double kSettle_s = 0.005;   // time that the plate needs to follow: 7 time constants at Q 60
+constexpr double kBefore_s = 0.02, kAfter_s = 0.06;  // around the rising ramp, to look for the onset
 
 std::vector<int> inputs_of(const IntervalPlan& plan) {
   if (plan.pick_ups.empty()) throw std::logic_error("sensing: a proof needs a pick-up");
@@ -90,7 +90,8 @@ void IntervalProof::State::add_windows(std::size_t stretch) {
   }
 }
 
-// The onset can be measured if the first tones last until the window of the lock-in has passed the ramp.
+// The onset can be measured if the first tones last long enough: the lock-in's window must pass the ramp
+// before they change.
 void IntervalProof::State::add_onset() {
   if (windows_.empty() || windows_.front().stretch != 0) return;
   const auto& [plan, lines, sums] = stretches_.front();
@@ -116,7 +117,7 @@ void IntervalProof::State::add_onset() {
   points_.reserve(static_cast<std::size_t>((onset_end_ - onset_first_) / block + 1) * lines.size());
 }
 
-// Windows that reach beyond the end do not count, whether or not they are already filled.
+// Windows that extend beyond the end do not count, even if they are already filled.
 void IntervalProof::State::end_at(std::int64_t playback_frame) noexcept {
   const auto end =
       static_cast<std::int64_t>(std::floor(static_cast<double>(playback_frame) + plan_.delay_frames));

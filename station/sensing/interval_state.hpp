@@ -1,5 +1,5 @@
-// The inside of IntervalProof: interval_proof.cpp takes the captured frames, interval_measure.cpp makes the
-// result of them.
+// The state of an IntervalProof. interval_proof.cpp takes the captured frames, and interval_measure.cpp
+// computes the result from them.
 #pragma once
 #include <complex>
 #include <cstddef>
@@ -18,13 +18,13 @@
 
 namespace turnpoint::sensing {
 
-/// Captured frames of one joint fit, within a steady stretch.
+/// A window of captured frames to which all tones are fitted. Nothing changes in the burst during a window.
 struct Window {
   std::size_t stretch = 0;
   std::int64_t first = 0, end = 0;  // captured frames
   bool valid = false;
-  std::vector<std::complex<double>> amplitude;  // [pick-up][line], as captured
-  std::vector<double> residual;                 // [pick-up]: mean square behind the high-pass filter
+  std::vector<std::complex<double>> amplitude;  // [pick-up][line], captured complex amplitude
+  std::vector<double> residual;                 // [pick-up], mean square after the high-pass filter
 };
 
 struct Measured {
@@ -66,26 +66,26 @@ struct IntervalProof::State {
   AlignedBlocks blocks_;
   std::vector<Measured> stretches_;
   std::vector<Window> windows_;
-  std::size_t current_ = 0;           // window that is being filled
+  std::size_t current_ = 0;           // index of the window that is being filled
   std::int64_t begin_ = 0, end_ = 0;  // captured frames of the burst
-  std::int64_t next_ = 0;             // first captured frame after those that were taken
+  std::int64_t next_ = 0;             // first captured frame that has not been received
   std::vector<std::uint8_t> good_;    // 1 for each aligned block of the burst that was captured
-  std::size_t main_ = 0;              // the pick-up that sees most of the plan
+  std::size_t main_ = 0;              // the pick-up with the best response to the plan
 
   JointFit fit_;
   std::vector<std::complex<double>> products_;  // sums of the current window, [pick-up][line]
   std::vector<double> energy_;
-  std::int64_t summed_ = 0;  // frames in them
+  std::int64_t summed_ = 0;  // frames in products_ and energy_
   std::vector<std::uint64_t> phases_, increments_;
-  std::vector<double> raw_, worst_raw_;  // of the main pick-up, in the current and in the worst window
+  std::vector<double> raw_, worst_raw_;  // samples of the main pick-up in the current and in the worst window
   std::optional<std::size_t> worst_;
   bool fit_subtracted_ = false;
 
   bool onset_planned_ = false;
-  std::int64_t onset_first_ = 0, onset_end_ = 0;  // captured frames of the lock-in
-  double onset_frame_ = 0;                        // where the half level is planned, as captured
+  std::int64_t onset_first_ = 0, onset_end_ = 0;  // captured frames in which the lock-in looks for the onset
+  double onset_frame_ = 0;                        // captured frame at which the plan reaches the half level
   std::unique_ptr<HannWindow> hann_;
-  std::vector<std::complex<double>> points_;  // of the main pick-up, [point][line]
+  std::vector<std::complex<double>> points_;  // lock-in points of the main pick-up, [point][line]
   std::int64_t first_point_ = 0;
 
   IntervalResult result_;

@@ -47,7 +47,7 @@ bool JointFit::factorise() noexcept {
       for (std::size_t k = 0; k < j; ++k) value -= entry(i, k) * entry(j, k);
       if (j < i)
         entry(i, j) = value / entry(j, j);
-      else if (value > 1e-3 * before)  // a smaller share would make noise thirty times as large
+      else if (value > 1e-3 * before)  // below this fraction, noise would grow thirtyfold
         entry(i, i) = std::sqrt(value);
       else
         return false;

@@ -7,20 +7,22 @@
 
 namespace turnpoint::sensing {
 
-/// Least squares of several sinusoids of known frequencies over a window of frames, all together, so that
-/// they do not leak into each other. It needs only the sums of products with each sinusoid (ToneSums::plain)
-/// and of squares: the normal matrix is a closed formula. Allocates only in its constructor.
+/// Fits several sinusoids of known frequencies to a window of frames by least squares. All are fitted
+/// together, so that they do not leak into each other. The fit needs only the sums of the samples' products
+/// with each sinusoid (ToneSums::plain) and the sum of their squares, because the normal matrix has a closed
+/// form. Allocates only in its constructor.
 class JointFit {
  public:
   explicit JointFit(std::size_t most_tones);
 
-  /// Prepares for a window of `frames` at whose first frame the tones have these phases (2^-64 cycles).
-  /// Returns false if the window is too short to tell the tones apart.
+  /// Prepares fits to windows of `frames` frames. `phase` and `increment` of each tone are in 2^-64 cycles;
+  /// `phase` is that at the first frame. Returns false if the window is too short to separate the tones.
   [[nodiscard]] bool prepare(std::span<const std::uint64_t> phase, std::span<const std::uint64_t> increment,
                              std::int64_t frames) noexcept;
 
-  /// Complex amplitudes A e^(i theta) of signals A sin(phase + theta). `sums[t]` is the sum of sample times
-  /// i e^(-i phase) of tone t. Returns what remains of `energy`, the sum of squares, without the tones.
+  /// Computes the complex amplitudes A e^(i theta) of signals A sin(phase + theta). `sums[t]` is the sum of
+  /// sample times i e^(-i phase) for tone t, and `energy` the sum of squared samples. Returns the part of
+  /// `energy` that the tones do not explain.
   double solve(std::span<const std::complex<double>> sums, double energy,
                std::span<std::complex<double>> amplitude) noexcept;
 

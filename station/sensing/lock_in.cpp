@@ -36,8 +36,8 @@ bool HannWindow::take(const AlignedBlock& block, const ToneSums& sums) noexcept 
     kept[2 * count_ + k] = block.lost ? nan : sums.sine(input, tone);
   }
   if (++taken_ < blocks_) return false;
-  // The Hann weight n frames after the middle of block k is (1 - cos(angle of the middle + 2 pi n / window))
-  // / 2.
+  // The Hann weight n frames after the middle of block k is (1 - cos(a + 2 pi n / window)) / 2, where a is
+  // the angle of the middle.
   std::fill(values_.begin(), values_.end(), std::complex<double>{});
   for (std::size_t b = 0; b < blocks_; ++b) {
     const auto* one = kept_.data() + (newest_ + 1 + b) % blocks_ * kParts * count_;
@@ -45,7 +45,7 @@ bool HannWindow::take(const AlignedBlock& block, const ToneSums& sums) noexcept 
     for (std::size_t k = 0; k < count_; ++k)
       values_[k] += one[k] - c * one[count_ + k] + s * one[2 * count_ + k];
   }
-  const double scale = 2.0 / window_frames_;  // the weights, without their factor 1/2, add up to the window
+  const double scale = 2.0 / window_frames_;  // without the factor 1/2, the weights add up to the window
   for (auto& value : values_) value *= scale;
   centre_ = expected_ - window_frames_ / 2;
   return true;

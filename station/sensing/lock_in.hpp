@@ -10,24 +10,24 @@
 
 namespace turnpoint::sensing {
 
-/// Turns block sums into points of a lock-in amplifier with a Hann window. Used by LockIn and by the proof of
-/// an interval.
+/// Combines sums over blocks into points of a lock-in amplifier with a Hann window. LockIn and IntervalProof
+/// use it.
 class HannWindow {
  public:
   HannWindow(std::size_t tones, std::size_t inputs, int block_frames, int window_frames);
 
-  /// Takes the sums of the next block (with Parts::windowed). Returns true if there is a point.
+  /// Takes the sums of the next block (computed with Parts::windowed). Returns true if a point is complete.
   bool take(const AlignedBlock& block, const ToneSums& sums) noexcept;
 
-  /// The captured frame on which the newest point's window is centred.
+  /// The captured frame at the centre of the newest point's window.
   std::int64_t centre() const noexcept { return centre_; }
 
   /// Complex amplitudes [input][tone] of the newest point; NaN if its window contains lost frames.
   std::span<const std::complex<double>> values() const noexcept { return values_; }
 
  private:
-  std::size_t count_;   ///< inputs x tones
-  std::size_t blocks_;  ///< blocks of a window
+  std::size_t count_;   ///< number of inputs times number of tones
+  std::size_t blocks_;  ///< number of blocks in a window
   int block_frames_, window_frames_;
   std::size_t newest_ = 0;
   std::size_t taken_ = 0;
@@ -39,22 +39,22 @@ class HannWindow {
   std::vector<std::complex<double>> values_;
 };
 
-/// How a lock-in amplifier samples: everything in frames.
+/// Distance of the points of a lock-in amplifier, and length of its window, in frames.
 struct LockInShape {
-  int block_frames = 192;    ///< distance of its points: 1 ms at 192 kHz
+  int block_frames = 192;    ///< distance of the points: 1 ms at 192 kHz
   int window_frames = 1920;  ///< 10 ms at 192 kHz
 
-  /// Points every 1 ms with a window of 10 ms.
+  /// The shape with a point every 1 ms and a window of 10 ms.
   static LockInShape of_rate(int rate_Hz) noexcept;
 };
 
-/// A lock-in amplifier: the complex amplitude of each tone of the playback in each input,
-/// z = 2 LPF{ s i e^(-i phase) }, so that A sin(phase + theta) gives A e^(i theta). The phase is the
-/// playback's own (drive::Partial), also while a tone glides.
+/// A lock-in amplifier: computes the complex amplitude of each played tone in each input, z = 2 LPF{ s i
+/// e^(-i phase) }, where s are the samples and LPF is a low-pass filter. A signal A sin(phase + theta) gives
+/// A e^(i theta). The phase is that of the playback (drive::Partial), also while a tone glides.
 ///
-/// The low-pass filter is a Hann window: linear phase, an odd number of taps (1919 at 192 kHz), and its delay
-/// is removed exactly, because a point belongs to the centre of its window. A neighbouring tone at a distance
-/// of 1.05 kHz leaks by 6e-4. The points do not depend on the sizes of the captured blocks.
+/// The low-pass filter is a Hann window: linear phase and an odd number of taps (1919 at 192 kHz). A point
+/// belongs to the centre of its window, so no delay is left. A neighbouring tone at a distance of 1.05 kHz
+/// leaks in with 6e-4 of its amplitude. The points do not depend on the sizes of the captured blocks.
 /// Allocates only in its constructor.
 class LockIn {
  public:
@@ -65,7 +65,7 @@ class LockIn {
          double delay_frames, const LockInShape& shape);
 
   /// Calls `sink(double playback_frame, std::span<const std::complex<double>> values)` for each new point.
-  /// The values are ordered [input][tone] in units of full scale, and are NaN if the window contains lost
+  /// The values are in units of full scale, in the order [input][tone], and NaN if the window contains lost
   /// frames. Throws std::logic_error for a block with another rate or number of channels.
   template <class Sink>
   void push(const CaptureBlock& block, Sink&& sink) {

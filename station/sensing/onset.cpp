@@ -7,7 +7,7 @@ namespace turnpoint::sensing {
 
 namespace {
 
-// Value at `at` of the polynomial through the points that start at `first`.
+// Value at index `at` of the polynomial through `points` values of y that start at index `first`.
 double interpolated(std::span<const double> y, std::size_t first, std::size_t points, double at) {
   double sum = 0;
   for (std::size_t i = first; i < first + points; ++i) {

@@ -13,7 +13,7 @@ const Transfer* transfer_of(const PickUp& pick_up, int drive_channel) {
   return nullptr;
 }
 
-// Index of the calibration's last point that is not above the frequency; none outside of the points.
+// Index of the last calibration point that is not above the frequency; empty outside of the calibrated range.
 std::optional<std::size_t> place(const Transfer& transfer, double frequency_Hz) {
   const auto& f = transfer.frequency_Hz;
   if (f.size() < 2 || !(frequency_Hz >= f.front() && frequency_Hz <= f.back())) return std::nullopt;
@@ -31,7 +31,7 @@ std::optional<std::complex<double>> response(const PickUp& pick_up, int drive_ch
   const auto& f = transfer->frequency_Hz;
   const std::size_t points = std::min<std::size_t>(4, f.size());
   const std::size_t first = std::min(*below > 0 ? *below - 1 : 0, f.size() - points);
-  std::complex<double> sum = 0;  // Lagrange's polynomial through the points
+  std::complex<double> sum = 0;  // Lagrange interpolation
   for (std::size_t i = first; i < first + points; ++i) {
     double weight = 1;
     for (std::size_t j = first; j < first + points; ++j)

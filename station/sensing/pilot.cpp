@@ -12,12 +12,13 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kLeastLikeness = 0.8;
-constexpr double kLargestEcho = 0.5;         // of a second pilot, relative to the first
-constexpr double kLargestTurn = M_PI / 3;    // phase of the carrier against the envelope
-constexpr std::int64_t kMargin_frames = 64;  // of the capture on both sides
+constexpr double kLargestEcho = 0.5;         // amplitude of a second pilot, relative to the first
+constexpr double kLargestTurn = M_PI / 3;    // largest accepted phase of the carrier against the envelope
+constexpr std::int64_t kMargin_frames = 64;  // extra captured frames on both sides
 
-/// The analytic pilot, whose imaginary part is played with amplitude 1, at any time in frames from its start.
-/// The frequency rises as in a burst that glides: its phase is increment n + curvature n (n - 1) / 2.
+/// The analytic pilot of amplitude 1 at the time n, in frames from its start; n may have a fraction. Its
+/// imaginary part is played. The frequency rises as in a burst that glides: the phase is
+/// increment n + curvature n (n - 1) / 2.
 Complex pilot_at(const Pilot& pilot, double n) {
   const auto frames = static_cast<double>(pilot.frames);
   const double u = (n + 0.5) / frames;
@@ -28,7 +29,8 @@ Complex pilot_at(const Pilot& pilot, double n) {
   return std::polar(s * s, 2 * M_PI * (cycles - std::floor(cycles)));
 }
 
-/// A signal mixed down from the middle of the pilot's band and summed over every `factor` frames.
+/// A signal mixed down to 0 Hz from the middle of the pilot's band, and summed over groups of `factor`
+/// frames.
 struct Baseband {
   std::vector<double> re, im;
 
@@ -42,7 +44,7 @@ template <class At>
 Baseband baseband(const Pilot& pilot, std::int64_t frames, std::int64_t factor, const At& at) {
   const double turn = M_PI * (pilot.low_Hz + pilot.high_Hz) / pilot.rate_Hz;
   Baseband made;
-  std::vector<Complex> mix;  // the phase of a group's first frame only turns the sum, so it may be left out
+  std::vector<Complex> mix;  // within a group; the sum gets the phase at the group's start
   for (std::int64_t k = 0; k < factor; ++k) mix.push_back(std::polar(1.0, -turn * static_cast<double>(k)));
   for (std::int64_t n = 0; n + factor <= frames; n += factor) {
     Complex sum = 0;
@@ -52,7 +54,7 @@ Baseband baseband(const Pilot& pilot, std::int64_t frames, std::int64_t factor, 
   return made;
 }
 
-/// Squared magnitude of the correlation for each lag.
+/// Squared magnitude of the correlation of signal and pilot, for each lag.
 std::vector<double> correlation(const Baseband& signal, const Baseband& pilot) {
   const std::size_t lags = signal.re.size() - pilot.re.size() + 1;
   std::vector<double> re(lags), im(lags);
@@ -74,7 +76,7 @@ double energy(const Baseband& b, std::size_t from, std::size_t count) {
   return sum;
 }
 
-/// Where the pilot begins to within a few frames, and its likeness.
+/// The start of the pilot, known to within a few frames, and its likeness (see PilotEcho).
 struct Place {
   double frame = 0, likeness = 0;
 };
@@ -92,7 +94,7 @@ std::optional<Place> coarse_place(const Pilot& pilot, const std::vector<double>&
   if (!(energies > 0)) return std::nullopt;
   const double likeness = std::sqrt(power[best] / energies);
   if (likeness < kLeastLikeness) return std::nullopt;
-  const std::size_t near = 1 + static_cast<std::size_t>(24 / factor);  // the width of the main lobe
+  const std::size_t near = 1 + static_cast<std::size_t>(24 / factor);  // width of the main lobe
   for (std::size_t l = 0; l < power.size(); ++l) {
     const bool elsewhere = l + near < best || l > best + near;
     if (elsewhere && power[l] > kLargestEcho * kLargestEcho * power[best]) return std::nullopt;
@@ -100,7 +102,7 @@ std::optional<Place> coarse_place(const Pilot& pilot, const std::vector<double>&
   return Place{static_cast<double>(best) * static_cast<double>(factor), likeness};
 }
 
-/// Correlation of the samples with the analytic pilot that begins at any time.
+/// Correlation of the samples with an analytic pilot that starts at `frame`, which may have a fraction.
 Complex correlation_at(const Pilot& pilot, const std::vector<double>& samples, double frame) {
   const auto size = static_cast<std::int64_t>(samples.size());
   const auto first = std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(frame)) - 1, 0, size);
@@ -111,7 +113,7 @@ Complex correlation_at(const Pilot& pilot, const std::vector<double>& samples, d
   return sum;
 }
 
-/// The start at which the envelope of the correlation is largest.
+/// The start at which the magnitude of the correlation is largest; `coarse` is a first estimate.
 double envelope_place(const Pilot& pilot, const std::vector<double>& samples, double coarse) {
   constexpr double step = 0.5;
   constexpr int reach = 16;
@@ -126,7 +128,7 @@ double envelope_place(const Pilot& pilot, const std::vector<double>& samples, do
   return coarse + (static_cast<double>(best - reach) + offset) * step;
 }
 
-/// Phase of the correlation, 0 if the carrier fits with either polarity; -90 to 90 degrees.
+/// Phase of the correlation between -90 and 90 degrees. It is 0 if the carrier fits with either polarity.
 double carrier_phase(Complex correlation) {
   const double phase = std::arg(correlation * Complex(0, 1));
   return std::remainder(phase, M_PI);
@@ -175,7 +177,8 @@ std::optional<PilotEcho> PilotListener::find() const {
   const auto coarse = coarse_place(pilot_, samples_);
   if (!coarse) return std::nullopt;
   double place = envelope_place(pilot_, samples_, coarse->frame);
-  // The phase of the correlation grows with the place by the mean frequency.
+  // `turn` is the change of the correlation's phase if the start is wrong by one frame: the pilot's mean
+  // frequency.
   const double turn = M_PI * (pilot_.low_Hz + pilot_.high_Hz) / pilot_.rate_Hz;
   if (std::fabs(carrier_phase(correlation_at(pilot_, samples_, place))) > kLargestTurn) return std::nullopt;
   for (int k = 0; k < 4; ++k) place -= carrier_phase(correlation_at(pilot_, samples_, place)) / turn;

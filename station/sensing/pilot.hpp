@@ -8,12 +8,12 @@
 
 namespace turnpoint::sensing {
 
-/// The pilot: a chirp that is played on an output channel and captured on the reference channel. It tells by
+/// The pilot: a chirp that is played on an output channel and captured on the reference channel. It shows by
 /// how many frames the capture lags behind the playback, which is different each time the devices are opened.
 struct Pilot {
   int rate_Hz = 192000;
   double low_Hz = 22000;
-  double high_Hz = 46000;      ///< below 0.45 of the rate
+  double high_Hz = 46000;      ///< must be below 0.45 of the sampling rate
   std::int64_t frames = 1920;  ///< 10 ms at 192 kHz; an even number
   double amplitude = 0.25;     ///< of full scale
   std::int32_t channel = 0;    ///< output channel
@@ -22,32 +22,32 @@ struct Pilot {
 /// The pilot as a burst that any stream can play.
 drive::Burst pilot_burst(const Pilot& pilot, std::int64_t start_frame);
 
-/// A pilot that came back.
+/// What was found of a captured pilot.
 struct PilotEcho {
-  double delay_frames =
-      0;                ///< playback frame n is captured at frame n + delay; sd below 0.01 at -40 dB noise
-  double level_dB = 0;  ///< amplitude against that which was played
-  double likeness = 0;  ///< correlation of what was captured with the pilot, 0 to 1
+  double delay_frames = 0;  ///< playback frame n is captured at frame n + delay; at -40 dB noise its standard
+                            ///< deviation is below 0.01
+  double level_dB = 0;      ///< captured re played amplitude
+  double likeness = 0;      ///< correlation of the capture with the pilot, 0 to 1
 };
 
-/// Collects the reference channel after a pilot and finds the pilot in it. Either polarity is recognised. The
-/// delay of the envelope decides between the carrier's periods, and the carrier's phase gives the fraction;
-/// so the way to the reference may turn the phase by up to 60 degrees, which counts as delay. For an ordinary
-/// thread. Allocates only in its constructor and in find().
+/// Collects the reference channel after a pilot and finds the pilot in it. Recognises either polarity. The
+/// envelope of the correlation shows in which period of the carrier the delay lies, and the carrier's phase
+/// gives the exact delay. The path to the reference may turn the phase by up to 60 degrees; such a turn
+/// counts as delay. For an ordinary thread. Allocates only in its constructor and in find().
 class PilotListener {
  public:
-  /// `start_frame` is that of the burst. Captured frames count from the same zero.
+  /// `start_frame` is the first playback frame of the pilot's burst. Captured frames have the same numbering.
   PilotListener(const Pilot& pilot, std::int64_t start_frame, int capture_channels, int reference_channel,
                 double longest_delay_s = 0.5);
 
-  /// Takes captured frames in order; ignores those that it does not need. Throws std::logic_error for a block
-  /// with another rate or number of channels.
+  /// Takes captured frames in order. Ignores frames that it does not need. Throws std::logic_error for a
+  /// block with another rate or number of channels.
   void push(const CaptureBlock& block);
 
   /// True if all frames have been received, or if the capture lost some of them.
   bool complete() const noexcept { return lost_ || samples_.size() == wanted_; }
 
-  /// The pilot; none if frames are missing, if nothing like the pilot was captured (likeness below 0.8), or
+  /// The pilot; empty if frames are missing, if nothing like the pilot was captured (likeness below 0.8), or
   /// if it came more than once. Takes about 20 ms.
   std::optional<PilotEcho> find() const;
 

@@ -10,25 +10,25 @@
 
 namespace turnpoint::sensing {
 
-/// The tones of a stretch that have the same frequency. Only their sum can be measured.
+/// All tones with the same frequency in one steady part of a burst. Only their sum can be measured.
 struct PlannedLine {
-  std::uint64_t phase = 0, increment = 0;  ///< of the first of them, in 2^-64 cycles
+  std::uint64_t phase = 0, increment = 0;  ///< of the first of these tones, in 2^-64 cycles
   double frequency_Hz = 0;
-  double gain = 1;  ///< of the filter against low frequencies (high_pass_gain())
+  double gain = 1;  ///< gain of the high-pass filter at this frequency (high_pass_gain())
   std::vector<PlannedTone> tones;
-  /// Captured complex amplitude that the plan leads to, one for each pick-up; relative to `phase`, without
-  /// the filter.
+  /// The complex amplitude that each pick-up should capture, relative to `phase` and before the high-pass
+  /// filter.
   std::vector<std::complex<double>> expected;
-  std::vector<double> seen;  ///< response / best response of each pick-up; 0 if it is not calibrated
+  std::vector<double> seen;  ///< response of each pick-up re its best response; 0 if not calibrated
 };
 
 std::vector<PlannedLine> planned_lines(const Stretch& stretch, const std::vector<PickUp>& pick_ups,
                                        int rate_Hz);
 
-/// The pick-up that sees most of these lines.
+/// The pick-up with the best response to these lines.
 std::size_t main_pick_up(const std::vector<PlannedLine>& lines, std::size_t pick_ups);
 
-/// Mean square that the lines lead to at a pick-up, behind the filter.
+/// Mean square that a pick-up should capture of the lines, after the high-pass filter.
 double planned_power(const std::vector<PlannedLine>& lines, std::size_t pick_up);
 
 /// A ratio of amplitudes in dB, at least -200.

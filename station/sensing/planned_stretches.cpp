@@ -8,7 +8,7 @@ namespace turnpoint::sensing {
 
 namespace {
 
-// A tone of the burst as it runs on, counted from the frame of the last change.
+// A tone while the burst plays. Its phase is counted from the frame of the last change.
 struct Running {
   drive::Partial partial;
   int channel = 0;
@@ -23,7 +23,7 @@ Running running(const drive::PreparedTone& tone) {
   return made;
 }
 
-// What the synthesiser does at a change: frequencies glide linearly without a jump of phase.
+// Applies a change as the synthesiser does: frequencies glide linearly, and the phase does not jump.
 void change(std::vector<Running>& tones, const drive::PreparedChange& change, std::int64_t origin) {
   const auto since = static_cast<std::uint64_t>(change.at_frame - origin);
   const std::int64_t frames = std::max<std::int64_t>(1, change.frames);

@@ -7,25 +7,26 @@
 
 namespace turnpoint::sensing {
 
-/// A tone of a burst while nothing changes.
+/// One tone of a Stretch, in which nothing changes.
 struct PlannedTone {
-  int index = 0;    ///< place in the burst's tone set
+  int index = 0;    ///< index in the burst's tone set
   int channel = 0;  ///< output channel
   double frequency_Hz = 0;
   double amplitude = 0;     ///< of full scale
-  std::uint64_t phase = 0;  ///< in 2^-64 cycles, at the stretch's origin
+  std::uint64_t phase = 0;  ///< in 2^-64 cycles, at origin_frame
   std::uint64_t increment = 0;
 };
 
-/// A part of a burst in which frequencies and amplitudes do not change: between the ramps and the changes.
+/// A stretch is a part of a burst, between ramps and changes, in which frequencies and amplitudes are
+/// constant.
 struct Stretch {
-  std::int64_t origin_frame = 0;                ///< absolute frame at which the phases are given
+  std::int64_t origin_frame = 0;                ///< absolute frame to which the tones' phases belong
   std::int64_t first_frame = 0, end_frame = 0;  ///< absolute frames, the end excluded
-  std::vector<PlannedTone> tones;               ///< without those of amplitude 0
+  std::vector<PlannedTone> tones;               ///< tones of amplitude 0 are left out
 };
 
-/// The steady stretches of a burst, as the synthesiser plays it. Changes that are sent while it plays are not
-/// known.
+/// The stretches of a burst, as the synthesiser plays it. Changes that are sent while the burst plays are not
+/// included.
 std::vector<Stretch> planned_stretches(const drive::PreparedBurst& burst, int rate_Hz);
 
 }  // namespace turnpoint::sensing

@@ -5,8 +5,8 @@
 
 namespace turnpoint::sensing {
 
-/// What a nonlinear plate, clamp or amplifier makes of tones: subharmonics (a part that rattles answers at
-/// f/2 or f/3), harmonics and combinations to third order.
+/// The frequencies that a nonlinear plate, clamp or amplifier makes of tones: subharmonics (a part that
+/// rattles answers at f/2 or f/3), harmonics and combinations to third order.
 enum class ProductKind {
   half,             ///< f_i / 2
   third,            ///< f_i / 3
@@ -20,23 +20,23 @@ enum class ProductKind {
 
 struct Product {
   ProductKind kind = ProductKind::half;
-  int i = 0, j = 0;         ///< places of the tones in the list of frequencies, from 0
-  double frequency_Hz = 0;  ///< where it is found, which may be the alias below half of the rate
+  int i = 0, j = 0;         ///< indices of the tones in the list of frequencies, from 0
+  double frequency_Hz = 0;  ///< frequency in the samples; above half of the rate, that of the alias
   double level_dB = 0;      ///< rms relative to that of all planned tones at the same pick-up
 };
 
-/// "2 f1 - f3", with tones counted from 1.
+/// Such as "2 f1 - f3". Tones are counted from 1.
 std::string name(const Product& product);
 
-/// True for those that a symmetric limiter makes: 3 f, 2 f_i - f_j, 2 f_i + f_j.
+/// True for products that a symmetric limiter makes: 3 f, 2 f_i - f_j, 2 f_i + f_j.
 bool is_odd(ProductKind kind);
 
-/// The products of these tones from `low_Hz` to 0.49 of the rate that are at least `apart_Hz` away from every
-/// tone. Of two products less than `apart_Hz` apart, only the first is kept.
+/// The products of these tones between `low_Hz` and 0.49 of the rate, without those less than `apart_Hz` from
+/// a tone. If two products are less than `apart_Hz` apart, only the first is kept.
 std::vector<Product> products_of(std::span<const double> frequencies_Hz, int rate_Hz, double low_Hz,
                                  double apart_Hz);
 
-/// Amplitude of a sinusoid in samples, measured with a Hann window over all of them.
+/// Amplitude of a sinusoid in the samples, measured with a Hann window over all samples.
 double amplitude_at(std::span<const double> samples, double frequency_Hz, int rate_Hz);
 
 }  // namespace turnpoint::sensing

@@ -7,24 +7,23 @@
 
 namespace turnpoint::sensing {
 
-/// What the pick-ups measured between intervals.
+/// Vibration between intervals, as measured by a pick-up.
 struct SilenceResult {
-  terms::Proof verdict = terms::Proof::unproven;  ///< unproven if less than 50 ms were captured
+  terms::Proof verdict = terms::Proof::unproven;  ///< `unproven` if fewer than 50 ms were captured
   terms::ProofCause cause = terms::ProofCause::none;
-  double level_dB =
-      -200;  ///< rms of the loudest 50 ms, re the plan, behind the filter against low frequencies
+  double level_dB = -200;  ///< rms of the loudest 50 ms, re the plan, after the high-pass filter
 };
 
-/// Measures whether the surface rests between two intervals. Allocates only in its constructor. For an
+/// Measures whether the surface is at rest between two intervals. Allocates only in its constructor. For an
 /// ordinary thread.
 class SilenceProof {
  public:
-  /// The plan's burst is what the silence is compared with: that of the interval before or after. Silence is
-  /// measured by the pick-up that sees most of it.
+  /// The silence is compared with the plan's burst; use that of the interval before or after. The pick-up
+  /// with the best response to this burst measures the silence.
   explicit SilenceProof(const IntervalPlan& plan);
 
-  /// Takes captured frames, all of which should be silent. Allow for the delay of the loop and a few
-  /// milliseconds in which the plate rings after a burst.
+  /// Takes captured frames, all of which should be silent. Leave out the loop delay and the few milliseconds
+  /// in which the plate rings after a burst.
   void push(const CaptureBlock& block);
 
   SilenceResult result() const noexcept;
@@ -33,10 +32,10 @@ class SilenceProof {
   void take(const AlignedBlock& block) noexcept;
 
   Limits limits_;
-  double planned_ = 0;  ///< mean square
+  double planned_ = 0;  ///< planned mean square of the burst
   AlignedBlocks blocks_;
   int window_blocks_;
-  int blocks_taken_ = 0;  ///< in the current window
+  int blocks_taken_ = 0;  ///< number of blocks in the current window
   bool measured_ = false;
   double energy_ = 0, largest_ = 0;
 };

@@ -17,12 +17,12 @@ inline std::complex<double> unit(std::uint64_t phase) noexcept {
   return {drive::sine_of_phase(phase + drive::quarter_cycle), drive::sine_of_phase(phase)};
 }
 
-/// Two numbers in one register, which every 64-bit processor has.
+/// Two numbers in one vector register; every 64-bit processor has such registers.
 using Lanes [[gnu::vector_size(2 * sizeof(double))]] = double;
 constexpr std::size_t kLanes = kWidth / 2;
 
-// Adds the products of `Inputs` rows with kWidth columns of the table. Each sum runs over the frames in
-// order, so its bits do not depend on the processor.
+// Multiplies `Inputs` rows with kWidth columns of the table, and sums over the frames. Each sum adds the
+// frames in order, so its bits do not depend on the processor.
 template <std::size_t Inputs>
 void multiply(const double* x, std::size_t frames, const double* table, std::size_t columns,
               double* sums) noexcept {
@@ -83,7 +83,8 @@ double ToneSums::factor(std::size_t part, double from_middle) const noexcept {
   return part == 0 ? 1 : part == 1 ? std::cos(angle) : std::sin(angle);
 }
 
-// Columns of parity 0 are even about the middle of the block, those of parity 1 are odd.
+// Fills the table's columns of one tone. Columns of parity 0 are even functions about the middle of the
+// block, and columns of parity 1 are odd.
 void ToneSums::fill(std::size_t tone) noexcept {
   const auto half = static_cast<std::size_t>(block_frames_ / 2);
   const std::uint64_t increment = tones_[tone].partial.increment;
@@ -92,7 +93,7 @@ void ToneSums::fill(std::size_t tone) noexcept {
     for (std::size_t part = 0; part < kParts; ++part) {
       const double f = factor(part, static_cast<double>(n) + 0.5);
       double* column = table_.data() + (part * 2 * half + n) * columns_ + tone;
-      const bool swaps = part == 2;  // the factor is odd itself
+      const bool swaps = part == 2;  // the factor sin is odd, so it swaps even and odd
       column[0] = f * (swaps ? e.imag() : e.real());
       column[half * columns_] = f * (swaps ? e.real() : e.imag());
     }
@@ -158,7 +159,7 @@ void ToneSums::glide(const AlignedBlock& block, std::size_t tone, const drive::P
   }
 }
 
-// i e^(-i phase) = i conj(e^(i phase of the middle) e^(i phase since)).
+// i e^(-i phase), where the phase is that of the block's middle plus the phase since the middle.
 std::complex<double> ToneSums::rotated(std::size_t input, std::size_t tone, std::size_t part) const noexcept {
   const double* even = sums_.data() + (part * 2 * inputs_ + input) * columns_ + tone;
   const double* odd = even + inputs_ * columns_;

@@ -7,27 +7,28 @@
 
 namespace turnpoint::sensing {
 
-/// How the participant is asked to move: ranges of normal force and speed, ends included.
+/// The movement that the participant is asked to make: ranges of normal force and speed, ends included.
 struct MovementWindow {
   double least_normal_N = 0.35, most_normal_N = 0.65;
   double least_speed_mm_s = 40, most_speed_mm_s = 120;
 };
 
-/// What the finger did during one trial. Numbers that the trial does not determine are NaN.
+/// What the finger did during one trial. Quantities that could not be measured are NaN.
 struct TrialSummary {
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
   double contact_s = 0;
   int strokes = 0;
-  double normal_N = none, normal_sd_N = none;  ///< mean and standard deviation over all strokes
-  double normal_in_window = none;              ///< share of the strokes' time, 0 to 1
-  double speed_mm_s = none;                    ///< mean of |v| over all strokes
+  double normal_N = none, normal_sd_N = none;  ///< mean and standard deviation of normal force over all
+                                               ///< strokes
+  double normal_in_window = none;              ///< fraction of the strokes' time inside the window, 0 to 1
+  double speed_mm_s = none;                    ///< mean absolute speed over all strokes
   double speed_in_window = none;
   double mu_low = none, mu_high = none;  ///< friction on the two sides of the felt step
   double boundary_felt_mm = none, boundary_se_mm = none, lag_mm = none;
 };
 
-/// Summarises the track of one trial. `step` is felt_step() of the trial's profile.
+/// Summarises the track of one trial. `step` is the result of felt_step() for the trial's profile.
 TrialSummary summarise(std::span<const FingerPoint> track, Band band, std::span<const Stroke> strokes,
                        const std::optional<FeltStep>& step, const MovementWindow& window);
 
