@@ -13,7 +13,8 @@ CellForces forces_on(const Cells& cells, const Load& load) {
 }
 
 // The filter's two integrators are solved together, without a delay between them (Simper, "Linear trapezoidal
-// integrated state variable filter", 2013). Coefficients of order (f / rate)^2 do not lose digits this way.
+// integrated state variable filter", 2013). A direct-form filter would lose digits, because it has
+// coefficients of order (f / rate)^2.
 Resonance::Resonance(double frequency_Hz, double damping, double rate_Hz)
     : g_(std::tan(std::numbers::pi * frequency_Hz / rate_Hz)),
       k_(2 * damping),

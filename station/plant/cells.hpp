@@ -5,14 +5,14 @@
 
 namespace turnpoint::plant {
 
-/// Forces on cells a, b and lateral (N).
+/// Forces on the cells a, b and lateral, in that order (N).
 using CellForces = std::array<double, 3>;
 
-/// The forces of a load on the three cells; see Cells.
+/// The forces that a load exerts on the three cells; see the formulas at Cells.
 CellForces forces_on(const Cells& cells, const Load& load);
 
-/// A second-order low-pass with resonance: unit gain at rest, 1 / (1 - r^2 + 2 i damping r) at r times its
-/// own frequency. Integrated by the trapezoidal rule.
+/// A second-order low-pass filter with a resonance. Its gain is 1 at 0 Hz, and 1 / (1 - r^2 + 2 i damping r)
+/// at r times its resonance frequency. Integrated by the trapezoidal rule.
 class Resonance {
  public:
   Resonance(double frequency_Hz, double damping, double rate_Hz);
@@ -23,11 +23,12 @@ class Resonance {
   double band_ = 0, low_ = 0;
 };
 
-/// The cells with their resonances, crosstalk, zero and drift: from forces to readings, frame by frame (N).
+/// Converts the forces on the cells to their readings (N), frame by frame: resonances, crosstalk, zero and
+/// drift.
 class CellReadings {
  public:
   CellReadings(const Cells& cells, double rate_Hz);
-  /// `warmth_K`: temperature above that for which zero_N holds.
+  /// The next frame. `warmth_K` is the temperature minus the temperature for which zero_N holds.
   CellForces step(const CellForces& forces, double warmth_K);
 
  private:

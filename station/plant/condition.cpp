@@ -111,7 +111,8 @@ Condition condition_at(const Setup& setup, const std::vector<Fault>& faults, std
         break;
     }
   }
-  // f ~ sqrt(E / rho) h / W^2 for a plate; its lengths grow, and its density falls with their cube.
+  // A plate's resonances are proportional to sqrt(E / rho) h / W^2 (modulus, density, thickness, half-width).
+  // With warmth all lengths grow, and the density falls with their cube.
   c.resonance *= 1 + 0.5 * (setup.expansion_per_K + setup.modulus_per_K) * c.warmth_K;
   return c;
 }

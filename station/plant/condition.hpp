@@ -8,24 +8,24 @@
 
 namespace turnpoint::plant {
 
-/// What the faults that are on at a frame amount to.
+/// The state of the laboratory at one frame, with all faults that are active then.
 struct Condition {
   std::array<double, kMostTransducers> transducer_gain{};
-  std::array<bool, 3> bridge_open{};  ///< a, b, lateral
+  std::array<bool, 3> bridge_open{};  ///< open wires of the cells a, b and lateral
   bool no_reference = false, lifted = false;
-  double clip = 1e300;  ///< full scale
+  double clip = 1e300;  ///< level at which the amplifier clips, of full scale
   std::int64_t late_frames = 0;
   double resonance = 1;  ///< factor on all resonances of the surface
-  double frequency = 1;  ///< factor on what is driven
-  double warmth_K = 0;   ///< above the surface's temperature
+  double frequency = 1;  ///< factor on the frequencies of the drive
+  double warmth_K = 0;   ///< temperature minus surface_temperature_C
 };
 
 Condition condition_at(const Setup& setup, const std::vector<Fault>& faults, std::int64_t frame);
 
-/// Captured frames that this fault loses; 0 if it is no gap.
+/// Number of captured frames that this fault loses; 0 if it is not a gap.
 std::int64_t frames_lost(const Fault& fault);
 
-/// Throws std::invalid_argument, naming what is wrong, if there cannot be such a laboratory.
+/// Throws std::invalid_argument, with the reason, if such a laboratory is impossible.
 void validate(const Setup& setup, const std::vector<Fault>& faults);
 Setup validated(const Setup& setup);
 

@@ -5,19 +5,20 @@
 
 namespace turnpoint::plant {
 
-/// The recent past of one playback channel, read with a delay in whole frames and a fixed fraction. Without a
-/// fraction the samples come back bit by bit; with one, by a windowed sinc of 48 samples, to 1e-4 of a tone
-/// below 0.25 of the rate.
+/// The recent samples of one playback channel, read with a delay of whole frames plus a constant fraction.
+/// Without a fraction the samples are exact. With a fraction, a windowed sinc of 48 samples interpolates
+/// them; its error is 1e-4 of a tone below 0.25 of the rate.
 class Delay {
  public:
   static constexpr int kTaps = 48;
-  static constexpr int kLeast = kTaps / 2;  ///< least whole delay with a fraction
+  static constexpr int kLeast = kTaps / 2;  ///< least whole delay, if there is a fraction
 
-  /// `longest`: the longest delay in frames that will be read. `fraction` is in [0, 1).
+  /// `longest` is the longest delay that will be read, in frames. `fraction` is in [0, 1).
   Delay(std::int64_t longest, double fraction);
 
   void push(double sample) { samples_[static_cast<std::size_t>(++newest_ & mask_)] = sample; }
-  /// The sample `frames` before the newest one, plus the fraction. Zero before the first one.
+  /// The sample that is older than the newest one by `frames` plus the fraction. Zero before the first
+  /// sample.
   double read(std::int64_t frames) const {
     if (taps_.empty()) return whole(frames);
     double sum = 0;
@@ -25,7 +26,7 @@ class Delay {
       sum += taps_[static_cast<std::size_t>(k)] * whole(frames - kLeast + 1 + k);
     return sum;
   }
-  /// The same without the fraction.
+  /// The sample that is older than the newest one by `frames`, without the fraction.
   double whole(std::int64_t frames) const {
     return samples_[static_cast<std::size_t>((newest_ - frames) & mask_)];
   }

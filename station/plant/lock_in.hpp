@@ -6,24 +6,26 @@
 
 namespace turnpoint::plant {
 
-/// Follows the amplitude of one tone in a signal, with a Hann window of 10 ms: a neighbour at 1.05 kHz leaks
-/// in with 6e-4 of its amplitude, and the amplitude is 5 ms late.
+/// Follows the amplitude of one tone in a signal, with a Hann window of 10 ms. A neighbouring tone at a
+/// distance of 1.05 kHz leaks in with 6e-4 of its amplitude. The amplitude is 5 ms late.
 class LockIn {
  public:
-  static constexpr int kWindow = 80;  ///< steps in the window
+  static constexpr int kWindow = 80;  ///< number of steps in the window
 
-  /// `step_frames`: the number of frames that are summed before the window is applied, an eighth of a ms.
+  /// `step_frames` is the number of frames in a step (an eighth of a ms). The samples of a step are summed
+  /// before the window is applied.
   LockIn(double frequency_Hz, int rate_Hz, int step_frames);
 
   double frequency_Hz() const { return frequency_Hz_; }
-  /// Call this at the first frame of each step; the phase is computed from the frame, so it never drifts.
+  /// Call this at the first frame of each step. The phase is computed from the frame number, so it never
+  /// drifts.
   void begin_step(std::int64_t frame);
   void add(double sample) {
     sum_ += sample * rotor_;
     const double re = rotor_.real() * turn_.real() - rotor_.imag() * turn_.imag();
     rotor_ = {re, rotor_.real() * turn_.imag() + rotor_.imag() * turn_.real()};
   }
-  /// The signal is Re(amplitude exp(2 pi i f frame / rate)). Updated once in 8 steps.
+  /// The tone is Re(amplitude exp(2 pi i f frame / rate)). The amplitude changes only every 8 steps.
   std::complex<double> amplitude() const { return amplitude_; }
 
  private:
@@ -36,7 +38,7 @@ class LockIn {
   std::size_t next_ = 0;
 };
 
-/// exp(2 pi i cycles_per_frame frame), accurate for any frame.
+/// exp(2 pi i cycles_per_frame frame), accurate for large frame numbers too.
 std::complex<double> phasor(double cycles_per_frame, std::int64_t frame);
 
 }  // namespace turnpoint::plant

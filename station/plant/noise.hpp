@@ -5,9 +5,9 @@
 
 namespace turnpoint::plant {
 
-/// White noise of variance 1. Its value at a frame depends only on seed, source and frame, so it does not
-/// matter in which order or blocks it is asked for. It is the sum of four uniform numbers: normal enough for
-/// noise of which thousands of samples are averaged, but never beyond 3.5 standard deviations.
+/// White noise of variance 1. Its value at a frame depends only on seed, source and frame, so frames may be
+/// requested in any order. Each value is the sum of four uniform numbers. It never exceeds 3.5 standard
+/// deviations, but is close enough to normal where thousands of samples are averaged.
 class Noise {
  public:
   Noise(std::uint64_t seed, std::uint64_t source) : key_(scramble(seed ^ scramble(source + 1))) {}
@@ -29,13 +29,12 @@ class Noise {
   std::uint64_t key_;
 };
 
-/// Noise of variance 1 with equal power in each octave between two frequencies, made of first-order
-/// low-passes one octave apart.
+/// Noise of variance 1 with equal power in each octave between two frequencies. It is the sum of white noises
+/// behind first-order low-pass filters one octave apart.
 class PinkNoise {
  public:
   PinkNoise(std::uint64_t seed, std::uint64_t source, double rate_Hz, double low_Hz, double high_Hz);
 
-  /// The next value.
   double next();
 
  private:

@@ -21,7 +21,8 @@ double quadrature_power(const std::vector<Complex>& v) {
   return sum;
 }
 
-/// The resonances of a response: minima of the quadrature part, at the place where it is largest.
+/// The resonance frequencies of a response: minima of the imaginary part, at the pick-up where the imaginary
+/// part is strongest.
 std::vector<double> resonances_of(const SurfaceResponse& response) {
   std::vector<double> found;
   const auto& v = *std::max_element(response.at.begin(), response.at.end(), [](const auto& a, const auto& b) {
@@ -33,7 +34,7 @@ std::vector<double> resonances_of(const SurfaceResponse& response) {
       found.push_back(response.frequency_Hz[k] + 0.5 * (a - c) / (a - 2 * b + c) *
                                                      (response.frequency_Hz[1] - response.frequency_Hz[0]));
   }
-  // Those outside of the band contribute to its ends.
+  // Resonances just outside of the band also act inside it, so add one at each end, at the same spacing.
   if (found.size() > 1) {
     found.insert(found.begin(), 2 * found[0] - found[1]);
     found.push_back(2 * found.back() - found[found.size() - 2]);
@@ -41,7 +42,8 @@ std::vector<double> resonances_of(const SurfaceResponse& response) {
   return found;
 }
 
-/// Poles with a loss: half the width of a resonance relative to its frequency.
+/// The filter's poles for these resonances. `loss` is half the width of a resonance relative to its
+/// frequency.
 std::vector<Complex> poles_of(const std::vector<double>& resonances, double loss, double scale,
                               double rate_Hz) {
   std::vector<Complex> poles;
@@ -50,7 +52,8 @@ std::vector<Complex> poles_of(const std::vector<double>& resonances, double loss
   return poles;
 }
 
-/// Columns: for each pole the responses of its real and imaginary part, then the taps.
+/// Columns: for each pole, the responses to the real and imaginary part of its weight; then those of the
+/// taps.
 Eigen::MatrixXcd basis_of(const std::vector<Complex>& poles, std::size_t taps,
                           std::span<const double> frequency_Hz, double rate_Hz) {
   const auto rows = static_cast<Eigen::Index>(frequency_Hz.size());
@@ -69,7 +72,7 @@ Eigen::MatrixXcd basis_of(const std::vector<Complex>& poles, std::size_t taps,
   return basis;
 }
 
-/// Real weights of the columns, by least squares; each column of the result belongs to a place.
+/// Real weights of the columns by least squares. Each column of the result belongs to one pick-up.
 Eigen::MatrixXd fitted(const Eigen::MatrixXcd& basis, const Eigen::MatrixXcd& wanted) {
   Eigen::MatrixXd a(2 * basis.rows(), basis.cols()), b(2 * basis.rows(), wanted.cols());
   a << basis.real(), basis.imag();
@@ -83,7 +86,7 @@ SurfaceResponse surface_response(const physics::Surface& surface, std::span<cons
                                  double high_Hz) {
   SurfaceResponse response;
   response.at.resize(x_m.size());
-  // less than half of the width of a resonance: 200 Hz at Q = 60
+  // 200 Hz at Q = 60, where a resonance at 30 kHz is at least 500 Hz wide
   const double spacing_Hz = std::clamp(12000 / surface.quality_factor, 20.0, 400.0);
   for (double f = low_Hz; f <= high_Hz; f += spacing_Hz) {
     const physics::Tone tone{f, 1, 0};
@@ -110,7 +113,8 @@ PickupFilter::PickupFilter(const SurfaceResponse& response, double rate_Hz, doub
   std::vector<Complex> poles;
   Eigen::MatrixXd weights;
   fit_error_ = 1e300;
-  // Loss depends on the theory of the surface (1/2Q for a membrane, up to 1/Q for a plate): try.
+  // How the loss follows from Q depends on the theory of the surface (1/2Q for a membrane, up to 1/Q for a
+  // plate). So try many values, and keep the one that fits best.
   for (double loss = 0.001; loss < 0.2; loss *= 1.1) {
     const auto tried = poles_of(resonances, loss, scale, rate_Hz);
     const auto basis = basis_of(tried, kTaps, frequency_Hz, rate_Hz);

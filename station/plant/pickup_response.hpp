@@ -8,36 +8,36 @@
 
 namespace turnpoint::plant {
 
-/// Displacement at a place of the surface per displacement of the drive edge, by the model `mode`, at evenly
-/// spaced frequencies. One solution per frequency, so a thick plate takes seconds.
+/// Displacement at each pick-up per displacement of the drive edge, by the model `mode`, at evenly spaced
+/// frequencies. The surface is solved once per frequency, which takes seconds for a thick plate.
 struct SurfaceResponse {
   std::vector<double> frequency_Hz;
-  std::vector<std::vector<std::complex<double>>> at;  ///< [place][frequency]
+  std::vector<std::vector<std::complex<double>>> at;  ///< [pick-up][frequency]
 };
 SurfaceResponse surface_response(const physics::Surface& surface, std::span<const double> x_m, double low_Hz,
                                  double high_Hz);
 
-/// A filter with this response: resonators shared by all places, and a few taps for what is left. All
-/// resonances can be moved by a factor.
+/// A digital filter that is fitted to a SurfaceResponse: resonators that all pick-ups share, and a few taps
+/// for the remainder. `scale` is a factor on all resonance frequencies.
 class PickupFilter {
  public:
   PickupFilter(const SurfaceResponse& response, double rate_Hz, double scale);
 
   /// Takes the displacement of the drive edge in the next frame.
   void step(double drive);
-  /// The displacement at a place in this frame.
+  /// The displacement at a pick-up (by its index) in this frame.
   double output(std::size_t place) const;
-  /// The response of the filter itself, and the largest difference from what was to be fitted.
+  /// The filter's own response, and its largest difference from the response to which it was fitted.
   std::complex<double> response(std::size_t place, double frequency_Hz) const;
   double fit_error() const { return fit_error_; }
   std::size_t resonances() const { return pole_re_.size(); }
-  /// Takes over the motion of another filter of the same surface.
+  /// Copies the state of another filter, so that the surface continues its motion without a jump.
   void continue_from(const PickupFilter& other);
 
  private:
   static constexpr std::size_t kTaps = 4;
   struct Place {
-    std::vector<double> re, im;  // what each resonator contributes
+    std::vector<double> re, im;  // weights of the resonators at this pick-up
     std::vector<double> taps;
   };
 

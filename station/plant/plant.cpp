@@ -17,7 +17,7 @@ std::vector<double> places_of(const std::vector<Pickup>& pickups) {
   return x_m;
 }
 
-// 8000 steps a second: an eighth of a ms.
+// There are 8000 steps a second (one every eighth of a ms).
 int frames_per_step(int rate_Hz) { return static_cast<int>(std::lround(rate_Hz / 8000.0)); }
 
 }  // namespace
@@ -33,7 +33,7 @@ Plant::Plant(const Setup& setup)
       finger_(setup.finger, setup.friction, static_cast<double>(step_frames_) / setup.rate_Hz, step_frames_,
               setup.seed) {
   const double fraction = setup.loop_delay_frames - static_cast<double>(whole_delay_);
-  // room for a drive that is late by up to a second
+  // The fault drive_late can delay the drive by up to a second.
   const Delay delay(whole_delay_ + setup.rate_Hz, fraction);
   transducer_delays_.assign(setup.transducers.size(), delay);
   if (setup.wires.carrier_channel) carrier_delay_.push_back(delay);
@@ -80,7 +80,8 @@ std::size_t Plant::filter_for(double resonance) {
   return filters_.size() - 1;
 }
 
-/// Computes all that advance() will need under the faults as they are listed, since it may not allocate.
+/// Computes in advance all that advance() will need with the listed faults, because advance() must not
+/// allocate.
 void Plant::prepare() {
   std::vector<std::int64_t> frames{0, captured_};
   for (const auto& fault : faults_) {
@@ -107,7 +108,7 @@ void Plant::set_tones(std::vector<double> frequency_Hz) {
     tone.gains = &gains_for(tone.lock_in.frequency_Hz() * now_.frequency / now_.resonance);
 }
 
-/// Applies the faults that are on at this captured frame.
+/// Applies the faults that are active at this captured frame.
 void Plant::change(std::int64_t frame) {
   for (const auto& fault : faults_)
     if (fault.kind == FaultKind::gap && fault.from_frame == frame)
@@ -145,7 +146,8 @@ void Plant::advance(std::span<const double> played, std::span<double> captured) 
   }
 }
 
-/// Displacement of the drive edge as it was played, and the voltage at the transducers in full scale.
+/// Returns the displacement of the drive edge (um). `full_scale` becomes the sum of the transducers'
+/// voltages, in units of full scale.
 double Plant::edge_um(double& full_scale) const {
   const std::int64_t delay = whole_delay_ + now_.late_frames - (world_ - (played_ - 1));
   double sum = 0;
@@ -158,7 +160,8 @@ double Plant::edge_um(double& full_scale) const {
   return sum;
 }
 
-/// The same with each named tone at a frequency that is wrong by the fault's factor.
+/// Displacement of the drive edge (um) with the fault frequency_off: the frequencies of all named tones are
+/// multiplied by the fault's factor.
 double Plant::shifted_edge_um() const {
   double sum = 0;
   for (const auto& tone : tones_) {
@@ -185,7 +188,7 @@ double Plant::amplitude_um(double x_m) const {
   return std::sqrt(sum);
 }
 
-/// The finger's forces are straight lines between steps.
+/// Computes the finger's forces at the end of the next step. Within a step, forces change linearly.
 void Plant::begin_step() {
   for (auto& tone : tones_) tone.lock_in.begin_step(world_);
   from_ = to_;
@@ -194,7 +197,7 @@ void Plant::begin_step() {
   to_ = forces_on(setup_.cells, {truth_.finger.normal_N, truth_.finger.lateral_N, truth_.finger.contact_m});
 }
 
-/// One frame of the laboratory. `out` is empty if the station loses it.
+/// Simulates one frame of the laboratory. `out` is empty if a gap loses this frame.
 void Plant::next_frame(std::span<double> out) {
   const auto within = world_ % step_frames_;
   if (within == 0) begin_step();

@@ -18,23 +18,23 @@
 
 namespace turnpoint::plant {
 
-/// What really happens, at the frame that was captured last.
+/// The true state of the laboratory at the frame that was captured last.
 struct Truth {
-  std::int64_t frame = -1;             ///< captured frame
-  double normal_N = 0, lateral_N = 0;  ///< on the surface: finger and load together
-  FingerState finger;                  ///< at the step that began last (an eighth of a ms)
-  CellForces reading_N{};              ///< after resonance, crosstalk, zero and drift: what the bridges show
-  double drive_um = 0;                 ///< displacement of the drive edge now
-  double amplitude_um = 0;             ///< of the surface under the finger, rms over the fingertip, all tones
+  std::int64_t frame = -1;             ///< number of the captured frame; -1 before the first
+  double normal_N = 0, lateral_N = 0;  ///< on the surface, from finger and load together
+  FingerState finger;                  ///< at the step that began last (a step is an eighth of a ms)
+  CellForces reading_N{};              ///< with resonance, crosstalk, zero and drift: what the bridges carry
+  double drive_um = 0;                 ///< displacement of the drive edge at this frame
+  double amplitude_um = 0;             ///< amplitude of all tones under the finger, rms over the fingertip
   double temperature_C = 0;
 };
 
 /// Simulates the laboratory behind the converter: transducers, surface, pick-ups, finger, force cells,
-/// bridges and wires. What the station played goes in, what it captures comes out.
+/// bridges and wires. Its input is what the station plays; its output is what the station captures.
 ///
-/// The pick-ups respond to the played signal itself, whatever it is. The finger feels only the tones that
-/// were named by set_tones(): their amplitudes are measured in what was played, and weighted by the model
-/// `mode`.
+/// The pick-ups respond to any played signal. The finger feels only the tones that set_tones() named. Their
+/// amplitudes at the drive edge are measured in the played signal, and the model `mode` gives the amplitudes
+/// under the finger.
 ///
 /// Deterministic: the same setup, samples and calls give the same captured samples, however they are divided
 /// into blocks. Not thread-safe.
@@ -44,36 +44,39 @@ class Plant {
   /// delay that is too short, or a surface without loss.
   explicit Plant(const Setup& setup);
 
-  /// The frequencies that may be played from now on. Solves the surface for those that are new (0.1 ms each,
-  /// thick plates 20 ms), so call it between two trials; tones that stay are followed without a break.
+  /// Names the tones that the finger can feel from now on. Solves the surface for new frequencies (0.1 ms
+  /// each, 20 ms for a thick plate), so call it between trials. Tones that were already named are followed
+  /// without interruption.
   void set_tones(std::vector<double> frequency_Hz);
-  /// Adds a fault. It must begin at a frame that was not captured yet.
+  /// Adds a fault. It must begin at a frame that has not been captured yet.
   void add(const Fault& fault);
   /// Ends all faults with the next captured frame.
   void repair();
-  /// Puts this load on the surface, or takes it away, from the next frame on.
+  /// Replaces the load on the surface from the next frame on. An empty load removes it.
   void set_load(const Load& load) { load_ = load; }
 
-  /// Takes interleaved samples of the playback channels, full scale 1, and gives as many frames of the
-  /// capture channels. Throws std::invalid_argument if the sizes do not match. Does not allocate.
+  /// Takes interleaved samples of the playback channels (full scale 1), and writes the same number of frames
+  /// of the capture channels. Throws std::invalid_argument if the sizes do not match. Does not allocate.
   void advance(std::span<const double> played, std::span<double> captured);
 
   const Setup& setup() const { return setup_; }
   const Truth& truth() const { return truth_; }
-  /// Frames captured so far.
+  /// Number of frames captured so far.
   std::int64_t frames() const { return captured_; }
-  /// Displacement of the drive edge by a named tone, as its lock-in sees it (um, 5 ms late):
-  /// Re(z exp(2 pi i f n / rate)) at frame n of the world.
+  /// Complex amplitude z (um) with which the named tone moves the drive edge, 5 ms late. The motion is Re(z
+  /// exp(2 pi i f n / rate)) at frame n of the laboratory.
   std::complex<double> tone_um(std::size_t tone) const;
-  /// rms over the fingertip of the displacement at x, per displacement of the drive edge.
+  /// Displacement under a fingertip at x (rms over its length), per displacement of the drive edge.
   double gain_at(std::size_t tone, double x_m) const;
-  /// Displacement at a pick-up per displacement of the drive edge, without the fault frequency_off.
+  /// Displacement at a pick-up per displacement of the drive edge, which really moves at `frequency_Hz` (see
+  /// FaultKind::frequency_off).
   std::complex<double> pickup_response(std::size_t pickup, double frequency_Hz) const;
-  /// Largest error of the pick-ups' response in its band, against the surface's model.
+  /// Largest difference between the simulated response of a pick-up and the surface's model, within the band.
   double pickup_error() const { return filters_.front().second.fit_error(); }
 
  private:
-  /// Mean square over the fingertip, per square of the drive edge, in steps of kGain_m along the surface.
+  /// Mean square displacement over the fingertip, per squared displacement of the drive edge, at positions
+  /// kGain_m apart.
   using Gains = std::vector<double>;
   static constexpr double kGain_m = 0.5e-3;
   struct Tone {
@@ -97,8 +100,8 @@ class Plant {
   std::int64_t whole_delay_;
   std::vector<Fault> faults_;
   SurfaceResponse response_;
-  std::map<double, Gains> gains_;                         // by frequency over resonance factor
-  std::vector<std::pair<double, PickupFilter>> filters_;  // by resonance factor
+  std::map<double, Gains> gains_;                         // key: frequency / resonance factor
+  std::vector<std::pair<double, PickupFilter>> filters_;  // first: resonance factor
   std::size_t filter_ = 0;
   std::vector<Tone> tones_;
   std::vector<Delay> transducer_delays_, carrier_delay_, marker_delay_;
@@ -109,10 +112,10 @@ class Plant {
   Load load_;
   Condition now_;
   std::int64_t next_change_ = 0;
-  std::int64_t captured_ = 0;  // frames given to the station
+  std::int64_t captured_ = 0;  // number of frames that the station has captured
   std::int64_t played_ = 0;
-  std::int64_t world_ = 0;    // frames that passed in the laboratory; more after a gap
-  CellForces from_{}, to_{};  // forces of the finger at the ends of this step
+  std::int64_t world_ = 0;    // number of frames simulated; larger than captured_ after a gap
+  CellForces from_{}, to_{};  // forces of the finger at the beginning and end of this step
   double amplitude_um_ = 0;
   Truth truth_;
 };
