@@ -125,8 +125,8 @@ WeightFit fit_weights(const std::vector<DeadWeight>& weights, const WeightErrors
 
   std::vector<Matrix> changes;
   for (const Loads& change : load_changes(weights, errors)) {
-    Matrix by = fit(weights, change, sd).matrix;  // the fit is linear in the loads, so it turns a change of
-                                                  // the loads into a change of the matrix
+    // The fit is linear in the loads, so it turns a change of the loads into a change of the matrix.
+    Matrix by = fit(weights, change, sd).matrix;
     for (auto& row : by)
       for (std::size_t k = 0; k < 3; ++k) row[k] *= std::max(1.0, best.misfit[k]);
     changes.push_back(by);

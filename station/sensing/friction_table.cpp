@@ -79,8 +79,8 @@ ByLevel by_level(std::span<const TableStroke> strokes, int& unused) {
   for (std::size_t i = 0; i < strokes.size(); ++i) {
     const auto& [displacement_m, friction] = strokes[i];
     if (displacement_m == 0) continue;
-    auto& values = result[displacement_m];  // keep a level without usable strokes, so that the error message
-                                            // can name it
+    // Keep a level without usable strokes, so that the error message can name it.
+    auto& values = result[displacement_m];
     if (i > 0 && at_rest(i - 1) && at_rest(i + 1) && friction > 0)
       values.push_back(std::log(friction) -
                        (std::log(strokes[i - 1].friction) + std::log(strokes[i + 1].friction)) / 2);

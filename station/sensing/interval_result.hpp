@@ -25,8 +25,8 @@ struct ProofLimits {
   Limits silence_dB{-70, -50, 1e9};   ///< vibration between trials, re the plan
   double clipped = 0.98;              ///< a sample of at least this size (of full scale) refuses the trial
   double dead_dB = -40;               ///< a tone below this level, re the plan, is missing
-  double half_low_dB = -7.5, half_high_dB = -4.5;  ///< if all tones of a channel are between these levels,
-                                                   ///< one of its two transducers is dead
+  /// If all tones of a channel are between these levels, one of its two transducers is dead.
+  double half_low_dB = -7.5, half_high_dB = -4.5;
   double unseen_dB = -26;  ///< a pick-up cannot judge tones at which its response is this far below its best
 };
 

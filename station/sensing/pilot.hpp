@@ -24,10 +24,10 @@ drive::Burst pilot_burst(const Pilot& pilot, std::int64_t start_frame);
 
 /// What was found of a captured pilot.
 struct PilotEcho {
-  double delay_frames = 0;  ///< playback frame n is captured at frame n + delay; at -40 dB noise its standard
-                            ///< deviation is below 0.01
-  double level_dB = 0;      ///< captured re played amplitude
-  double likeness = 0;      ///< correlation of the capture with the pilot, 0 to 1
+  /// Playback frame n is captured at frame n + delay; at -40 dB noise its standard deviation is below 0.01.
+  double delay_frames = 0;
+  double level_dB = 0;  ///< captured re played amplitude
+  double likeness = 0;  ///< correlation of the capture with the pilot, 0 to 1
 };
 
 /// Collects the reference channel after a pilot and finds the pilot in it. Recognises either polarity. The

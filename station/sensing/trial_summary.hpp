@@ -19,10 +19,10 @@ struct TrialSummary {
 
   double contact_s = 0;
   int strokes = 0;
-  double normal_N = none, normal_sd_N = none;  ///< mean and standard deviation of normal force over all
-                                               ///< strokes
-  double normal_in_window = none;              ///< fraction of the strokes' time inside the window, 0 to 1
-  double speed_mm_s = none;                    ///< mean absolute speed over all strokes
+  /// Mean and standard deviation of normal force over all strokes.
+  double normal_N = none, normal_sd_N = none;
+  double normal_in_window = none;  ///< fraction of the strokes' time inside the window, 0 to 1
+  double speed_mm_s = none;        ///< mean absolute speed over all strokes
   double speed_in_window = none;
   double mu_low = none, mu_high = none;  ///< friction on the two sides of the felt step
   double boundary_felt_mm = none, boundary_se_mm = none, lag_mm = none;

@@ -262,8 +262,8 @@ TEST_CASE("Bootstrap intervals contain the true value about as often as they cla
     }
     CHECK(threshold >= 0.91 * sessions);
     CHECK(slope >= 0.90 * sessions);
-    CHECK(narrow < 0.85 * sessions);  // negative control: intervals of half the width contain the true
-                                      // threshold too rarely
+    // Negative control: intervals of half the width contain the true threshold too rarely.
+    CHECK(narrow < 0.85 * sessions);
   }
 }
 

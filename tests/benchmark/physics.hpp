@@ -8,13 +8,15 @@ namespace turnpoint::benchmark {
 
 /// Selects the reference solution for the error. Only errors against the same reference can be compared.
 enum class Task {
-  field,     ///< reference: the two-dimensional field, computed with the model `modes` at a much finer
-             ///< resolution
-  equation,  ///< reference: the one-mode equation solved in extended precision by a method that shares no
-             ///< code with the library
-  airy,      ///< reference: the closed Airy profile of the 1998 paper
-  look_up    ///< converts a boundary to a frequency and back with a BoundaryMap; the error is that of the
-             ///< result (m)
+  /// Reference: the two-dimensional field, computed with the model `modes` at a much finer resolution.
+  field,
+  /// Reference: the one-mode equation solved in extended precision by a method that shares no code with the
+  /// library.
+  equation,
+  /// Reference: the closed Airy profile of the 1998 paper.
+  airy,
+  /// Converts a boundary to a frequency and back with a BoundaryMap; the error is that of the result (m).
+  look_up
 };
 
 /// One row of results. `error` is the largest difference of |v| with the last maximum at one (for look_up:

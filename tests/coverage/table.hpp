@@ -23,10 +23,10 @@ struct Tally {
 Tally tally(const std::vector<Session>& sessions, std::size_t trials_index, Quantity quantity,
             double stretch = 1);
 
-/// The promise that this cell breaks; "" if it keeps all of them. Promised coverage: 93.5 to 96.5 % with true
-/// values from the prior; with fixed ones at least 93 %, for the slope 95 %. The observed share must reach
-/// these figures without an allowance for chance. Promised width: at most 1.3 times the reference. Missing
-/// threshold intervals: at most 5 % from 96 trials on.
+/// The promise that this cell breaks; "" if it keeps all of them. Promised coverage with true values from the
+/// prior: 93.5 to 96.5 %; with fixed true values: at least 93 %, for the slope at least 95 %. The observed
+/// proportion itself must reach these figures, without an allowance for chance. Promised width: at most 1.3
+/// times that of the reference interval. Missing threshold intervals: at most 5 % from 96 trials on.
 std::string broken_promise(const Tally& tally, const Source& source, Quantity quantity, int trials);
 
 /// Reads a cell's sessions from a file that has one session per line and every number with all its digits.

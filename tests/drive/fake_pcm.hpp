@@ -17,8 +17,8 @@ struct FakePcm {
   std::int64_t period = 0, buffer = 0;
   int channels = 2;
   State state = State::prepared;
-  std::int64_t now = 0;                  ///< time in frames since the beginning, including frames in which
-                                         ///< nothing played
+  /// Time in frames since the beginning, including frames in which nothing played.
+  std::int64_t now = 0;
   std::int64_t written = 0, played = 0;  ///< number of frames since the last start
   int recorded_channel = 0;
   std::vector<std::int32_t> ring;
@@ -32,7 +32,7 @@ struct FakePcm {
   std::function<void()> before_call, before_write;
 
   /// The card's capture has its own state. In each frame of time while it runs, it captures one frame:
-  /// `wires` makes it from the frame that was played `loop_delay` frames ago. Without wires it is silent.
+  /// `wires` makes that frame from the one played `loop_delay` frames ago. Without `wires` it is silent.
   State capture_state = State::prepared;
   int capture_channels = 1;
   std::int64_t loop_delay = 0;
@@ -40,7 +40,7 @@ struct FakePcm {
   std::int64_t captured = 0, taken = 0;  ///< frames since the last start
   std::vector<std::int32_t> capture_ring, history;
   std::function<void()>
-      before_read;  ///< called between the program's question how much there is and the read
+      before_read;  ///< called before each read, after the program has asked how many frames there are
 
   void pass(std::int64_t frames);
   /// Makes the device stop by itself: by an underrun (xrun), because the machine is suspended (suspended), or

@@ -109,8 +109,8 @@ class Bench {
   }
 
   /// Runs a trial with this number of mishaps of the given kinds. Each happens at a random moment, from
-  /// shortly before the first onset to shortly after the last end. A void trial goes on playing here, so that
-  /// the test can judge all of it.
+  /// shortly before the first onset to shortly after the last end. A void trial continues to play here, so
+  /// that the test can judge all of it.
   Run run(int mishaps, const std::vector<Mishap>& kinds) {
     DeviceStream stream(config_);
     for (int k = 0; k < 4 || stream.clock().pairs < 2; ++k) stream.step();

@@ -37,8 +37,8 @@ class Course {
   /// A random value from `low` to `high`, both included.
   std::int64_t between(std::int64_t low, std::int64_t high);
   std::int64_t seconds(double low, double high);  ///< a random duration, returned in ns
-  std::int64_t until_next_ns();                   ///< random time until the next fault: 0.5 to 1.5 times the
-                                                  ///< mean interval
+  /// Random time until the next fault: 0.5 to 1.5 times the mean interval.
+  std::int64_t until_next_ns();
   Fault next();
 
   std::array<int, kFaults> count{};  ///< how often next() has returned each fault

@@ -42,9 +42,9 @@ struct World {
 /// What happens to the files when the process dies or the disk is full. The class Station provides these
 /// functions.
 struct Disk {
-  std::function<void(Fault)> die;             ///< copies the files as this kind of death leaves them
-  std::function<void(Fault, int)> die_later;  ///< does what `die` does, after this many further file
-                                              ///< operations
+  std::function<void(Fault)> die;  ///< copies the files as this kind of death leaves them
+  /// Does what `die` does, after this many further file operations.
+  std::function<void(Fault, int)> die_later;
   std::function<void(std::int64_t)> bytes_left;
   std::function<bool()> dead;
 };

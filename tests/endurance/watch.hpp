@@ -25,10 +25,10 @@ class AmplifierWatch {
   explicit AmplifierWatch(Violations& violations) : violations_(violations) {}
 
   void line(std::int64_t time_ns, bool high);
-  void begin(std::int64_t time_ns);  ///< a process begins: no trial is in progress, and the line must be low
-                                     ///< until armed
-  void cause(std::int64_t time_ns, const std::string& what);  ///< a fault begins: the line must be low until
-                                                              ///< armed again
+  /// A process begins: no trial is in progress, and the line must be low until armed.
+  void begin(std::int64_t time_ns);
+  /// A fault begins: the line must be low until armed again.
+  void cause(std::int64_t time_ns, const std::string& what);
   void lasts(const std::string& what) { present_.insert(what); }
   void over(const std::string& what) { present_.erase(what); }
   void armed(std::int64_t time_ns);  ///< the station accepted the operator's command to arm

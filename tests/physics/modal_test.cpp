@@ -185,8 +185,8 @@ TEST_CASE("a clamped plate under tension acts like a membrane that is narrower b
   Surface plate = seed_brass();
   plate.quality_factor = 60;
   Surface membrane = plate;
-  const double layer = 0.25e-3;  // width of the boundary layer, sqrt(D/N): bending stiffness D, tension per
-                                 // width N
+  // Width of the boundary layer, sqrt(D/N): bending stiffness D, tension per width N.
+  const double layer = 0.25e-3;
   plate.modulus_Pa = 1e9;
   plate.modulus_Pa = 1e9 * layer * layer * line_tension_N_per_m(plate) / bending_stiffness_N_m(plate).value();
   plate.edges = Edges::clamped;

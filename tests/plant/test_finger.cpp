@@ -173,8 +173,8 @@ TEST_CASE("the finger touches when it is scheduled, and its force builds up smoo
   std::vector<FingerState> states;
   for (int k = 0; k < 12000; ++k) states.push_back(stroker.step());
   CHECK(states[799].normal_N == 0);
-  CHECK(states[800 + 199].normal_N == Approx(0.25).epsilon(1e-9));  // after half of the 50 ms in which the
-                                                                    // force rises
+  // After half of the 50 ms in which the force rises.
+  CHECK(states[800 + 199].normal_N == Approx(0.25).epsilon(1e-9));
   CHECK(states[800 + 399].normal_N == Approx(0.5).epsilon(1e-9));
   CHECK(states[3999].normal_N == Approx(0.5).epsilon(1e-9));
   CHECK(states[4400].normal_N == 0);

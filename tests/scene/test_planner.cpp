@@ -105,8 +105,8 @@ TEST_CASE("a displacement wanted under a finger is there under the finger, and l
         Approx(plan.tones[0].amplitude_m * std::pow(10, 0.3)).epsilon(1e-6));
   scene.rove_dB = 0;
 
-  rig.limits.displacement_m = 0.5 * plan.peak_displacement_m;  // allows the 0.3 um wanted under the finger,
-                                                               // but not the plan's peak
+  // Allows the 0.3 um wanted under the finger, but not the plan's peak.
+  rig.limits.displacement_m = 0.5 * plan.peak_displacement_m;
   CHECK(rig.limits.displacement_m > 0.3e-6);
   CHECK_THROWS_AS(Planner(rig).plan(scene), Unreachable);
   scene.under_finger->finger_m = 0.29;

@@ -227,8 +227,8 @@ TEST_CASE("the carrier keeps away from mains and from products of the drive tone
   CHECK(choose({}).carrier_Hz == 10525);
   CHECK(choose({{30e3}}).carrier_Hz == 10525);
   CHECK(choose({{30e3, 32e3}}).carrier_Hz == 10525);  // products: 2, 4, 6, 8 kHz; 28 and 34 kHz
-  const auto moved = choose({{30e3, 33.4e3}});        // the product 3 x 3.4 kHz is 325 Hz below the default
-                                                      // carrier
+  // The product 3 x 3.4 kHz is 325 Hz below the default carrier.
+  const auto moved = choose({{30e3, 33.4e3}});
   CHECK(moved.carrier_Hz != 10525);
   CHECK(moved.clearance_Hz >= enough_clearance_Hz);
   // the same tones in two different stimuli cause no products

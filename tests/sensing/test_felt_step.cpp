@@ -37,8 +37,8 @@ Study study(const Finger& finger, int trials, unsigned seed) {
   double sum = 0, square = 0, count = 0;
   for (int i = 0; i < trials; ++i) {
     Finger moved = finger;
-    moved.edge_mm += std::uniform_real_distribution(-1.0, 1.0)(random);  // the edge may be anywhere within a
-                                                                         // bin
+    // The edge may be anywhere within a bin.
+    moved.edge_mm += std::uniform_real_distribution(-1.0, 1.0)(random);
     const auto step = felt_step(trial(moved, random).profile);
     if (!step) {
       result.missing += 1.0 / trials;

@@ -158,8 +158,8 @@ TEST_CASE("strokes without neighbours at rest do not count, and too few are refu
   const auto good = measured(friction_table_order(levels_m, 6, 4), random);
   CHECK(friction_table(good, 1, 10).unused == 0);
   auto strokes = good;
-  strokes[2].friction = std::numeric_limits<double>::quiet_NaN();  // a stroke at rest; both of its neighbours
-                                                                   // become unusable
+  // A stroke at rest; both of its neighbours become unusable.
+  strokes[2].friction = std::numeric_limits<double>::quiet_NaN();
   CHECK(friction_table(strokes, 1, 10).unused == 2);
   strokes = good;
   strokes[1].friction = std::numeric_limits<double>::quiet_NaN();

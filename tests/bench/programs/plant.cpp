@@ -1,13 +1,13 @@
 // plant KEY=VALUE...: the simulated laboratory between two sides of a loopback card. It captures what the
 // station plays on hw:Loopback,0,0 and plays what the station captures on hw:Loopback,1,1. Once a second it
-// prints "FRAME NORMAL_N LATERAL_N CONTACT_M AMPLITUDE_UM TEMPERATURE_C", the truth at that captured frame.
-// Exits with status 1 if it was too slow for the card even once, because frames are missing then.
+// prints the true state at a captured frame: "FRAME NORMAL_N LATERAL_N CONTACT_M AMPLITUDE_UM TEMPERATURE_C".
+// Exits with status 1 if it was ever too slow for the card, because frames are then missing.
 //   rig=FILE           surface, friction and transducers, from a rig file
-//   seconds=S          when to end
-//   tones=HZ,HZ...     the tones that the finger is to feel
-//   delay_ms=MS        how much silence is played first (default 250)
-//   touch=S            when the finger begins to stroke; without it there is none
-//   fault=NAME@S       a fault and when it begins, e.g. "fault=transducer dead@5"; may be repeated
+//   seconds=S          how long to run
+//   tones=HZ,HZ...     the tones that the finger can feel
+//   delay_ms=MS        length of the silence that is played first (default 250)
+//   touch=S            when a finger begins to stroke; without this key there is no finger
+//   fault=NAME@S       a fault and its beginning (s), e.g. "fault=transducer dead@5"; may be repeated
 //   playback=N         channels that the station plays (default 4)
 //   from=PCM, to=PCM   the card's sides (default hw:Loopback,1,0 and hw:Loopback,0,1)
 #include <alsa/asoundlib.h>
