@@ -27,7 +27,7 @@ Delay::Delay(std::int64_t longest, double fraction) {
   constexpr double beta = 8;
   double total = 0;
   for (int k = 0; k < kTaps; ++k) {
-    const double t = k - kLeast + 1 - fraction;  // distance of this sample (frames)
+    const double t = k - kLeast + 1 - fraction;  // distance of tap k from the wanted point, in frames
     const double place = t / kLeast;
     const double window =
         place * place < 1 ? bessel_i0(beta * std::sqrt(1 - place * place)) / bessel_i0(beta) : 0;

@@ -18,7 +18,7 @@ struct FingerState {
   double contact_m = 0;  ///< position of the touching skin; stretched skin stays behind the bone
   double speed_m_s = 0;  ///< speed of the bone
   double normal_N = 0,
-         lateral_N = 0;          ///< lateral: positive towards larger x
+         lateral_N = 0;          ///< lateral_N is positive towards larger x
   double friction = 0;           ///< current coefficient: lateral_N / normal_N while the skin slides
   double relative_friction = 1;  ///< factor by which the vibration reduces friction
 };

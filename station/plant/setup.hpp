@@ -18,7 +18,7 @@ inline constexpr std::size_t kMostTransducers = 8;
 
 /// Moves the drive edge of the surface. The motions of several transducers add up.
 struct Transducer {
-  int channel = 0;               ///< playback channel
+  int channel = 0;               ///< playback channel that drives it
   double um_per_full_scale = 4;  ///< peak displacement of the drive edge
 };
 
@@ -27,7 +27,7 @@ struct Pickup {
   int channel = 0;  ///< capture channel
   double x_m = 0;   ///< distance from the drive edge
   double full_scale_per_um = 0.1;
-  double noise_full_scale = 1e-4;  ///< rms of one sample
+  double noise_full_scale = 1e-4;  ///< rms of the noise in one sample
 };
 
 /// The cells a and b below the surface carry the normal force. A third cell measures the lateral force. For a
@@ -120,7 +120,7 @@ std::optional<FaultKind> find_fault(std::string_view name);
 struct Fault {
   FaultKind kind = FaultKind::transducer_dead;
   std::int64_t from_frame = 0, to_frame = kNever;
-  std::optional<double> amount = {};  ///< empty means the default of this kind
+  std::optional<double> amount = {};  ///< if empty, the default of the kind
   int index = 0;
 };
 

@@ -11,7 +11,7 @@ namespace turnpoint::sensing {
 /// captured at frame n + delay. Whoever numbers the blocks may already subtract a whole number of frames;
 /// only the rest is then called delay.
 struct CaptureBlock {
-  std::span<const std::int32_t> samples;  ///< frames x channels
+  std::span<const std::int32_t> samples;  ///< interleaved: frames x channels
   int channels = 1;
   std::int64_t first_frame = 0;
   int rate_Hz = 192000;

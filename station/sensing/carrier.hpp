@@ -47,7 +47,7 @@ inline constexpr std::size_t bridge_count = 3;
 /// Wiring and calibration of three bridges with a common carrier: the two cells a and b below the surface,
 /// and the lateral cell.
 struct BridgeOptions {
-  int rate_Hz = 192000;  ///< a multiple of 8000
+  int rate_Hz = 192000;  ///< must be a multiple of 8000
   double carrier_Hz = carriers_Hz.front();
   Band band = Band::force;
   int channels = 4;                                ///< number of channels in a captured frame

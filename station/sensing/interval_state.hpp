@@ -21,7 +21,7 @@ namespace turnpoint::sensing {
 /// A window of captured frames to which all tones are fitted. Nothing changes in the burst during a window.
 struct Window {
   std::size_t stretch = 0;
-  std::int64_t first = 0, end = 0;  // captured frames
+  std::int64_t first = 0, end = 0;  // first captured frame, and the one after the last
   bool valid = false;
   std::vector<std::complex<double>> amplitude;  // [pick-up][line], captured complex amplitude
   std::vector<double> residual;                 // [pick-up], mean square after the high-pass filter
@@ -67,7 +67,7 @@ struct IntervalProof::State {
   std::vector<Measured> stretches_;
   std::vector<Window> windows_;
   std::size_t current_ = 0;           // index of the window that is being filled
-  std::int64_t begin_ = 0, end_ = 0;  // captured frames of the burst
+  std::int64_t begin_ = 0, end_ = 0;  // the burst's first captured frame, and the one after its last
   std::int64_t next_ = 0;             // first captured frame that has not been received
   std::vector<std::uint8_t> good_;    // 1 for each aligned block of the burst that was captured
   std::size_t main_ = 0;              // the pick-up with the best response to the plan

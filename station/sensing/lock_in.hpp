@@ -33,7 +33,7 @@ class HannWindow {
   std::size_t taken_ = 0;
   std::int64_t centre_ = 0;
   std::int64_t expected_ = 0;               ///< first frame of the next block
-  std::vector<std::complex<double>> kept_;  ///< [block][part][input][tone]
+  std::vector<std::complex<double>> kept_;  ///< [block][part: plain, cosine, sine][input][tone]
   std::vector<std::complex<double>>
       angle_;  ///< e^(i 2 pi n / window) for the middle n of block k of the window
   std::vector<std::complex<double>> values_;

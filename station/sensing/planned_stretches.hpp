@@ -12,8 +12,8 @@ struct PlannedTone {
   int index = 0;    ///< index in the burst's tone set
   int channel = 0;  ///< output channel
   double frequency_Hz = 0;
-  double amplitude = 0;     ///< of full scale
-  std::uint64_t phase = 0;  ///< in 2^-64 cycles, at origin_frame
+  double amplitude = 0;     ///< as a fraction of full scale
+  std::uint64_t phase = 0;  ///< phase at origin_frame, in 2^-64 cycles
   std::uint64_t increment = 0;
 };
 
@@ -21,7 +21,7 @@ struct PlannedTone {
 /// constant.
 struct Stretch {
   std::int64_t origin_frame = 0;                ///< absolute frame to which the tones' phases belong
-  std::int64_t first_frame = 0, end_frame = 0;  ///< absolute frames, the end excluded
+  std::int64_t first_frame = 0, end_frame = 0;  ///< absolute frames: the first, and the one after the last
   std::vector<PlannedTone> tones;               ///< tones of amplitude 0 are left out
 };
 

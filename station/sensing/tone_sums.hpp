@@ -28,8 +28,8 @@ struct FollowedTone {
 class ToneSums {
  public:
   enum class Parts {
-    plain,    ///< only plain()
-    windowed  ///< also cosine() and sine(), for a Hann window; three times the cost
+    plain,    ///< compute only plain()
+    windowed  ///< compute also cosine() and sine(), for a Hann window; three times the cost
   };
 
   /// The Hann window has `window_frames`, a multiple of `block_frames`, which must be even. Captured frame n
@@ -67,10 +67,10 @@ class ToneSums {
   std::int64_t delay_;
   double delay_fraction_;
   std::size_t columns_;        ///< number of tones, rounded up to a multiple of the loops' width
-  std::vector<double> table_;  ///< [part][parity][frame after the middle][column]
+  std::vector<double> table_;  ///< [part: 1, cos, sin][parity: even, odd][frame after the middle][column]
   std::vector<double>
       folded_;  ///< [parity][input][frame after the middle]: sum and difference of mirrored frames
-  std::vector<double> sums_;                  ///< [part][parity][input][column]
+  std::vector<double> sums_;                  ///< [part: 1, cos, sin][parity: even, odd][input][column]
   std::vector<std::uint64_t> part_of_frame_;  ///< phase of each tone for the delay's fraction
   std::vector<std::uint64_t> phase_;          ///< phase of each tone in the middle of the block
   std::vector<std::complex<double>> turn_;    ///< e^(i phase) of each tone in the middle of the block

@@ -21,7 +21,7 @@ struct TrialSummary {
   int strokes = 0;
   /// Mean and standard deviation of normal force over all strokes.
   double normal_N = none, normal_sd_N = none;
-  double normal_in_window = none;  ///< fraction of the strokes' time inside the window, 0 to 1
+  double normal_in_window = none;  ///< fraction of the strokes' time with normal force in the window
   double speed_mm_s = none;        ///< mean absolute speed over all strokes
   double speed_in_window = none;
   double mu_low = none, mu_high = none;  ///< friction on the two sides of the felt step

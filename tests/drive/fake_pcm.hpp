@@ -37,10 +37,10 @@ struct FakePcm {
   int capture_channels = 1;
   std::int64_t loop_delay = 0;
   std::function<void(std::span<const std::int32_t> played, std::span<std::int32_t> captured)> wires;
-  std::int64_t captured = 0, taken = 0;  ///< frames since the last start
+  std::int64_t captured = 0, taken = 0;  ///< numbers of frames since the last start
   std::vector<std::int32_t> capture_ring, history;
   std::function<void()>
-      before_read;  ///< called before each read, after the program has asked how many frames there are
+      before_read;  ///< called before each read, after the program has asked how many frames it can read
 
   void pass(std::int64_t frames);
   /// Makes the device stop by itself: by an underrun (xrun), because the machine is suspended (suspended), or

@@ -83,8 +83,8 @@ TEST_CASE("an overrun is counted with its length, and the numbers of later frame
           "[drive][capture]") {
   Card card;
   card.capture->step();
-  fake_pcm().pass(10'000);  // the buffer has 1536 frames
-  card.capture->step();     // finds the overrun
+  fake_pcm().pass(10'000);  // more than the buffer's 1536 frames
+  card.capture->step();     // detects the overrun
   card.capture->step();
   card.take();
   const auto counters = card.capture->counters();

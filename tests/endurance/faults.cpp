@@ -10,7 +10,8 @@ const char* name(Fault fault) {
   return kNames[static_cast<int>(fault)];
 }
 
-// Not std::uniform_int_distribution, whose results differ between implementations. These draws must not.
+// std::uniform_int_distribution is not used, because its results differ between implementations, and these
+// draws must be the same everywhere.
 std::int64_t Course::between(std::int64_t low, std::int64_t high) {
   return low + static_cast<std::int64_t>(random_() % static_cast<std::uint64_t>(high - low + 1));
 }

@@ -28,9 +28,9 @@ class Caller {
     thread_ = std::jthread([this](const std::stop_token& stop) {
       for (begin_.acquire(); !stop.stop_requested(); begin_.acquire()) {
         points_ = 0;
-        point();  // this point is before the call
+        point();  // point 0 is before the call
         call_();
-        while (points_ <= hold_at_) point();  // if the call had fewer points, hold after it
+        while (points_ <= hold_at_) point();  // further points are after the call
         finished_.release();
       }
     });

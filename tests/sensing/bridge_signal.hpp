@@ -25,7 +25,7 @@ struct BridgeSignal {
   double quadrature_V_V = 0;                                        ///< from unbalanced capacitance
   std::vector<double> tones_Hz;                                     ///< drive tones that reach the bridges
   double tone_V = 1e-3, cubic_per_V2 = 0;  ///< tone: at the bridge; cubic: of the output
-  double noise_V_rtHz = 0;                 ///< at the bridge
+  double noise_V_rtHz = 0;                 ///< density of the noise at the bridge
   unsigned seed = 1;
 
   static constexpr double excitation_V = 2.5, volt_per_volt_N = 2e-4, amplifier = 200, full_scale_V = 3;

@@ -42,8 +42,8 @@ std::vector<DeadWeight> weights(const Cells& cells, std::mt19937_64& random) {
 }
 
 struct Errors {
-  double normal_share = 0, friction = 0, position_mm = 0;  ///< root mean square
-  double covered_position = 0, covered_friction = 0;       ///< share within 1.96 standard deviations
+  double normal_share = 0, friction = 0, position_mm = 0;  ///< root mean square errors
+  double covered_position = 0, covered_friction = 0;       ///< proportion within 1.96 standard deviations
 };
 
 /// Errors over many calibrated stations, at 3 forces x 3 positions, with friction in both directions. Without
@@ -80,7 +80,7 @@ Errors errors(int stations, bool with_height) {
           std::sqrt(sum.position_mm / count), sum.covered_position / count, sum.covered_friction / count};
 }
 
-/// 300 ms of points without a finger. `normal_N` is an offset.
+/// 300 ms of points without a finger. The normal force has the constant offset `normal_N`, and noise.
 std::vector<BridgePoint> rest(const Cells& cells, double normal_N, double noise_N) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;

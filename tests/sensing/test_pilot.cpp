@@ -96,12 +96,12 @@ TEST_CASE("without the pilot there is no delay", "[sensing][pilot]") {
   CHECK(as(22000, 46000, 1920));
   CHECK_FALSE(as(46000, 22000, 1920));                       // a falling chirp
   CHECK_FALSE(as(22000, 46000, 960));                        // a chirp that is half as long
-  CHECK_FALSE(as(22000 * 1.03, 46000 * 1.03, 1920 / 1.03));  // played at another rate
-  CHECK_FALSE(as(10000, 20000, 1920));                       // another band
+  CHECK_FALSE(as(22000 * 1.03, 46000 * 1.03, 1920 / 1.03));  // a chirp played at another rate
+  CHECK_FALSE(as(10000, 20000, 1920));                       // a chirp in another band
   CHECK_FALSE(as(34000, 34000, 1920));                       // a tone
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}) {
     loop.seed = seed;
-    CHECK_FALSE(heard(pilot, loop, [](long double) { return 0.0L; }));  // noise only
+    CHECK_FALSE(heard(pilot, loop, [](long double) { return 0.0L; }));  // nothing but noise
     loop.noise = 0;
     CHECK_FALSE(heard(pilot, loop, [](long double) { return 0.0L; }));  // digital silence
     loop.noise = 1e-2;

@@ -40,7 +40,7 @@ class StationRoom : public QObject {
   Q_INVOKABLE void entitle(const QString& title);
   /// Ends the program and starts it again in the same folder.
   Q_INVOKABLE void reopen(const QString& code);
-  /// Does the same, but the station starts locked.
+  /// Ends the program and starts it again as a locked station, in the same folder.
   Q_INVOKABLE void reopenLocked(const QString& code);
   Q_INVOKABLE void close();
   Q_INVOKABLE void addSecondScreen();

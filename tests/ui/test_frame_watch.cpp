@@ -24,7 +24,7 @@ TEST_CASE("a stall that delays both a page and the event loop is counted once", 
   CHECK(late.count() == 0);
   late.waited(1032 * ms, 1132 * ms);  // the event loop was blocked for 100 ms
   CHECK(late.count() == 5);
-  late.waited(1040 * ms, 1140 * ms);  // requested during the same delay
+  late.waited(1040 * ms, 1140 * ms);  // this delay overlaps the one already counted
   CHECK(late.count() == 5);
   late.waited(1132 * ms, 1148 * ms);
   late.waited(1140 * ms, 1240 * ms);  // now drawing is slow while the event loop runs

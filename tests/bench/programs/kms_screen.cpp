@@ -1,7 +1,7 @@
 // kms_screen [X Y]: reads what the screen shows now from the buffer that the graphics card scans out,
-// whichever program drew it. With X Y it prints the colour there as bbggrr in hexadecimal. Without, it prints
-// "WIDTH HEIGHT", a new line, and all pixels, 4 bytes each (blue, green, red, unused), row by row. It must
-// run as root, because only root may read the buffer.
+// whichever program drew it. With X Y it prints the colour there as bbggrr in hexadecimal. Without
+// X Y it prints "WIDTH HEIGHT", a new line, and all pixels, 4 bytes each (blue, green, red, unused), row by
+// row. It must run as root, because only root may read the buffer.
 #include <drm.h>
 #include <drm_mode.h>
 #include <fcntl.h>
