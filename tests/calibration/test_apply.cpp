@@ -71,7 +71,7 @@ TEST_CASE("a calibration tells what each pick-up captures of each transducer", "
   CHECK(response.points[1].amplitude == 0.2);
   CHECK(response.points[1].phase_rad == Approx(-0.25));
   CHECK(rig::unproven_transducers(made).empty());
-  CHECK(rig::unproven_transducers(plate()).empty());  // captures nothing
+  CHECK(rig::unproven_transducers(plate()).empty());  // this rig captures nothing
 
   calibration.pick_ups.push_back(calibration.pick_ups[0]);
   CHECK_THROWS_WITH(applied(calibration, rig),

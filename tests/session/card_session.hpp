@@ -1,6 +1,6 @@
 #pragma once
-// Sessions on the simulated sound card of tests/drive, with the station's real stream and output. Time is
-// that of the card.
+// Sessions on the simulated sound card of tests/drive, with the station's real stream and output. All
+// times are on the card's clock.
 #include <algorithm>
 #include <atomic>
 #include <cmath>

@@ -60,7 +60,7 @@ TEST_CASE("a trial whose capture has a gap is void, and a new pilot aligns the n
       if (unknown)
         fake_pcm().capture_state = drive::FakePcm::State::xrun;
       else
-        fake_pcm().taken -= 5'000;  // as if nobody had read for a while
+        fake_pcm().taken -= 5'000;  // as if 5000 frames had not been read
     });
   };
   const auto trials = card.runs();
